@@ -9,5 +9,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     (void)pliant::studio::printer_name_of(text);
     (void)pliant::studio::parse_goal_order(text);
     (void)pliant::studio::parse_identify_order(text);
+    (void)pliant::studio::parse_workspace_order(text);
+    (void)pliant::studio::parse_sweep_order(text);
     return 0;
 }

@@ -14,7 +14,6 @@
 #include "base/core/config.hpp"
 #include "base/core/counted.hpp"
 #include "base/core/files.hpp"
-#include "board.hpp"
 #include "command.hpp"
 #include "geometry/mesh/mesh_report.hpp"
 #include "geometry/open/describe_file.hpp"
@@ -23,6 +22,7 @@
 #include "printing/job/job.hpp"
 #include "printing/machine/board_report.hpp"
 #include "printing/machine/printer.hpp"
+#include "printing/operate/board.hpp"
 #include "printing/operate/proved_job.hpp"
 #include "printing/plan/safe_stop.hpp"
 #include "simulation/scene/scene.hpp"
@@ -128,7 +128,8 @@ Result<std::string> check_boards(const std::string& file, const Options& options
         return input_error("--firmware: give --printer, the machine that the board is to drive");
     const Result<machine::Printer> printer = read_printer(options.printer);
     if (!printer) return tl::unexpected(printer.error());
-    if (file == options.port) return check_firmware(file, ask_board(file, printer->controller.baud_rate), *printer);
+    if (file == options.port)
+        return check_firmware(file, operate::ask_board(file, printer->controller.baud_rate), *printer);
     return check_firmware(file, read_file(file, 1 << 20), *printer);
 }
 

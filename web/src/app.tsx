@@ -11,14 +11,25 @@ import { Enlarged } from './print/enlarged';
 import { info } from './print/state';
 import './print/tell';
 import { Simulate } from './simulate/simulate';
+import { GeometryDrop, PickGeometry } from './simulate/geometry';
 import { templates } from './simulate/templates';
 import { api, building, documentState, helm, notice, online, post, problems, say, scene, section, send, type Section } from './store';
 import { theme, toggleTheme } from './theme';
+import { GuideBar } from './wizard/guide_bar';
 
 interface Project {
   files: string[];
   examples: string[];
   folder: string;
+}
+
+/// What a robot looks like, drawn by the studio; a plain sheet where there is no picture of it.
+function Thumbnail({ of }: { of: string }) {
+  return (
+    <span class="thumb" aria-hidden="true">
+      <img src={`/api/thumbnail?${of}`} alt="" width={120} height={75} onError={(e) => (e.currentTarget.hidden = true)} />
+    </span>
+  );
 }
 
 function Open() {
@@ -39,24 +50,36 @@ function Open() {
       {project && (
         <div class="popover open-list" onClick={() => setProject(null)}>
           <h2>New robot</h2>
-          {Object.entries(templates).map(([name, text]) => (
-            <button class="item" key={name} onClick={() => unlessLost(`A new robot`, () => void newRobot(text))}>
-              {name}
-            </button>
-          ))}
-          <h2>Examples</h2>
-          {project.examples.map((name) => (
-            <button class="item" onClick={() => unlessLost(`Opening the example ${name.replace(/_/g, ' ')}`, () => void post('/api/example', { name }))}>
-              {name.replace(/_/g, ' ')}
-            </button>
-          ))}
+          <div class="gallery">
+            {Object.entries(templates).map(([name, text]) => (
+              <button class="item plain" key={name} onClick={() => unlessLost(`A new robot`, () => void newRobot(text))}>
+                {name}
+              </button>
+            ))}
+          </div>
+          <div class="row left pick">
+            <PickGeometry label="From STL, STEP, 3MF or a mesh…" testId="pick-geometry" />
+            <span class="quiet">or drop it onto the page</span>
+          </div>
           <h2 title={project.folder}>This folder</h2>
-          {project.files.length === 0 && <p class="quiet">no robot files or jobs</p>}
-          {project.files.map((name) => (
-            <button class="item" onClick={() => (name.endsWith('.toml') ? unlessLost(`Opening ${name}`, () => void post('/api/open', { name })) : void post('/api/open', { name }))}>
-              {name}
-            </button>
-          ))}
+          {project.files.length === 0 && <p class="quiet none">no robot files or jobs</p>}
+          <div class="gallery">
+            {project.files.map((name) => (
+              <button class="item" key={name} onClick={() => (name.endsWith('.toml') ? unlessLost(`Opening ${name}`, () => void post('/api/open', { name })) : void post('/api/open', { name }))}>
+                {name.endsWith('.toml') ? <Thumbnail of={`file=${encodeURIComponent(name)}`} /> : <span class="thumb" aria-hidden="true"><Icon name="layers" /></span>}
+                <span class="item-name">{name}</span>
+              </button>
+            ))}
+          </div>
+          <h2>Examples</h2>
+          <div class="gallery">
+            {project.examples.map((name) => (
+              <button class="item" key={name} onClick={() => unlessLost(`Opening the example ${name.replace(/_/g, ' ')}`, () => void post('/api/example', { name }))}>
+                <Thumbnail of={`example=${name}`} />
+                <span class="item-name">{name.replace(/_/g, ' ')}</span>
+              </button>
+            ))}
+          </div>
           <p class="quiet">
             <a href="/notices.txt" target="_blank" rel="noopener" data-testid="notices">
               Third-party licences
@@ -156,7 +179,9 @@ export function App() {
       {section.value === 'simulate' && <Simulate />}
       {section.value === 'make' && <Make />}
       {section.value === 'print' && <Print />}
+      <GuideBar />
       <Enlarged />
+      <GeometryDrop />
       <DiscardQuestion />
       {notice.value && (
         <div class="notice" role="alert" data-testid="notice">

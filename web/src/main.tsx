@@ -2,6 +2,8 @@ import { render } from 'preact';
 import { App } from './app';
 import './style.css';
 import { text } from './simulate/editor';
+import { theView } from './simulate/the_view';
+import { shownFrame } from './simulate/view_state';
 import * as store from './store';
 import './theme';
 
@@ -10,6 +12,8 @@ window.addEventListener('hashchange', () => {
   if (['simulate', 'make', 'print'].includes(name)) store.section.value = name;
 });
 // For the tests and for the curious: the state of the page.
-Object.assign(window, { pliant: { ...store, robotText: text } });
+const shown = () => shownFrame.value ?? store.frame.value;
+const project = (p: [number, number, number]) => theView.value?.placeOnPage(p);
+Object.assign(window, { pliant: { ...store, robotText: text, shown, project } });
 store.connect();
 render(<App />, document.getElementById('app') as HTMLElement);

@@ -23,7 +23,8 @@ export const isRough = (f: Frame | null) => (f?.head.order ?? scene.value?.head.
 export const rough = computed(() => isRough(frame.value));
 export const building = signal<{ stage: string; fraction: number } | null>(null);
 export const problems = signal<Problem[]>([]);
-export const slicing = signal<{ stage: string; fraction: number } | null>(null);
+/// `layers`: so many can be looked at already.
+export const slicing = signal<{ stage: string; fraction: number; layers?: number } | null>(null);
 export const sliceError = signal('');
 export const job = signal<Job | null>(null);
 export const notice = signal('');
@@ -44,6 +45,12 @@ const listeners = new Set<(event: Record<string, unknown>) => void>();
 export function onEvent(listener: (event: Record<string, unknown>) => void) {
   listeners.add(listener);
   return () => listeners.delete(listener);
+}
+
+let takeBeside: (next: Frame) => void = () => {};
+/// Frames of the robot beside the one that is edited.
+export function onBesideFrame(listener: (next: Frame) => void) {
+  takeBeside = listener;
 }
 
 /// Who this page is, kept over reloads and lost connections.
@@ -198,6 +205,7 @@ function receiveText(text: string) {
 
 function receiveFrame(buffer: ArrayBuffer) {
   const next = readPacket<FrameHead>(buffer);
+  if (next.head.beside) return takeBeside(next);
   // A robot at rest sends one frame and no other: it may be here before its scene is.
   if (!sceneKnown || scene.value === null || next.head.revision !== scene.value.head.revision) {
     early = next;

@@ -34,9 +34,10 @@ export interface SceneHead {
   cable_points: number[];
   supports: string[];
   markers: { name: string; rest: [number, number, number] }[];
-  obstacles: { name: string; open: boolean }[];
+  sensors?: { name: string; readings: { name: string; unit: string }[] }[];
+  obstacles: { name: string; open: boolean; object?: boolean }[];
   loaded: boolean;
-  program: { steps: number; duration: number };
+  program: { steps: number; duration: number; timed?: boolean };
   tolerance: number;
   nodes: number;
   tets: number;
@@ -64,7 +65,11 @@ export interface FrameHead {
   chambers: { ratio: number; volume_mm3: number; pressure_kPa: number }[];
   markers: [number, number, number][];
   supports: [number, number, number][];
+  sensors?: number[][]; // as the readings of the scene
   obstacles: [number, number, number, ...number[]][];
+  contacts?: [number, number, number][]; // N, of obstacles on the robot, then of all that touches an object on it
+  self_contact_N?: number;
+  beside?: boolean; // of the second robot
   pull?: { vertex: number; force_N: [number, number, number] };
   lead?: Lead; // a marker in somebody's hand, which the actuators follow
 }
@@ -122,6 +127,8 @@ export interface Projector {
 }
 
 export interface Job {
+  /** Where its images are, where that is not at the job at hand. */
+  at?: (layer: number, material: number) => string;
   revision: number;
   file: string;
   saved: boolean;
@@ -136,7 +143,7 @@ export interface Job {
     height_px: number;
     pixel_um: number;
     materials: JobMaterial[];
-    layers: { z_um: number; thickness_um: number; images: { material: number; file: string; area_mm2: number }[] }[];
+    layers: { number?: number; z_um: number; thickness_um: number; images: { material: number; file: string; area_mm2: number }[] }[];
   };
   plan?: Plan;
   plan_error?: string;

@@ -6,6 +6,7 @@ import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
+import { boxStl } from './shapes.mjs';
 import { openPage, program, settled, startBrowser, startPrint, startStudio, takeTwin, readRobot, typeRobot } from './studio.mjs';
 
 const require = createRequire(join(process.env.PLIANT_WEB ?? new URL('..', import.meta.url).pathname, 'package.json'));
@@ -39,7 +40,7 @@ async function found(page, where) {
 /// Every view that a person can come to, one after the other.
 async function* views(page) {
   await page.getByTestId('section-simulate').click();
-  for (const tab of ['move', 'build', 'goal', 'identify', 'plots', 'file']) {
+  for (const tab of ['move', 'build', 'goal', 'workspace', 'identify', 'sweep', 'plots', 'file']) {
     await page.getByTestId(`tab-${tab}`).click();
     yield `simulate, ${tab}`;
   }
@@ -124,6 +125,95 @@ for (const theme of ['light', 'dark']) {
 
 const widths = [390, 768, 1440];
 
+/// What is built and understood on the page, one state after the other. It leaves the robot as it was.
+async function understood(page, see) {
+  const long = { timeout: 120_000 };
+  await page.getByTestId('section-simulate').click();
+  await page.getByTestId('open').click();
+  await page.locator('.open-list .thumb img').first().waitFor();
+  await see('the gallery');
+  await page.keyboard.press('Escape');
+  await page.getByTestId('tab-build').click();
+  await page.getByTestId('place-chamber').click();
+  for (const shape of ['box', 'cavity']) {
+    await page.getByTestId(`chamber-${shape}`).click();
+    await see(`a chamber as ${shape}`);
+  }
+  await page.getByTestId('place-chamber').click();
+  const pick = (text) => page.getByTestId('build-geometry').setInputFiles({ name: 'axe.stl', mimeType: 'model/stl', buffer: Buffer.from(text) });
+  await pick(boxStl([20, 10, 10]));
+  await page.getByTestId('geometry-new').waitFor(long);
+  await see('a file of geometry, its unit is asked for');
+  await page.keyboard.press('Escape');
+  await pick(boxStl([21, 10, 10]));
+  await page.getByTestId('geometry-keep').waitFor(long);
+  await see('a file that is there already');
+  await page.keyboard.press('Escape');
+  await pick('solid nothing');
+  await page.getByTestId('geometry-refused').waitFor(long);
+  await see('a file that is refused');
+  await page.keyboard.press('Escape');
+  await page.getByTestId('tab-sweep').click();
+  await page.getByTestId('sweep-0-key').selectOption('cable.flexor.target.length_ratio');
+  await page.getByTestId('sweep-second').click();
+  await page.getByTestId('sweep-1-key').selectOption('?');
+  await see('a sweep that is asked for, with a key that is typed');
+  await page.getByTestId('sweep-1-typed').fill('program.steps');
+  for (const which of [0, 1]) {
+    await page.getByTestId(`sweep-${which}-count`).fill('2');
+    await page.getByTestId(`sweep-${which}-count`).press('Enter');
+  }
+  await page.getByTestId('sweep-1-from').fill('2');
+  await page.getByTestId('sweep-1-to').fill('3');
+  await page.getByTestId('sweep-1-to').press('Enter');
+  await page.getByTestId('find-sweep').click();
+  await page.getByTestId('sweep-found').waitFor(long);
+  await page.evaluate(() => document.querySelectorAll('.search details').forEach((d) => (d.open = true)));
+  await page.getByTestId('sweep-run-1').click();
+  await see('a sweep of two numbers, with its table');
+  await page.getByTestId('tab-workspace').click();
+  await page.getByTestId('workspace-side').fill('2');
+  await page.getByTestId('workspace-side').press('Enter');
+  await page.getByTestId('find-workspace').click();
+  await page.getByTestId('workspace-found').waitFor(long);
+  await see('a workspace');
+  await page.getByTestId('motion-run').click();
+  await page.getByTestId('motion-play').waitFor(long);
+  await see('a motion that is played');
+  await page.getByTestId('motion-leave').click();
+  await page.getByTestId('tab-move').click();
+  await page.getByTestId('compare').click();
+  await page.locator('.compare-list .item').first().waitFor();
+  await see('what can stand beside');
+  await page.locator('.compare-list .item').first().click();
+  await page.waitForSelector('[data-testid=beside][data-state=arrived]', long);
+  await see('two robots');
+  await page.getByTestId('compare-leave').click();
+  await page.getByTestId('beside').waitFor({ state: 'detached' });
+}
+
+for (const theme of ['light', 'dark']) {
+  test(`axe finds nothing where robots are built and understood, at any width, ${theme}`, async (t) => {
+    const { page } = await openPage(browser, studio.address, t, { colorScheme: theme, viewport: { width: 1440, height: 900 } });
+    await settled(page);
+    // Coarse and linear: it is the page that is looked at.
+    await page.evaluate(() => window.pliant.post('/api/robot/set', { changes: [{ key: 'mesh.size', value: '8 mm' }, { key: 'program.steps', value: 2 }] }));
+    await page.waitForFunction(() => window.pliant.scene.value.head.program.steps === 2, undefined, { timeout: 60_000 });
+    await settled(page);
+    const wrong = [];
+    await understood(page, async (where) => {
+      for (const width of widths) {
+        await page.setViewportSize({ width, height: 900 });
+        wrong.push(...(await found(page, `${where}, ${width} px`)));
+        const over = await page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+        if (over > 0) wrong.push(`${where}, ${width} px: ${over} px wider than the window`);
+      }
+      await page.setViewportSize({ width: 1440, height: 900 });
+    });
+    assert.deepEqual(wrong, []);
+  });
+}
+
 /// Every state of preparing and printing, one after the other.
 async function* steps(page) {
   await page.getByTestId('section-make').click();
@@ -142,13 +232,27 @@ async function* steps(page) {
   await page.getByTestId('option-copies').fill('1');
   await page.getByTestId('option-copies').blur();
   await page.evaluate(() => document.querySelectorAll('.make details').forEach((d) => (d.open = false)));
-  for (const tab of ['layers', 'stack', 'plan']) {
+  await page.getByTestId('make-bed').click();
+  await page.getByTestId('paint').click();
+  yield 'painting supports';
+  await page.getByTestId('brush-done').click();
+  for (const tab of ['layers', 'stack', 'plan', 'compare']) {
     await page.getByTestId(`make-${tab}`).click();
     if (tab === 'stack') await page.waitForSelector('[data-testid=stack-view][data-state=shown]');
     yield `make, ${tab}`;
   }
   await page.getByTestId('section-print').click();
   yield 'print, no machine';
+  await page.getByTestId('queue-add').click();
+  await page.getByTestId('queued').waitFor();
+  yield 'print, a job in the queue';
+  await page.getByLabel(/^Remove .* from the queue/).click();
+  for (const wizard of ['machine', 'projector', 'exposure', 'axes', 'first']) {
+    await page.getByTestId(`wizard-${wizard}`).click();
+    await page.getByTestId('wizard').waitFor();
+    yield `wizard, ${wizard}`;
+    await page.getByTestId('wizard-close').click();
+  }
   await takeTwin(page, '60');
   yield 'before a print';
   await startPrint(page);
@@ -194,7 +298,7 @@ test('the views of a job are tabs that the arrow keys walk through', async (t) =
   assert.equal(await page.evaluate(() => document.activeElement.dataset.testid), 'make-stack');
   assert.equal(await page.getByTestId('make-stack').getAttribute('aria-selected'), 'true');
   await page.keyboard.press('End');
-  assert.equal(await page.evaluate(() => document.activeElement.dataset.testid), 'make-plan');
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.testid), 'make-compare');
   await page.keyboard.press('ArrowRight');
   assert.equal(await page.evaluate(() => document.activeElement.dataset.testid), 'make-bed');
 });

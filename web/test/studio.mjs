@@ -106,11 +106,16 @@ export async function settled(page) {
   await page.waitForSelector('[data-testid=status][data-state=arrived]', { timeout: 90_000 });
 }
 
-/// Takes the virtual printer for the job at hand.
-export async function takeTwin(page, speed) {
+/// Takes the virtual printer for the job at hand. A print that was interrupted before is discarded, unless `goOn`.
+export async function takeTwin(page, speed, { goOn = false } = {}) {
   await page.getByTestId('take-speed').selectOption(speed);
   await page.getByTestId('take-twin').click();
   await page.waitForSelector('[data-testid=print-state]');
+  await page.waitForSelector('[data-testid=start], [data-testid=interrupted]');
+  if (goOn || !(await page.getByTestId('interrupted').count())) return;
+  await page.getByTestId('put-away').click();
+  await page.getByTestId('put-away-sure').click();
+  await page.getByTestId('start').waitFor();
 }
 
 /// Confirms what only people can see, and starts.

@@ -33,7 +33,7 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 let page;
 before(async () => {
   pretendBrowser();
-  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/fit', 'simulate/robot_keys', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'make/gantt', 'make/plan', 'make/place', 'print/telling', 'orbit_keys'];
+  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/fit', 'simulate/robot_keys', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'make/gantt', 'make/plan', 'make/place', 'print/telling', 'orbit_keys', 'simulate/gif', 'simulate/response', 'simulate/geometry', 'simulate/motion', 'simulate/workspace'];
   const entry = join(folder, 'entry.ts');
   writeFileSync(entry, modules.map((m) => `export * from ${JSON.stringify(join(sources, m))};`).join('\n'));
   const outfile = join(folder, 'units.mjs');
@@ -169,7 +169,7 @@ test('what was driven by another measure before does not become a key', () => {
 
 test('what the plots show, as a table: names in quotes where they need it, linear states named, no time while nothing moves', () => {
   const marker = { name: 'tip', rest: [0, 0, 0] };
-  page.scene.value = { head: { order: 2, actuators, markers: [marker], supports: ['clamp'] } };
+  page.scene.value = { head: { order: 2, actuators, markers: [marker], supports: ['clamp'], obstacles: [] } };
   const frame = (sequence, x, order) => ({ head: { revision: 77, sequence, order, time: 0, energy_mJ: 1, cables: [{ tension_N: x, ratio: 1, length_mm: 80 }], chambers: [{ pressure_kPa: 2 * x, ratio: 1, volume_mm3: 5 }], markers: [[x, 4, 0]], supports: [[0, 3, 4]], residual: 0 } });
   page.frame.value = frame(1, 3, 1);
   page.frame.value = frame(1, 3, 1); // the same state again
@@ -338,4 +338,141 @@ test('the table that a text ends in, and the numbers that formulas are made of',
   assert.equal(page.tableAt('[a]\n[[cable]]\npoints = [[0, 0, 0],\n[1, 1, 1]]\n'), 'cable');
   assert.equal(page.tableAt('[[program.key]]\n'), 'program.key');
   assert.deepEqual(page.parametersOf('x = 1\n[parameters] # p\nnotches = 4 # n\nlong-name=1_000.5e-1\nf = "= 80 / notches"\n[mesh]\nsize = 3\n'), [{ name: 'notches', value: 4 }, { name: 'long-name', value: 100.05 }]);
+});
+
+/// The pictures of a GIF, as indices into its table and as colours: LZW the other way round.
+function readGif(bytes) {
+  const text = (at, n) => String.fromCharCode(...bytes.slice(at, at + n));
+  assert.equal(text(0, 6), 'GIF89a');
+  const width = bytes[6] | (bytes[7] << 8);
+  const height = bytes[8] | (bytes[9] << 8);
+  const table = bytes.slice(13, 13 + 768);
+  const frames = [];
+  const shown = new Array(width * height).fill(null);
+  let at = 13 + 768;
+  let [delay, none] = [0, -1];
+  while (bytes[at] !== 0x3b) {
+    if (bytes[at] === 0x21) {
+      if (bytes[at + 1] === 0xf9) [delay, none] = [bytes[at + 4] | (bytes[at + 5] << 8), bytes[at + 3] & 1 ? bytes[at + 6] : -1];
+      at += 2;
+      while (bytes[at] !== 0) at += bytes[at] + 1;
+      at += 1;
+      continue;
+    }
+    assert.equal(bytes[at], 0x2c);
+    at += 10;
+    const least = bytes[at++];
+    const data = [];
+    while (bytes[at] !== 0) {
+      data.push(...bytes.slice(at + 1, at + 1 + bytes[at]));
+      at += bytes[at] + 1;
+    }
+    at += 1;
+    const [clear, end] = [1 << least, (1 << least) + 1];
+    let [words, size, bit, before] = [[], least + 1, 0, null];
+    const reset = () => ((words = Array.from({ length: end + 1 }, (_, k) => [k])), (size = least + 1), (before = null));
+    const next = () => {
+      let code = 0;
+      for (let k = 0; k < size; ++k, ++bit) code |= ((data[bit >> 3] >> (bit & 7)) & 1) << k;
+      return code;
+    };
+    reset();
+    const pixels = [];
+    for (let code = next(); code !== end; code = next()) {
+      if (code === clear) {
+        reset();
+        continue;
+      }
+      assert.ok(code < words.length || (code === words.length && before), 'a word that is not known yet');
+      const word = words[code] ?? [...before, before[0]];
+      pixels.push(...word);
+      if (before && words.length < 4096) words.push([...before, word[0]]);
+      if (words.length === 1 << size && size < 12) size += 1;
+      before = word;
+    }
+    assert.equal(pixels.length, width * height);
+    pixels.forEach((p, k) => p !== none && (shown[k] = [...table.slice(3 * p, 3 * p + 3)]));
+    frames.push({ delay, colours: shown.slice() });
+  }
+  return { width, height, frames };
+}
+
+test('a GIF holds the pictures that were put in, in colours near enough, also where its words run out', () => {
+  const [w, h] = [160, 120];
+  let seed = 7;
+  const random = () => (seed = (seed * 1103515245 + 12345) % 2147483648) / 2147483648;
+  const picture = (k) => {
+    const data = new Uint8ClampedArray(4 * w * h);
+    for (let i = 0; i < w * h; ++i) {
+      const [x, y] = [i % w, Math.floor(i / w)];
+      const noisy = x > 80; // no word comes twice there, so that the table of words fills up
+      data.set([noisy ? 255 * random() : x + 10 * k, noisy ? 255 * random() : 2 * y, noisy ? 255 * random() : 40, 255], 4 * i);
+    }
+    return { data };
+  };
+  const pictures = [picture(0), picture(1), picture(1)];
+  pictures.push(pictures[2]);
+  const read = readGif(page.animatedGif(pictures, w, h, 40, 1200));
+  assert.deepEqual([read.width, read.height, read.frames.length], [w, h, 4]);
+  assert.deepEqual(read.frames.map((f) => f.delay), [4, 4, 4, 120]);
+  read.frames.forEach((f, k) => {
+    let worst = 0;
+    for (let i = 0; i < w * h; ++i) {
+      if (i % w > 80) continue;
+      for (let c = 0; c < 3; ++c) worst = Math.max(worst, Math.abs(f.colours[i][c] - pictures[k].data[4 * i + c]));
+    }
+    assert.ok(worst < 48, `picture ${k}: ${worst} of 255`);
+  });
+  const plain = new Uint8ClampedArray(4 * 4).fill(200);
+  const one = readGif(page.animatedGif([{ data: plain }], 2, 2, 40, 40));
+  assert.deepEqual(one.frames[0].colours, Array(4).fill([200, 200, 200]));
+});
+
+test('values of a sweep are even, its ticks round, its table has a column for each', () => {
+  assert.deepEqual(page.evenly(1, 2, 3), [1, 1.5, 2]);
+  assert.deepEqual(page.evenly(0.1, 0.3, 3), [0.1, 0.2, 0.3]);
+  assert.deepEqual(page.evenly(5, 9, 1), [5]);
+  assert.deepEqual(page.ticks(0, 1), [0, 0.2, 0.4, 0.6, 0.8, 1]);
+  assert.deepEqual(page.ticks(-3.2, 11), [0, 5, 10]);
+  assert.deepEqual(page.extent([2, NaN, 3]), [2, 3]);
+  const [low, high] = page.extent([4, 4]);
+  assert.ok(low < 4 && high > 4);
+  assert.deepEqual(page.quantity('12 MPa'), { value: 12, unit: 'MPa' });
+  assert.deepEqual(page.quantity('0.45'), { value: 0.45, unit: '' });
+  assert.equal(page.quantity('soft'), null);
+  const found = {
+    axes: [{ key: 'material.soft.youngs_modulus', unit: 'MPa', values: [1, 2] }],
+    columns: [{ key: 'flexor_tension_N', label: 'flexor: tension', unit: 'N' }, { key: 'my tip_x_mm', label: 'my tip: x', unit: 'mm' }],
+    runs: [{ inputs: [1], results: [3, 4], why: '' }, { inputs: [2], results: [], why: 'folded' }],
+  };
+  assert.deepEqual(page.columnOf(found, 1), [4, NaN]);
+  assert.equal(page.sweepCsv(found), 'material.soft.youngs_modulus_MPa,flexor_tension_N,"my tip_x_mm"\r\n1,3,4\r\n2,,\r\n');
+});
+
+test('a file of geometry becomes a robot: its unit, its bodies, held at the end of its longest side', () => {
+  const surface = { name: 'my finger.stl', kind: 'surface', unit_mm: 0, low: [0, 0, 0], high: [60, 12, 10], text: '', parts: [], notes: [] };
+  assert.equal(page.usualSide(surface), '-x');
+  const text = page.robotOf(surface, 'mm', 'dragon-skin-30', '-x');
+  assert.match(text, /^name = "my finger"\nlength_unit = "mm"\n/);
+  assert.match(text, /\[\[body\]\]\nname = "my finger"\nmaterial = "dragon-skin-30"\ngeometry = "my finger.stl"\n/);
+  assert.match(text, /\[\[fixed\]\]\nname = "base"\nbox = \[\[-1.2, -1.2, -1.2\], \[1.2, 13.2, 11.2\]\]/);
+  assert.match(text, /size = "5 mm"/);
+  assert.match(page.robotOf(surface, 'mm', 'x', 'z'), /box = \[\[-1.2, -1.2, 8.8\], \[61.2, 13.2, 11.2\]\]/);
+  // A file that says millimetres, in a robot of centimetres.
+  const step = { ...surface, name: 'a.step', kind: 'step', unit_mm: 1 };
+  assert.match(page.robotOf(step, 'cm', 'x', '-x'), /box = \[\[-0.12, -0.12, -0.12\], \[0.12, 1.32, 1.12\]\]/);
+  const plate = { ...surface, name: 'two.3mf', kind: '3mf', unit_mm: 1, parts: ['soft', 'stiff'] };
+  assert.deepEqual(page.bodiesOf(plate, 'two.3mf', 'm', ['soft']), [
+    { name: 'soft 1', material: 'm', geometry: 'two.3mf', part: 'soft' },
+    { name: 'stiff', material: 'm', geometry: 'two.3mf', part: 'stiff' },
+  ]);
+  const tets = { ...surface, name: 'a.vtk', kind: 'tets', parts: ['body'] };
+  assert.match(page.robotOf(tets, 'mm', 'm', '-x'), /region = "body"\n\n\[mesh\]\nfile = "a.vtk"\n/);
+  assert.deepEqual(page.bodiesOf(surface, '../x.stl', 'm', [], 25.4)[0].place, { scale: 25.4 });
+});
+
+test('a motion shows the last state that is not later; a workspace says how much it will solve', () => {
+  const times = [0, 0.1, 0.2, 0.4];
+  assert.deepEqual([0, 0.05, 0.1, 0.39, 0.4, 9].map((t) => page.indexAt(times, t)), [0, 0, 1, 2, 3, 3]);
+  assert.deepEqual([page.samplesOf(1, 9, 50), page.samplesOf(2, 9, 50), page.samplesOf(3, 5, 10), page.samplesOf(6, 9, 50)], [9, 131, 160, 50]);
 });

@@ -10,6 +10,7 @@
 #include "presentation/scene/actuator_kind.hpp"
 #include "simulation/run/describe.hpp"
 #include "simulation/run/fields.hpp"
+#include "simulation/run/sensors.hpp"
 #include "simulation/run/simulate.hpp"
 
 namespace pliant::view {
@@ -177,6 +178,15 @@ std::string Scene::head() const {
     for (const sim::Marker& marker : d.markers)
         markers.push_back({{"name", marker.name},
                            {"rest", vector_json(mm * sim::position(marker.point, flat(model_.mesh().points)))}});
+    Json sensors = Json::array();
+    for (const sim::Sensor& sensor : d.sensors) {
+        Json readings = Json::array();
+        for (const auto& [name, measure] : sim::readings_of(sensor)) {
+            const sim::Shown as = sim::shown(measure);
+            readings.push_back({{"name", name + std::string(as.suffix)}, {"unit", std::string(as.unit)}});
+        }
+        sensors.push_back({{"name", sensor.name}, {"readings", readings}});
+    }
     Json graded = Json::array(), bodies = Json::array();
     for (const robot::BodySpec& body : robot_.bodies)
         bodies.push_back({{"name", body.name}, {"material", body.material}});
@@ -184,8 +194,10 @@ std::string Scene::head() const {
         if (body.blend)
             graded.push_back({{"body", body.name}, {"material", body.material}, {"other", body.blend->material}});
     }
-    for (const report::Obstacle& obstacle : obstacles_)
-        obstacles.push_back({{"name", obstacle.name}, {"open", obstacle.open}});
+    const std::size_t fixed_things = obstacles_.size() - model_.objects().size();
+    for (std::size_t o = 0; o < obstacles_.size(); ++o)
+        obstacles.push_back(
+            {{"name", obstacles_[o].name}, {"open", obstacles_[o].open}, {"object", o >= fixed_things}});
     const bool loaded = !d.loads.empty() || !d.pressures.empty() || !d.torques.empty() || norm(d.gravity_m_s2) > 0 ||
                         std::any_of(d.supports.begin(), d.supports.end(), [](const auto& s) { return s.moves(); });
     const Json json = {{"robot", robot_.name},
@@ -197,9 +209,13 @@ std::string Scene::head() const {
                        {"cable_points", cables},
                        {"supports", supports},
                        {"markers", markers},
+                       {"sensors", sensors},
                        {"obstacles", obstacles},
                        {"loaded", loaded},
-                       {"program", {{"steps", robot_.program.steps}, {"duration", robot_.program.duration}}},
+                       {"program",
+                        {{"steps", robot_.program.steps},
+                         {"duration", robot_.program.duration},
+                         {"timed", robot_.program.dynamics.has_value()}}},
                        {"tolerance", robot_.program.tolerance},
                        {"nodes", model_.node_count()},
                        {"tets", model_.mesh().tet_count()},

@@ -52,7 +52,30 @@ Result<sim::Steered> steered(const Built& built, const Possible& possible, const
     return input;
 }
 
+Status add_inputs(const Built& built, const std::vector<InputRange>& ranges, sim::InverseTask& task) {
+    const Possible possible = possible_inputs(built);
+    for (const InputRange& range : ranges) {
+        Result<sim::Steered> input = steered(built, possible, range);
+        if (!input) return tl::unexpected(input.error());
+        const auto is_it = [&](const sim::Steered& other) { return other.actuator == input->actuator; };
+        if (std::ranges::any_of(task.inputs, is_it)) return input_error("{}: is named twice", range.name);
+        task.inputs.push_back(std::move(*input));
+    }
+    return {};
+}
+
 }  // namespace
+
+Result<sim::InverseTask> workspace_task(const Built& built, const WorkspaceOrder& order) {
+    if (built.robot.program.dynamics)
+        return input_error("program: time_step: a workspace is that of a robot at rest at every place; leave it out");
+    if (built.model.description().markers.empty())
+        return input_error("a workspace is where markers can get, and this robot has no [[marker]]");
+    sim::InverseTask task;
+    if (Status status = add_inputs(built, order.inputs, task); !status) return tl::unexpected(status.error());
+    task.times = {built.robot.program.duration};
+    return task;
+}
 
 Result<sim::InverseTask> goal_task(const Built& built, const GoalOrder& order) {
     if (built.robot.program.dynamics)
@@ -67,14 +90,7 @@ Result<sim::InverseTask> goal_task(const Built& built, const GoalOrder& order) {
     for (const auto& [x, y, z] : order.path_mm) goal.wanted.push_back({1e-3 * Vec3{x, y, z}});
     sim::InverseTask task;
     task.goals = {std::move(goal)};
-    const Possible possible = possible_inputs(built);
-    for (const InputRange& range : order.inputs) {
-        Result<sim::Steered> input = steered(built, possible, range);
-        if (!input) return tl::unexpected(input.error());
-        const auto is_it = [&](const sim::Steered& other) { return other.actuator == input->actuator; };
-        if (std::ranges::any_of(task.inputs, is_it)) return input_error("{}: is named twice", range.name);
-        task.inputs.push_back(std::move(*input));
-    }
+    if (Status status = add_inputs(built, order.inputs, task); !status) return tl::unexpected(status.error());
     task.times.assign(order.path_mm.size(), built.robot.program.duration);
     return task;
 }

@@ -1,6 +1,7 @@
 // Requests and responses as the routes see them, whatever carries them.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -16,6 +17,9 @@ struct Request {
     std::map<std::string, std::string> parts{};  ///< of the path, as the route names them
     std::string page{};                          ///< header X-Pliant-Page: who asks
     std::string body{};
+    /// Of a route that streams: the next bytes of the body, 0 at its end, negative where the line broke.
+    std::function<long long(char* into, std::size_t most)> more{};
+    long long length = -1;  ///< of that body; negative where it is not known
 };
 
 struct Response {

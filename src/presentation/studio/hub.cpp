@@ -15,14 +15,17 @@ constexpr std::chrono::seconds helm_kept{10};
 
 std::optional<Connection::Outgoing> Connection::next() {
     std::unique_lock lock(mutex_);
-    something_.wait(lock, [&] { return closed_ || !texts_.empty() || frame_; });
+    something_.wait(lock, [&] { return closed_ || !texts_.empty() || frame_ || beside_; });
     if (closed_) return std::nullopt;
     if (!texts_.empty()) {
         Outgoing out{std::move(texts_.front()), false};
         texts_.pop_front();
         return out;
     }
-    return Outgoing{std::exchange(frame_, nullptr), true};
+    // By turns, so that neither robot waits for the other.
+    const bool beside = beside_ && (beside_next_ || !frame_);
+    beside_next_ = !beside;
+    return Outgoing{std::exchange(beside ? beside_ : frame_, nullptr), true};
 }
 
 void Connection::send_text(Bytes text) {
@@ -35,6 +38,12 @@ void Connection::send_text(Bytes text) {
 void Connection::send_frame(Bytes frame) {
     const std::lock_guard lock(mutex_);
     frame_ = std::move(frame);
+    something_.notify_one();
+}
+
+void Connection::send_frame_beside(Bytes frame) {
+    const std::lock_guard lock(mutex_);
+    beside_ = std::move(frame);
     something_.notify_one();
 }
 
@@ -142,6 +151,11 @@ void Hub::send_text(const std::string& json) {
 void Hub::send_frame(const Bytes& frame) {
     const std::lock_guard lock(mutex_);
     for (const auto& connection : connections_) connection->send_frame(frame);
+}
+
+void Hub::send_frame_beside(const Bytes& frame) {
+    const std::lock_guard lock(mutex_);
+    for (const auto& connection : connections_) connection->send_frame_beside(frame);
 }
 
 std::set<std::string> Hub::fields() {

@@ -1,7 +1,7 @@
 // The pages that look on, and the one that steers.
 //
-// Every connection has a queue: texts in order, and one place for the latest frame, so that a slow page sees fewer
-// frames and never old ones. What writes to the wire waits on its connection and belongs to the server.
+// Every connection has a queue: texts in order, and one place for the latest frame of each robot, so that a slow page
+// sees fewer frames and never old ones. What writes to the wire waits on its connection and belongs to the server.
 #pragma once
 
 #include <chrono>
@@ -31,6 +31,8 @@ public:
     [[nodiscard]] std::optional<Outgoing> next();
     void send_text(Bytes text);
     void send_frame(Bytes frame);
+    /// Of the robot beside, which has a place of its own.
+    void send_frame_beside(Bytes frame);
     void close();
 
     std::string page;              ///< who it is; empty before its hello. Guarded by the hub
@@ -40,7 +42,8 @@ private:
     std::mutex mutex_;
     std::condition_variable something_;
     std::deque<Bytes> texts_;
-    Bytes frame_;
+    Bytes frame_, beside_;
+    bool beside_next_ = false;
     bool closed_ = false;
 };
 
@@ -66,6 +69,7 @@ public:
 
     void send_text(const std::string& json);
     void send_frame(const Bytes& frame);
+    void send_frame_beside(const Bytes& frame);
     [[nodiscard]] std::set<std::string> fields();
     [[nodiscard]] std::size_t count();
     void close_all();

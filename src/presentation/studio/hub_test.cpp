@@ -104,3 +104,19 @@ TEST_CASE("fields are those that somebody wants") {
     hub.leave(b);
     CHECK(hub.fields() == std::set<std::string>{"J"});
 }
+
+TEST_CASE("two robots have a place each for their latest frame, and neither waits for the other") {
+    Hub hub;
+    const auto page = hub.join();
+    const auto bytes = [](const char* text) { return std::make_shared<const std::string>(text); };
+    for (const char* text : {"a1", "a2", "a3"}) hub.send_frame(bytes(text));
+    for (const char* text : {"b1", "b2"}) hub.send_frame_beside(bytes(text));
+    CHECK(*page->next()->bytes == "a3");
+    hub.send_frame(bytes("a4"));
+    CHECK(*page->next()->bytes == "b2");
+    CHECK(*page->next()->bytes == "a4");
+    hub.send_frame_beside(bytes("b3"));
+    CHECK(*page->next()->bytes == "b3");
+    hub.close_all();
+    CHECK_FALSE(page->next());
+}

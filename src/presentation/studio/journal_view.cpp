@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
+#include "presentation/studio/journal_names.hpp"
 #include "printing/host/journal.hpp"
 #include "printing/host/journal_facts.hpp"
 
@@ -32,6 +33,8 @@ const char* state_of(const host::JournalFacts& facts) {
 Json line_of(const std::string& name, const host::JournalFacts& facts) {
     const auto given = [](const auto& light) { return light.second.complete; };
     return {{"name", name},
+            {"file", job_of_journal(name)},
+            {"virtual", is_virtual_journal(name)},
             {"job", facts.job},
             {"printer", facts.printer},
             {"state", state_of(facts)},
@@ -63,7 +66,12 @@ std::string journal_line_json(const std::filesystem::path& file, const std::stri
     const Result<host::JournalText> journal = read_journal(file);
     const Result<host::JournalFacts> facts =
         journal ? host::facts_of(journal->records) : Result<host::JournalFacts>(tl::unexpected(journal.error()));
-    if (!facts) return dumped({{"name", name}, {"state", "damaged"}, {"error", facts.error().message}});
+    if (!facts)
+        return dumped({{"name", name},
+                       {"file", job_of_journal(name)},
+                       {"virtual", is_virtual_journal(name)},
+                       {"state", "damaged"},
+                       {"error", facts.error().message}});
     return dumped(line_of(name, *facts));
 }
 

@@ -29,7 +29,8 @@ public:
         const auto now = std::chrono::steady_clock::now();
         if (now - last_ < std::chrono::milliseconds(100)) return;
         last_ = now;
-        session_.tell_(event({{"type", "slicing"}, {"stage", stage}, {"fraction", fraction}}));
+        session_.tell_(event(
+            {{"type", "slicing"}, {"stage", stage}, {"fraction", fraction}, {"layers", session_.under_way_.layers()}}));
     }
     [[nodiscard]] bool cancelled() const override { return session_.cancelled_; }
 
@@ -63,7 +64,15 @@ Status MakeSession::save(const std::filesystem::path& file) {
     const Result<std::string> bytes = read_file(job->file);
     if (!bytes) return tl::unexpected(bytes.error());
     if (Status written = write_file(file, *bytes); !written) return written;
-    return adopt(file, job->colours);
+    std::shared_ptr<OpenJob> before;  // the same under another name is no other job
+    {
+        const std::lock_guard lock(mutex_);
+        before = before_;
+    }
+    Status adopted = adopt(file, job->colours);
+    const std::lock_guard lock(mutex_);
+    before_ = before;
+    return adopted;
 }
 
 Status MakeSession::adopt(const std::filesystem::path& file, std::vector<std::string> colours) {
@@ -75,6 +84,7 @@ Status MakeSession::adopt(const std::filesystem::path& file, std::vector<std::st
     std::string news;
     {
         const std::lock_guard lock(mutex_);
+        if (job_ && job_->file != file) before_ = job_;
         job_ = std::make_shared<OpenJob>(std::move(open->archive), std::move(open->printer), file, ++revision_);
         job_->colours = std::move(colours);
         news = event({{"type", "job"}, {"revision", revision_}});
@@ -99,13 +109,32 @@ void MakeSession::work(const SliceOrder& order) {
     std::filesystem::create_directories(scratch_, error);
     std::filesystem::permissions(scratch_, std::filesystem::perms::owner_all, error);
     const std::filesystem::path file = scratch_ / ("job_" + random_key() + ".zip");
-    Result<std::vector<std::string>> colours = slice_robot(order, file, watch);
+    Result<std::vector<std::string>> colours = slice_robot(order, file, watch, under_way_);
     Status status = colours ? adopt(file, std::move(*colours)) : Status(tl::unexpected(colours.error()));
+    under_way_.clear();
     slicing_ = false;  // before it is told: whoever hears of the end may begin the next
     tell_(event({{"type", "slicing"},
                  {"stage", ""},
                  {"fraction", 1},
                  {"error", status || status.error().cause == Cause::cancelled ? "" : status.error().message}}));
+}
+
+Result<std::shared_ptr<OpenJob>> MakeSession::other(const std::filesystem::path& file) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (file.empty()) {
+            if (!before_) return input_error("no other job has been at hand");
+            return before_;
+        }
+        if (other_ && other_->file == file) return other_;
+    }
+    Result<operate::OpenJob> open = operate::open_job(file);
+    if (!open) return tl::unexpected(open.error());
+    const std::lock_guard lock(mutex_);
+    auto made = std::make_shared<OpenJob>(std::move(open->archive), std::move(open->printer), file, -(++others_));
+    for (std::size_t m = 0; m < made->archive.manifest().materials.size(); ++m)
+        made->colours.push_back(report::hex(report::palette(static_cast<int>(m))));
+    return other_ = made;
 }
 
 void MakeSession::cancel() {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/core/progress.hpp"
+#include "presentation/studio/job_under_way.hpp"
 #include "printing/job/job.hpp"
 #include "printing/machine/printer.hpp"
 #include "printing/prepare/slice_job.hpp"
@@ -51,6 +52,11 @@ public:
     [[nodiscard]] Status slice(SliceOrder order);
     void cancel();
     [[nodiscard]] std::shared_ptr<OpenJob> job() const;
+    /// The layers of what is being sliced.
+    [[nodiscard]] const JobUnderWay& under_way() const { return under_way_; }
+    /// A job to hold the one at hand against: the one that was at hand before, or `file`. Its revision is below 0.
+    /// Errors: there was none before; not a job.
+    [[nodiscard]] Result<std::shared_ptr<OpenJob>> other(const std::filesystem::path& file = {});
     [[nodiscard]] std::vector<std::string> news() const;
 
 private:
@@ -62,8 +68,9 @@ private:
     std::string version_;
     std::filesystem::path scratch_;  ///< folder for sliced jobs; gone with the session
     mutable std::mutex mutex_;
-    std::shared_ptr<OpenJob> job_;
-    int revision_ = 0;
+    std::shared_ptr<OpenJob> job_, before_, other_;
+    int revision_ = 0, others_ = 0;
+    JobUnderWay under_way_;
     std::atomic<bool> slicing_ = false, cancelled_ = false;
     std::thread thread_;
 };

@@ -21,6 +21,8 @@ public:
     [[nodiscard]] double speed() const { return speed_; }
     /// Nobody is held back any more: the print is to end.
     void let_go() { free_ = true; }
+    /// Before anybody waits: the twin is at `virtual_s`, and nobody has to make up for it.
+    void begin_at(double virtual_s) { last_virtual_s_ = virtual_s; }
     /// The twin is at `virtual_s`.
     void wait_for(double virtual_s);
 

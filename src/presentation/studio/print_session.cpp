@@ -7,9 +7,13 @@
 
 #include "presentation/studio/access.hpp"
 #include "presentation/studio/growing_part.hpp"
+#include "presentation/studio/journal_names.hpp"
+#include "printing/host/journal.hpp"
+#include "printing/host/journal_facts.hpp"
 #include "printing/machine/switches.hpp"
 #include "printing/operate/job_file.hpp"
 #include "printing/operate/programs.hpp"
+#include "printing/rehearse/replay.hpp"
 #include "printing/screen/projector.hpp"
 #include "printing/wire/serial.hpp"
 
@@ -38,19 +42,6 @@ bool under_way(host::State state) {
     using host::State;
     return state == State::printing || state == State::pausing || state == State::paused ||
            state == State::cancelling || state == State::working;
-}
-
-/// A page may name no file but a terminal's: what is opened is written to.
-Status check_device(const std::string& device) {
-    std::error_code error;
-    const std::filesystem::path real = std::filesystem::canonical(device, error);
-    if (error)
-        return input_error(
-            "device: there is no {}; is the machine plugged in and switched on? A port looks like /dev/ttyACM0",
-            device);
-    if (!real.string().starts_with("/dev/") || !std::filesystem::is_character_file(real, error))
-        return input_error("device: {} is no serial port; one such as /dev/ttyACM0 is needed", device);
-    return {};
 }
 
 /// What watches over the machine, as far as its file says: switches with their names on the wire, door, emergency line.
@@ -110,6 +101,30 @@ Json printer_json(const machine::Printer& p) {
     return json;
 }
 
+/// The journal is of a print that is complete, or was cancelled for good.
+bool is_over(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) return false;
+    const auto journal = host::Journal::open(path, false);
+    const auto facts = journal ? host::facts_of(journal->records()) : tl::unexpected(journal.error());
+    return facts && (facts->ended || facts->cancelled);
+}
+
+/// A virtual light ends with the program that it was in; what of it was not journaled was not given when the twin was
+/// brought back to its place.
+class RecalledGuard final : public host::Guard {
+public:
+    void announced(long light) override { last_ = light; }
+    void lit(double) override {}
+    void dark(double) override {}
+    [[nodiscard]] std::optional<double> lit_s(long light) override {
+        return light == last_ ? std::nullopt : std::optional(0.0);
+    }
+
+private:
+    long last_ = 0;  ///< of this session
+};
+
 /// The command of a request to the host's control, "" if it has none.
 std::string command_of(std::string_view body) {
     const Json json = Json::parse(body, nullptr, false);
@@ -151,10 +166,11 @@ struct PrintSession::Machine {
                 twin->clock(),
                 operate::programs_of(ready.printer),
                 operate::link_options(ready.printer.controller),
-                {},
-                {},
                 nullptr,
-                {}};
+                {},
+                &guard,
+                {},
+                "virtual"};
     }
     /// Nothing of a print is under way, nor waits to be gone on with.
     [[nodiscard]] bool is_free() const {
@@ -168,6 +184,8 @@ struct PrintSession::Machine {
     std::unique_ptr<PacedTwin> twin;
     std::unique_ptr<operate::PortStation> port;
     std::string device;
+    RecalledGuard guard;
+    bool keeps_journal = false;  ///< beside the job, where the print history finds it
     GrowingPart part;
     host::Control control;
     std::atomic<bool> ending = false;
@@ -245,10 +263,36 @@ Status PrintSession::take_twin(const Order& order, double speed) {
     std::error_code error;
     std::filesystem::create_directories(scratch_, error);
     std::filesystem::permissions(scratch_, std::filesystem::perms::owner_all, error);
-    // A new virtual machine stands at its beginning: what another one had begun cannot be gone on with here.
-    ready->job.journal = scratch_ / fmt::format("twin_{}.journal", ++taken_);
-    ready->job.sync_journal = false;
-    return take(std::make_shared<Machine>(order, std::move(*ready), std::move(options), speed));
+    ready->job.journal =
+        order.journal.empty() ? scratch_ / fmt::format("twin_{}.journal", taken_.load()) : order.journal;
+    ready->job.sync_journal = false;  // power cuts do not happen to a virtual machine alone
+    ++taken_;
+    const auto made = std::make_shared<Machine>(order, std::move(*ready), std::move(options), speed);
+    made->keeps_journal = !order.journal.empty();
+    if (Status recalled = recall(*made); !recalled) return recalled;
+    return take(made);
+}
+
+/// Brings the twin to where an interrupted print has left it.
+Status PrintSession::recall(Machine& machine) {
+    const std::filesystem::path& path = machine.ready.job.journal;
+    std::error_code error;
+    if (!std::filesystem::exists(path, error)) return {};
+    auto journal = host::Journal::open(path, false);
+    if (!journal) return tl::unexpected(journal.error());
+    const std::vector<host::JournalRecord> records = journal->records();
+    const auto facts = host::facts_of(records);
+    if (!facts) return tl::unexpected(facts.error());
+    if (!host::is_interrupted(*facts)) return {};
+    if (facts->digest != machine.ready.job.digest) {
+        std::filesystem::rename(path, path.string() + ".old", error);
+        return error ? Status(failure("{}: cannot be put aside: {}", path.string(), error.message())) : Status{};
+    }
+    make_ready(machine);
+    const Status done =
+        machine.twin->with([&](twin::Twin& twin) { return rehearse::replay(records, machine.ready.job, twin); });
+    machine.twin->pace().begin_at(machine.twin->with([](twin::Twin& twin) { return twin.now(); }));
+    return done;
 }
 
 Status PrintSession::take_port(const Order& order, const operate::PortOptions& port) {
@@ -260,7 +304,9 @@ Status PrintSession::take_port(const Order& order, const operate::PortOptions& p
     auto station = operate::PortStation::open(port, *ready);
     if (!station) return tl::unexpected(station.error());
     ++taken_;
-    return take(std::make_shared<Machine>(order, std::move(*ready), std::move(*station), port.device));
+    const auto made = std::make_shared<Machine>(order, std::move(*ready), std::move(*station), port.device);
+    made->keeps_journal = true;
+    return take(made);
 }
 
 Status PrintSession::take(const std::shared_ptr<Machine>& made) {
@@ -269,7 +315,7 @@ Status PrintSession::take(const std::shared_ptr<Machine>& made) {
     // Nothing is said to a machine that an interrupted print has left: going on is what speaks to it first.
     if (!made->control.snapshot().can_resume) {
         if (Status status = made->control.connect(); !status) return status;
-    } else {
+    } else if (made->port) {
         made->part.recall(made->ready.job.journal);
     }
     made->worker = std::thread([made = made.get()] { made->control.serve(); });
@@ -338,6 +384,19 @@ Status PrintSession::leave() {
     return {};
 }
 
+Status PrintSession::discard() {
+    const std::lock_guard one_at_a_time(orders_);
+    const auto machine = this->machine();
+    if (!machine || !machine->twin) return failure("there is no virtual printer");
+    const host::Snapshot now = machine->control.snapshot();
+    if (under_way(now.state) || !now.can_resume) return failure("no interrupted print waits");
+    std::error_code error;
+    if (!std::filesystem::remove(machine->ready.job.journal, error) || error)
+        return failure("{}: cannot be removed: {}", machine->ready.job.journal.string(), error.message());
+    if (Status loaded = machine->control.load(machine->ready.job); !loaded) return loaded;
+    return machine->control.connect();
+}
+
 Status PrintSession::set_speed(double speed) {
     const auto machine = this->machine();
     if (!machine || !machine->twin) return failure("there is no virtual printer");
@@ -357,18 +416,20 @@ Status PrintSession::set_door(bool open) {
 /// A print that begins anew finds the platform clean and, in the virtual printer, the vats full: that is what the page
 /// has asked for before it.
 void PrintSession::prepare_start(Machine& machine) {
-    if (machine.twin) {
-        machine.twin->with([&](twin::Twin& twin) {
-            twin.take_part_off();
-            for (const plan::VatUse& use : machine.ready.plan.vats) twin.fill_vat(use.slot);
-            for (const plan::CareBefore& care : machine.ready.plan.solution.care) {
-                if (care.layer == 0) twin.care(care.care);
-            }
-        });
-    }
+    if (machine.twin) make_ready(machine);
     machine.part.clear();
     const std::lock_guard lock(machine.block_mutex);
     machine.block.reset();
+}
+
+void PrintSession::make_ready(Machine& machine) {
+    machine.twin->with([&](twin::Twin& twin) {
+        twin.take_part_off();
+        for (const plan::VatUse& use : machine.ready.plan.vats) twin.fill_vat(use.slot);
+        for (const plan::CareBefore& care : machine.ready.plan.solution.care) {
+            if (care.layer == 0) twin.care(care.care);
+        }
+    });
 }
 
 /// Whoever says that a vat is filled has filled the virtual one.
@@ -396,7 +457,10 @@ host::ApiAnswer PrintSession::ask(std::string_view method, std::string_view path
         const host::Snapshot now = machine->control.snapshot();
         if (command == "start" && now.door_open.value_or(false))
             return {409, R"({"error":"the door is open: close it, then start"})"};
-        if (command == "start" && machine->is_free() && now.state != host::State::connecting) prepare_start(*machine);
+        if (command == "start" && machine->is_free() && now.state != host::State::connecting) {
+            prepare_start(*machine);
+            if (machine->keeps_journal && is_over(machine->ready.job.journal)) keep_journal(machine->ready.job.journal);
+        }
         if (command == "resume") pour(*machine);
         return host::handle_api(machine->control, method, path, body);
     }
@@ -450,6 +514,18 @@ std::string PrintSession::part(int revision, std::size_t from) const {
 /// That there is none is news too: to a page that knew a machine before the studio was started again.
 std::vector<std::string> PrintSession::news() const {
     return {R"({"type":"machine"})"};
+}
+
+Status check_device(const std::string& device) {
+    std::error_code error;
+    const std::filesystem::path real = std::filesystem::canonical(device, error);
+    if (error)
+        return input_error(
+            "device: there is no {}; is the machine plugged in and switched on? A port looks like /dev/ttyACM0",
+            device);
+    if (!real.string().starts_with("/dev/") || !std::filesystem::is_character_file(real, error))
+        return input_error("device: {} is no serial port; one such as /dev/ttyACM0 is needed", device);
+    return {};
 }
 
 std::string projector_json(const machine::Projector& projector) {

@@ -33,9 +33,11 @@ public:
     struct Order {
         std::filesystem::path job;
         std::vector<std::string> colours;
+        std::filesystem::path journal{};  ///< of a virtual print; "": one that goes with the session
     };
-    /// Takes the machine that the job was made for, as a twin. Refused while a print is under way. Errors: the job
-    /// cannot be printed.
+    /// Takes the machine that the job was made for, as a twin. Refused while a print is under way. If the journal holds
+    /// an interrupted print of this job, the twin is brought to where that one was left, and it can be gone on with; a
+    /// journal of another job is put aside (".old"). Errors: the job cannot be printed.
     [[nodiscard]] Status take_twin(const Order& order, double speed);
     /// Takes the machine at a serial port. The journal stands beside the job, so that an interrupted print is gone on
     /// with. Whether the port answers shows in the state. Errors: the job cannot be printed, the device is none, no
@@ -43,6 +45,9 @@ public:
     [[nodiscard]] Status take_port(const Order& order, const operate::PortOptions& port);
     /// Gives the machine back; a print under way is refused.
     [[nodiscard]] Status give_back();
+    /// An interrupted print on the virtual printer is not gone on with: its journal goes, and the next print begins
+    /// anew. (A real machine has to be parked: that is a command to its control.) Errors: none waits, none is virtual.
+    [[nodiscard]] Status discard();
     /// Of the virtual printer.
     [[nodiscard]] Status set_speed(double speed);
     /// Opens or shuts the door of the virtual printer. Errors: there is none, or it has no door.
@@ -76,8 +81,10 @@ private:
     struct Machine;
     [[nodiscard]] Status take(const std::shared_ptr<Machine>& machine);
     [[nodiscard]] Status leave();
+    [[nodiscard]] static Status recall(Machine& machine);
     void watch(const std::shared_ptr<Machine>& machine);
     static void prepare_start(Machine& machine);
+    static void make_ready(Machine& machine);
     static void pour(Machine& machine);
     [[nodiscard]] std::shared_ptr<Machine> machine() const;
     void end(const std::shared_ptr<Machine>& machine);
@@ -92,6 +99,9 @@ private:
     mutable std::mutex mutex_;
     std::shared_ptr<Machine> machine_;
 };
+
+/// A page may name no file but a terminal's: what is opened is written to. Errors: there is none, it is no terminal.
+[[nodiscard]] Status check_device(const std::string& device);
 
 /// How the machine's images lie on its platform, for pages that draw them: JSON.
 [[nodiscard]] std::string projector_json(const machine::Projector& projector);

@@ -27,7 +27,8 @@ struct Bench {
 
     Bench() {
         Progress silent;
-        const auto made = slice_robot(studio::test::slice_order(), order.job, silent);
+        JobUnderWay unseen;
+        const auto made = slice_robot(studio::test::slice_order(), order.job, silent, unseen);
         REQUIRE_MESSAGE(made, (made ? "" : made.error().message));
     }
     [[nodiscard]] host::ApiAnswer command(const std::string& text) {
@@ -125,4 +126,36 @@ TEST_CASE("nobody takes the machine away from a print that is under way") {
     CHECK(b.verdict() == R"({"passed":true,"reasons":[]})");
     CHECK(b.session.take_twin(b.order, 1).has_value());
     CHECK(b.about()["taken"] == 2);
+}
+
+TEST_CASE("a virtual print with a journal beside its job is gone on with by the next studio, or discarded") {
+    Bench b;
+    b.order.journal = b.folder / "bar.zip.virtual.journal";
+    const auto layer_of = [](const Json& about) { return about["now"]["progress"]["layer"]; };
+    {
+        PrintSession first([](const std::string&) {});
+        REQUIRE(first.take_twin(b.order, 200).has_value());
+        REQUIRE(first.ask("POST", "/api/job", R"({"command":"start"})").status == 204);
+        for (int i = 0; i < 6000; ++i) {
+            const Json about = Json::parse(first.describe());
+            if (layer_of(about).is_number() && layer_of(about) >= 3) break;
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+    }  // ends in mid-print
+    REQUIRE(fs::exists(b.order.journal));
+    const std::string broken_off = read_file(b.order.journal).value();
+    REQUIRE(b.session.take_twin(b.order, 10000).has_value());
+    CHECK(b.about()["now"]["job"]["canResume"] == true);
+    CHECK(b.session.part(0, 0).size() > 200);  // what was printed is there again
+    REQUIRE(b.session.ask("POST", "/api/job", R"({"command":"start","resume":true})").status == 204);
+    CHECK(Json::parse(b.verdict())["passed"] == true);
+    CHECK(b.session.discard().error().message == "no interrupted print waits");
+    REQUIRE(b.session.give_back().has_value());
+
+    REQUIRE(write_file(b.order.journal, broken_off).has_value());
+    REQUIRE(b.session.take_twin(b.order, 10000).has_value());
+    CHECK(b.about()["now"]["job"]["canResume"] == true);
+    REQUIRE(b.session.discard().has_value());
+    CHECK(b.about()["now"]["job"]["canResume"] == false);
+    CHECK_FALSE(fs::exists(b.order.journal));
 }

@@ -109,4 +109,20 @@ std::vector<std::string> ProjectFolder::texts_leading_outside(std::string_view t
     return outside;
 }
 
+std::string ProjectFolder::stamps_of(std::string_view toml, const fs::path& file) const {
+    std::string stamps;
+    const Result<config::Document> document = config::parse(toml, file);
+    if (!document) return stamps;
+    visit_texts(document->root, [&](const std::string& text) {
+        std::error_code error;
+        if (text.empty() || text.size() > longest_path || !holds(file.parent_path() / text)) return;
+        const fs::path path = file.parent_path() / text;
+        if (!fs::is_regular_file(path, error)) return;
+        const auto size = fs::file_size(path, error);
+        const auto changed = fs::last_write_time(path, error).time_since_epoch().count();
+        if (!error) stamps += "\n" + text + " " + std::to_string(size) + " " + std::to_string(changed);
+    });
+    return stamps;
+}
+
 }  // namespace pliant::studio

@@ -29,6 +29,8 @@ public:
     /// read that the document names. A document with mistakes has none.
     [[nodiscard]] std::vector<std::string> texts_leading_outside(std::string_view toml,
                                                                  const std::filesystem::path& file) const;
+    /// Something that changes when a file changes that the document, beside `file`, names: "" where it names none.
+    [[nodiscard]] std::string stamps_of(std::string_view toml, const std::filesystem::path& file) const;
 
 private:
     explicit ProjectFolder(std::filesystem::path root) : root_(std::move(root)) {}

@@ -24,10 +24,12 @@ std::vector<Route> all_routes() {
     std::vector<Route> routes;
     add_project_routes(routes);
     add_edit_routes(routes);
+    add_file_routes(routes);
     add_simulation_routes(routes);
     add_search_routes(routes);
     add_make_routes(routes);
     add_print_routes(routes);
+    add_printer_routes(routes);
     routes.push_back(
         {"GET", "/api/openapi.json", "this description", "application/json", false,
          [](Studio& studio, const Request&) { return json_response(open_api(studio.routes(), studio.version())); }});

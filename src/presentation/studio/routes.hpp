@@ -19,6 +19,7 @@ struct Route {
     bool steers = false;  ///< only the page that steers may ask
     std::function<Response(Studio&, const Request&)> answer;
     std::string takes = {};  ///< media type of the body, "" for none
+    bool streams = false;    ///< reads the body itself, piece by piece
 };
 
 [[nodiscard]] std::vector<Route> all_routes();
@@ -26,8 +27,10 @@ void add_project_routes(std::vector<Route>& routes);
 void add_edit_routes(std::vector<Route>& routes);
 void add_simulation_routes(std::vector<Route>& routes);
 void add_search_routes(std::vector<Route>& routes);
+void add_file_routes(std::vector<Route>& routes);
 void add_make_routes(std::vector<Route>& routes);
 void add_print_routes(std::vector<Route>& routes);
+void add_printer_routes(std::vector<Route>& routes);
 
 /// Whether the path fits; fills request.parts.
 [[nodiscard]] bool matches(const Route& route, Request& request);

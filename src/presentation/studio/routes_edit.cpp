@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/toml_edit.hpp"
+#include "presentation/studio/json_toml.hpp"
 #include "presentation/studio/studio.hpp"
 #include "robot/file/material_library.hpp"
 
@@ -14,22 +15,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t most_changes = 256;
-
-/// A value of JSON as TOML has it, on one line; "" for null, which TOML has not.
-std::string toml_text(const Json& value) {
-    if (value.is_string() || value.is_boolean() || value.is_number_integer())
-        return value.dump(-1, ' ', true, Json::error_handler_t::replace);
-    if (value.is_number()) return fmt::format("{:.10g}", value.get<double>());
-    std::string inner;
-    if (value.is_array()) {
-        for (const Json& item : value) inner += (inner.empty() ? "" : ", ") + toml_text(item);
-        return "[" + inner + "]";
-    }
-    if (!value.is_object()) return "";
-    for (const auto& [key, item] : value.items())
-        inner += fmt::format("{}{} = {}", inner.empty() ? "" : ", ", config::key_text(key), toml_text(item));
-    return "{ " + inner + " }";
-}
 
 Response done(const Status& status) {
     return status ? json_response("{}") : error_response(status.error());

@@ -1,19 +1,15 @@
 // The job: slicing, its layers, its plan.
-#include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "base/core/files.hpp"
 #include "presentation/studio/examples.hpp"
+#include "presentation/studio/job_json.hpp"
 #include "presentation/studio/job_part.hpp"
+#include "presentation/studio/printer_files.hpp"
 #include "presentation/studio/slice_order.hpp"
 #include "presentation/studio/slice_robot.hpp"
 #include "presentation/studio/studio.hpp"
-#include "printing/job/manifest.hpp"
-#include "printing/operate/job_file.hpp"
 #include "printing/plan/plan.hpp"
 #include "printing/plan/timeline.hpp"
 
@@ -30,96 +26,10 @@ Response no_job() {
     return error_response(404, "there is no job yet: slice the robot, or open a job file");
 }
 
-/// The number behind `words`, or -1.
-int number_behind(const std::string& text, const std::string& words) {
-    const std::size_t at = text.find(words);
-    if (at == std::string::npos) return -1;
-    int number = -1;
-    std::from_chars(text.data() + at + words.size(), text.data() + text.size(), number);
-    return number;
-}
-
-/// Where in the stack a remark of the slicer belongs, or -1.
-int layer_of(const std::string& remark) {
-    for (const char* words : {"in layer ", "is layer ", "in layers ", "from layer ", "layer "}) {
-        if (const int layer = number_behind(remark, words); layer >= 0) return layer;
-    }
-    return -1;
-}
-
-/// The same text with layers counted from 1, as the page counts them; the slicer's own count from 0.
-std::string from_one(const std::string& text) {
-    static const std::regex layers(R"(\b(layers? )(\d+)( to )?(\d+)?)");
-    const auto next = [](const std::string& digits) { return std::to_string(std::stol(digits) + 1); };
-    std::string out;
-    std::size_t at = 0;
-    for (std::sregex_iterator m(text.begin(), text.end(), layers); m != std::sregex_iterator(); ++m) {
-        const auto begin = static_cast<std::size_t>(m->position());
-        out += text.substr(at, begin - at) + (*m)[1].str() + next((*m)[2]) + (*m)[3].str();
-        if ((*m)[4].matched) out += (*m)[3].matched ? next((*m)[4]) : (*m)[4].str();
-        at = begin + static_cast<std::size_t>(m->length());
-    }
-    return out + text.substr(at);
-}
-
-/// What the slicer has found, with a place; then its remarks.
-Json issues_json(const job::Manifest& manifest) {
-    static const std::map<std::string, const char*> names = {{"island", "island, begins in mid-air"},
-                                                             {"trap", "trap, closed for good around resin"},
-                                                             {"cup", "cup, holds on to the vat until it opens"},
-                                                             {"thin", "thin, narrower than asked for"}};
-    Json issues = Json::array();
-    for (const job::Finding& f : manifest.findings) {
-        const auto name = names.find(f.kind);
-        const std::string size =
-            f.volume_mm3 > 0 ? fmt::format("{:.3g} mm³", f.volume_mm3) : fmt::format("{:.3g} mm²", f.area_mm2);
-        const std::string many = f.count > 1 ? fmt::format("{} times ", f.count) : "";
-        issues.push_back({{"text", fmt::format("{}{}: {}", many, name == names.end() ? f.kind : name->second, size)},
-                          {"severity", f.severity},
-                          {"layer", f.first_layer},
-                          {"row", f.row},
-                          {"column", f.column}});
-    }
-    for (const std::string& warning : manifest.warnings)
-        issues.push_back({{"text", from_one(warning)}, {"layer", layer_of(warning)}});
-    return issues;
-}
-
-Json swap_json(const plan::Plan& plan, const machine::Printer& printer) {
-    const plan::SwapTimeline swap = plan::longest_swap(plan, printer);
-    Json devices = Json::array(), stretches = Json::array();
-    for (const plan::Device device : swap.devices) devices.push_back(plan::device_name(device));
-    for (const plan::Stretch& s : swap.stretches)
-        stretches.push_back({{"device", plan::device_name(s.device)}, {"begin", s.begin_s}, {"end", s.end_s}});
-    return {{"from", swap.from_slot},
-            {"to", swap.to_slot},
-            {"seconds", swap.seconds},
-            {"devices", devices},
-            {"stretches", stretches}};
-}
-
 Response job(Studio& studio, const Request&) {
     const auto open = studio.make().job();
     if (!open) return no_job();
-    const job::Manifest& manifest = open->archive.manifest();
-    const Result<plan::Plan> plan = plan::make_plan(manifest, open->printer);
-    const auto& p = open->printer;
-    Json json = {{"revision", open->revision},
-                 {"file", open->file.filename().string()},
-                 {"saved", studio.folder().holds(open->file)},
-                 {"manifest", Json::parse(job::to_json(manifest))},
-                 {"colours", open->colours},
-                 {"issues", issues_json(manifest)},
-                 {"projector", Json::parse(projector_json(p.projector))},
-                 {"platform", {{"width_mm", p.platform.width_um / 1e3}, {"depth_mm", p.platform.depth_um / 1e3}}},
-                 {"printer", p.name}};
-    if (plan) {
-        json["plan"] = Json::parse(plan::plan_json(*plan));
-        json["swap"] = swap_json(*plan, p);
-    } else {
-        json["plan_error"] = plan.error().message;
-    }
-    return json_response(dumped(json));
+    return json_response(job_json(*open, studio.folder().holds(open->file)));
 }
 
 /// Every device over the whole print, in rows of begin, end, begin, end, ...; visits in rows of layer, slot, begin,
@@ -148,21 +58,39 @@ Response timeline(Studio& studio, const Request&) {
 
 Response image(Studio& studio, const Request& request) {
     const auto open = studio.make().job();
-    if (!open) return no_job();
-    const int layer = number_behind(request.parts.at("layer"), ""),
-              material = number_behind(request.parts.at("material"), "");
-    const auto& layers = open->archive.manifest().layers;
-    if (layer < 0 || layer >= static_cast<int>(layers.size())) return error_response(404, "there is no such layer");
-    for (const job::LayerImage& entry : layers[static_cast<std::size_t>(layer)].images) {
-        if (entry.material != material) continue;
-        const std::lock_guard lock(open->mutex);
-        Result<std::string> png = open->archive.file(entry.file);
-        if (!png) return error_response(png.error());
-        Response response{200, "image/png", std::move(*png)};
-        response.keep = true;
-        return response;
-    }
-    return error_response(404, "nothing of this material is in this layer");
+    return open ? layer_image(*open, request) : no_job();
+}
+
+/// The job to compare with: ?name= of the folder, or without it the one that was at hand before.
+Result<std::shared_ptr<OpenJob>> other_job(Studio& studio, const Request& request) {
+    const auto name = request.query.find("name");
+    if (name == request.query.end() || name->second.empty()) return studio.make().other();
+    const Result<std::filesystem::path> path = studio.folder().resolve(name->second);
+    if (!path) return tl::unexpected(path.error());
+    if (path->extension() != ".zip") return input_error("\"{}\": a job (.zip) is needed", name->second);
+    return studio.make().other(*path);
+}
+
+Response other(Studio& studio, const Request& request) {
+    const auto open = other_job(studio, request);
+    if (!open) return error_response(open.error());
+    return json_response(job_json(**open, studio.folder().holds((*open)->file)));
+}
+
+Response other_image(Studio& studio, const Request& request) {
+    const auto open = other_job(studio, request);
+    return open ? layer_image(**open, request) : error_response(open.error());
+}
+
+Response under_way(Studio& studio, const Request&) {
+    return json_response(studio.make().under_way().json());
+}
+
+Response image_under_way(Studio& studio, const Request& request) {
+    Result<std::string> png = studio.make().under_way().image(whole_number(request.parts.at("layer")),
+                                                              whole_number(request.parts.at("material")));
+    if (!png) return error_response(404, png.error().message);
+    return {200, "image/png", std::move(*png)};
 }
 
 Response part(Studio& studio, const Request&) {
@@ -221,39 +149,23 @@ Response compare(Studio& studio, const Request&) {
     return json_response(dumped(rows));
 }
 
-/// Of the built-in ones or of the folder; with its mask, which must lie in the folder too.
-Result<prepare::PrinterFile> read_printer(Studio& studio, const std::string& name) {
-    prepare::PrinterFile file;
-    std::filesystem::path path = name + ".toml";
-    if (const BuiltInFile* known = find_file(example_printers(), name)) {
-        file.text = known->text;
-    } else {
-        const Result<std::filesystem::path> found = studio.folder().resolve(name);
-        if (!found) return tl::unexpected(found.error());
-        path = *found;
-        Result<std::string> text = read_file(path, std::uintmax_t{4} << 20);
-        if (!text) return tl::unexpected(text.error());
-        file.text = std::move(*text);
-        if (!studio.folder().texts_leading_outside(file.text, path).empty())
-            return input_error("{}: names a file outside of the project folder", name);
-    }
-    Result<machine::Printer> printer = machine::parse_printer(file.text, path.filename());
-    if (!printer) return tl::unexpected(printer.error());
-    file.printer = std::move(*printer);
-    Result<std::optional<job::Image>> mask = operate::load_mask(file.printer.projector, path);
-    if (!mask) return tl::unexpected(mask.error());
-    file.mask = std::move(*mask);
-    return file;
-}
-
 Result<SliceOrder> read_order(Studio& studio, const Request& request) {
     const Result<std::string> name = printer_name_of(request.body);
     if (!name) return tl::unexpected(name.error());
     Result<prepare::Order> order = read_slice_order(request.body);
     if (!order) return tl::unexpected(order.error());
-    Result<prepare::PrinterFile> printer = read_printer(studio, *name);
+    Result<prepare::PrinterFile> printer = read_printer(studio.folder(), *name);
     if (!printer) return tl::unexpected(printer.error());
-    const Studio::Document d = studio.document();
+    Studio::Document d = studio.document();
+    // A robot of its own, as of a wizard, is no document: it lies nowhere.
+    const Result<std::optional<std::string>> own = robot_text_of(request.body);
+    if (!own) return tl::unexpected(own.error());
+    if (*own) {
+        d.text = **own;
+        d.file = studio.folder().path() / "test.toml";
+        if (!studio.folder().texts_leading_outside(d.text, d.file).empty())
+            return input_error("robot: names a file outside of the project folder");
+    }
     order->inputs = {d.file.filename().string()};
     return SliceOrder{d.text, d.file, std::move(*printer), std::move(*order)};
 }
@@ -281,7 +193,7 @@ Response estimate(Studio& studio, const Request& request) {
 Response printer(Studio& studio, const Request& request) {
     const auto name = request.query.find("name");
     const Result<prepare::PrinterFile> file =
-        read_printer(studio, name == request.query.end() ? "tower" : name->second);
+        read_printer(studio.folder(), name == request.query.end() ? "tower" : name->second);
     if (!file) return error_response(file.error());
     const machine::Printer& p = file->printer;
     Json resins = Json::array(), vats = Json::array();
@@ -321,6 +233,13 @@ void add_make_routes(std::vector<Route>& routes) {
     routes.push_back({"POST", "/api/job/cancel", "cancels slicing", json, true, cancel});
     routes.push_back({"GET", "/api/job", "the job: manifest, plan, one swap, issues", json, false, job});
     routes.push_back({"GET", "/api/job/layers/{layer}/{material}", "one image", "image/png", false, image});
+    routes.push_back({"GET", "/api/job/other", "a job to compare with: ?name= of the folder; the one before without it",
+                      json, false, other});
+    routes.push_back({"GET", "/api/job/other/{layer}/{material}", "one image of it", "image/png", false, other_image});
+    routes.push_back(
+        {"GET", "/api/job/under-way", "the layers of the job that is being sliced, so far", json, false, under_way});
+    routes.push_back(
+        {"GET", "/api/job/under-way/{layer}/{material}", "one image of them", "image/png", false, image_under_way});
     routes.push_back(
         {"GET", "/api/job/part", "the job as it will stand, a packet", "application/octet-stream", false, part});
     routes.push_back({"GET", "/api/job/timeline", "every device over the whole print", json, false, timeline});

@@ -1,8 +1,10 @@
 // The print: which machine, and what the host's control may be asked for, docs/reference/host-api.md.
+#include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "presentation/print_report/print_report.hpp"
+#include "presentation/studio/journal_names.hpp"
 #include "presentation/studio/journal_view.hpp"
 #include "presentation/studio/studio.hpp"
 
@@ -23,7 +25,10 @@ double speed_of(const Request& request) {
 Response take_twin(Studio& studio, const Request& request) {
     const auto job = studio.make().job();
     if (!job) return error_response(404, "there is no job yet: slice the robot, or open a job file");
-    return done(studio.print().take_twin({job->file, job->colours}, speed_of(request)));
+    // A job that lies nowhere yet has no place for a journal either.
+    const bool lies = studio.folder().holds(job->file);
+    return done(studio.print().take_twin(
+        {job->file, job->colours, lies ? virtual_journal(job->file) : std::filesystem::path()}, speed_of(request)));
 }
 
 /// Device and projector as `pliant print` takes them; a folder of the projector lies in the project and is made.
@@ -81,7 +86,7 @@ Response report_page(Studio& studio, const Request& request) {
         const Result<std::filesystem::path> journal = studio.folder().resolve(name->second);
         if (!journal) return error_response(journal.error());
         if (journal->extension() != ".journal") return error_response(422, "a journal ends with .journal");
-        files = {std::filesystem::path(*journal).replace_extension(), *journal};
+        files = {job_of_journal(journal->string()), *journal};
         extras = {};
     } else if (files.job.empty()) {
         return error_response(404, "no machine is connected");
@@ -128,11 +133,30 @@ Response image(Studio& studio, const Request& request) {
     return {200, "image/png", std::move(*png)};
 }
 
+/// A print that begins waits no longer.
+void leave_queue(Studio& studio, const std::string& body) {
+    const Json json = Json::parse(body, nullptr, false);
+    if (!json.is_object() || json.value("command", Json()) != "start") return;
+    const std::filesystem::path job = studio.print().files().job;
+    if (studio.folder().holds(job))
+        studio.queue().begun(job.lexically_relative(studio.folder().path()).generic_string());
+}
+
+Response set_queue(Studio& studio, const Request& request) {
+    const Json json = Json::parse(request.body, nullptr, false);
+    const auto is_text = [](const Json& name) { return name.is_string(); };
+    if (!json.is_object() || !json.contains("jobs") || !json["jobs"].is_array() ||
+        !std::all_of(json["jobs"].begin(), json["jobs"].end(), is_text))
+        return error_response(422, "jobs: a list of names is needed");
+    return done(studio.queue().set(json["jobs"].get<std::vector<std::string>>()));
+}
+
 /// "/api/print/host/printer/axes" is the host's "/api/printer/axes".
 Response forward(Studio& studio, const Request& request) {
     std::string path = "/api/" + request.parts.at("what");
     if (const auto more = request.parts.find("more"); more != request.parts.end()) path += "/" + more->second;
     host::ApiAnswer answer = studio.print().ask(request.method, path, request.body);
+    if (path == "/api/job" && answer.status < 300 && request.method == "POST") leave_queue(studio, request.body);
     return {answer.status == 204 ? 200 : answer.status, "application/json",
             answer.json.empty() ? "{}" : std::move(answer.json)};
 }
@@ -152,6 +176,10 @@ void add_print_routes(std::vector<Route>& routes) {
         {"POST", "/api/print/port",
          "connects the printer at a serial port to the job: {\"device\", \"projector\", \"speed\", \"clock\"}", json,
          true, take_port, json});
+    routes.push_back({"GET", "/api/print/queue", "the jobs that wait to be printed", json, false,
+                      [](Studio& s, const Request&) { return json_response(s.queue().json()); }});
+    routes.push_back({"POST", "/api/print/queue", "another list in their place: {\"jobs\": [name, ...]}", json, true,
+                      set_queue, json});
     routes.push_back({"GET", "/api/print/journals", "the journals of the folder", json, false, journals});
     routes.push_back({"GET", "/api/print/journal", "one of them: ?name=", json, false, journal});
     routes.push_back({"GET", "/api/print/report",
@@ -161,6 +189,8 @@ void add_print_routes(std::vector<Route>& routes) {
                       [](Studio& s, const Request& r) { return done(s.print().set_speed(speed_of(r))); }, json});
     routes.push_back({"POST", "/api/print/leave", "disconnects the machine", json, true,
                       [](Studio& s, const Request&) { return done(s.print().give_back()); }});
+    routes.push_back({"POST", "/api/print/discard", "ends an interrupted print on the virtual printer for good", json,
+                      true, [](Studio& s, const Request&) { return done(s.print().discard()); }});
     routes.push_back({"POST", "/api/print/door", "{\"open\"}: opens or closes the door of the virtual printer", json,
                       true, set_door, json});
     routes.push_back({"GET", "/api/print/verdict",

@@ -62,6 +62,23 @@ Response open_example(Studio& studio, const Request& request) {
     return json_response("{}");
 }
 
+Response compare(Studio& studio, const Request& request) {
+    return done(studio.compare(body_text(request, "name"), body_text(request, "example")));
+}
+
+Response scene_beside(Studio& studio, const Request&) {
+    const auto second = studio.beside();
+    const auto packet = second ? second->scene() : nullptr;
+    if (!packet) return error_response(404, "there is no second robot, or it is not built yet");
+    return {200, "application/octet-stream", *packet};
+}
+
+Response frame_beside(Studio& studio, const Request&) {
+    const auto second = studio.beside();
+    const auto packet = second ? second->last_frame() : nullptr;
+    return {200, "application/octet-stream", packet ? *packet : ""};
+}
+
 }  // namespace
 
 void add_project_routes(std::vector<Route>& routes) {
@@ -81,6 +98,18 @@ void add_project_routes(std::vector<Route>& routes) {
                       [](Studio& s, const Request& r) { return done(s.open_file(body_text(r, "name"))); }, json});
     routes.push_back(
         {"POST", "/api/example", "opens {\"name\"}, a robot that is built in", json, true, open_example, json});
+    routes.push_back({"POST", "/api/compare",
+                      "a second robot beside, in the same hands: {\"name\"} of the folder, {\"example\"}, or {}: the "
+                      "robot as it stands now",
+                      json, true, compare, json});
+    routes.push_back({"POST", "/api/compare/leave", "one robot again", json, true, [](Studio& s, const Request&) {
+                          s.stop_comparing();
+                          return json_response("{}");
+                      }});
+    routes.push_back({"GET", "/api/compare/scene", "what does not move of the second robot", "application/octet-stream",
+                      false, scene_beside});
+    routes.push_back({"GET", "/api/compare/frame", "the latest state of the second robot", "application/octet-stream",
+                      false, frame_beside});
     routes.push_back(
         {"POST", "/api/accuracy",
          "{\"accuracy\": \"preview\"} for linear tets, \"fine\" for quadratic ones, \"automatic\" for linear ones "

@@ -1,6 +1,8 @@
 // Goals and identification: what may be asked for, the search, its result.
 #include <charconv>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 
 #include "presentation/studio/goal_task.hpp"
 #include "presentation/studio/studio.hpp"
@@ -49,6 +51,52 @@ Response begin_identify(Studio& studio, const Request& request) {
     return begun ? json_response("{}") : error_response(begun.error());
 }
 
+Response begin_workspace(Studio& studio, const Request& request) {
+    auto built = studio.simulation().built();
+    if (!built) return nothing_built();
+    const Result<WorkspaceOrder> order = parse_workspace_order(request.body);
+    if (!order) return error_response(order.error());
+    Result<sim::InverseTask> task = workspace_task(*built, *order);
+    if (!task) return error_response(task.error());
+    const Status begun = studio.search().find_workspace(std::move(built), std::move(*task), *order);
+    return begun ? json_response("{}") : error_response(begun.error());
+}
+
+Response begin_sweep(Studio& studio, const Request& request) {
+    auto built = studio.simulation().built();
+    if (!built) return nothing_built();
+    Result<SweepOrder> order = parse_sweep_order(request.body);
+    if (!order) return error_response(order.error());
+    const Status begun = studio.search().sweep(std::move(built), std::move(*order));
+    return begun ? json_response("{}") : error_response(begun.error());
+}
+
+Response begin_motion(Studio& studio, const Request&) {
+    auto built = studio.simulation().built();
+    if (!built) return nothing_built();
+    const Status begun = studio.search().run_motion(std::move(built));
+    return begun ? json_response("{}") : error_response(begun.error());
+}
+
+/// A whole number in a path; nothing where it is none.
+std::optional<std::size_t> index_in(const std::string& text) {
+    std::size_t index = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return index;
+}
+
+Response motion_frame(Studio& studio, const Request& request) {
+    const auto found = studio.search().result();
+    const std::optional<std::size_t> step = index_in(request.parts.at("step"));
+    if (!found || !found->motion || !step || *step >= found->motion->count())
+        return error_response(404, "there is no such step");
+    const auto field = request.query.find("field");
+    std::set<std::string> fields;
+    if (field != request.query.end() && view::is_field(field->second)) fields.insert(field->second);
+    return {200, "application/octet-stream", found->motion->frame(*step, fields)};
+}
+
 Response result(Studio& studio, const Request&) {
     const auto found = studio.search().result();
     return json_response(found ? found->json : "{}");
@@ -56,12 +104,9 @@ Response result(Studio& studio, const Request&) {
 
 Response plot(Studio& studio, const Request& request) {
     const auto found = studio.search().result();
-    const std::string& text = request.parts.at("plot");
-    std::size_t index = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-    const bool read = error == std::errc() && end == text.data() + text.size();
-    if (!found || !read || index >= found->plots.size()) return error_response(404, "there is no such plot");
-    return {200, "image/png", found->plots[index].png};
+    const std::optional<std::size_t> index = index_in(request.parts.at("plot"));
+    if (!found || !index || *index >= found->plots.size()) return error_response(404, "there is no such plot");
+    return {200, "image/png", found->plots[*index].png};
 }
 
 }  // namespace
@@ -76,6 +121,13 @@ void add_search_routes(std::vector<Route>& routes) {
         {"GET", "/api/unknowns", "numbers of the robot that measurements could tell", json, false, unknowns});
     routes.push_back({"POST", "/api/identify", "looks for numbers with which the program follows measurements", json,
                       true, begin_identify, json});
+    routes.push_back({"POST", "/api/workspace", "looks for the places that the markers can get to", json, true,
+                      begin_workspace, json});
+    routes.push_back({"POST", "/api/sweep", "runs the program with one or two numbers over their ranges", json, true,
+                      begin_sweep, json});
+    routes.push_back({"POST", "/api/motion", "runs the whole program, to be played", json, true, begin_motion});
+    routes.push_back({"GET", "/api/motion/{step}", "a state of it, from 0; ?field= one that is wanted",
+                      "application/octet-stream", false, motion_frame});
     routes.push_back({"POST", "/api/search/cancel", "ends the search", json, true, [](Studio& s, const Request&) {
                           s.search().cancel();
                           return json_response("{}");

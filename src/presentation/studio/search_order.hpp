@@ -31,8 +31,32 @@ struct IdentifyOrder {
     std::string judge;  ///< "", "every-second" or "second-half"
 };
 
+/// {"inputs": [{"name", "low", "high"}, ...], "side": 9, "between": 50}: where the markers can get.
+struct WorkspaceOrder {
+    std::vector<InputRange> inputs;  ///< at least one
+    int side = 9;                    ///< places along each input, 2 to 60
+    int between = 50;                ///< 0 to 2000
+};
+
+/// A number of the robot file, by its key as of --set, and the values that it gets.
+struct SweepAxis {
+    std::string key;
+    std::string unit;            ///< "" of a plain number
+    std::vector<double> values;  ///< at least one
+};
+
+/// {"axes": [{"key": "material.soft.youngs_modulus", "unit": "MPa", "values": [1, 2]}, ...]}, one or two of them.
+struct SweepOrder {
+    std::vector<SweepAxis> axes;
+};
+
+/// More runs than this are refused.
+inline constexpr std::size_t most_sweep_runs = 400;
+
 /// Errors name the key. Lists hold at most 256 entries.
 [[nodiscard]] Result<GoalOrder> parse_goal_order(std::string_view json);
 [[nodiscard]] Result<IdentifyOrder> parse_identify_order(std::string_view json);
+[[nodiscard]] Result<WorkspaceOrder> parse_workspace_order(std::string_view json);
+[[nodiscard]] Result<SweepOrder> parse_sweep_order(std::string_view json);
 
 }  // namespace pliant::studio

@@ -1,15 +1,19 @@
 #include "presentation/studio/search_session.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "presentation/report/identified.hpp"
 #include "presentation/report/inverse_tables.hpp"
+#include "presentation/report/workspace_files.hpp"
+#include "presentation/studio/sweep.hpp"
 #include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/identify/identify.hpp"
 #include "simulation/inverse/follow.hpp"
+#include "simulation/inverse/workspace.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/scene/build_goals.hpp"
 
@@ -78,6 +82,46 @@ Result<SearchResult> identified(const Built& built, const IdentifyOrder& order, 
     return result;
 }
 
+Json numbers_mm(const std::vector<Vec3>& points_m) {
+    Json list = Json::array();
+    for (const Vec3& p : points_m) {
+        for (const double v : {p.x, p.y, p.z}) list.push_back(std::round(1e6 * v) / 1e3);  // a micrometre
+    }
+    return list;
+}
+
+/// Of a marker: the sheets, and all places.
+Json reach_of(const report::WorkspaceReport& report, std::size_t marker) {
+    const mesh::TriMesh sheets = report::workspace_surface(report.workspace, marker);
+    std::vector<Vec3> all;
+    for (const auto& piece : report.workspace.pieces) {
+        for (const auto& sample : piece.samples)
+            if (sample.found) all.push_back(sample.markers[marker]);
+    }
+    Json triangles = Json::array();
+    for (const auto& t : sheets.triangles)
+        for (const int v : t) triangles.push_back(v);
+    return {{"name", report.model.description().markers[marker].name},
+            {"sheet_points", numbers_mm(sheets.points)},
+            {"triangles", triangles},
+            {"points", numbers_mm(all)}};
+}
+
+Result<SearchResult> workspace_found(const Built& built, const sim::InverseTask& task, const WorkspaceOrder& order,
+                                     Progress& progress) {
+    auto found = sim::inverse::find_workspace(built.model, sim::stepper_options(built.robot.program), task,
+                                              {order.side, order.between}, {}, {}, progress);
+    if (!found) return tl::unexpected(found.error());
+    if (found->cancelled) return tl::unexpected(cancelled());
+    const report::WorkspaceReport report{built.robot.name, built.model, task, *found};
+    const Json summary = Json::parse(report::workspace_json(report));
+    if (summary["found"] == 0) return failure("no place within these ranges has an equilibrium");
+    Json reach = Json::array();
+    for (std::size_t m = 0; m < built.model.description().markers.size(); ++m) reach.push_back(reach_of(report, m));
+    Json json = {{"summary", summary}, {"reach", reach}, {"csv", report::workspace_csv(report)}};
+    return SearchResult{dumped({{"kind", "workspace"}, {"revision", built.revision}, {"found", std::move(json)}})};
+}
+
 }  // namespace
 
 class SearchSession::Watch final : public Progress {
@@ -111,6 +155,33 @@ Status SearchSession::find_inputs(std::shared_ptr<const Built> built, sim::Inver
 Status SearchSession::identify(std::shared_ptr<const Built> built, IdentifyOrder order) {
     return begin("identify", [built = std::move(built), order = std::move(order)](Progress& progress) {
         return identified(*built, order, progress);
+    });
+}
+
+Status SearchSession::find_workspace(std::shared_ptr<const Built> built, sim::InverseTask task,
+                                     const WorkspaceOrder& order) {
+    return begin("workspace", [built = std::move(built), task = std::move(task), order](Progress& progress) {
+        return workspace_found(*built, task, order, progress);
+    });
+}
+
+Status SearchSession::sweep(std::shared_ptr<const Built> built, SweepOrder order) {
+    return begin("sweep", [built = std::move(built), order = std::move(order)](Progress& progress) {
+        const Result<Sweep> found = run_sweep(built->source, order, progress);
+        if (!found) return Result<SearchResult>(tl::unexpected(found.error()));
+        return Result<SearchResult>(SearchResult{dumped(
+            {{"kind", "sweep"}, {"revision", built->revision}, {"found", Json::parse(sweep_json(order, *found))}})});
+    });
+}
+
+Status SearchSession::run_motion(std::shared_ptr<const Built> built) {
+    return begin("motion", [built = std::move(built)](Progress& progress) {
+        auto motion = Motion::run(built, progress);
+        if (!motion) return Result<SearchResult>(tl::unexpected(motion.error()));
+        SearchResult result{
+            dumped({{"kind", "motion"}, {"revision", built->revision}, {"found", Json::parse((*motion)->json())}})};
+        result.motion = std::move(*motion);
+        return Result<SearchResult>(std::move(result));
     });
 }
 

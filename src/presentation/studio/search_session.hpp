@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "presentation/studio/motion.hpp"
 #include "presentation/studio/search_order.hpp"
 #include "presentation/studio/simulation_session.hpp"
 #include "simulation/parts/inverse_task.hpp"
@@ -18,12 +19,13 @@ namespace pliant::studio {
 
 /// What a search came to.
 struct SearchResult {
-    std::string json;  ///< {"kind": "goal" or "identify", "revision": of the robot, "found": ...}
+    std::string json;  ///< {"kind": "goal", "identify", "workspace", "sweep" or "motion", "revision", "found": ...}
     struct Plot {
         std::string unit;  ///< of the values
         std::string png;
     };
-    std::vector<Plot> plots{};  ///< of an identification
+    std::vector<Plot> plots{};               ///< of an identification
+    std::shared_ptr<const Motion> motion{};  ///< of a motion
 };
 
 class SearchSession {
@@ -37,6 +39,11 @@ public:
     /// Begins; the pages hear of its progress and of its end. Errors: one is running already.
     [[nodiscard]] Status find_inputs(std::shared_ptr<const Built> built, sim::InverseTask task);
     [[nodiscard]] Status identify(std::shared_ptr<const Built> built, IdentifyOrder order);
+    [[nodiscard]] Status find_workspace(std::shared_ptr<const Built> built, sim::InverseTask task,
+                                        const WorkspaceOrder& order);
+    [[nodiscard]] Status sweep(std::shared_ptr<const Built> built, SweepOrder order);
+    /// The whole program, to be played.
+    [[nodiscard]] Status run_motion(std::shared_ptr<const Built> built);
     void cancel() { cancelled_ = true; }
 
     /// Of the last search that came to an end; null before there is one.

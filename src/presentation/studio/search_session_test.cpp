@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cstring>
+
 #include "base/core/near.hpp"
 #include "base/core/test_text.hpp"
 #include "presentation/studio/goal_task.hpp"
@@ -112,6 +114,63 @@ TEST_CASE("a modulus is found from a table, with its plots") {
     CHECK(found["shown"][0]["value"].get<std::string>().ends_with(" mm"));
     REQUIRE(b.session.result()->plots.size() == 1);
     CHECK(b.session.result()->plots[0].png.starts_with("\x89PNG"));
+}
+
+TEST_CASE("a workspace holds what the actuators reach, marker by marker") {
+    const auto built = built_from(bar);
+    const WorkspaceOrder order{{{"flexor", 0, 0.2}}, 5, 0};
+    const auto task = workspace_task(*built, order);
+    REQUIRE(task);
+    Bench b;
+    REQUIRE(b.session.find_workspace(built, *task, order));
+    CHECK(b.end() == "");
+    const Json found = b.result()["found"];
+    CHECK(found["summary"]["samples"] == 5);
+    CHECK(found["summary"]["found"] == 5);
+    const Json& reach = found["reach"][0];
+    CHECK(reach["name"] == "tip");
+    REQUIRE(reach["points"].size() == 15);
+    // Without a pull the tip is where it rests.
+    bool at_rest = false;
+    for (std::size_t k = 0; k < 15; k += 3)
+        at_rest = at_rest || (reach["points"][k].get<double>() == near(4, {.absolute = 1e-3}) &&
+                              reach["points"][k + 2].get<double>() == near(1, {.absolute = 1e-3}));
+    CHECK(at_rest);
+    const double low = found["summary"]["markers"]["tip"]["low_mm"][0].get<double>();
+    CHECK(low < 3.9);
+    CHECK(holds(found["csv"].get<std::string>(), "tip_x_mm"));
+    CHECK(workspace_task(*built, {{{"rope", 0, 1}}, 5, 0}).error().message ==
+          "rope: cannot be moved: there is no such actuator");
+    std::string blind = bar;
+    blind.erase(blind.find("marker ="), blind.find("mesh =") - blind.find("marker ="));
+    CHECK(holds(workspace_task(*built_from(blind), order).error().message, "has no [[marker]]"));
+}
+
+TEST_CASE("a sweep and a whole program are run beside, and the program's states can be played") {
+    const auto built = built_from(bar);
+    Bench b;
+    REQUIRE(b.session.sweep(built, {{{"cable.flexor.target.shortening", "mm", {0.1, 0.2}}}}));
+    CHECK(b.end() == "");
+    CHECK(b.result()["found"]["runs"].size() == 2);
+    b.events.clear();
+    REQUIRE(b.session.run_motion(built));
+    CHECK(b.end() == "");
+    const Json result = b.result();
+    CHECK(result["kind"] == "motion");
+    CHECK(result["found"]["timed"] == false);
+    const auto motion = b.session.result()->motion;
+    REQUIRE(motion);
+    REQUIRE(motion->count() == result["found"]["steps"].get<std::size_t>());
+    const auto head = [&](std::size_t k) {
+        const std::string packet = motion->frame(k, {"J"});
+        std::uint32_t length = 0;
+        std::memcpy(&length, packet.data() + 4, 4);
+        return Json::parse(packet.substr(8, length))["head"];
+    };
+    CHECK(head(0)["time"] == 0);
+    CHECK(head(motion->count() - 1)["time"] == 1);
+    CHECK(head(motion->count() - 1)["cables"][0]["length_mm"].get<double>() == near(3.8, {.relative = 1e-5}));
+    CHECK(head(0)["revision"] == built->revision);
 }
 
 TEST_CASE("one search at a time, and one that is cancelled leaves nothing") {

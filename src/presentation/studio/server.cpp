@@ -138,6 +138,11 @@ struct Server::State {
         }
         if (!token.empty() && request.method == "GET" && request.path == "/") return settle_token(wire, token);
         request.page = header(wire, "X-Pliant-Page");
+        if (studio.streams(request)) {
+            request.length = info.content_length;
+            request.more = [wire](char* into, std::size_t most) -> long long { return mg_read(wire, into, most); };
+            return answer(wire, studio.handle(request));
+        }
         if (request.method != "GET" && !read_body(wire, info.content_length, request.body))
             return refuse(wire, 413, "more than 4 MB are refused");
         if (request.path.starts_with("/api/")) return answer(wire, studio.handle(request));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "presentation/studio/state_json.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/run/warnings.hpp"
@@ -25,10 +26,6 @@ constexpr double slow_s = 0.15;
 
 std::string dumped(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-Json mm_json(const Vec3& p_m) {
-    return Json::array({mm * p_m.x, mm * p_m.y, mm * p_m.z});
 }
 
 double diagonal(const std::vector<Vec3>& points) {
@@ -520,37 +517,22 @@ void SimulationSession::remember(const sim::Step& step) {
 
 std::string SimulationSession::frame_head(const sim::Step& step, const sim::LiveProgress& progress,
                                           const LiveRobot& shown) {
-    Json cables = Json::array(), chambers = Json::array(), markers = Json::array(), supports = Json::array();
-    for (const auto& c : step.cables)
-        cables.push_back({{"ratio", c.length_ratio}, {"length_mm", mm * c.length_m}, {"tension_N", c.tension_N}});
-    for (const auto& c : step.chambers)
-        chambers.push_back(
-            {{"ratio", c.volume_ratio}, {"volume_mm3", 1e9 * c.volume_m3}, {"pressure_kPa", 1e-3 * c.pressure_Pa}});
-    for (const auto& m : step.markers) markers.push_back(mm_json(m.position_m));
-    for (const auto& s : step.supports) supports.push_back(Json::array({s.force_N.x, s.force_N.y, s.force_N.z}));
     std::vector<std::string> warnings = shown.live().warnings(step);
     warnings.insert(warnings.begin(), built_->warnings.begin(), built_->warnings.end());
-    Json json = {{"type", "frame"},
+    Json json = state_json(step);
+    json.update({{"type", "frame"},
                  {"revision", built_->revision},
                  {"sequence", sequence_++},
                  {"tag", tag_},
-                 {"time", step.time},
                  {"order", shown.model().mesh().order},
                  {"refining", refining_},
                  {"arrived", progress.arrived},
                  {"stuck", progress.reason},
                  {"warnings", warnings},
                  {"playing", playing_},
-                 {"residual", step.residual},
-                 {"min_J", step.min_J},
-                 {"energy_mJ", 1e3 * step.energy_J},
                  {"iterations", progress.iterations},
-                 {"solve_ms", 1e3 * step.wall_s},
-                 {"cables", cables},
-                 {"chambers", chambers},
-                 {"markers", markers},
-                 {"supports", supports},
-                 {"self_contact_N", step.self_contact_N}};
+                 {"solve_ms", 1e3 * step.wall_s}});
+    if (events_.beside) json["beside"] = true;
     if (shown.pulled_vertex() >= 0) {
         const Vec3 force = shown.live().pull_force_N();
         json["pull"] = {{"vertex", shown.pulled_vertex()}, {"force_N", Json::array({force.x, force.y, force.z})}};

@@ -62,6 +62,7 @@ struct SessionEvents {
     std::function<void(const std::string& json)> text;
     std::function<void(std::shared_ptr<const std::string> packet)> frame;
     std::function<std::set<std::string>()> fields;  ///< that some page wants to see
+    bool beside = false;  ///< it is the robot beside the one that is edited, and its frames say so
 };
 
 class SimulationSession {

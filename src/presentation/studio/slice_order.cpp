@@ -61,9 +61,25 @@ Status take_turn(const Json& value, Order& order) {
     return {};
 }
 
+Status take_at(const Json& value, Order& order) {
+    if (!value.is_array() || value.size() != 2 || !value[0].is_number() || !value[1].is_number())
+        return input_error("--at: two numbers in mm are needed");
+    order.at = value.get<std::vector<double>>();
+    return {};
+}
+
+/// The table that `pliant slice --support-paint` reads.
+Status take_paint(const Json& value, Order& order) {
+    constexpr std::size_t longest_table = 3 << 20;
+    if (!value.is_string() || value.get_ref<const std::string&>().size() > longest_table)
+        return input_error("--support-paint: a table as text is needed, of at most 3 MB");
+    order.support_paint = value.get<std::string>();
+    return {};
+}
+
 /// The keys that are no texts.
 Status take_other(const std::string& key, const Json& value, Order& order) {
-    if (key == "printer") return {};
+    if (key == "printer" || key == "robot") return {};
     if (key == "layer_um") {
         constexpr int most_um = 1000;
         if (!value.is_number_integer() || value < 0 || value > most_um)
@@ -73,6 +89,13 @@ Status take_other(const std::string& key, const Json& value, Order& order) {
     }
     if (key == "drain") return take_text(key, value, order.drain);
     if (key == "turn") return take_turn(value, order);
+    if (key == "at") return take_at(value, order);
+    if (key == "support-paint") return take_paint(value, order);
+    if (key == "scale") {
+        if (!value.is_number()) return input_error("--scale: a number from 0.01 to 100 is needed");
+        order.scale = value.get<double>();
+        return {};
+    }
     if (key == "copies") {
         constexpr int most = 1000;
         if (!value.is_number_integer() || value < 1 || value > most)
@@ -115,6 +138,13 @@ Result<Order> read_slice_order(std::string_view text) {
         if (Status status = take(key, value, order); !status) return tl::unexpected(status.error());
     }
     return order;
+}
+
+Result<std::optional<std::string>> robot_text_of(std::string_view text) {
+    const Json json = Json::parse(text, nullptr, false);
+    if (!json.is_object() || !json.contains("robot")) return std::nullopt;
+    if (!json["robot"].is_string()) return input_error("robot: the text of a robot file is needed");
+    return json["robot"].get<std::string>();
 }
 
 Result<std::string> printer_name_of(std::string_view text) {

@@ -29,10 +29,19 @@ TEST_CASE("an order of the page is that of the command line") {
     CHECK(order->hollow == "2 mm");
     CHECK(order->drain == "3 mm");
     CHECK(order->any_vat);
+    const auto placed = read_slice_order(R"({"scale": 1.5, "at": [3, -4.5], "support-paint": "wish\n"})");
+    REQUIRE(placed);
+    CHECK(placed->scale == 1.5);
+    CHECK(placed->at == std::vector<double>{3, -4.5});
+    CHECK(placed->support_paint == "wish\n");
     CHECK(order->no_anti_alias);
     CHECK(order->threshold == 0.4);
     CHECK(order->spacing == "2 mm");
     CHECK(read_slice_order(R"({"layer_um": 80})")->layer == "80 um");
+    CHECK(read_slice_order(R"({"robot": "name = 1"})").has_value());
+    CHECK(robot_text_of(R"({"robot": "name = 1"})").value() == "name = 1");
+    CHECK(robot_text_of("{}").value() == std::nullopt);
+    CHECK_FALSE(robot_text_of(R"({"robot": 1})").has_value());
     CHECK(printer_name_of("{}").value() == "tower");
     CHECK(printer_name_of(R"({"printer": "my/p.toml"})").value() == "my/p.toml");
 }
@@ -44,6 +53,9 @@ TEST_CASE("what is wrong in an order names the option whose field it is") {
     CHECK(refused(R"({"copies": 1.5})").starts_with("--copies: "));
     CHECK(refused(R"({"copies": 99999999999999999999})").starts_with("--copies: "));
     CHECK(refused(R"({"turn": [1, 2]})").starts_with("--turn: "));
+    CHECK(refused(R"({"scale": "2"})").starts_with("--scale: "));
+    CHECK(refused(R"({"at": [1]})").starts_with("--at: "));
+    CHECK(refused(R"({"support-paint": ["block"]})").starts_with("--support-paint: "));
     CHECK(refused(R"({"overlap": "a+b=1"})").starts_with("--overlap: "));
     CHECK(refused(R"({"threshold": 0})").starts_with("--threshold: "));
     CHECK(refused(R"({"threshold": "0.5"})").starts_with("--threshold: "));

@@ -32,12 +32,16 @@ std::vector<std::string> colours_of(const job::Manifest& manifest, const robot::
 }  // namespace
 
 Result<std::vector<std::string>> slice_robot(const SliceOrder& wanted, const std::filesystem::path& job,
-                                             Progress& progress) {
+                                             Progress& progress, JobUnderWay& seen) {
     const Result<robot::Robot> robot = robot::parse_robot(wanted.robot_text, wanted.robot_file);
     if (!robot) return tl::unexpected(robot.error());
     Result<prepare::Drawing> drawing = prepare::drawing_of(*robot, progress);
     if (!drawing) return tl::unexpected(drawing.error());
-    const auto made = prepare::slice_job(wanted.order, wanted.printer, std::move(*drawing), job, progress);
+    seen.clear();
+    const auto watch = [&](const job::Manifest& so_far, int count, const std::vector<job::EncodedImage>& images) {
+        seen.add(so_far, count, images, colours_of(so_far, *robot));
+    };
+    const auto made = prepare::slice_job(wanted.order, wanted.printer, std::move(*drawing), job, progress, watch);
     if (!made) return tl::unexpected(made.error());
     return colours_of(made->manifest, *robot);
 }

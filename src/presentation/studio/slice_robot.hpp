@@ -7,9 +7,10 @@
 
 namespace pliant::studio {
 
-/// Colours of the job's materials, in their order. Errors: of the robot, the printer, the slicer, the planner.
+/// Colours of the job's materials, in their order. `seen` gets its layers as they are made. Errors: of the robot, the
+/// printer, the slicer, the planner.
 [[nodiscard]] Result<std::vector<std::string>> slice_robot(const SliceOrder& order, const std::filesystem::path& job,
-                                                           Progress& progress);
+                                                           Progress& progress, JobUnderWay& seen);
 
 /// The plan as prepare::estimate() guesses it. Errors: as that one, and of the robot.
 [[nodiscard]] Result<plan::Plan> estimate_robot(const SliceOrder& wanted);

@@ -24,6 +24,12 @@ std::string document_event(const Studio::Document& d) {
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+/// "" where there is no second robot.
+std::string comparison_event(const std::string& title) {
+    const nlohmann::json json = {{"type", "comparison"}, {"title", title}};
+    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 /// A printer file has its own place.
 Status check_kind(const std::string& text, const std::filesystem::path& file) {
     if (!machine::parse_printer(text, file)) return {};
@@ -49,9 +55,13 @@ Studio::Studio(ProjectFolder folder, Start start)
     search_ = std::make_unique<SearchSession>(send);
     make_ = std::make_unique<MakeSession>(send, start_.version);
     print_ = std::make_unique<PrintSession>(send, start_.notify);
+    queue_ = std::make_unique<PrintQueue>(folder_, send);
+    projector_ = std::make_unique<ProjectorSession>();
 }
 
-Studio::~Studio() = default;
+Studio::~Studio() {
+    beside_.reset();  // its thread speaks to the hub
+}
 
 Status Studio::start(const std::filesystem::path& file) {
     if (file.extension() == ".zip") {
@@ -197,6 +207,68 @@ void Studio::set_accuracy(Accuracy accuracy) {
     if (document_.accuracy == accuracy) return;
     document_.accuracy = accuracy;
     rebuild(After::as_before);
+    if (!beside_) return;
+    text_beside_.accuracy = accuracy;
+    beside_->open(text_beside_, After::as_before);
+}
+
+SessionEvents Studio::events_beside() {
+    const auto text = [this](const std::string& json) {
+        hub_.send_text(fmt::format(R"({{"type":"beside","event":{}}})", json));
+    };
+    return {text, [this](auto frame) { hub_.send_frame_beside(frame); }, [this] { return hub_.fields(); }, true};
+}
+
+Status Studio::compare(const std::string& name, const std::string& example) {
+    RobotText source;
+    std::string title = name.empty() ? example : name;
+    if (!example.empty()) {
+        const BuiltInFile* found = find_file(example_robots(), example);
+        if (found == nullptr) return input_error("\"{}\": there is no such example", example);
+        source = {folder_.path() / (example + ".toml"), std::string(found->text)};
+    } else if (!name.empty()) {
+        const Result<std::filesystem::path> path = folder_.resolve(name);
+        if (!path) return tl::unexpected(path.error());
+        if (path->extension() != ".toml") return input_error("\"{}\": a robot file (.toml) is needed", name);
+        Result<std::string> text = read_file(*path, largest_robot);
+        if (!text) return tl::unexpected(text.error());
+        if (Status status = check_kind(*text, *path); !status) return status;
+        for (const std::string& outside : folder_.texts_leading_outside(*text, *path))
+            return input_error("\"{}\" lies outside of the project folder {}", outside, folder_.path().string());
+        source = {*path, std::move(*text)};
+    }
+    auto session = std::make_shared<SimulationSession>(events_beside());
+    std::shared_ptr<SimulationSession> before;
+    {
+        const std::lock_guard lock(mutex_);
+        if (title.empty()) {
+            source = {document_.file, document_.text};
+            title = "as it was";
+        }
+        source.accuracy = document_.accuracy;
+        text_beside_ = source;
+        title_beside_ = title;
+        before = std::exchange(beside_, session);
+    }
+    before.reset();  // its thread ends before the new one speaks
+    hub_.send_text(comparison_event(title));
+    session->open(source);
+    return {};
+}
+
+void Studio::stop_comparing() {
+    std::shared_ptr<SimulationSession> before;
+    {
+        const std::lock_guard lock(mutex_);
+        before = std::exchange(beside_, nullptr);
+    }
+    before.reset();
+    hub_.send_text(comparison_event(""));
+}
+
+std::shared_ptr<SimulationSession> Studio::beside() {
+    const std::lock_guard lock(mutex_);
+    return beside_;
 }
 
 Response Studio::handle(const Request& request) {
@@ -213,6 +285,13 @@ Response Studio::handle(const Request& request) {
     return known ? error_response(405, "method not allowed") : error_response(404, "not found");
 }
 
+bool Studio::streams(const Request& request) const {
+    Request asked = request;
+    return std::ranges::any_of(routes_, [&](const Route& route) {
+        return route.streams && route.method == request.method && matches(route, asked);
+    });
+}
+
 void Studio::greet(const std::shared_ptr<Connection>& connection) {
     const auto send = [&](const std::string& json) {
         connection->send_text(std::make_shared<const std::string>(json));
@@ -223,10 +302,33 @@ void Studio::greet(const std::shared_ptr<Connection>& connection) {
         send(document_event(document_));
     }
     for (const std::string& news : simulation_->news()) send(news);
+    if (const auto second = beside()) {
+        {
+            const std::lock_guard lock(mutex_);
+            send(comparison_event(title_beside_));
+        }
+        for (const std::string& news : second->news()) send(fmt::format(R"({{"type":"beside","event":{}}})", news));
+        if (const auto frame = second->last_frame()) connection->send_frame_beside(frame);
+    } else {
+        send(comparison_event(""));
+    }
     for (const std::string& news : search_->news()) send(news);
     for (const std::string& news : make_->news()) send(news);
     for (const std::string& news : print_->news()) send(news);
+    for (const std::string& news : queue_->news()) send(news);
     if (const auto frame = simulation_->last_frame()) connection->send_frame(frame);
+}
+
+/// Hands at the body of one robot are not at the other; actuators that it has not are left out.
+void Studio::steer(const Message& message, SimulationSession& simulation, bool beside) {
+    if (const auto* drive = std::get_if<DriveMessage>(&message)) simulation.drive(*drive);
+    if (const auto* follow = std::get_if<Follow>(&message)) simulation.follow(*follow);
+    if (const auto* play = std::get_if<Play>(&message)) simulation.play(play->on);
+    if (std::holds_alternative<Rest>(message)) simulation.rest();
+    if (beside) return;
+    if (const auto* pull = std::get_if<PullMessage>(&message)) simulation.pull(*pull);
+    if (const auto* lead = std::get_if<LeadMessage>(&message)) simulation.lead(*lead);
+    if (std::holds_alternative<Release>(message)) simulation.release();
 }
 
 void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_view text) {
@@ -246,6 +348,7 @@ void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_
         for (const std::string& name : fields->names)
             if (view::is_field(name)) names.insert(name);
         hub_.want_fields(connection, std::move(names));
+        if (const auto second = beside()) second->show_again();
         return simulation_->show_again();
     }
     if (const auto* steer = std::get_if<Steer>(&*message)) {
@@ -255,13 +358,8 @@ void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_
     if (std::holds_alternative<Ping>(*message))
         return connection->send_text(std::make_shared<const std::string>(R"({"type":"pong"})"));
     if (connection->page.empty() || !hub_.may_steer(connection->page)) return refuse("another page steers");
-    if (const auto* drive = std::get_if<DriveMessage>(&*message)) simulation_->drive(*drive);
-    if (const auto* follow = std::get_if<Follow>(&*message)) simulation_->follow(*follow);
-    if (const auto* play = std::get_if<Play>(&*message)) simulation_->play(play->on);
-    if (std::holds_alternative<Rest>(*message)) simulation_->rest();
-    if (const auto* pull = std::get_if<PullMessage>(&*message)) simulation_->pull(*pull);
-    if (const auto* lead = std::get_if<LeadMessage>(&*message)) simulation_->lead(*lead);
-    if (std::holds_alternative<Release>(*message)) simulation_->release();
+    steer(*message, *simulation_, false);
+    if (const auto second = beside()) steer(*message, *second, true);
 }
 
 }  // namespace pliant::studio

@@ -10,11 +10,15 @@
 #include "presentation/studio/http.hpp"
 #include "presentation/studio/hub.hpp"
 #include "presentation/studio/make_session.hpp"
+#include "presentation/studio/message.hpp"
+#include "presentation/studio/print_queue.hpp"
 #include "presentation/studio/print_session.hpp"
 #include "presentation/studio/project_folder.hpp"
+#include "presentation/studio/projector_session.hpp"
 #include "presentation/studio/routes.hpp"
 #include "presentation/studio/search_session.hpp"
 #include "presentation/studio/simulation_session.hpp"
+#include "presentation/studio/thumbnails.hpp"
 
 namespace pliant::studio {
 
@@ -36,6 +40,8 @@ public:
 
     /// Whoever asks has been let in. From any thread.
     [[nodiscard]] Response handle(const Request& request);
+    /// Whether the answer reads the body itself, by Request::more.
+    [[nodiscard]] bool streams(const Request& request) const;
     [[nodiscard]] std::shared_ptr<Connection> join() { return hub_.join(); }
     void leave(const std::shared_ptr<Connection>& connection) { hub_.leave(connection); }
     /// A text of a page. What cannot be understood or is not allowed is answered with {"type": "error"}.
@@ -47,8 +53,11 @@ public:
     [[nodiscard]] ProjectFolder& folder() { return folder_; }
     [[nodiscard]] SimulationSession& simulation() { return *simulation_; }
     [[nodiscard]] SearchSession& search() { return *search_; }
+    [[nodiscard]] Thumbnails& thumbnails() { return thumbnails_; }
     [[nodiscard]] MakeSession& make() { return *make_; }
     [[nodiscard]] PrintSession& print() { return *print_; }
+    [[nodiscard]] PrintQueue& queue() { return *queue_; }
+    [[nodiscard]] ProjectorSession& projector() { return *projector_; }
     [[nodiscard]] const std::string& version() const { return start_.version; }
     [[nodiscard]] const std::string& webcam() const { return start_.webcam; }
     [[nodiscard]] const std::vector<Route>& routes() const { return routes_; }
@@ -76,6 +85,14 @@ public:
     [[nodiscard]] Status open_new(const std::string& text);
     void set_accuracy(Accuracy accuracy);
 
+    /// A second robot in the same hands: it gets every input that the first one gets, and has a scene and frames of its
+    /// own. `name`: a robot file of the folder; or an example; both empty: the robot as it stands now, which then stays
+    /// as it is while the first one is edited. Errors: as of open_file(); there is no such example.
+    [[nodiscard]] Status compare(const std::string& name, const std::string& example);
+    void stop_comparing();
+    /// Null while there is none.
+    [[nodiscard]] std::shared_ptr<SimulationSession> beside();
+
 private:
     Studio(ProjectFolder folder, Start start);
     [[nodiscard]] Status start(const std::filesystem::path& file);
@@ -83,6 +100,9 @@ private:
     /// Goes to the last text of `from`; what there was goes to the end of `to`.
     void take_back(std::vector<std::string>& from, std::vector<std::string>& to);
     void rebuild(After after);
+    [[nodiscard]] SessionEvents events_beside();
+    /// What a page asks of both robots.
+    void steer(const Message& message, SimulationSession& simulation, bool beside);
     void greet(const std::shared_ptr<Connection>& connection);
 
     ProjectFolder folder_;
@@ -92,9 +112,15 @@ private:
     std::unique_ptr<SearchSession> search_;
     std::unique_ptr<MakeSession> make_;
     std::unique_ptr<PrintSession> print_;
+    std::unique_ptr<PrintQueue> queue_;
+    std::unique_ptr<ProjectorSession> projector_;
+    Thumbnails thumbnails_;
     std::vector<Route> routes_;
-    std::mutex mutex_;  ///< guards the document
+    std::mutex mutex_;  ///< guards what follows
     Document document_;
+    RobotText text_beside_;
+    std::string title_beside_;                   ///< what the second robot was opened from
+    std::shared_ptr<SimulationSession> beside_;  ///< null: there is none
 };
 
 }  // namespace pliant::studio

@@ -368,6 +368,125 @@ TEST_CASE("what is not there, and what the description says") {
     }
 }
 
+namespace {
+
+/// A STEP-free body: the surface of a tetrahedron, in millimetres.
+std::string tetra_stl() {
+    std::string text = "solid t\n";
+    for (const char* facet : {"0 0 0\nvertex 0 30 0\nvertex 30 0 0", "0 0 0\nvertex 30 0 0\nvertex 0 0 30",
+                              "0 0 0\nvertex 0 0 30\nvertex 0 30 0", "30 0 0\nvertex 0 30 0\nvertex 0 0 30"})
+        text += std::string("facet normal 0 0 0\nouter loop\nvertex ") + facet + "\nendloop\nendfacet\n";
+    return text + "endsolid t\n";
+}
+
+Response put_file(Studio& studio, const std::string& name, const std::string& bytes, bool replace = false,
+                  const std::string& page = "") {
+    Request request{"PUT", "/api/files"};
+    request.query = {{"name", name}, {"replace", replace ? "1" : "0"}};
+    request.page = page;
+    request.length = static_cast<long long>(bytes.size());
+    std::size_t at = 0;
+    request.more = [&](char* into, std::size_t most) {
+        const std::size_t n = std::min(most, bytes.size() - at);
+        std::memcpy(into, bytes.data() + at, n);
+        at += n;
+        return static_cast<long long>(n);
+    };
+    CHECK(studio.streams(request));
+    return studio.handle(request);
+}
+
+}  // namespace
+
+TEST_CASE("a file that a page sends becomes a body of a robot, and is not written over unasked") {
+    const Project project;
+    const auto owner = opened(project);
+    Studio& studio = *owner;
+    const Response sent = put_file(studio, "part.stl", tetra_stl());
+    REQUIRE_MESSAGE(sent.status == 200, sent.body);
+    const Json content = Json::parse(sent.body);
+    CHECK(content["kind"] == "surface");
+    CHECK(content["high"][0].get<double>() == near(30, {.relative = 1e-6}));
+    CHECK(put_file(studio, "part.stl", tetra_stl()).status == 200);  // the same again
+    std::string other = tetra_stl();
+    other.replace(other.find("30"), 2, "31");
+    CHECK(put_file(studio, "part.stl", other).status == 409);
+    CHECK(file_text(project.base / "project" / "part.stl") == tetra_stl());
+    CHECK(put_file(studio, "../part.stl", tetra_stl()).status == 422);
+    CHECK(put_file(studio, "bar.toml", tetra_stl(), true).status == 422);
+    CHECK(file_text(project.base / "project" / "bar.toml") == bar);
+    CHECK(ask(studio, "PUT", "/api/files").status == 422);
+    const auto page = joined(studio, "first_page");
+    CHECK(put_file(studio, "other.stl", tetra_stl(), false, "second_page").status == 423);
+
+    const std::string robot =
+        "name = \"part\"\nlength_unit = \"mm\"\n[[body]]\nname = \"part\"\nmaterial = "
+        "\"dragon-skin-30\"\ngeometry = \"part.stl\"\n[mesh]\nsize = \"12 mm\"\n[[fixed]]\nname = "
+        "\"base\"\nbox = [[-1, -1, -1], [31, 31, 1]]\n";
+    REQUIRE(ask(studio, "POST", "/api/robot/new", robot, "first_page").status == 200);
+    REQUIRE(studio.simulation().wait_until_built());
+    CHECK(head_of(ask(studio, "GET", "/api/scene").body)["robot"] == "part");
+}
+
+TEST_CASE("robots that can be opened have small pictures, and what cannot be drawn has none") {
+    const Project project;
+    std::ofstream(project.base / "project" / "wrong.toml") << "name = 3\n";
+    std::string outside = bar;
+    const std::string geometry = "{ box = [[0, 0, 0], [40, 10, 10]] }";
+    outside.replace(outside.find(geometry), geometry.size(), "\"../outside.stl\"");
+    std::ofstream(project.base / "project" / "outside.toml") << outside;
+    const auto owner = opened(project);
+    const auto thumbnail = [&](const char* key, const std::string& value) {
+        Request request{"GET", "/api/thumbnail"};
+        request.query = {{key, value}};
+        return owner->handle(request);
+    };
+    const Response mine = thumbnail("file", "bar.toml");
+    REQUIRE(mine.status == 200);
+    CHECK(mine.type == "image/png");
+    CHECK(mine.body.substr(1, 3) == "PNG");
+    CHECK(thumbnail("file", "bar.toml").body == mine.body);
+    CHECK(thumbnail("example", "pneunet").status == 200);
+    CHECK(thumbnail("example", "no such").status == 404);
+    for (const char* name : {"wrong.toml", "outside.toml", "none.toml", "../outside.stl"})
+        CHECK_MESSAGE(thumbnail("file", name).status >= 400, name);
+}
+
+TEST_CASE("a second robot stands beside the first one, and follows the same hands") {
+    const Project project;
+    const auto owner = built(project);
+    Studio& studio = *owner;
+    CHECK(ask(studio, "GET", "/api/compare/scene").status == 404);
+    CHECK(ask(studio, "POST", "/api/compare", R"({"name":"../outside.stl"})").status == 422);
+    CHECK(ask(studio, "POST", "/api/compare", R"({"example":"no such"})").status == 422);
+    REQUIRE(ask(studio, "POST", "/api/compare", "{}").status == 200);
+    REQUIRE(studio.beside()->wait_until_built());
+    // The first one is made stiffer; the second one stays as it was.
+    std::string stiffer = bar;
+    stiffer.replace(stiffer.find("1 MPa"), 5, "2 MPa");
+    const auto page = joined(studio, "first_page");
+    REQUIRE(ask(studio, "PUT", "/api/robot", stiffer, "first_page").status == 200);
+    REQUIRE(studio.simulation().wait_until_built());
+    CHECK(head_of(ask(studio, "GET", "/api/scene").body)["materials"][0]["youngs_modulus_MPa"] == 2);
+    CHECK(head_of(ask(studio, "GET", "/api/compare/scene").body)["materials"][0]["youngs_modulus_MPa"] == 1);
+    studio.receive(page,
+                   R"({"type":"drive","tag":5,"actuators":[{"name":"flexor","kind":"shortening_mm","value":2}]})");
+    Json first, second;
+    while (first.is_null() || second.is_null()) {
+        const auto out = page->next();
+        REQUIRE(out);
+        if (!out->binary) continue;
+        const Json head = head_of(*out->bytes);
+        if (head["tag"] != 5 || head["arrived"] != true) continue;
+        (head.contains("beside") ? second : first) = head;
+    }
+    CHECK(first["cables"][0]["tension_N"].get<double>() ==
+          near(2 * second["cables"][0]["tension_N"].get<double>(), {.relative = 1e-2}));
+    CHECK(ask(studio, "POST", "/api/compare/leave", "", "first_page").status == 200);
+    CHECK(studio.beside() == nullptr);
+    CHECK(ask(studio, "GET", "/api/compare/frame").body.empty());
+}
+
 TEST_CASE("what is neither a robot nor a job is refused") {
     CHECK_FALSE(Studio::open({"no/such/robot.toml", "test"}));
     CHECK_FALSE(Studio::open({"no/such/job.zip", "test"}));

@@ -243,8 +243,9 @@ Manifest empty_manifest(const JobSettings& settings, std::vector<Material> mater
 class LayerKeeper {
 public:
     using Note = std::function<void(int, Prepared&)>;
-    LayerKeeper(const JobSettings& settings, Manifest& manifest, Writer& writer, const Note& note)
+    LayerKeeper(const JobSettings& settings, int count, Manifest& manifest, Writer& writer, const Note& note)
         : settings_(settings),
+          count_(count),
           heights_(settings.slicing.layers()),
           words_(file_words(manifest.materials)),
           thumbnail_(manifest.width_px),
@@ -260,9 +261,12 @@ public:
             const int k = static_cast<int>(manifest_.layers.size());
             note_(k, *made);
             thumbnail_.add(made->seen);
+            const std::vector<EncodedImage> seen =
+                settings_.watch ? made->images : std::vector<EncodedImage>{};  // storing takes them
             auto layer = store(*made, k, manifest_, words_, settings_, heights_, writer_);
             if (!layer) return tl::unexpected(layer.error());
             manifest_.layers.push_back(std::move(*layer));
+            if (settings_.watch) settings_.watch(manifest_, count_, seen);
         }
         return {};
     }
@@ -271,6 +275,7 @@ public:
 
 private:
     const JobSettings& settings_;
+    int count_;
     slice::Layers heights_;
     std::vector<std::string> words_;
     Thumbnail thumbnail_;
@@ -285,7 +290,7 @@ Status make_layers(const LayerSource& source, const JobSettings& settings, Manif
     for (const auto& [name, rule] : settings.exposures) {
         if (auto status = check(rule, "material '" + name + "'"); !status) return status;
     }
-    LayerKeeper keeper(settings, manifest, writer, note);
+    LayerKeeper keeper(settings, source.count, manifest, writer, note);
     constexpr int batch = slice::layers_at_once;
     std::vector<Result<Prepared>> made;
     for (int first = 0; first < source.count; first += batch) {

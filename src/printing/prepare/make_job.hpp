@@ -1,6 +1,7 @@
 // From bodies to the images of a job.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -15,6 +16,10 @@
 
 namespace pliant::job {
 
+/// Hears of every layer as soon as it is stored: the manifest so far, how many layers there will be, the layer's images
+/// (parallel to those of the manifest's last layer). Called in order, from any thread, one at a time.
+using LayerWatch = std::function<void(const Manifest& so_far, int count, const std::vector<EncodedImage>& images)>;
+
 struct JobSettings {
     std::string name;
     std::string pliant_version;
@@ -28,6 +33,7 @@ struct JobSettings {
     /// Of materials whose layers are not all lit as JobSettings::bottom_layers says.
     std::map<std::string, ExposureRule> exposures{};
     bool any_vat = false;  ///< as in Manifest
+    LayerWatch watch{};    ///< may be empty
 };
 
 struct MadeJob {

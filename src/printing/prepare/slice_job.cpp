@@ -25,9 +25,10 @@ Status add_files(const Order& order, const PrinterFile& printer, const job::JobS
 }  // namespace
 
 Result<SlicedJob> slice_job(const Order& order, const PrinterFile& printer, Drawing drawing,
-                            const std::filesystem::path& file, Progress& progress) {
+                            const std::filesystem::path& file, Progress& progress, job::LayerWatch watch) {
     Result<job::JobSettings> settings = job_settings(order, printer.printer, printer.mask, drawing);
     if (!settings) return tl::unexpected(settings.error());
+    settings->watch = std::move(watch);
     std::vector<std::string> notes;
     if (Status s = arrange(order, *settings, drawing, notes, progress); !s) return tl::unexpected(s.error());
     Result<job::Writer> writer = job::Writer::create(file);

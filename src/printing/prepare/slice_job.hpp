@@ -23,8 +23,10 @@ struct SlicedJob {
     std::vector<std::string> notes;  ///< lines of what was made: supports, cavities
 };
 
-/// Writes `file` whole or not at all. Errors: of the order, the slicer, the planner, the disk; cancelled.
+/// Writes `file` whole or not at all. `watch` hears of its layers as they are made. Errors: of the order, the slicer,
+/// the planner, the disk; cancelled.
 [[nodiscard]] Result<SlicedJob> slice_job(const Order& order, const PrinterFile& printer, Drawing drawing,
-                                          const std::filesystem::path& file, Progress& progress);
+                                          const std::filesystem::path& file, Progress& progress,
+                                          job::LayerWatch watch = {});
 
 }  // namespace pliant::prepare

@@ -1,20 +1,19 @@
-// The robot on the platform before it is sliced: turned, copied and in the colours of its materials. A face that is
-// pointed at is laid down.
+// The robot on the platform before it is sliced: moved, turned, scaled, copied, in the colours of its materials. A face
+// that is pointed at is laid down, and supports are painted on it.
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { counted } from '../counted';
 import { orbitHelp, orbitKeys, turnAround } from '../orbit_keys';
-import { api, mayDrive, scene } from '../store';
+import { api, mayDrive, say, scene } from '../store';
 import { theme } from '../theme';
 import type { Scene } from '../types';
-import { copies, fields, orderJson, printer, printerInfo, turn, type PrinterInfo } from './order';
+import { copies, fields, orderJson, printer, printerInfo, scale, shift, support, turn, type PrinterInfo } from './order';
+import { painted, paintTable, readPaint, refined, strokes, touches, wishColours, type Touch, type Wish } from './paint';
 import { layOnFace, placed, rotationOf, type Degrees } from './place';
 import { clock } from './plan';
 import { platformMesh } from './stack';
-
-const picking = signal(false);
 
 /// "2", "2 mm" or "0.2 cm" as millimetres; what the slicer will refuse is the usual.
 function millimetres(text: string | undefined, usual: number): number {
@@ -22,6 +21,18 @@ function millimetres(text: string | undefined, usual: number): number {
   const value = match ? Number(match[1]) : NaN;
   const scale = { um: 1e-3, µm: 1e-3, mm: 1, cm: 10, m: 1000, in: 25.4 }[match?.[2] ?? 'mm'] ?? 1;
   return Number.isFinite(value) && value >= 0 ? value * scale : usual;
+}
+
+/// What the pointer does on the part.
+type Tool = 'move' | 'face' | 'enforce' | 'block' | 'usual';
+const tool = signal<Tool>('move');
+const brush = signal(2); // radius in mm of the part as it was drawn
+const isBrush = (t: Tool): t is Wish => t === 'enforce' || t === 'block' || t === 'usual';
+
+interface Hands {
+  move: (dx: number, dy: number) => void;
+  face: (normal: THREE.Vector3) => void;
+  paint: (touch: Touch, first: boolean) => void;
 }
 
 class BedView {
@@ -32,24 +43,46 @@ class BedView {
   private readonly parts = new THREE.Group();
   private readonly geometry = new THREE.BufferGeometry();
   private readonly material = new THREE.MeshStandardMaterial({ roughness: 0.6, vertexColors: true, side: THREE.DoubleSide, flatShading: true });
+  private readonly ring = new THREE.Mesh(new THREE.RingGeometry(0.93, 1, 48), new THREE.MeshBasicMaterial({ side: THREE.DoubleSide, depthTest: false, transparent: true, opacity: 0.9 }));
   private readonly resize: ResizeObserver;
-  private readonly keys: (e: KeyboardEvent) => void;
+  private readonly listeners: [string, (e: Event) => void, boolean][];
   private platform: THREE.Group | null = null;
   private seen = '';
   private frame = 0;
+  private points = new Float32Array(0); // of the part as it was drawn, three corners a triangle
+  private normals = new Float32Array(0);
+  private plain = new Float32Array(0); // colours without paint
+  private codes = new Uint8Array(0); // paint of each corner
+  private list: Touch[] = [];
+  private down = new THREE.Vector3(); // of the platform, as the part as it was drawn sees it
+  private flattest = -1; // degrees: undersides flatter than this are shown; below 0: none
+  private held: { at: THREE.Vector3 } | null = null;
+  private last: Touch | null = null;
 
-  constructor(private readonly canvas: HTMLCanvasElement, part: Scene) {
+  constructor(private readonly canvas: HTMLCanvasElement, part: Scene, private readonly hands: Hands) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.camera.up.set(0, 0, 1);
     this.world.add(new THREE.HemisphereLight(0xffffff, 0x8a8f98, 1.9));
     const key = new THREE.DirectionalLight(0xffffff, 1.6);
     key.position.set(-1, -2, 3);
-    this.world.add(key, this.parts);
+    const below = new THREE.DirectionalLight(0xffffff, 0.7); // undersides are what is painted
+    below.position.set(1, -1, -2);
+    this.ring.visible = false;
+    this.ring.renderOrder = 2;
+    this.world.add(key, below, this.parts, this.ring);
     this.build(part);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.draw());
-    this.keys = (e) => orbitKeys(e, (around, up, nearer) => turnAround(this.camera, this.controls, around, up, nearer), () => this.home());
-    canvas.addEventListener('keydown', this.keys);
+    // Before those of the controls, which would turn the view.
+    this.listeners = [
+      ['pointerdown', (e) => this.grasp(e as PointerEvent), true],
+      ['pointermove', (e) => this.follow(e as PointerEvent), true],
+      ['pointerup', () => this.letGo(), false],
+      ['pointercancel', () => this.letGo(), false],
+      ['pointerleave', () => this.hideRing(), false],
+      ['keydown', (e) => this.key(e as KeyboardEvent), false],
+    ];
+    for (const [name, listener, early] of this.listeners) canvas.addEventListener(name, listener, early);
     this.resize = new ResizeObserver(() => {
       const box = canvas.parentElement!.getBoundingClientRect();
       if (!box.width) return;
@@ -67,25 +100,52 @@ class BedView {
   private build(part: Scene) {
     const colours = part.head.materials.map((m) => new THREE.Color(m.colour));
     const material = part.u32('material');
-    const colour = new Float32Array(3 * material.length);
-    material.forEach((m, v) => (colours[m] ?? new THREE.Color(0x8f99a5)).toArray(colour, 3 * v));
-    this.geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(part.f32('rest')), 3));
-    this.geometry.setAttribute('color', new THREE.BufferAttribute(colour, 3));
-    this.geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(part.u32('triangles')), 1));
+    const rest = part.f32('rest');
+    const triangles = part.u32('triangles');
+    const box = new THREE.Box3().setFromArray(rest as unknown as number[]);
+    const { points, from } = refined(rest, triangles, Math.max(box.getSize(new THREE.Vector3()).length() / 130, 0.4));
+    this.points = points;
+    this.plain = new Float32Array(points.length);
+    this.normals = new Float32Array(points.length);
+    this.codes = new Uint8Array(points.length / 3);
+    const grey = new THREE.Color(0x8f99a5);
+    const [a, b, c] = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()];
+    for (let t = 0; t < from.length; ++t) {
+      const colour = colours[material[triangles[3 * from[t]]]] ?? grey;
+      a.fromArray(points, 9 * t);
+      b.fromArray(points, 9 * t + 3).sub(a);
+      c.fromArray(points, 9 * t + 6).sub(a);
+      const normal = b.cross(c).normalize();
+      for (let k = 0; k < 3; ++k) {
+        colour.toArray(this.plain, 9 * t + 3 * k);
+        normal.toArray(this.normals, 9 * t + 3 * k);
+      }
+    }
+    this.geometry.setAttribute('position', new THREE.BufferAttribute(points, 3));
+    this.geometry.setAttribute('color', new THREE.BufferAttribute(new Float32Array(this.plain), 3));
+    this.geometry.computeBoundingSphere();
   }
 
-  show(where: ReturnType<typeof placed>, degrees: Degrees, p: PrinterInfo) {
+  show(where: ReturnType<typeof placed>, degrees: Degrees, size: number, at: [number, number], p: PrinterInfo) {
     if (this.platform) this.world.remove(this.platform);
     this.platform = platformMesh(p.image_mm[0], p.image_mm[1]);
     this.world.add(this.platform);
     this.parts.clear();
+    const turned = rotationOf(degrees);
     for (const [x, y] of where.shifts.slice(0, 200)) {
       const mesh = new THREE.Mesh(this.geometry, this.material);
       mesh.matrixAutoUpdate = false;
       mesh.matrix
-        .makeTranslation(x - where.least.x - where.size[0] / 2, y - where.least.y - where.size[1] / 2, -where.least.z)
-        .multiply(rotationOf(degrees));
+        .makeTranslation(x + at[0] - where.least.x - where.size[0] / 2, y + at[1] - where.least.y - where.size[1] / 2, -where.least.z)
+        .multiply(turned)
+        .scale(new THREE.Vector3(size, size, size));
+      mesh.updateMatrixWorld(true);
       this.parts.add(mesh);
+    }
+    const down = new THREE.Vector3(0, 0, -1).transformDirection(turned.clone().invert());
+    if (down.distanceTo(this.down) > 1e-6) {
+      this.down = down;
+      this.colour();
     }
     const key = JSON.stringify([where.size, p.image_mm]);
     if (key !== this.seen) {
@@ -100,6 +160,36 @@ class BedView {
   private size = 100;
   private height = 0;
 
+  /// `flattest`: undersides flatter than so many degrees are tinted; below 0: none.
+  paint(list: Touch[], flattest: number) {
+    const grows = list.length >= this.list.length && this.list.every((t, k) => t === list[k]);
+    if (!grows) this.codes.fill(0);
+    painted(this.points, this.normals, list, this.codes, grows ? this.list.length : 0);
+    this.list = list;
+    this.flattest = flattest;
+    this.colour();
+    this.draw();
+  }
+
+  private colour() {
+    const out = (this.geometry.getAttribute('color') as THREE.BufferAttribute).array as Float32Array;
+    const paints = [null, new THREE.Color(wishColours.enforce), new THREE.Color(wishColours.block)];
+    const hang = new THREE.Color('#a3317f');
+    const least = this.flattest < 0 ? 2 : Math.cos((this.flattest * Math.PI) / 180);
+    out.set(this.plain);
+    for (let i = 0; i < this.codes.length; ++i) {
+      const paint = paints[this.codes[i]];
+      const looksDown = this.normals[3 * i] * this.down.x + this.normals[3 * i + 1] * this.down.y + this.normals[3 * i + 2] * this.down.z;
+      const over = paint ?? (looksDown > least ? hang : null);
+      if (!over) continue;
+      const share = paint ? 0.86 : 0.4;
+      out[3 * i] += (over.r - out[3 * i]) * share;
+      out[3 * i + 1] += (over.g - out[3 * i + 1]) * share;
+      out[3 * i + 2] += (over.b - out[3 * i + 2]) * share;
+    }
+    this.geometry.getAttribute('color').needsUpdate = true;
+  }
+
   private home() {
     this.controls.target.set(0, 0, this.height / 3);
     const far = this.size * Math.max(1, 1.4 / this.camera.aspect); // a narrow window sees less
@@ -108,13 +198,105 @@ class BedView {
     this.draw();
   }
 
-  /// The outward normal of the face under the pointer, as it is turned now; null: there is none.
-  normalAt(e: MouseEvent): THREE.Vector3 | null {
-    const box = this.canvas.getBoundingClientRect();
+  /// From below, where supports are.
+  lookUp() {
+    const far = this.size * Math.max(1, 1.4 / this.camera.aspect);
+    this.controls.target.set(0, 0, this.height / 3);
+    this.camera.position.set(0.4 * far, -1.15 * far, -0.75 * far);
+    this.controls.update();
+    this.draw();
+  }
+
+  private ray(x: number, y: number) {
     const ray = new THREE.Raycaster();
-    ray.setFromCamera(new THREE.Vector2(((e.clientX - box.left) / box.width) * 2 - 1, 1 - ((e.clientY - box.top) / box.height) * 2), this.camera);
-    const hit = ray.intersectObjects(this.parts.children)[0];
-    return hit?.face ? hit.face.normal.clone().transformDirection(hit.object.matrix) : null;
+    ray.setFromCamera(new THREE.Vector2(x, y), this.camera);
+    return ray;
+  }
+  private under(e: PointerEvent) {
+    const box = this.canvas.getBoundingClientRect();
+    return this.ray(((e.clientX - box.left) / box.width) * 2 - 1, 1 - ((e.clientY - box.top) / box.height) * 2);
+  }
+  private hit(ray: THREE.Raycaster) {
+    return ray.intersectObjects(this.parts.children)[0];
+  }
+
+  private grasp(e: PointerEvent) {
+    if (e.button !== 0 || !mayDrive.peek()) return;
+    const hit = this.hit(this.under(e));
+    if (!hit?.face) return;
+    const t = tool.peek();
+    if (t === 'face') return this.hands.face(hit.face.normal.clone().transformDirection(hit.object.matrix));
+    this.controls.enabled = false;
+    this.canvas.setPointerCapture(e.pointerId);
+    this.held = { at: hit.point.clone() };
+    this.last = null;
+    if (isBrush(t)) this.touch(hit, t, true);
+  }
+
+  private follow(e: PointerEvent) {
+    const t = tool.peek();
+    const ray = this.under(e);
+    const hit = isBrush(t) ? this.hit(ray) : undefined;
+    this.showRing(hit, t);
+    if (!this.held) return;
+    if (hit && isBrush(t)) return this.touch(hit, t, false);
+    if (t !== 'move') return;
+    // Along the plane of the point that is held.
+    const to = ray.ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), -this.held.at.z), new THREE.Vector3());
+    if (!to) return;
+    const step = [to.x - this.held.at.x, to.y - this.held.at.y].map((v) => Math.round(10 * v) / 10);
+    if (step.every((v) => v === 0)) return;
+    this.held.at.add(new THREE.Vector3(step[0], step[1], 0));
+    this.hands.move(step[0], step[1]);
+  }
+
+  private letGo() {
+    this.held = null;
+    this.last = null;
+    this.controls.enabled = true;
+  }
+
+  private touch(hit: THREE.Intersection, wish: Wish, first: boolean) {
+    const at = hit.object.worldToLocal(hit.point.clone());
+    const normal = hit.face!.normal;
+    if (!first && this.last && at.distanceTo(new THREE.Vector3(...this.last.at)) < brush.peek() / 3) return;
+    const touch: Touch = { wish, at: at.toArray() as Touch['at'], normal: normal.toArray() as Touch['normal'], radius: brush.peek() };
+    const begins = first || this.last === null;
+    this.last = touch;
+    this.hands.paint(touch, begins);
+  }
+
+  private showRing(hit: THREE.Intersection | undefined, t: Tool) {
+    const was = this.ring.visible;
+    this.ring.visible = Boolean(hit?.face);
+    if (hit?.face) {
+      const normal = hit.face.normal.clone().transformDirection(hit.object.matrix);
+      const scaled = brush.peek() * new THREE.Vector3().setFromMatrixScale(hit.object.matrix).x;
+      this.ring.position.copy(hit.point).addScaledVector(normal, 0.05);
+      this.ring.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), normal);
+      this.ring.scale.setScalar(scaled);
+      (this.ring.material as THREE.MeshBasicMaterial).color.set(t === 'usual' ? '#ffffff' : wishColours[t as 'enforce' | 'block']);
+    }
+    if (was || this.ring.visible) this.draw();
+  }
+  private hideRing() {
+    if (!this.ring.visible) return;
+    this.ring.visible = false;
+    this.draw();
+  }
+
+  private key(e: KeyboardEvent) {
+    const t = tool.peek();
+    if ((e.key === 'Enter' || e.key === ' ') && t !== 'move' && mayDrive.peek()) {
+      // Where the middle of the view is.
+      const hit = this.hit(this.ray(0, 0));
+      e.preventDefault();
+      if (!hit?.face) return;
+      if (t === 'face') return this.hands.face(hit.face.normal.clone().transformDirection(hit.object.matrix));
+      this.last = null;
+      return this.touch(hit, t, true);
+    }
+    orbitKeys(e, (around, up, nearer) => turnAround(this.camera, this.controls, around, up, nearer), () => this.home());
   }
 
   private draw() {
@@ -127,7 +309,7 @@ class BedView {
 
   dispose() {
     cancelAnimationFrame(this.frame);
-    this.canvas.removeEventListener('keydown', this.keys);
+    for (const [name, listener, early] of this.listeners) this.canvas.removeEventListener(name, listener, early);
     this.resize.disconnect();
     this.geometry.dispose();
     this.material.dispose();
@@ -163,6 +345,82 @@ function useEstimate(order: string, can: boolean): Estimate | null {
   return estimate;
 }
 
+/// The brush for supports: what it paints, how wide it is, and back.
+function Brush({ materials, lookUp }: { materials: string[]; lookUp: () => void }) {
+  const on = isBrush(tool.value);
+  const pick = (t: Tool) => {
+    if (tool.value === t) {
+      tool.value = 'move';
+      return;
+    }
+    if (isBrush(t) && !support.value) support.value = materials[0] ?? '';
+    if (!on) lookUp();
+    tool.value = t;
+  };
+  const save = () => {
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob([paintTable(touches())], { type: 'text/csv' }));
+    link.download = 'supports.csv';
+    link.click();
+    URL.revokeObjectURL(link.href);
+  };
+  const load = async (file: File | undefined) => {
+    if (!file) return;
+    try {
+      strokes.value = [...strokes.value, { touches: readPaint(await file.text()) }];
+    } catch (error) {
+      say(`${file.name}: ${(error as Error).message}`);
+    }
+  };
+  if (!on)
+    return (
+      <button class="chip" disabled={!mayDrive.value} onClick={() => pick('enforce')} data-testid="paint">
+        Paint supports{strokes.value.length > 0 && ` (${strokes.value.length})`}
+      </button>
+    );
+  return (
+    <div class="brush" role="group" aria-label="Paint supports" data-testid="brush">
+      <span class="segments" role="group" aria-label="What the brush paints">
+        {([['enforce', 'Enforce'], ['block', 'Block'], ['usual', 'Erase']] as const).map(([t, label]) => (
+          <button aria-pressed={tool.value === t} onClick={() => (tool.value = t)} data-testid={`brush-${t}`}>
+            {t !== 'usual' && <span class="swatch" style={{ background: wishColours[t] }} />}
+            {label}
+          </button>
+        ))}
+      </span>
+      <label class="inline">
+        Radius
+        <input type="range" min={0.5} max={10} step={0.5} value={brush.value} onInput={(e) => (brush.value = Number(e.currentTarget.value))} data-testid="brush-radius" />
+        <output>{brush.value} mm</output>
+      </label>
+      <label class="inline">
+        in
+        <select value={support.value} aria-label="Material of supports" onChange={(e) => (support.value = e.currentTarget.value)}>
+          {materials.map((m) => (
+            <option value={m}>{m}</option>
+          ))}
+        </select>
+      </label>
+      <button class="small" disabled={strokes.value.length === 0} onClick={() => (strokes.value = strokes.value.slice(0, -1))} data-testid="brush-undo">
+        Undo stroke
+      </button>
+      <button class="small" disabled={strokes.value.length === 0} onClick={() => (strokes.value = [])} data-testid="brush-clear">
+        Clear
+      </button>
+      <button class="small" disabled={strokes.value.length === 0} onClick={save} title="A table for pliant slice --support-paint" data-testid="brush-save">
+        Save
+      </button>
+      <label class="button small file-button">
+        Load
+        <input type="file" accept=".csv" class="unseen" onChange={(e) => void load(e.currentTarget.files?.[0])} data-testid="brush-load" />
+      </label>
+      <button class="primary small" onClick={() => (tool.value = 'move')} data-testid="brush-done">
+        Done
+      </button>
+    </div>
+  );
+}
+
 export function Bed() {
   const canvas = useRef<HTMLCanvasElement>(null);
   const shown = useRef<BedView | null>(null);
@@ -170,67 +428,99 @@ export function Bed() {
   const p = printerInfo.value;
   const spacing = millimetres(fields.value.spacing, 2);
   const count = Math.max(1, Math.min(1000, Math.round(copies.value) || 1));
-  const where = s && p ? placed(s.f32('rest'), turn.value, count, spacing, p.image_mm, p.platform.height_mm) : null;
-  const order = JSON.stringify(orderJson(s?.head.materials.map((m) => m.name) ?? []));
+  const where = s && p ? placed(s.f32('rest'), turn.value, count, spacing, p.image_mm, p.platform.height_mm, scale.value, shift.value) : null;
+  const materials = s?.head.materials.map((m) => m.name) ?? [];
+  const order = JSON.stringify(orderJson(materials));
   const estimate = useEstimate(`${order}`, Boolean(s && p && mayDrive.value));
+  const angle = Number(fields.value['support-angle'] || 45);
+  const flattest = isBrush(tool.value) && Number.isFinite(angle) ? angle : -1;
 
   useEffect(() => {
     if (!s) return;
     let view: BedView;
     try {
-      view = new BedView(canvas.current!, s);
+      view = new BedView(canvas.current!, s, {
+        move: (dx, dy) => (shift.value = [shift.value[0] + dx, shift.value[1] + dy].map((v) => Math.round(10 * v) / 10) as [number, number]),
+        face: (normal) => {
+          tool.value = 'move';
+          turn.value = layOnFace(turn.value, normal);
+        },
+        paint: (touch, first) => {
+          const all = strokes.value;
+          strokes.value = first || all.length === 0 ? [...all, { touches: [touch] }] : [...all.slice(0, -1), { touches: [...all[all.length - 1].touches, touch] }];
+        },
+      });
     } catch {
       return; // no WebGL: the form and the estimate remain
     }
     shown.current = view;
-    if (where && p) view.show(where, turn.value, p);
+    if (where && p) view.show(where, turn.value, scale.value, shift.value, p);
+    view.paint(touches(), flattest);
     return () => {
       shown.current = null;
       view.dispose();
     };
   }, [s?.head.revision, theme.value]);
   useEffect(() => {
-    if (where && p) shown.current?.show(where, turn.value, p);
-  }, [JSON.stringify(where?.size), JSON.stringify(turn.value), count, spacing, printer.value, p]);
+    if (where && p) shown.current?.show(where, turn.value, scale.value, shift.value, p);
+  }, [JSON.stringify(where?.size), JSON.stringify(turn.value), scale.value, JSON.stringify(shift.value), count, spacing, printer.value, p]);
+  useEffect(() => shown.current?.paint(touches(), flattest), [strokes.value, flattest]);
 
-  const pick = (e: MouseEvent) => {
-    if (!picking.value) return;
-    const normal = shown.current?.normalAt(e);
-    picking.value = false;
-    if (normal) turn.value = layOnFace(turn.value, normal);
-  };
   const quarter = (axis: number) => (turn.value = turn.value.map((t, k) => (k === axis ? ((t + 90 + 180) % 360) - 180 : t)) as Degrees);
+  const asDrawn = turn.value.every((t) => t === 0) && scale.value === 1 && shift.value.every((v) => v === 0);
   if (!s) return <div class="empty"><h2>No robot</h2></div>;
+  const help = isBrush(tool.value) ? `Enter paints at the middle of the view. ${orbitHelp}` : tool.value === 'face' ? `Enter lays down the face at the middle of the view. ${orbitHelp}` : `Drag the robot to move it. ${orbitHelp}`;
   return (
-    <div class="layers" data-testid="bed" data-fits={where?.fits ?? true}>
-      <div class={`canvas ${picking.value ? 'picking' : ''}`}>
-        <canvas ref={canvas} tabIndex={0} onClick={pick} aria-label={`The robot on the platform. ${orbitHelp}`} data-testid="bed-view" />
+    <div class="layers" data-testid="bed" data-fits={where?.fits ?? true} data-tool={tool.value}>
+      <div class={`canvas ${tool.value === 'move' ? '' : 'picking'}`}>
+        <canvas ref={canvas} tabIndex={0} aria-label={`The robot on the platform. ${help}`} data-testid="bed-view" />
       </div>
       <div class="bed-foot">
-      {estimate && (
-        <p class="estimate" role="status" data-testid="estimate">
-          about <b>{clock(estimate.seconds)}</b> · {counted(estimate.layers, 'layer')} · {counted(estimate.swaps, 'swap')}
-          {Object.entries(estimate.resin_ml).map(([resin, ml]) => ` · ${ml.toFixed(1)} ml ${resin}`)}
-        </p>
-      )}
+        {isBrush(tool.value) ? (
+          <p class="estimate">
+            <span class="swatch" style={{ background: '#a3317f' }} />
+            undersides flatter than {angle}° get supports by themselves; only faces that look down can touch one
+          </p>
+        ) : (
+          estimate && (
+            <p class="estimate" role="status" data-testid="estimate">
+              about <b>{clock(estimate.seconds)}</b> · {counted(estimate.layers, 'layer')} · {counted(estimate.swaps, 'swap')}
+              {Object.entries(estimate.resin_ml).map(([resin, ml]) => ` · ${ml.toFixed(1)} ml ${resin}`)}
+            </p>
+          )
+        )}
         <div class="row left wrap">
-        <button class="chip" aria-pressed={picking.value} onClick={() => (picking.value = !picking.value)} data-testid="lay-on-face">
-          {picking.value ? 'Click the face to lay down' : 'Lay on face'}
-        </button>
-        {['x', 'y', 'z'].map((axis, k) => (
-          <button class="chip" onClick={() => quarter(k)} aria-label={`Rotate by 90 degrees about ${axis}`} data-testid={`turn-${axis}`}>
-            {axis} 90°
-          </button>
-        ))}
-        <button class="chip" disabled={turn.value.every((t) => t === 0)} onClick={() => (turn.value = [0, 0, 0])}>
-          Reset rotation
-        </button>
+          {!isBrush(tool.value) && (
+            <>
+              <button class="chip" aria-pressed={tool.value === 'face'} onClick={() => (tool.value = tool.value === 'face' ? 'move' : 'face')} data-testid="lay-on-face">
+                {tool.value === 'face' ? 'Click the face to lay down' : 'Lay on face'}
+              </button>
+              {['x', 'y', 'z'].map((axis, k) => (
+                <button class="chip" onClick={() => quarter(k)} aria-label={`Rotate by 90 degrees about ${axis}`} data-testid={`turn-${axis}`}>
+                  {axis} 90°
+                </button>
+              ))}
+              <button
+                class="chip"
+                disabled={asDrawn}
+                data-testid="reset-placement"
+                onClick={() => {
+                  turn.value = [0, 0, 0];
+                  scale.value = 1;
+                  shift.value = [0, 0];
+                }}
+              >
+                Reset placement
+              </button>
+            </>
+          )}
+          <Brush materials={materials} lookUp={() => shown.current?.lookUp()} />
         </div>
       </div>
       {where && (
         <div class="layer-info">
           <b>{where.size.map((v) => v.toFixed(1)).join(' × ')} mm</b>
-          {!where.fits && <span class="problems-inline" role="alert">does not fit {p!.image_mm.map((v) => v.toFixed(1)).join(' × ')} × {p!.platform.height_mm.toFixed(0)} mm</span>}
+          {!where.fits && <span class="problems-inline" role="alert">does not fit {p!.image_mm.map((v) => v.toFixed(1)).join(' × ')} × {p!.platform.height_mm.toFixed(0)} mm{shift.value.some((v) => v !== 0) && ' there'}</span>}
         </div>
       )}
     </div>

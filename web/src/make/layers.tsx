@@ -15,7 +15,7 @@ const cache = new Map<string, Promise<ImageData>>();
 export function load(job: Job, l: number, material: number): Promise<ImageData | null> {
   const there = job.manifest.layers[l]?.images.some((i) => i.material === material);
   if (!there) return Promise.resolve(null);
-  const address = `/api/job/layers/${l}/${material}?job=${job.revision}`;
+  const address = job.at ? job.at(l, material) : `/api/job/layers/${l}/${material}?job=${job.revision}`;
   let entry = cache.get(address);
   if (!entry) {
     entry = read(address);
@@ -100,7 +100,8 @@ interface Place {
   zoom: number;
 }
 
-export function Layers({ job }: { job: Job }) {
+/// `of`: of a job that is still being made, how many layers there will be.
+export function Layers({ job, of }: { job: Job; of?: number }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const image = useRef<OffscreenCanvas | null>(null);
   const place = useRef<Place | null>(null);
@@ -108,6 +109,7 @@ export function Layers({ job }: { job: Job }) {
   const [loading, setLoading] = useState(true);
   const count = job.manifest.layers.length;
   const l = Math.min(layer.value, count - 1);
+  const info = job.manifest.layers[l];
 
   const draw = () => {
     const c = canvas.current;
@@ -171,7 +173,7 @@ export function Layers({ job }: { job: Job }) {
       gone = true;
       clearTimeout(timer);
     };
-  }, [l, difference.value, job.revision, goal.value]);
+  }, [l, info?.number, difference.value, job.revision, goal.value]);
 
   useEffect(() => {
     draw();
@@ -209,7 +211,7 @@ export function Layers({ job }: { job: Job }) {
     setPixel(`column ${x}, row ${y}: grey ${grey}`);
   };
   const step = (by: number) => (layer.value = Math.min(Math.max(l + by, 0), count - 1));
-  const info = job.manifest.layers[l];
+  const number = (info?.number ?? l) + 1;
   const area = info?.images.reduce((sum, i) => sum + i.area_mm2, 0) ?? 0;
   return (
     <div class="layers">
@@ -217,7 +219,7 @@ export function Layers({ job }: { job: Job }) {
         <canvas
           ref={canvas}
           tabIndex={0}
-          aria-label={`Layer ${l + 1} of ${count}. Arrow keys step through the layers.`}
+          aria-label={`Layer ${number} of ${of ?? count}. Arrow keys step through the layers.`}
           data-testid="layer-view"
           onWheel={wheel}
           onPointerMove={move}
@@ -247,7 +249,7 @@ export function Layers({ job }: { job: Job }) {
       </div>
       <div class="layer-info">
         <b>
-          layer {l + 1} of {count}
+          layer {number} of {of ?? count}
         </b>
         <span class="quiet">
           {((info?.z_um ?? 0) / 1000).toFixed(2)} mm · {area.toFixed(1)} mm² {pixel && `· ${pixel}`} {loading && '· loading'}

@@ -3,15 +3,17 @@ import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { counted } from '../counted';
 import { Icon } from '../icons';
-import { job, mayDrive, post, say } from '../store';
+import { job, mayDrive, post, say, slicing } from '../store';
 import { Bed } from './bed';
+import { Compare } from './compare';
 import { goal, Layers, layer } from './layers';
 import { SliceForm } from './order';
 import { PlanView } from './plan';
 import { Stack } from './stack';
+import { UnderWay } from './under_way';
 
 /// Before anything is sliced the robot stands on the platform.
-const tabs = ['bed', 'layers', 'stack', 'plan'] as const;
+const tabs = ['bed', 'layers', 'stack', 'plan', 'compare'] as const;
 const tab = signal<(typeof tabs)[number]>('layers');
 
 /// Arrow keys, Home and End lead from tab to tab.
@@ -82,13 +84,14 @@ export function Make() {
   const j = job.value;
   const [name, setName] = useState('');
   const stage = useRef<HTMLElement>(null);
-  const seen = useRef(j?.revision);
+  const known = useRef(j?.revision);
+  const seen = (slicing.value?.layers ?? 0) > 0; // there is something to look at before the job is whole
   useEffect(() => {
     // Where form and layers stand one below the other, a new job is led to.
-    if (j && j.revision !== seen.current && window.matchMedia('(max-width: 900px)').matches) stage.current?.scrollIntoView({ behavior: 'smooth' });
+    if (j && j.revision !== known.current && window.matchMedia('(max-width: 900px)').matches) stage.current?.scrollIntoView({ behavior: 'smooth' });
     // Whoever has sliced wants to see what came of it.
-    if (j && j.revision !== seen.current && tab.value === 'bed') tab.value = 'layers';
-    seen.current = j?.revision;
+    if (j && j.revision !== known.current && tab.value === 'bed') tab.value = 'layers';
+    known.current = j?.revision;
   }, [j?.revision]);
   return (
     <main class="make">
@@ -124,15 +127,19 @@ export function Make() {
             <div class="tabs floating" role="tablist" aria-label="Views of the job" onKeyDown={walk}>
               {tabs.map((t) => (
                 <button role="tab" tabIndex={tab.value === t ? 0 : -1} aria-selected={tab.value === t} onClick={() => (tab.value = t)} data-testid={`make-${t}`}>
-                  {{ bed: 'Placement', layers: 'Layers', stack: '3D', plan: 'Plan' }[t]}
+                  {{ bed: 'Placement', layers: 'Layers', stack: '3D', plan: 'Plan', compare: 'Compare' }[t]}
                 </button>
               ))}
             </div>
-            {tab.value === 'bed' && <Bed />}
-            {tab.value === 'layers' && <Layers key={j.revision} job={j} />}
+            {tab.value === 'bed' && !seen && <Bed />}
+            {tab.value === 'layers' && !seen && <Layers key={j.revision} job={j} />}
+            {(tab.value === 'bed' || tab.value === 'layers') && seen && <UnderWay />}
             {tab.value === 'stack' && <Stack key={j.revision} job={j} openLayers={() => (tab.value = 'layers')} />}
             {tab.value === 'plan' && <PlanView key={j.revision} job={j} />}
+            {tab.value === 'compare' && <Compare key={j.revision} job={j} />}
           </>
+        ) : seen ? (
+          <UnderWay />
         ) : (
           <Bed />
         )}

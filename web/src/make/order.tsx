@@ -2,7 +2,10 @@
 import { computed, signal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
+import { counted } from '../counted';
 import { Icon } from '../icons';
+import { NumberField } from '../number_field';
+import { paintTable, strokes, touches } from './paint';
 import { api, documentState, mayDrive, post, say, scene, sliceError, slicing } from '../store';
 
 export interface PrinterInfo {
@@ -36,10 +39,13 @@ export const copies = signal(1);
 /// Texts of the fields, by option; "" is not given.
 export const fields = signal<Record<string, string>>({ layer: '100' });
 export const turn = signal<[number, number, number]>([0, 0, 0]);
+export const scale = signal(1);
+/// Of the part's middle from the platform's, mm.
+export const shift = signal<[number, number]>([0, 0]);
 const plainPixels = signal(false);
 const bonds = signal<Bond[]>([]);
 const lights = signal<Record<string, Light>>({});
-const support = signal('');
+export const support = signal('');
 
 /// The option that the last error speaks of, and what it says of it.
 const wrong = computed(() => {
@@ -57,6 +63,14 @@ function quantity(option: string, text: string): string {
 
 const seconds = (text: string) => (/^[\d.]+$/.test(text.trim()) ? `${text.trim()} s` : text.trim());
 
+/// With what is painted by hand, which is more than an estimate asks for.
+const wholeOrder = (materials: string[]) => {
+  const order = orderJson(materials);
+  const table = support.value ? paintTable(touches()) : '';
+  if (table) order['support-paint'] = table;
+  return order;
+};
+
 export function orderJson(materials: string[]) {
   const order: Record<string, unknown> = { printer: printer.value, copies: copies.value };
   const needSupport = ['support-angle', 'support-spacing', 'support-tip', 'support-pillar', 'lift', 'raft'];
@@ -66,6 +80,8 @@ export function orderJson(materials: string[]) {
   }
   if (support.value) order.support = support.value;
   if (turn.value.some((t) => t !== 0)) order.turn = turn.value;
+  if (scale.value !== 1) order.scale = scale.value;
+  if (shift.value.some((v) => v !== 0)) order.at = shift.value;
   if (plainPixels.value) order['no-anti-alias'] = true;
   else delete order.threshold;
   const used = Object.entries(lights.value).filter(([m]) => materials.includes(m));
@@ -235,7 +251,7 @@ function Bonds({ materials }: { materials: string[] }) {
 
 function Supports({ materials }: { materials: string[] }) {
   return (
-    <Group name="Supports" options={['support', 'support-angle', 'support-spacing', 'support-tip', 'support-pillar', 'lift', 'raft']} given={support.value !== ''}>
+    <Group name="Supports" options={['support', 'support-angle', 'support-spacing', 'support-tip', 'support-pillar', 'support-paint', 'lift', 'raft']} given={support.value !== ''}>
       <label>
         Material
         <select value={support.value} data-testid="option-support" onChange={(e) => (support.value = e.currentTarget.value)}>
@@ -254,6 +270,10 @@ function Supports({ materials }: { materials: string[] }) {
           <Field option="support-pillar" label="Pillar diameter" hint="1" />
           <Field option="lift" label="Lift above platform" hint="0" />
           <Field option="raft" label="Raft thickness" hint="none" />
+          <p class="quiet small-print" data-testid="painted">
+            {strokes.value.length === 0 ? 'Nothing is painted by hand: Paint supports, below the part.' : `${counted(strokes.value.length, 'stroke')} painted by hand.`}
+          </p>
+          <Problem option="support-paint" />
         </>
       )}
     </Group>
@@ -262,7 +282,7 @@ function Supports({ materials }: { materials: string[] }) {
 
 function Placement() {
   return (
-    <Group name="Placement and copies" options={['turn', 'copies', 'spacing']} given={copies.value !== 1 || turn.value.some((t) => t !== 0)}>
+    <Group name="Placement and copies" options={['turn', 'scale', 'at', 'copies', 'spacing']} given={copies.value !== 1 || scale.value !== 1 || shift.value.some((v) => v !== 0) || turn.value.some((t) => t !== 0)}>
       <label>
         Copies
         <input type="number" min={1} max={1000} step={1} value={copies.value} data-testid="option-copies" onChange={(e) => (copies.value = Number(e.currentTarget.value))} />
@@ -285,6 +305,28 @@ function Placement() {
         </span>
       </label>
       <Problem option="turn" />
+      <label>
+        Scale
+        <NumberField value={Math.round(1e4 * scale.value) / 100} range={{ from: 1, to: 10000 }} unit="%" label="Scale" testId="option-scale" onValue={(v) => void (scale.value = v / 100)} />
+      </label>
+      <Problem option="scale" />
+      <label>
+        Position x, y
+        <span class="number three">
+          {[0, 1].map((k) => (
+            <input
+              type="number"
+              step={1}
+              aria-label={`Position ${'xy'[k]} from the middle of the platform`}
+              data-testid={`option-at-${'xy'[k]}`}
+              value={shift.value[k]}
+              onChange={(e) => (shift.value = shift.value.map((v, i) => (i === k ? e.currentTarget.valueAsNumber || 0 : v)) as [number, number])}
+            />
+          ))}
+          <span class="unit">mm</span>
+        </span>
+      </label>
+      <Problem option="at" />
     </Group>
   );
 }
@@ -337,7 +379,7 @@ export function SliceForm() {
   }, [printer.value]);
   const busy = slicing.value;
   const materials = scene.value?.head.materials.map((m) => m.name) ?? [];
-  const placed = ['layer', 'least-layer', 'least-feature', 'threshold', 'turn', 'copies', 'spacing', 'hollow', 'drain', 'overlap', 'interlock', 'resin', 'exposure', 'support', 'support-angle', 'support-spacing', 'support-tip', 'support-pillar', 'lift', 'raft'];
+  const placed = ['layer', 'least-layer', 'least-feature', 'threshold', 'turn', 'scale', 'at', 'copies', 'spacing', 'hollow', 'drain', 'overlap', 'interlock', 'resin', 'exposure', 'support', 'support-angle', 'support-spacing', 'support-tip', 'support-pillar', 'support-paint', 'lift', 'raft'];
   const elsewhere = sliceError.value && !(wrong.value && placed.includes(wrong.value.option));
   return (
     <form
@@ -346,7 +388,7 @@ export function SliceForm() {
         e.preventDefault();
         sliceError.value = '';
         // A refusal of the order itself has its field too.
-        void post('/api/job/slice', orderJson(materials), (text) => (sliceError.value = text));
+        void post('/api/job/slice', wholeOrder(materials), (text) => (sliceError.value = text));
       }}
     >
       <label>

@@ -38,8 +38,8 @@ export interface Placed {
 }
 
 /// The grid of copies in as few rows as the image's width allows, as `pliant slice --copies` lays them.
-export function placed(points: Float32Array, turn: Degrees, copies: number, spacing: number, [width, depth]: [number, number], height: number): Placed {
-  const m = rotationOf(turn);
+export function placed(points: Float32Array, turn: Degrees, copies: number, spacing: number, [width, depth]: [number, number], height: number, scale = 1, at: [number, number] = [0, 0]): Placed {
+  const m = rotationOf(turn).scale(new THREE.Vector3(scale, scale, scale));
   const box = new THREE.Box3();
   const p = new THREE.Vector3();
   for (let i = 0; i < points.length; i += 3) box.expandByPoint(p.set(points[i], points[i + 1], points[i + 2]).applyMatrix4(m));
@@ -51,5 +51,5 @@ export function placed(points: Float32Array, turn: Degrees, copies: number, spac
   for (let n = 0; n < copies; ++n) shifts.push([(n % columns) * (part.x + spacing), Math.floor(n / columns) * (part.y + spacing)]);
   const size: [number, number, number] = [columns * part.x + (columns - 1) * spacing, rows * part.y + (rows - 1) * spacing, part.z];
   const slack = 1e-3;
-  return { size, least: box.min, shifts, fits: size[0] <= width + slack && size[1] <= depth + slack && size[2] <= height + slack };
+  return { size, least: box.min, shifts, fits: size[0] + 2 * Math.abs(at[0]) <= width + slack && size[1] + 2 * Math.abs(at[1]) <= depth + slack && size[2] <= height + slack };
 }

@@ -17,6 +17,9 @@ import { stopOf } from './stopped';
 import { Notifications } from './tell';
 import { Webcam } from './webcam';
 import { TakeMachine } from './take';
+import { NextInQueue } from './queue';
+import { Wizard } from '../wizard/wizard';
+import { wizard } from '../wizard/state';
 
 const speeds = [1, 10, 60, 300];
 const ticks = signal<Record<string, boolean>>({});
@@ -97,10 +100,14 @@ function GoOn() {
   const [untouched, setUntouched] = useState(false);
   const [sure, setSure] = useState(false);
   const may = maySteer.value && !flags.value.working;
+  const twin = info.value!.twin;
   return (
     <section class="block interrupted" data-testid="interrupted">
       <h3>A print of this job was interrupted</h3>
-      <p>Its journal records which exposures are complete. The platform is raised, the axes are homed, and the print continues where it stopped.</p>
+      <p>
+        Its journal records which exposures are complete.
+        {twin ? ' The virtual printer stands where it stood then, with its part; the print continues there.' : ' The platform is raised, the axes are homed, and the print continues where it stopped.'}
+      </p>
       <div class="row left wrap">
         <button
           class="primary"
@@ -119,13 +126,13 @@ function GoOn() {
         </button>
         {sure ? (
           <>
-            <button class="danger" data-testid="put-away-sure" disabled={!may} onClick={() => void host('job', { command: 'cancel' })}>
+            <button class="danger" data-testid="put-away-sure" disabled={!may} onClick={() => void (twin ? post('/api/print/discard') : host('job', { command: 'cancel' }))}>
               Discard print
             </button>
             <button onClick={() => setSure(false)}>Keep it</button>
           </>
         ) : (
-          flags.value.ready ? (
+          flags.value.ready || twin ? (
             <button disabled={!may} data-testid="put-away" onClick={() => setSure(true)}>
               Discard
             </button>
@@ -484,7 +491,7 @@ function Machine3D() {
   );
 }
 
-function ByHand() {
+export function ByHand() {
   const m = info.value!.machine!;
   const n = now.value!;
   const ready = flags.value.ready && maySteer.value;
@@ -582,6 +589,12 @@ function Log() {
 
 export function Print() {
   const i = info.value;
+  if (wizard.value)
+    return (
+      <main class="page">
+        <Wizard />
+      </main>
+    );
   if (!i?.machine || !now.value)
     return (
       <main class="page">
@@ -633,6 +646,7 @@ export function Print() {
             </button>
           )}
         </section>
+        <NextInQueue />
         {!busy.value && !now.value.job.canResume && <ByHand />}
         <Log />
         <p class="quiet">

@@ -4,6 +4,8 @@ import { counted } from '../counted';
 import { Icon } from '../icons';
 import { api, job, mayDrive, post, say, section } from '../store';
 import { clock } from '../make/plan';
+import { Wizards } from '../wizard/list';
+import { Queue } from './queue';
 
 const speeds = [1, 10, 60, 300, 3000];
 
@@ -15,6 +17,8 @@ interface Ports {
 
 interface JournalLine {
   name: string;
+  file: string; // its job
+  virtual: boolean;
   state: 'complete' | 'cancelled' | 'interrupted' | 'not begun' | 'damaged';
   error?: string;
   job?: string;
@@ -48,6 +52,7 @@ function TakeTwin() {
           speed
         </label>
       </div>
+      {!job.value?.saved && <p class="quiet small-print">A job that is saved keeps a journal: then a virtual print, too, can be resumed after the studio has ended.</p>}
     </section>
   );
 }
@@ -179,7 +184,6 @@ function JournalView({ name, close }: { name: string; close: () => void }) {
       .catch((e: Error) => say(e.message));
   }, [name]);
   if (!journal) return null;
-  const file = name.replace(/\.journal$/, '');
   return (
     <div class="journal" data-testid="journal">
       <div class="row">
@@ -203,7 +207,7 @@ function JournalView({ name, close }: { name: string; close: () => void }) {
       </ol>
       <div class="row left wrap">
         {journal.state === 'interrupted' && (
-          <button class="primary" disabled={!mayDrive.value} data-testid="open-interrupted" onClick={() => post('/api/open', { name: file })}>
+          <button class="primary" disabled={!mayDrive.value} data-testid="open-interrupted" onClick={() => post('/api/open', { name: journal.file })}>
             Open its job to resume
           </button>
         )}
@@ -213,6 +217,12 @@ function JournalView({ name, close }: { name: string; close: () => void }) {
       </div>
     </div>
   );
+}
+
+/// When a print of which the journal was kept has ended, in the time of this place; "": the last one of its job.
+function endOf(name: string): string {
+  const m = /\.(\d{4}-\d{2}-\d{2})_(\d{2})(\d{2})(\d{2})\.journal$/.exec(name);
+  return m ? new Date(`${m[1]}T${m[2]}:${m[3]}:${m[4]}Z`).toLocaleString() : '';
 }
 
 function Journals() {
@@ -234,7 +244,11 @@ function Journals() {
           <li key={l.name}>
             <button class="item" aria-expanded={open === l.name} onClick={() => setOpen(open === l.name ? '' : l.name)}>
               <span class={`lamp ${colour[l.state]}`} />
-              <span>{l.name.replace(/\.zip\.journal$/, '')}</span>
+              <span>
+                {l.file.replace(/\.zip$/, '')}
+                {l.virtual && <span class="quiet"> · virtual printer</span>}
+                {endOf(l.name) && <span class="quiet"> · {endOf(l.name)}</span>}
+              </span>
               <span class="quiet">{l.error ?? `${l.state}${l.layer !== undefined && l.layer >= 0 ? `, last layer ${l.layer + 1}` : ''}`}</span>
             </button>
           </li>
@@ -266,6 +280,8 @@ export function TakeMachine() {
           There is no job yet. <a href="#make" onClick={() => (section.value = 'make')}>Slice the robot</a>, or open a job file.
         </p>
       )}
+      <Queue />
+      <Wizards />
       <Journals />
     </div>
   );

@@ -1,10 +1,12 @@
 // The robot file without typing: parameters, materials, and what is placed by pointing at the robot. Each change is made in
 // the text by the studio, with comments and order kept.
-import { effect, signal } from '@preact/signals';
+import { computed, effect, signal } from '@preact/signals';
 import { Icon } from '../icons';
 import { NumberField } from '../number_field';
 import { api, documentState, mayDrive, post, scene } from '../store';
 import { text, theirs } from './editor';
+import { PickGeometry } from './geometry';
+import { theView } from './the_view';
 import { parametersOf } from './toml_edit';
 
 type Point = [number, number, number];
@@ -21,15 +23,35 @@ interface LibraryEntry {
   title: string;
   hardness: string;
 }
-const library = signal<LibraryEntry[]>([]);
+export const library = signal<LibraryEntry[]>([]);
 
 const lists: Record<Kind, string> = { marker: 'marker', support: 'fixed', cable: 'cable', chamber: 'chamber' };
 const words: Record<Kind, string> = {
   marker: 'Click the robot where the marker is to be.',
   support: 'Click the robot where it is held: everything within the radius is.',
   cable: 'Click the guide points in order, then finish the cable.',
-  chamber: 'Click the robot: a round chamber is made under that place.',
+  chamber: '',
 };
+
+/// How a chamber is given: a ball or a box of air in a body, or a cavity that the bodies have already.
+type Shape = 'ball' | 'box' | 'cavity';
+const shape = signal<Shape>('ball');
+const shapes: [Shape, string, string][] = [
+  ['ball', 'Round', 'Click the robot: a round chamber is made under that place.'],
+  ['box', 'Box', 'Click the robot where its middle is to be, set its size, then make it.'],
+  ['cavity', 'Cavity', 'Click a wall of a closed cavity that is there already (cut the robot open by Section to see it): all the air in it becomes the chamber.'],
+];
+const boxSize = [10, 6, 6].map((v) => signal(v)); // mm
+const boxPlace = signal<{ at: Point; inward: Point } | null>(null);
+/// The box that is about to be made; null: none.
+export const draft = computed(() => {
+  const p = boxPlace.value;
+  if (!p || placing.value !== 'chamber' || shape.value !== 'box') return null;
+  const size = boxSize.map((s) => s.value) as Point;
+  // Its nearest wall is so deep below the surface.
+  const half = 0.5 * p.inward.reduce((sum, n, k) => sum + Math.abs(n) * size[k], 0);
+  return { centre: p.at.map((v, k) => v + (depth.value + half) * p.inward[k]) as Point, size };
+});
 
 /// A name that no actuator, marker or support has.
 export function freeName(kind: string, taken: string[]): string {
@@ -54,12 +76,30 @@ export function takePlace(rest: Point, inward: Point): boolean {
   if (kind === 'cable') placed.value = [...placed.value, below];
   if (kind === 'marker') void add(kind, { point: inFile(rest) });
   if (kind === 'support') void add(kind, { sphere: { center: inFile(rest), radius: +(radius.peek() / unit).toPrecision(6) } });
-  if (kind === 'chamber') {
+  if (kind === 'chamber' && shape.peek() === 'box') {
+    boxPlace.value = { at: rest, inward };
+    return true; // it is made when its size is as it should be
+  }
+  if (kind === 'chamber' && shape.peek() === 'cavity') {
+    // The body is behind the wall, and the air before it.
+    const size = Math.hypot(...[0, 1, 2].map((k) => theView.peek()?.extent[k] ?? 10));
+    void add(kind, { inside: inFile(rest.map((v, k) => v - 2e-3 * size * inward[k])), target: { pressure: '10 kPa' } });
+  }
+  if (kind === 'chamber' && shape.peek() === 'ball') {
     const middle = rest.map((v, k) => v + (depth.peek() + radius.peek()) * inward[k]);
     void add(kind, { geometry: { sphere: { center: inFile(middle), radius: +(radius.peek() / unit).toPrecision(6) } }, target: { pressure: '10 kPa' } });
   }
   if (kind !== 'cable') placing.value = null;
   return true;
+}
+
+function makeBox() {
+  const box = draft.peek();
+  if (!box) return;
+  const corners = [-0.5, 0.5].map((side) => inFile(box.centre.map((v, k) => v + side * box.size[k])));
+  void add('chamber', { geometry: { box: corners }, target: { pressure: '10 kPa' } });
+  boxPlace.value = null;
+  placing.value = null;
 }
 
 function finishCable() {
@@ -72,10 +112,11 @@ function Placing() {
   const kind = placing.value;
   const start = (k: Kind) => {
     placed.value = [];
+    boxPlace.value = null;
     placing.value = placing.value === k ? null : k;
   };
   const field = (label: string, s: typeof depth, id: string) => (
-    <label class="row">
+    <label class="row" key={id}>
       {label}
       <NumberField value={s.value} range={{ from: 0, to: 1000 }} unit="mm" testId={id} onValue={(v) => void (s.value = v)} />
     </label>
@@ -92,9 +133,29 @@ function Placing() {
       </div>
       {kind && (
         <div class="placing" role="status">
-          <p>{words[kind]}</p>
-          {(kind === 'cable' || kind === 'chamber') && field('Depth below the surface', depth, 'place-depth')}
-          {(kind === 'support' || kind === 'chamber') && field('Radius', radius, 'place-radius')}
+          {kind === 'chamber' && (
+            <div class="segments" role="group" aria-label="Shape of the chamber">
+              {shapes.map(([name, label]) => (
+                <button key={name} aria-pressed={shape.value === name} onClick={() => (shape.value = name)} data-testid={`chamber-${name}`}>
+                  {label}
+                </button>
+              ))}
+            </div>
+          )}
+          <p>{kind === 'chamber' ? shapes.find(([name]) => name === shape.value)![2] : words[kind]}</p>
+          {(kind === 'cable' || (kind === 'chamber' && shape.value !== 'cavity')) && field('Depth below the surface', depth, 'place-depth')}
+          {(kind === 'support' || (kind === 'chamber' && shape.value === 'ball')) && field('Radius', radius, 'place-radius')}
+          {kind === 'chamber' && shape.value === 'box' && (
+            <>
+              {['x', 'y', 'z'].map((axis, k) => field(`Size along ${axis}`, boxSize[k], `box-${axis}`))}
+              <div class="row left">
+                <button class="primary small" disabled={!boxPlace.value} onClick={makeBox} data-testid="make-box">
+                  Make the chamber
+                </button>
+                <span class="quiet">{boxPlace.value ? 'shown in the view' : 'no place yet'}</span>
+              </div>
+            </>
+          )}
           {kind === 'cable' && (
             <div class="row left">
               <button class="primary small" disabled={placed.value.length < 2} onClick={finishCable} data-testid="finish-cable">
@@ -209,6 +270,8 @@ export function Build() {
         <button class="small" disabled={!documentState.value.redo || !mayDrive.value} onClick={() => post('/api/robot/redo')} data-testid="build-redo">
           <Icon name="redo" /> Redo
         </button>
+        <span class="grow" />
+        <PickGeometry label="Add geometry…" testId="build-geometry" />
       </div>
       <Placing />
       <Parameters />

@@ -24,7 +24,7 @@ const marker = signal('');
 /// Where it is wanted, one place after the other; the view shows them.
 export const path = signal<Point[]>([]);
 const tolerance = signal(0.1);
-const inputs = signal<Input[]>([]);
+export const inputs = signal<Input[]>([]);
 
 let known = ''; // the robot that the inputs are of
 effect(() => {
@@ -120,7 +120,7 @@ function Path() {
   );
 }
 
-function Ranges() {
+export function Ranges() {
   return (
     <fieldset class="material" disabled={!mayDrive.value}>
       <legend>Actuators that may move</legend>

@@ -2,7 +2,7 @@
 import { effect, signal } from '@preact/signals';
 import { api, lines, onEvent, post, say } from '../store';
 
-export type Kind = 'goal' | 'identify';
+export type Kind = 'goal' | 'identify' | 'workspace' | 'sweep' | 'motion';
 
 export interface WaypointFound {
   index: number;

@@ -28,9 +28,10 @@ import {
 } from '../store';
 import type { Accuracy } from '../types';
 import { Actuators } from './actuators';
-import { Build, placed, takePlace } from './build';
+import { CanvasBeside, Compare, Compared, comparing, ranges } from './beside';
+import { Build, draft, placed, takePlace } from './build';
 import { Editor, Materials, pinNow, text } from './editor';
-import { film, filming } from './film';
+import { film, filming, gif, stopFilming } from './film';
 import { Goal, path } from './goal';
 import { Identify } from './identify';
 import { Plots } from './plots';
@@ -38,12 +39,16 @@ import { asProgram, insertKeys, recorded, recording, startRecording, stopRecordi
 import { clearTracks, frames, tracksCsv, tracksVersion } from './tracks';
 import { Legend } from './legend';
 import { linkText, restoreLink } from './link';
+import { MotionNotes, MotionTrack, RunMotion, motion } from './motion';
+import { saveBlob as save } from './save';
 import { Measure, presetKey, ScaleBar, SectionHandle, takePick, ViewCube, ViewMenu } from './stage_tools';
+import { Sweep } from './sweep';
 import { drawn, theView } from './the_view';
 import { RobotView } from './view';
 import * as look from './view_state';
+import { reach, Workspace } from './workspace';
 
-const panel = signal<'move' | 'build' | 'goal' | 'identify' | 'plots' | 'file'>('move');
+const panel = signal<'move' | 'build' | 'plots' | 'file' | 'goal' | 'workspace' | 'identify' | 'sweep'>('move');
 
 function options() {
   const fixed = look.fixedRange.value;
@@ -59,10 +64,16 @@ function options() {
     sectionFlipped: look.sectionFlipped.value,
     map: look.map.value,
     bands: look.bands.value,
-    range: fixed && fixed.field === look.field.value ? ([fixed.low, fixed.high] as [number, number]) : null,
+    range: fixed && fixed.field === look.field.value ? ([fixed.low, fixed.high] as [number, number]) : rangeOfBoth(),
     pinned: look.pinned.value?.positions ?? null,
     beside: look.beside.value,
   };
+}
+
+/// One colour is one value in both robots; null where there is one only.
+function rangeOfBoth(): [number, number] | null {
+  const [a, b] = ranges.value;
+  return comparing.value && a && b ? [Math.min(a[0], b[0]), Math.max(a[1], b[1])] : null;
 }
 
 function Canvas() {
@@ -91,6 +102,7 @@ function Canvas() {
         if (last) sendInput(last);
       });
     };
+    made.onData = (low, high) => comparing.peek() && (ranges.value = [[low, high], ranges.peek()[1]]);
     made.onRange = (low, high) => (look.fieldRange.value = [low, high]);
     made.onPick = (pick, rest, inward) => {
       if (look.measuring.peek()) return takePick(pick), true;
@@ -117,6 +129,8 @@ function Canvas() {
       }),
       effect(() => made.setOptions(options())),
       effect(() => made.setPicks(look.picks.value)),
+      effect(() => made.setDraft(draft.value)),
+      effect(() => made.setReach(panel.value === 'workspace' ? reach.value : null)),
       effect(() => made.setPath(panel.value === 'goal' ? path.value : panel.value === 'build' ? placed.value : [])),
       effect(() => {
         const shown = look.shownFrame.value ?? frame.value;
@@ -258,6 +272,9 @@ function Timeline() {
         <input type="range" data-testid="program" min={0} max={duration} step={duration / 1000} value={time} disabled={!mayDrive.value} style={{ '--at': `${(100 * time) / duration}%` }} class={following.value ? '' : 'idle'} onInput={(e) => follow(Number(e.currentTarget.value))} />
         <output>{duration === 1 ? `${Math.round(100 * time)} %` : `${time.toFixed(2)} s`}</output>
       </label>
+      {motion.value ? (
+        <MotionTrack />
+      ) : (
       <label class="track">
         <span>Replay</span>
         <input type="range" data-testid="replay" min={0} max={Math.max(frames.length - 1, 1)} step={1} value={shown} style={{ '--at': `${(100 * shown) / Math.max(frames.length - 1, 1)}%` }} onInput={(e) => {
@@ -266,6 +283,8 @@ function Timeline() {
         }} />
         <output>{look.shownFrame.value ? `${shown + 1} of ${frames.length}` : 'live'}</output>
       </label>
+      )}
+      <RunMotion />
       <button class="round" disabled={!mayDrive.value} aria-label="Back to rest" title="Back to rest" data-testid="rest" onClick={toRest}>
         <Icon name="rest" />
       </button>
@@ -282,16 +301,9 @@ function Timeline() {
           Insert {recorded.value.length} samples as program
         </button>
       )}
+      <MotionNotes />
     </div>
   );
-}
-
-function save(blob: Blob, name: string) {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(blob);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
 function Export() {
@@ -304,6 +316,7 @@ function Export() {
     ['Image', 'PNG', () => void theView.value?.png().then((b) => b && save(b, 'robot.png'))],
     ['Picture for print, 3840 pixels wide', 'PNG', () => void theView.value?.png(3840).then((b) => b && save(b, 'robot_print.png'))],
     ['Film of the states since rest', 'WebM', () => void film().then((b) => (b ? save(b, 'robot.webm') : say('There is nothing to film yet: move the robot first.')))],
+    ['The same for slides and chats, 640 pixels wide', 'GIF', () => void gif().then((b) => (b ? save(b, 'robot.gif') : say('There is no film: move the robot first.')))],
     ['Link to this state', 'copy', () => void navigator.clipboard.writeText(linkText()).then(() => say('The link is in the clipboard.'), () => say(linkText()))],
     ['Plot data', 'CSV', () => save(new Blob([tracksCsv()], { type: 'text/csv' }), 'plots.csv')],
     ['Force history', 'CSV', () => (location.href = '/api/export/steps.csv')],
@@ -313,9 +326,15 @@ function Export() {
   ];
   return (
     <div class="menu" ref={box}>
-      <button class="chip" aria-expanded={open} disabled={filming.value !== null} onClick={() => setOpen(!open)}>
-        <Icon name="download" /> {filming.value === null ? 'Export' : `Filming… ${Math.round(100 * filming.value)} %`}
-      </button>
+      {filming.value === null ? (
+        <button class="chip" aria-expanded={open} onClick={() => setOpen(!open)}>
+          <Icon name="download" /> Export
+        </button>
+      ) : (
+        <button class="chip" onClick={stopFilming} data-testid="stop-filming">
+          Filming, {Math.round(100 * filming.value)} %: cancel
+        </button>
+      )}
       {open && (
         <div class="popover right" onClick={() => setOpen(false)}>
           {items.map(([label, kind, go]) => (
@@ -440,6 +459,22 @@ function Readings() {
             </td>
           </tr>
         )}
+        {head.obstacles.map((o, k) => {
+          const force = shown.contacts?.[k];
+          if (!force || Math.hypot(...force) < 1e-9) return null;
+          return (
+            <tr key={`contact${k}`} data-testid={`contact-${o.name}`}>
+              <th>
+                {mark}
+                {o.object ? `force on ${o.name}` : `force of ${o.name}`}
+              </th>
+              {force.map((v) => (
+                <td>{v.toFixed(2)}</td>
+              ))}
+              <td class="unit">N</td>
+            </tr>
+          );
+        })}
         {pull && (
           <tr>
             <th>{mark}applied force</th>
@@ -529,20 +564,36 @@ export function Simulate() {
   const tabs: [typeof panel.value, string][] = [
     ['move', 'Move'],
     ['build', 'Build'],
-    ['goal', 'Goal'],
-    ['identify', 'Identify'],
     ['plots', 'Plots'],
     ['file', 'File'],
+    ['goal', 'Goal'],
+    ['workspace', 'Workspace'],
+    ['identify', 'Identify'],
+    ['sweep', 'Sweep'],
   ];
+  /// Arrow keys, Home and End walk through them.
+  const walk = (e: KeyboardEvent) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1, ArrowDown: 4, ArrowUp: -4 }[e.key];
+    const now = tabs.findIndex(([name]) => name === panel.value);
+    const to = e.key === 'Home' ? 0 : e.key === 'End' ? tabs.length - 1 : step === undefined ? -1 : (now + step + tabs.length) % tabs.length;
+    if (to < 0) return;
+    e.preventDefault();
+    panel.value = tabs[to][0];
+    (e.currentTarget as HTMLElement).querySelectorAll<HTMLElement>('[role=tab]')[to]?.focus();
+  };
   return (
     <main class="simulate">
       <h2 class="unseen">Simulate</h2>
       <section class="stage">
-        <Canvas />
+        <div class={comparing.value ? 'views two' : 'views'}>
+          <Canvas />
+          {comparing.value && <CanvasBeside options={options} />}
+        </div>
         <SectionHandle />
         <LookBar />
         <div class="stage-right">
           <Pin />
+          <Compare />
           <Export />
         </div>
         <Legend />
@@ -554,28 +605,33 @@ export function Simulate() {
       </section>
       <aside class="side">
         <div class="tabs">
-          <div class="tab-list" role="tablist">
+          <div class="tab-list four" role="tablist" aria-label="Panels" onKeyDown={walk}>
             {tabs.map(([name, label]) => (
-              <button role="tab" aria-selected={panel.value === name} onClick={() => (panel.value = name)} data-testid={`tab-${name}`}>
+              <button key={name} id={`tab-${name}`} role="tab" aria-selected={panel.value === name} aria-controls="panel" tabIndex={panel.value === name ? 0 : -1} onClick={() => (panel.value = name)} data-testid={`tab-${name}`}>
                 {label}
                 {name === 'file' && problems.value.length > 0 && <span class="badge">{problems.value.length}</span>}
               </button>
             ))}
           </div>
-          <span class="grow" />
-          <Accuracies />
+          <div class="row elements">
+            <span class="quiet">Elements</span>
+            <Accuracies />
+          </div>
         </div>
-        <div class="panel" key={panel.value}>
+        <div class="panel" key={panel.value} id="panel" role="tabpanel" aria-labelledby={`tab-${panel.value}`}>
           {panel.value === 'move' && (
             <>
               <Actuators />
               <Readings />
+              <Compared />
               <Plots />
             </>
           )}
           {panel.value === 'build' && <Build />}
           {panel.value === 'goal' && <Goal />}
+          {panel.value === 'workspace' && <Workspace />}
           {panel.value === 'identify' && <Identify />}
+          {panel.value === 'sweep' && <Sweep />}
           {panel.value === 'plots' && <Plots all />}
           {panel.value === 'file' && (
             <>

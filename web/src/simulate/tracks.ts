@@ -11,7 +11,7 @@ export interface Channel {
   key: string; // also the column of a table
   label: string;
   unit: string;
-  group: 'cable' | 'chamber' | 'marker' | 'support' | 'robot';
+  group: 'cable' | 'chamber' | 'marker' | 'support' | 'sensor' | 'robot';
   kind: string;
   read: (head: FrameHead) => number;
 }
@@ -45,6 +45,14 @@ export function channelsOf(head: SceneHead): Channel[] {
   });
   head.supports.forEach((name, k) =>
     list.push({ key: `${name}_force_N`, label: `${name}: reaction`, unit: 'N', group: 'support', kind: 'force_N', read: (h) => length(h.supports?.[k] ?? []) }),
+  );
+  head.sensors?.forEach((s, k) =>
+    s.readings.forEach((r, i) =>
+      list.push({ key: `${s.name}_${r.name}`, label: `${s.name}: ${r.name}`, unit: r.unit, group: 'sensor', kind: r.name, read: (h) => h.sensors?.[k]?.[i] ?? NaN }),
+    ),
+  );
+  head.obstacles.forEach((o, k) =>
+    list.push({ key: `${o.name}_contact_N`, label: `${o.name}: contact force`, unit: 'N', group: 'robot', kind: 'contact_N', read: (h) => length(h.contacts?.[k] ?? []) }),
   );
   list.push(
     { key: 'energy_mJ', label: 'energy', unit: 'mJ', group: 'robot', kind: 'energy_mJ', read: (h) => h.energy_mJ },

@@ -7,7 +7,7 @@ import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { turnAround } from '../orbit_keys';
 import type { Frame, Scene } from '../types';
 import { fieldColour } from './colormap';
-import { fitPoints } from './fit';
+import { fitPoints, niceBelow } from './fit';
 import { Ground, shadowLayer } from './ground';
 import { Tube } from './tube';
 import type { FieldName, Pick } from './view_state';
@@ -39,6 +39,26 @@ export interface Grab {
 const markerReach = 10; // pixels from its dot
 
 const cableColour = 0xcc1a24;
+const objectColour = 0xd9a441;
+const reachColour = 0x2e86ab;
+
+/// Of the lines on the ground: 1, 2 or 5 times a power of ten, some ten to the length of the robot.
+const gridCell = (size: number) => niceBelow(size / 8);
+
+/// So that an object that turns is seen to turn.
+function edgesOf(geometry: THREE.BufferGeometry) {
+  const lines = new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 24), new THREE.LineBasicMaterial({ color: 0x5c4410, transparent: true, opacity: 0.7 }));
+  lines.frustumCulled = false;
+  return lines;
+}
+
+/// A box of edges over everything, of size 1.
+function draftBox() {
+  const box = new THREE.LineSegments(new THREE.EdgesGeometry(new THREE.BoxGeometry(1, 1, 1)), new THREE.LineBasicMaterial({ color: 0x2f9bff, depthTest: false, transparent: true }));
+  box.visible = false;
+  box.renderOrder = 15;
+  return box;
+}
 
 /// Seen through, but each part by its own front alone: first its depth is drawn, then what is nearest. It loses against
 /// what lies in the same place, so that nothing flickers.
@@ -96,6 +116,8 @@ export class RobotView {
   private moved = true; // since the shadow was drawn
   private readonly sectionSheet = new THREE.Group();
   private readonly measure = new THREE.Group();
+  private readonly reach = new THREE.Group();
+  private readonly draft = draftBox();
   private picks: Pick[] = [];
   private markers: THREE.Mesh[] = [];
   private path: [number, number, number][] = [];
@@ -116,6 +138,10 @@ export class RobotView {
   /// `rest` is its place in the robot at rest, `inward` the unit normal there into the body.
   onPick: (pick: Pick, rest: [number, number, number], inward: [number, number, number]) => boolean = () => false;
   onRange: (low: number, high: number) => void = () => {};
+  /// Lowest and highest value of the field in this state, in the legend's unit, whatever range is shown.
+  onData: (low: number, high: number) => void = () => {};
+  /// The camera has been turned.
+  onTurned: () => void = () => {};
   onDraw: (project: (p: [number, number, number]) => [number, number], camera: THREE.PerspectiveCamera) => void = () => {};
 
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -125,9 +151,12 @@ export class RobotView {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
-    this.controls.addEventListener('change', () => this.invalidate());
+    this.controls.addEventListener('change', () => {
+      this.invalidate();
+      this.onTurned();
+    });
     this.key.position.set(0.6, -1, 1.6);
-    this.world.add(this.sky, this.key, this.root, this.ground.plane, this.measure, this.sectionSheet);
+    this.world.add(this.sky, this.key, this.root, this.ground.plane, this.measure, this.reach, this.draft, this.sectionSheet);
     this.buildSheet();
     this.arrow = new Line2(new LineGeometry(), new LineMaterial({ color: 0xf2b705, linewidth: 3, depthTest: false }));
     this.arrow.visible = false;
@@ -286,14 +315,83 @@ export class RobotView {
       geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(scene.f32(`obstacle_points_${o}`)), 3));
       geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(scene.u32(`obstacle_triangles_${o}`)), 1));
       geometry.computeVertexNormals();
+      const { open, object } = scene.head.obstacles[o];
+      if (open) return this.groundMesh(geometry);
       const mesh = new THREE.Mesh(
         geometry,
-        new THREE.MeshStandardMaterial({ color: 0xb3b8bf, roughness: 0.8, side: THREE.DoubleSide }),
+        new THREE.MeshStandardMaterial({ color: object ? objectColour : 0xb3b8bf, roughness: 0.8, side: THREE.DoubleSide }),
       );
-      if (!scene.head.obstacles[o].open) mesh.layers.enable(shadowLayer);
+      mesh.layers.enable(shadowLayer);
+      if (object) mesh.add(edgesOf(geometry));
       this.root.add(mesh);
       return mesh;
     });
+  }
+
+  /// A half-space: a sheet with a grid, which fades out towards its rim and lets what is behind it be seen.
+  private groundMesh(geometry: THREE.BufferGeometry) {
+    const sphere = (geometry.computeBoundingSphere(), geometry.boundingSphere!);
+    const material = new THREE.ShaderMaterial({
+      uniforms: { middle: { value: sphere.center }, reach: { value: sphere.radius }, cell: { value: gridCell(this.size) }, ink: { value: new THREE.Color(0x7d8794) } },
+      vertexShader: 'varying vec3 at; varying vec3 facing; void main() { at = position; facing = abs(normal); gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }',
+      fragmentShader: `uniform vec3 middle; uniform float reach; uniform float cell; uniform vec3 ink; varying vec3 at; varying vec3 facing;
+        float line(float x) { float d = abs(fract(x / cell - 0.5) - 0.5) * cell; return 1.0 - smoothstep(0.0, 1.4 * fwidth(x), d); }
+        void main() {
+          float fade = 1.0 - smoothstep(0.45, 1.0, length(at - middle) / reach);
+          float lines = facing.z > max(facing.x, facing.y) ? max(line(at.x), line(at.y)) : facing.x > facing.y ? max(line(at.y), line(at.z)) : max(line(at.x), line(at.z));
+          gl_FragColor = vec4(ink, fade * (0.16 + 0.4 * lines));
+        }`,
+      transparent: true,
+      depthWrite: false,
+      side: THREE.DoubleSide,
+    });
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.renderOrder = -0.5;
+    this.root.add(mesh);
+    return mesh;
+  }
+
+  /// Draws this state at once, for a picture of it.
+  show(frame: Frame) {
+    this.setFrame(frame);
+    this.draw();
+  }
+
+  /// Where a marker can get, mm: sheets as surfaces, all places as dots, or one line of them.
+  setReach(reach: { sheet_points: number[]; triangles: number[]; points: number[] } | null) {
+    for (const c of this.reach.children as THREE.Mesh[]) {
+      c.geometry.dispose();
+      (c.material as THREE.Material).dispose();
+    }
+    this.reach.clear();
+    if (reach) {
+      const places = new THREE.BufferGeometry();
+      places.setAttribute('position', new THREE.Float32BufferAttribute(reach.points, 3));
+      const dots = new THREE.Points(places, new THREE.PointsMaterial({ color: reachColour, size: 4, sizeAttenuation: false, transparent: true, opacity: 0.9 }));
+      const add = (o: THREE.Object3D) => {
+        o.frustumCulled = false;
+        o.renderOrder = 4;
+        this.reach.add(o);
+      };
+      add(dots);
+      if (reach.triangles.length) {
+        const sheets = new THREE.BufferGeometry();
+        sheets.setAttribute('position', new THREE.Float32BufferAttribute(reach.sheet_points, 3));
+        sheets.setIndex(reach.triangles);
+        add(new THREE.Mesh(sheets, new THREE.MeshBasicMaterial({ color: reachColour, transparent: true, opacity: 0.16, side: THREE.DoubleSide, depthWrite: false })));
+      } else add(new THREE.Line(places, new THREE.LineBasicMaterial({ color: reachColour })));
+    }
+    this.invalidate();
+  }
+
+  /// A box that is about to become a chamber, mm at rest; null: none.
+  setDraft(box: { centre: [number, number, number]; size: [number, number, number] } | null) {
+    this.draft.visible = box !== null;
+    if (box) {
+      this.draft.position.set(...box.centre);
+      this.draft.scale.set(...box.size);
+    }
+    this.invalidate();
   }
 
   setFrame(frame: Frame) {
@@ -393,6 +491,7 @@ export class RobotView {
       if (v > high) high = v;
     }
     if (!(high > low)) high = low + Math.max(1e-9, Math.abs(low) * 1e-6);
+    this.onData(low * scale, high * scale);
     if (range) [low, high] = [range[0] / scale, range[1] / scale];
     this.onRange(low * scale, high * scale);
     const colours = this.body.getAttribute('color') as THREE.BufferAttribute;
@@ -633,6 +732,7 @@ export class RobotView {
     this.camera.updateProjectionMatrix();
     this.controls.update();
     this.invalidate();
+    this.onTurned();
   }
 
   /// Where it is looked from and at, mm; to be restored.
@@ -644,6 +744,23 @@ export class RobotView {
     this.controls.target.set(six[3], six[4], six[5]);
     this.controls.update();
     this.invalidate();
+  }
+
+  /// From where another view looks.
+  lookLike(other: RobotView) {
+    this.camera.position.copy(other.camera.position);
+    this.controls.target.copy(other.controls.target);
+    this.camera.near = other.camera.near;
+    this.camera.far = other.camera.far;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.invalidate();
+  }
+
+  /// Lengths of the robot at rest along the axes, mm.
+  get extent(): [number, number, number] {
+    const rest = this.scene?.f32('rest') ?? new Float32Array();
+    return new THREE.Box3().setFromArray(rest as unknown as number[]).getSize(new THREE.Vector3()).toArray();
   }
 
   /// How many pixels a millimetre has where it is looked at.
@@ -780,11 +897,20 @@ export class RobotView {
     this.key.position.copy(this.camera.position).add(new THREE.Vector3(-0.4, -0.3, 0.9).multiplyScalar(this.size));
     this.drawShadow();
     this.renderer.render(this.world, this.camera);
+    this.onDraw(this.placer(), this.camera);
+  }
+
+  /// From mm to pixels of the canvas, from its top left corner.
+  private placer() {
     const box = this.canvas.getBoundingClientRect();
-    this.onDraw((p) => {
+    return (p: [number, number, number]): [number, number] => {
       const v = new THREE.Vector3(...p).project(this.camera);
       return [((v.x + 1) / 2) * box.width, ((1 - v.y) / 2) * box.height];
-    }, this.camera);
+    };
+  }
+  placeOnPage(p: [number, number, number]) {
+    this.camera.updateMatrixWorld();
+    return this.placer()(p);
   }
 
   private drawShadow() {

@@ -5,10 +5,10 @@
 
 #include "base/core/error.hpp"
 
-namespace pliant::app {
+namespace pliant::operate {
 
 /// Opens the port (which resets most boards), waits for the firmware, and returns its answers to M115, M503, M119 and
 /// M113. Takes some seconds. Errors: the port. A board that says nothing gives "".
 [[nodiscard]] Result<std::string> ask_board(const std::string& port, int baud_rate);
 
-}  // namespace pliant::app
+}  // namespace pliant::operate

@@ -1,0 +1,132 @@
+#include "presentation/studio/job_json.hpp"
+
+#include <charconv>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "presentation/studio/print_session.hpp"
+#include "printing/job/manifest.hpp"
+#include "printing/plan/plan.hpp"
+#include "printing/plan/timeline.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The number behind `words`, or -1.
+int number_behind(const std::string& text, const std::string& words) {
+    const std::size_t at = text.find(words);
+    if (at == std::string::npos) return -1;
+    int number = -1;
+    std::from_chars(text.data() + at + words.size(), text.data() + text.size(), number);
+    return number;
+}
+
+/// Where in the stack a remark of the slicer belongs, or -1.
+int layer_of(const std::string& remark) {
+    for (const char* words : {"in layer ", "is layer ", "in layers ", "from layer ", "layer "}) {
+        if (const int layer = number_behind(remark, words); layer >= 0) return layer;
+    }
+    return -1;
+}
+
+/// The same text with layers counted from 1, as the page counts them; the slicer's own count from 0.
+std::string from_one(const std::string& text) {
+    static const std::regex layers(R"(\b(layers? )(\d+)( to )?(\d+)?)");
+    const auto next = [](const std::string& digits) { return std::to_string(std::stol(digits) + 1); };
+    std::string out;
+    std::size_t at = 0;
+    for (std::sregex_iterator m(text.begin(), text.end(), layers); m != std::sregex_iterator(); ++m) {
+        const auto begin = static_cast<std::size_t>(m->position());
+        out += text.substr(at, begin - at) + (*m)[1].str() + next((*m)[2]) + (*m)[3].str();
+        if ((*m)[4].matched) out += (*m)[3].matched ? next((*m)[4]) : (*m)[4].str();
+        at = begin + static_cast<std::size_t>(m->length());
+    }
+    return out + text.substr(at);
+}
+
+/// What the slicer has found, with a place; then its remarks.
+Json issues_json(const job::Manifest& manifest) {
+    static const std::map<std::string, const char*> names = {{"island", "island, begins in mid-air"},
+                                                             {"trap", "trap, closed for good around resin"},
+                                                             {"cup", "cup, holds on to the vat until it opens"},
+                                                             {"thin", "thin, narrower than asked for"}};
+    Json issues = Json::array();
+    for (const job::Finding& f : manifest.findings) {
+        const auto name = names.find(f.kind);
+        const std::string size =
+            f.volume_mm3 > 0 ? fmt::format("{:.3g} mm³", f.volume_mm3) : fmt::format("{:.3g} mm²", f.area_mm2);
+        const std::string many = f.count > 1 ? fmt::format("{} times ", f.count) : "";
+        issues.push_back({{"text", fmt::format("{}{}: {}", many, name == names.end() ? f.kind : name->second, size)},
+                          {"severity", f.severity},
+                          {"layer", f.first_layer},
+                          {"row", f.row},
+                          {"column", f.column}});
+    }
+    for (const std::string& warning : manifest.warnings)
+        issues.push_back({{"text", from_one(warning)}, {"layer", layer_of(warning)}});
+    return issues;
+}
+
+Json swap_json(const plan::Plan& plan, const machine::Printer& printer) {
+    const plan::SwapTimeline swap = plan::longest_swap(plan, printer);
+    Json devices = Json::array(), stretches = Json::array();
+    for (const plan::Device device : swap.devices) devices.push_back(plan::device_name(device));
+    for (const plan::Stretch& s : swap.stretches)
+        stretches.push_back({{"device", plan::device_name(s.device)}, {"begin", s.begin_s}, {"end", s.end_s}});
+    return {{"from", swap.from_slot},
+            {"to", swap.to_slot},
+            {"seconds", swap.seconds},
+            {"devices", devices},
+            {"stretches", stretches}};
+}
+
+}  // namespace
+
+std::string job_json(const OpenJob& open, bool saved) {
+    const job::Manifest& manifest = open.archive.manifest();
+    const Result<plan::Plan> plan = plan::make_plan(manifest, open.printer);
+    const auto& p = open.printer;
+    Json json = {{"revision", open.revision},
+                 {"file", open.file.filename().string()},
+                 {"saved", saved},
+                 {"manifest", Json::parse(job::to_json(manifest))},
+                 {"colours", open.colours},
+                 {"issues", issues_json(manifest)},
+                 {"projector", Json::parse(projector_json(p.projector))},
+                 {"platform", {{"width_mm", p.platform.width_um / 1e3}, {"depth_mm", p.platform.depth_um / 1e3}}},
+                 {"printer", p.name}};
+    if (plan) {
+        json["plan"] = Json::parse(plan::plan_json(*plan));
+        json["swap"] = swap_json(*plan, p);
+    } else {
+        json["plan_error"] = plan.error().message;
+    }
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Response layer_image(OpenJob& open, const Request& request) {
+    const int layer = whole_number(request.parts.at("layer")), material = whole_number(request.parts.at("material"));
+    const auto& layers = open.archive.manifest().layers;
+    if (layer < 0 || layer >= static_cast<int>(layers.size())) return error_response(404, "there is no such layer");
+    for (const job::LayerImage& entry : layers[static_cast<std::size_t>(layer)].images) {
+        if (entry.material != material) continue;
+        const std::lock_guard lock(open.mutex);
+        Result<std::string> png = open.archive.file(entry.file);
+        if (!png) return error_response(png.error());
+        Response response{200, "image/png", std::move(*png)};
+        response.keep = true;
+        return response;
+    }
+    return error_response(404, "nothing of this material is in this layer");
+}
+
+int whole_number(std::string_view text) {
+    int value = -1;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return code == std::errc() && end == text.data() + text.size() ? value : -1;
+}
+
+}  // namespace pliant::studio

@@ -1,0 +1,163 @@
+// Setting a machine up: printer files of the folder, the board at a port, test patterns on the projector.
+#include <nlohmann/json.hpp>
+
+#include "base/core/files.hpp"
+#include "presentation/studio/examples.hpp"
+#include "presentation/studio/job_json.hpp"
+#include "presentation/studio/json_toml.hpp"
+#include "presentation/studio/printer_files.hpp"
+#include "presentation/studio/studio.hpp"
+#include "printing/host/projector_patterns.hpp"
+#include "printing/operate/board.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t most_changes = 256;
+
+Response done(const Status& status) {
+    return status ? json_response("{}") : error_response(status.error());
+}
+
+std::string text_at(const Json& json, const char* key) {
+    return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
+}
+
+double number_at(const Json& json, const char* key, double otherwise) {
+    return json.is_object() && json.contains(key) && json[key].is_number() ? json[key].get<double>() : otherwise;
+}
+
+std::string asked_name(const Request& request) {
+    const auto name = request.query.find("name");
+    return name == request.query.end() ? "tower" : name->second;
+}
+
+Response setup(Studio& studio, const Request& request) {
+    const std::string name = asked_name(request);
+    const auto file = read_printer(studio.folder(), name);
+    if (!file) return error_response(file.error());
+    return json_response(printer_setup_json(name, file->printer, find_file(example_printers(), name) != nullptr));
+}
+
+Response text(Studio& studio, const Request& request) {
+    auto file = read_printer(studio.folder(), asked_name(request));
+    if (!file) return error_response(file.error());
+    return {200, "text/plain; charset=utf-8", std::move(file->text)};
+}
+
+Response make(Studio& studio, const Request& request) {
+    const Json json = Json::parse(request.body, nullptr, false);
+    return done(new_printer(studio.folder(), text_at(json, "from"), text_at(json, "name")));
+}
+
+Response change(Studio& studio, const Request& request) {
+    const Json json = Json::parse(request.body, nullptr, false);
+    if (!json.is_object() || !json.contains("changes") || !json["changes"].is_array() || json["changes"].empty() ||
+        json["changes"].size() > most_changes)
+        return error_response(422, "changes: a list of 1 to 256 is needed, each with key and value");
+    PrinterChanges changes;
+    for (const Json& one : json["changes"]) {
+        if (text_at(one, "key").empty() || !one.contains("value"))
+            return error_response(422, "changes: key and value of each are needed");
+        changes.emplace_back(text_at(one, "key"), toml_text(one["value"]));
+    }
+    return done(change_printer(studio.folder(), text_at(json, "name"), changes));
+}
+
+/// What answers at a port. Nothing moves: only questions are asked. Not beside a machine that is connected.
+Response probe(Studio& studio, const Request& request) {
+    const Json json = Json::parse(request.body, nullptr, false);
+    const auto file = read_printer(studio.folder(), text_at(json, "name"));
+    if (!file) return error_response(file.error());
+    if (!studio.print().files().job.empty()) return error_response(409, "a machine is connected: disconnect it first");
+    const std::string device = text_at(json, "device");
+    if (Status known = check_device(device); !known) return error_response(known.error());
+    const Result<std::string> answers =
+        operate::ask_board(device, static_cast<int>(number_at(json, "baud_rate", file->printer.controller.baud_rate)));
+    if (!answers) return error_response(answers.error());
+    return json_response(board_json(*answers, file->printer));
+}
+
+Response show_pattern(Studio& studio, const Request& request) {
+    const Json json = Json::parse(request.body, nullptr, false);
+    const auto file = read_printer(studio.folder(), text_at(json, "name"));
+    if (!file) return error_response(file.error());
+    ProjectorSession::Order order{text_at(json, "projector"), text_at(json, "pattern"),
+                                  static_cast<int>(number_at(json, "square", 1)), number_at(json, "seconds", 0)};
+    if (!host::display_number(order.where)) {
+        const Result<std::filesystem::path> folder = studio.folder().resolve(order.where);
+        if (!folder) return error_response(422, "projector: " + folder.error().message);
+        std::error_code error;
+        std::filesystem::create_directories(*folder, error);
+        order.where = folder->string();
+    }
+    return done(studio.projector().show(order, file->printer.projector));
+}
+
+Response picture(Studio& studio, const Request& request) {
+    const auto file = read_printer(studio.folder(), asked_name(request));
+    if (!file) return error_response(file.error());
+    const auto square = request.query.find("square");
+    const int square_px = square == request.query.end() ? 1 : whole_number(square->second);
+    Result<std::string> png = pattern_picture(request.parts.at("pattern"), square_px, file->printer.projector);
+    if (!png) return error_response(404, png.error().message);
+    return {200, "image/png", std::move(*png)};
+}
+
+/// Distances that were measured on the pattern "border", as the size of a pixel.
+Response measured(Studio& studio, const Request& request) {
+    const Json json = Json::parse(request.body, nullptr, false);
+    const auto file = read_printer(studio.folder(), text_at(json, "name"));
+    if (!file) return error_response(file.error());
+    const machine::Projector& p = file->printer.projector;
+    const host::MeasuredSpan span = host::measured_span(p.width_px, p.height_px);
+    Json answer = {{"x_px", span.x_px},
+                   {"y_px", span.y_px},
+                   {"x_mm", span.x_px * p.pixel_um / 1e3},
+                   {"y_mm", span.y_px * p.pixel_um / 1e3},
+                   {"pixel_um_now", p.pixel_um}};
+    if (json.is_object() && json.contains("x_mm")) {
+        const auto size =
+            host::pixel_size(p.width_px, p.height_px, number_at(json, "x_mm", 0), number_at(json, "y_mm", 0));
+        if (!size) return error_response(size.error());
+        answer.update({{"pixel_um", size->pixel_um},
+                       {"x_um", size->x_um},
+                       {"y_um", size->y_um},
+                       {"off_percent", size->off_percent}});
+    }
+    return json_response(answer.dump());
+}
+
+}  // namespace
+
+void add_printer_routes(std::vector<Route>& routes) {
+    const std::string json = "application/json";
+    routes.push_back({"GET", "/api/printers", "the built-in printers, to begin with", json, false,
+                      [](Studio&, const Request&) { return json_response(built_in_printers_json()); }});
+    routes.push_back({"GET", "/api/printer/setup", "what a machine's file says: ?name=", json, false, setup});
+    routes.push_back({"GET", "/api/printer/text", "the printer file itself: ?name=", "text/plain", false, text});
+    routes.push_back({"POST", "/api/printer/new", "a printer file of the folder from another: {\"from\", \"name\"}",
+                      json, true, make, json});
+    routes.push_back({"POST", "/api/printer/set",
+                      "values of a printer file by their keys: {\"name\", \"changes\": [{\"key\", \"value\"}]}", json,
+                      true, change, json});
+    routes.push_back({"POST", "/api/printer/probe",
+                      "what the board at a port says of itself: {\"name\", \"device\", \"baud_rate\"}", json, true,
+                      probe, json});
+    routes.push_back({"GET", "/api/printer/pattern/{pattern}",
+                      "a test pattern as a picture: ?name=&square=", "image/png", false, picture});
+    routes.push_back({"POST", "/api/printer/pattern",
+                      "shows a test pattern: {\"name\", \"projector\", \"pattern\", \"square\", \"seconds\"}", json,
+                      true, show_pattern, json});
+    routes.push_back({"POST", "/api/printer/dark", "ends the test pattern", json, false, [](Studio& s, const Request&) {
+                          s.projector().dark();
+                          return json_response("{}");
+                      }});
+    routes.push_back({"POST", "/api/printer/measured",
+                      "the size of a pixel from distances on the pattern border: {\"name\", \"x_mm\", \"y_mm\"}", json,
+                      false, measured, json});
+}
+
+}  // namespace pliant::studio

@@ -1,0 +1,116 @@
+// Where the markers can get within the ranges of the actuators: drawn around the robot.
+import { computed, effect, signal } from '@preact/signals';
+import { NumberField } from '../number_field';
+import { mayDrive, scene } from '../store';
+import { inputs, Ranges } from './goal';
+import { saveBlob } from './save';
+import { begin, result, Search } from './search';
+
+interface Reach {
+  name: string;
+  sheet_points: number[];
+  triangles: number[];
+  points: number[];
+}
+interface WorkspaceFound {
+  summary: { samples: number; found: number; markers: Record<string, { low_mm: number[]; high_mm: number[] }> };
+  reach: Reach[];
+  csv: string;
+}
+
+const side = signal(7);
+const between = signal(20);
+const shown = signal<string | null>(null); // marker that is drawn; null: the first
+
+const found = computed(() => (result.value.kind === 'workspace' && result.value.revision === scene.value?.head.revision ? (result.value.found as WorkspaceFound) : null));
+/// What the view draws; null: nothing.
+export const reach = computed<Reach | null>(() => {
+  const list = found.value?.reach ?? [];
+  return list.find((r) => r.name === shown.value) ?? list[0] ?? null;
+});
+effect(() => {
+  if (found.value === null) shown.value = null;
+});
+
+/// As src/simulation/inverse/workspace.cpp plans it: sheets of two inputs with all others at an end, and what lies between.
+export function samplesOf(count: number, places: number, inBetween: number): number {
+  if (count === 1) return places;
+  const most = 5;
+  const sheets = count > most ? 0 : ((count * (count - 1)) / 2) * 2 ** (count - 2) * places * places;
+  return sheets + inBetween;
+}
+
+function Found() {
+  const f = found.value;
+  if (!f) return null;
+  return (
+    <div class="search" data-testid="workspace-found">
+      <p>
+        {f.summary.found} of {f.summary.samples} places have an equilibrium.
+      </p>
+      <table class="readings">
+        <thead>
+          <tr>
+            <th>Marker</th>
+            <th>x</th>
+            <th>y</th>
+            <th>z, mm</th>
+          </tr>
+        </thead>
+        <tbody>
+          {Object.entries(f.summary.markers).map(([name, box]) => (
+            <tr key={name} data-testid={`reach-${name}`}>
+              <th>
+                <label class="tick">
+                  <input type="radio" name="reach" checked={reach.value?.name === name} onChange={() => (shown.value = name)} /> {name}
+                </label>
+              </th>
+              {[0, 1, 2].map((k) => (
+                <td key={k}>
+                  {box.low_mm[k].toFixed(1)} to {box.high_mm[k].toFixed(1)}
+                </td>
+              ))}
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      <div class="row left">
+        <button class="small" onClick={() => saveBlob(new Blob([f.csv], { type: 'text/csv' }), 'workspace.csv')} data-testid="workspace-csv">
+          CSV
+        </button>
+      </div>
+    </div>
+  );
+}
+
+export function Workspace() {
+  const head = scene.value?.head;
+  if (!head) return null;
+  if (head.markers.length === 0) return <p class="quiet">A workspace is where markers can get. This robot has no marker: place one under Build.</p>;
+  if (inputs.value.length === 0) return <p class="quiet">This robot has no cable and no chamber that could bring a marker anywhere.</p>;
+  const used = inputs.value.filter((i) => i.used);
+  const count = samplesOf(used.length, side.value, between.value);
+  return (
+    <div class="search">
+      <p class="quiet">Finds the places that the markers can get to, and draws them around the robot.</p>
+      <Ranges />
+      <label class="row">
+        Places along each
+        <NumberField value={side.value} range={{ from: 2, to: 60 }} unit="" step={1} label="Places along each actuator's range" testId="workspace-side" onValue={(v) => void (side.value = Math.round(v))} />
+      </label>
+      <label class="row">
+        Places in between
+        <NumberField value={between.value} range={{ from: 0, to: 2000 }} unit="" step={1} label="Places spread between" testId="workspace-between" onValue={(v) => void (between.value = Math.round(v))} />
+      </label>
+      <p class="quiet" data-testid="workspace-count">{count === 1 ? '1 place' : `${count} places`} will be solved.</p>
+      <Search
+        kind="workspace"
+        label="Find the workspace"
+        ready={mayDrive.value && used.length > 0}
+        onBegin={() => begin('workspace', { inputs: used.map(({ name, low, high }) => ({ name, low, high })), side: side.value, between: between.value })}
+      />
+      <Found />
+    </div>
+  );
+}
+

@@ -1,0 +1,152 @@
+// Axes and swap: home, jog, limits, and one swap tried, on the virtual printer or the machine.
+import { useState } from 'preact/hooks';
+import { ByHand } from '../print/print';
+import { Safety } from '../print/safety';
+import { flags, host, info, known, maySteer, now } from '../print/state';
+import { mayDrive, post } from '../store';
+import { swapRobot } from './coupons';
+import { AxesTable, writeAxes } from './machine';
+import { PickFile, PickPort, PickProjector, usePorts } from './parts';
+import { device, file, projectorAt, setup } from './state';
+import { saveTest, sliceTest } from './test_job';
+import type { Step } from './wizard';
+
+const connected = () => Boolean(info.value?.machine && now.value);
+
+function Connect() {
+  const [ports, look] = usePorts();
+  const [why, setWhy] = useState('');
+  const [busy, setBusy] = useState(false);
+  const begin = async (real: boolean) => {
+    setBusy(true);
+    let wrong = await sliceTest(swapRobot(setup.value!), { 'any-vat': true });
+    if (!wrong && real) wrong = await saveTest('axes_test');
+    if (!wrong) {
+      const asked = real ? post('/api/print/port', { device: device.value, projector: projectorAt.value, speed: 1, clock: '' }, (t) => (wrong = t)) : post('/api/print/twin', { speed: 10 }, (t) => (wrong = t));
+      await asked;
+    }
+    setWhy(wrong);
+    setBusy(false);
+  };
+  if (connected())
+    return (
+      <>
+        <p data-testid="axes-connected">
+          <b>{info.value!.machine!.name}</b> is connected: {info.value!.twin ? 'the virtual printer' : info.value!.device}.
+        </p>
+        <button disabled={!mayDrive.value} onClick={() => post('/api/print/leave')}>
+          Disconnect
+        </button>
+      </>
+    );
+  return (
+    <>
+      <p>Try it on the virtual printer first: it obeys the same G-code by the same printer file, and nothing can break. Connecting moves nothing.</p>
+      <PickFile />
+      <div class="row left wrap">
+        <button class="primary" disabled={!mayDrive.value || busy || !setup.value} onClick={() => void begin(false)} data-testid="axes-twin">
+          {busy ? 'making a small job…' : 'Connect the virtual printer'}
+        </button>
+      </div>
+      <details class="wizard-more">
+        <summary>Connect the machine</summary>
+        <PickPort ports={ports} look={look} />
+        <PickProjector ports={ports} />
+        <button disabled={!mayDrive.value || busy || !setup.value || !device.value} onClick={() => void begin(true)} data-testid="axes-port">
+          Connect
+        </button>
+      </details>
+      {why && (
+        <p class="problems" role="alert">
+          {why}
+        </p>
+      )}
+    </>
+  );
+}
+
+const homed = () => connected() && Object.values(now.value!.machine.axes).every((a) => a.homed);
+
+function State() {
+  if (!connected()) return <p class="problems">No machine is connected.</p>;
+  return (
+    <p role="status" data-testid="axes-state">
+      {!known.value ? 'What the machine does is not known: the connection to the studio is lost.' : `${now.value!.state.text}${now.value!.state.message ? `: ${now.value!.state.message}` : ''}`}
+    </p>
+  );
+}
+
+function Home() {
+  return (
+    <>
+      <p>The axes go to their limit switches, one after the other, the platform first. Take everything out of their way; keep the emergency stop at hand.</p>
+      <State />
+      <button class="primary" disabled={!connected() || !maySteer.value || !flags.value.ready} onClick={() => host('printer/axes', { command: 'home' })} data-testid="axes-home">
+        Home all axes
+      </button>
+      {connected() && <Safety />}
+    </>
+  );
+}
+
+function Jog() {
+  return (
+    <>
+      <p>Jog each axis to its ends and see that it moves the right way, as far as it says. What is different is put right here, and written when you go on; it counts from the next connection on.</p>
+      <State />
+      {connected() && <ByHand />}
+      <AxesTable />
+    </>
+  );
+}
+
+function Swap() {
+  const [tried, setTried] = useState(0);
+  const vats = info.value?.machine?.vats ?? [];
+  const slot = connected() ? now.value!.machine.slot : 0;
+  const ready = connected() && maySteer.value && flags.value.ready;
+  const fetch = (to: number) => void host('printer/vat', { slot: to }).then((done) => done && setTried((n) => n + 1));
+  return (
+    <>
+      <p>A vat is fetched, then another one in its place, then it is put away: one whole swap. Watch the hooks.</p>
+      <State />
+      <p data-testid="axes-slot">
+        {slot === 0 ? 'No vat is in use.' : <>The vat of slot <b>{slot}</b> is in use.</>}
+      </p>
+      <div class="row left wrap">
+        {vats.slice(0, 2).map((v) => (
+          <button disabled={!ready || slot === v.slot} onClick={() => fetch(v.slot)} data-testid={`fetch-${v.slot}`}>
+            Fetch vat {v.slot}
+          </button>
+        ))}
+        <button disabled={!ready || slot === 0} onClick={() => fetch(0)} data-testid="fetch-0">
+          Put it away
+        </button>
+      </div>
+      {tried > 0 && <p class="quiet">{tried} of 3 moves asked for.</p>}
+    </>
+  );
+}
+
+function Ready() {
+  return (
+    <>
+      <p>
+        Axes and swap of <b>{file.value}</b> are tried.
+      </p>
+      {connected() && (
+        <button disabled={!mayDrive.value} onClick={() => post('/api/print/leave')} data-testid="axes-leave">
+          Disconnect
+        </button>
+      )}
+    </>
+  );
+}
+
+export const axesSteps = (): Step[] => [
+  { name: 'Connect', body: () => <Connect />, lacks: () => (connected() ? '' : 'connect a machine') },
+  { name: 'Home', body: () => <Home />, lacks: () => (homed() ? '' : 'the axes are not homed') },
+  { name: 'Jog and limits', body: () => <Jog />, leave: writeAxes },
+  { name: 'Swap', body: () => <Swap /> },
+  { name: 'Ready', body: () => <Ready /> },
+];

@@ -1,0 +1,103 @@
+// First print: from the robot to the part, with what comes next always named.
+import { signal } from '@preact/signals';
+import { counted } from '../counted';
+import { printer, printerInfo } from '../make/order';
+import { clock } from '../make/plan';
+import { busy, info, now } from '../print/state';
+import { job, scene, section, type Section } from '../store';
+import { PickFile } from './parts';
+import { file, setup, waiting, wizard } from './state';
+import type { Step } from './wizard';
+
+/// The job that was at hand when slicing was asked for.
+const before = signal(0);
+
+function go(to: Section) {
+  section.value = to;
+  location.hash = to;
+}
+
+/// To the print itself, which is where the wizard is: it makes room and waits at the foot.
+function toPrint() {
+  waiting.value = 'first';
+  wizard.value = null;
+  go('print');
+}
+
+export const firstSteps = (): Step[] => {
+  const i = info.value;
+  const connected = Boolean(i?.machine && now.value);
+  const printed = connected && now.value!.progress.finished && !busy.value;
+  return [
+    {
+      name: 'Machine',
+      body: () => (
+        <>
+          <p>Which machine will print? Without one of your own, take a built-in one: it prints on the virtual printer.</p>
+          <PickFile builtIn />
+          {setup.value && (
+            <p class="quiet small-print">
+              {setup.value.title}: {counted(setup.value.vats.length, 'vat')}, {setup.value.platform.width_mm.toFixed(0)} × {setup.value.platform.depth_mm.toFixed(0)} × {setup.value.platform.height_mm.toFixed(0)} mm
+            </p>
+          )}
+        </>
+      ),
+      lacks: () => (setup.value ? '' : 'choose a machine'),
+      leave: () => {
+        printer.value = file.value;
+        before.value = job.value?.revision ?? 0;
+        return Promise.resolve(true);
+      },
+    },
+    {
+      name: 'Place and slice',
+      body: () => (
+        <>
+          <p>
+            <b>{scene.value?.head.robot ?? 'The robot'}</b> stands on the platform of {printerInfo.value?.name ?? file.value}. Lay it on a flat face, see that it fits, and slice it.
+          </p>
+          <button class="primary" onClick={() => go('make')} data-testid="first-prepare">
+            To Prepare
+          </button>
+          {job.value && (
+            <p class="quiet" data-testid="first-job">
+              Job at hand: {job.value.manifest.name}, {counted(job.value.manifest.layers.length, 'layer')}
+              {job.value.plan && `, ${clock(job.value.plan.seconds.total)}`}, {job.value.issues.length === 0 ? 'no issues found' : counted(job.value.issues.length, 'issue')}.
+            </p>
+          )}
+        </>
+      ),
+      lacks: () => (job.value ? '' : 'slice the robot'),
+    },
+    {
+      name: 'Print',
+      body: () => (
+        <>
+          <p>
+            Connect the virtual printer and print there once: it takes a minute, and its verdict tells whether the part cures as drawn. Then connect the machine, go through the list of what only you can see, and start.
+          </p>
+          <button class="primary" onClick={toPrint} data-testid="first-print">
+            To the print
+          </button>
+          {connected && (
+            <p class="quiet" role="status">
+              {i!.machine!.name}: {now.value!.state.text}
+            </p>
+          )}
+        </>
+      ),
+      lacks: () => (printed ? '' : 'the print is not complete'),
+    },
+    {
+      name: 'Take it off',
+      body: () => (
+        <ol class="reasons" data-testid="first-done">
+          <li>Disconnect, or leave the platform up: the part hangs clear of the vat.</li>
+          <li>Loosen the part with a flat blade; wash it in the solution, and let it dry.</li>
+          <li>Cure it once more in light, as its resin asks for.</li>
+          <li>Keep the report: it tells what was printed, and how.</li>
+        </ol>
+      ),
+    },
+  ];
+};

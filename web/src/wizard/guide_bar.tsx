@@ -1,0 +1,35 @@
+// A wizard that was left for another section is a line at the bottom of it, with the way back.
+import { Icon } from '../icons';
+import { section } from '../store';
+import { step, titles, waiting, wizard } from './state';
+
+export function GuideBar() {
+  const name = wizard.value && section.value !== 'print' ? wizard.value : !wizard.value ? waiting.value : null;
+  if (!name) return null;
+  const back = () => {
+    wizard.value = name;
+    waiting.value = null;
+    section.value = 'print';
+    location.hash = 'print';
+  };
+  return (
+    <div class="guide-bar" role="region" aria-label="Wizard that waits" data-testid="guide-bar">
+      <span>
+        <b>{titles[name]}</b> <span class="quiet">step {step.value + 1}</span>
+      </span>
+      <button class="primary small" onClick={back} data-testid="guide-back">
+        Go on with it
+      </button>
+      <button
+        class="bare"
+        aria-label={`Leave ${titles[name]}`}
+        onClick={() => {
+          wizard.value = null;
+          waiting.value = null;
+        }}
+      >
+        <Icon name="close" />
+      </button>
+    </div>
+  );
+}

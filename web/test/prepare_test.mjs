@@ -1,0 +1,159 @@
+// Prepare: supports painted by hand, the part moved and scaled, two jobs compared, layers seen while they are made.
+import assert from 'node:assert/strict';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, startBrowser, startStudio, unzipped } from './studio.mjs';
+
+/// A table: a top of 30 x 20 mm on a column in its middle.
+const table = `name = "table"
+length_unit = "mm"
+[material.soft]
+youngs_modulus = "1 MPa"
+resin = "semi-flex"
+[[body]]
+name = "table"
+material = "soft"
+geometry = { union = [{ box = [[12, 7, 0], [18, 13, 10]] }, { box = [[0, 0, 10], [30, 20, 13]] }] }
+[mesh]
+size = "6 mm"
+[[fixed]]
+name = "foot"
+box = [[12, 7, 0], [18, 13, 0]]
+`;
+
+let browser;
+let studio;
+before(async () => {
+  studio = await startStudio();
+  writeFileSync(join(studio.folder, 'table.toml'), table);
+  browser = await startBrowser();
+});
+after(async () => {
+  await browser?.close();
+  await studio?.stop();
+});
+
+const post = (page, path, body) =>
+  page.evaluate(
+    async ([p, b]) => {
+      const answer = await fetch(p, { method: 'POST', headers: { 'X-Pliant-Page': window.pliant.page, 'Content-Type': 'application/json' }, body: JSON.stringify(b) });
+      return [answer.status, await answer.text()];
+    },
+    [path, body],
+  );
+
+async function withTable(t) {
+  const opened = await openPage(browser, `${studio.address}#make`, t, { viewport: { width: 1280, height: 800 } });
+  await post(opened.page, '/api/open', { name: 'table.toml' });
+  await opened.page.waitForFunction(() => document.querySelector('[data-testid=open] .title').textContent === 'table', undefined, { timeout: 90_000 });
+  return opened;
+}
+const revision = (page) => page.evaluate(() => window.pliant.job.value?.revision ?? 0);
+async function slice(page) {
+  const before = await revision(page);
+  await page.getByTestId('slice').click();
+  await page.waitForFunction((b) => (window.pliant.job.value?.revision ?? 0) > b && !window.pliant.slicing?.value, before, { timeout: 120_000 });
+}
+const jobFile = (page) => page.evaluate(async () => Array.from(new Uint8Array(await (await fetch('/api/job/file')).arrayBuffer()))).then((b) => Buffer.from(b));
+
+test('supports are painted on the part, blocked and rubbed out, and the job keeps them', async (t) => {
+  const { page, wrong } = await withTable(t);
+  await page.getByTestId('option-layer').fill('500');
+  await page.getByTestId('paint').click();
+  assert.equal(await page.getByTestId('bed').getAttribute('data-tool'), 'enforce');
+  // The view looks up from below now; a stroke along the middle of the picture meets the part.
+  await page.getByTestId('brush-block').click();
+  await page.getByTestId('brush-radius').fill('10');
+  const box = await page.getByTestId('bed-view').boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x - 60, y - 30);
+  await page.mouse.down();
+  await page.mouse.move(x + 60, y - 30, { steps: 8 });
+  await page.mouse.up();
+  assert.equal(await page.getByTestId('brush-undo').isEnabled(), true, 'a stroke was painted');
+  // By the keyboard too: what the middle of the view shows.
+  await page.getByTestId('bed-view').focus();
+  await page.keyboard.press('Enter');
+  const saved = page.waitForEvent('download');
+  await page.getByTestId('brush-save').click();
+  const csv = readFileSync(await (await saved).path(), 'utf8');
+  assert.match(csv, /^wish,x \(mm\),y \(mm\),z \(mm\),nx,ny,nz,radius \(mm\)\nblock,/);
+  await page.getByTestId('brush-done').click();
+  await slice(page);
+  const bytes = await jobFile(page);
+  assert.equal(unzipped(bytes, 'supports.csv'), csv, 'the job keeps what was painted');
+  assert.equal(JSON.parse(unzipped(bytes, 'settings.json')).supports.support_paint, 'supports.csv');
+  const blocked = await page.evaluate(() => window.pliant.job.value.manifest.materials.reduce((sum, m) => sum + m.model_volume_mm3, 0));
+  // Without the paint there are more supports.
+  await page.getByTestId('make-bed').click();
+  await page.getByTestId('paint').click();
+  await page.getByTestId('brush-clear').click();
+  await page.getByTestId('brush-done').click();
+  await slice(page);
+  const free = await page.evaluate(() => window.pliant.job.value.manifest.materials.reduce((sum, m) => sum + m.model_volume_mm3, 0));
+  assert.ok(free > blocked + 1, `${free} mm³ of part and supports, ${blocked} where they are blocked`);
+  assert.throws(() => unzipped(Buffer.alloc(0), 'supports.csv'));
+  // And the two are compared: this job, and the one before.
+  await page.getByTestId('make-compare').click();
+  const rows = page.locator('.compare-table tbody tr');
+  await rows.first().waitFor();
+  assert.match(await page.locator('.compare-table').innerText(), /part volume/);
+  assert.match(await rows.filter({ hasText: 'resin semi-flex' }).innerText(), /\+\d/);
+  assert.match(await rows.filter({ hasText: 'layers' }).innerText(), /same/);
+  await page.getByTestId('compare-slider').fill('5');
+  await page.waitForFunction(() => /only here [\d.]*[1-9]/.test(document.querySelector('[data-testid=compare-layer]').textContent), undefined, { timeout: 60_000 });
+  assert.deepEqual(wrong, []);
+});
+
+test('the part is moved, scaled and copied on the platform, and the slicer does the same', async (t) => {
+  const { page, wrong } = await withTable(t);
+  await page.getByTestId('option-layer').fill('500');
+  await page.getByTestId('group-turn').locator('summary').click();
+  await page.getByTestId('option-scale').fill('150');
+  await page.keyboard.press('Enter');
+  await page.getByTestId('option-at-x').fill('30');
+  await page.keyboard.press('Enter');
+  await page.waitForFunction(() => /45\.0 × 30\.0 × 19\.5 mm/.test(document.querySelector('.layer-info').textContent));
+  assert.equal(await page.getByTestId('bed').getAttribute('data-fits'), 'true');
+  // Dragged: the number follows.
+  const box = await page.getByTestId('bed-view').boundingBox();
+  await page.mouse.move(box.x + box.width / 2 + 90, box.y + box.height / 2);
+  const at = () => page.evaluate(() => [...document.querySelectorAll('[data-testid^=option-at-]')].map((i) => Number(i.value)));
+  const start = await at();
+  for (let dx = 40; dx <= 160 && JSON.stringify(await at()) === JSON.stringify(start); dx += 20) {
+    await page.mouse.move(box.x + box.width / 2 + dx, box.y + box.height / 2);
+    await page.mouse.down();
+    await page.mouse.move(box.x + box.width / 2 + dx + 30, box.y + box.height / 2 + 10, { steps: 4 });
+    await page.mouse.up();
+  }
+  assert.notDeepEqual(await at(), start, 'dragging the part moves it');
+  await page.getByTestId('option-at-x').fill('30');
+  await page.keyboard.press('Enter');
+  await page.getByTestId('option-at-y').fill('-5');
+  await page.keyboard.press('Enter');
+  await slice(page);
+  const settings = JSON.parse(unzipped(await jobFile(page), 'settings.json'));
+  assert.equal(settings.scale, 1.5);
+  assert.deepEqual(settings.at_mm, [30, -5]);
+  // Outside of the platform the page says so before it is sliced.
+  await page.getByTestId('make-bed').click();
+  await page.getByTestId('option-at-x').fill('400');
+  await page.keyboard.press('Enter');
+  await page.waitForFunction(() => document.querySelector('[data-testid=bed]').dataset.fits === 'false');
+  await page.getByTestId('reset-placement').click();
+  await page.waitForFunction(() => document.querySelector('[data-testid=bed]').dataset.fits === 'true');
+  assert.deepEqual(wrong, []);
+});
+
+test('the first layers of a large job are seen while it is being sliced', async (t) => {
+  const { page, wrong } = await withTable(t);
+  await page.getByTestId('option-layer').fill('10');
+  await page.getByTestId('slice').click();
+  await page.waitForSelector('[data-testid=under-way] canvas', { timeout: 120_000 });
+  assert.ok(await page.getByTestId('cancel-slice').isVisible(), 'it is still being sliced');
+  assert.match(await page.getByTestId('under-way').innerText(), /of 1300 layers/);
+  await page.getByTestId('cancel-slice').click();
+  await page.getByTestId('slice').waitFor({ timeout: 60_000 });
+  assert.deepEqual(wrong, []);
+});

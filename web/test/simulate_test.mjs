@@ -1,0 +1,382 @@
+// Building and understanding a robot on the page: geometry that is dropped, chambers, the gallery, sweeps, workspaces,
+// motions, a second robot beside, films.
+import assert from 'node:assert/strict';
+import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { openPage, readRobot, settled, startBrowser, startStudio } from './studio.mjs';
+import { boxStl } from './shapes.mjs';
+
+const example = (name) => new URL(`../../examples/${name}`, import.meta.url).pathname;
+const long = { timeout: 120_000 };
+let folder;
+let studio;
+let browser;
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), 'pliant_simulate_'));
+  copyFileSync(example('tutorial/finger.toml'), join(folder, 'finger.toml'));
+  writeFileSync(join(folder, 'block.toml'), block('1 MPa'));
+  studio = await startStudio(['block.toml'], folder);
+  browser = await startBrowser();
+});
+after(async () => {
+  await browser?.close();
+  assert.equal(await studio?.stop(), 0);
+  rmSync(folder, { recursive: true, force: true });
+});
+
+/// A robot that is solved in a moment, with a cavity of its own.
+function block(modulus) {
+  return `name = "block"
+length_unit = "mm"
+
+[parameters]
+length = 40   # along x
+
+[material.soft]
+youngs_modulus = "${modulus}"
+poisson_ratio = 0.45
+
+[[body]]
+name = "block"
+material = "soft"
+geometry = { subtract = [{ box = [[0, 0, 0], ["= length", 12, 12]] }, { box = [[8, 4, 4], [20, 8, 8]] }] }
+
+[mesh]
+size = "6 mm"
+order = 1
+
+[[fixed]]
+name = "clamp"
+box = [[0, 0, 0], [0, 12, 12]]
+
+[[cable]]
+name = "flexor"
+points = [[0, 6, 11], [20, 6, 11], [40, 6, 11]]
+target = { shortening = "1 mm" }
+
+[[marker]]
+name = "tip"
+point = ["= length", 6, 6]
+`;
+}
+
+const revision = (page) => page.evaluate(() => window.pliant.scene.value?.head.revision ?? 0);
+/// Does it, and waits until the robot has been built anew and is at equilibrium.
+async function rebuilt(page, act) {
+  const last = await revision(page);
+  await act();
+  await page.waitForFunction((r) => window.pliant.scene.value?.head.revision > r, last, long);
+  await settled(page);
+}
+const file = (name, text) => ({ name, mimeType: 'application/octet-stream', buffer: Buffer.from(text) });
+
+/// Agrees that unsaved changes are lost, where the page asks.
+async function discard(page) {
+  const asked = page.getByTestId('discard');
+  await page.waitForFunction(() => document.querySelector('[data-testid=discard]') || !document.querySelector('[data-testid=geometry]'));
+  if (await asked.isVisible()) await asked.click();
+}
+
+test('an STL that is dropped onto the page becomes a robot, and a cable is pulled through it', async (t) => {
+  const own = await startStudio(['block.toml'], folder);
+  t.after(() => own.stop());
+  const { page, wrong } = await openPage(browser, own.address, t);
+  await settled(page);
+  // As a browser drops it: a file, wherever the pointer is.
+  await page.evaluate((text) => {
+    const data = new DataTransfer();
+    data.items.add(new File([text], 'my finger.stl'));
+    for (const type of ['dragover', 'drop']) document.body.dispatchEvent(new DragEvent(type, { dataTransfer: data, bubbles: true, cancelable: true }));
+  }, boxStl([60, 12, 10]));
+  await page.getByTestId('geometry-new').waitFor(long);
+  assert.match(await page.getByTestId('geometry-size').textContent(), /^60 × 12 × 10 mm$/);
+  await page.getByTestId('geometry-unit').selectOption('cm');
+  assert.match(await page.getByTestId('geometry-size').textContent(), /^600 × 120 × 100 mm$/);
+  await page.getByTestId('geometry-unit').selectOption('mm');
+  assert.equal(await page.getByTestId('geometry-side').inputValue(), '-x', 'held at the end of its longest side');
+  await rebuilt(page, () => page.getByTestId('geometry-new').click());
+  assert.ok(existsSync(join(folder, 'my finger.stl')), 'it is in the project folder');
+  const text = await readRobot(page);
+  assert.match(text, /geometry = "my finger.stl"/);
+  // The cable: three places along the top.
+  await page.getByTestId('tab-build').click();
+  await page.getByTestId('view').focus();
+  await page.keyboard.press('5');
+  await page.getByTestId('place-cable').click();
+  const at = async (x) => {
+    const [left, top] = await page.evaluate((p) => window.pliant.project(p), [x, 6, 10]);
+    const box = await page.getByTestId('view').boundingBox();
+    return [box.x + left, box.y + top];
+  };
+  for (const [k, x] of [4, 30, 56].entries()) {
+    await page.mouse.click(...(await at(x)));
+    await page.waitForFunction((n) => document.querySelector('.placing')?.textContent.includes(`${n} points`), k + 1);
+  }
+  await rebuilt(page, () => page.getByTestId('finish-cable').click());
+  await page.getByTestId('tab-move').click();
+  const number = page.getByTestId('number-cable 1');
+  await number.fill('0.9');
+  await number.press('Enter');
+  await page.waitForFunction(() => Math.abs(window.pliant.frame.value.head.cables[0].ratio - 0.9) < 1e-6 && window.pliant.frame.value.head.arrived, undefined, long);
+  assert.ok((await page.evaluate(() => window.pliant.frame.value.head.cables[0].tension_N)) > 0.01);
+  // All of it is undone, cable first.
+  await page.getByTestId('tab-build').click();
+  await rebuilt(page, () => page.getByTestId('build-undo').click());
+  assert.equal(await readRobot(page), text);
+  assert.deepEqual(wrong, []);
+});
+
+test('files that no reader takes, that are there already, or that have a strange name are told in one line', async (t) => {
+  const own = await startStudio(['block.toml'], folder);
+  t.after(() => own.stop());
+  const { page, wrong } = await openPage(browser, own.address, t);
+  await settled(page);
+  await page.getByTestId('tab-build').click();
+  const pick = page.getByTestId('build-geometry');
+  const refused = page.getByTestId('geometry-refused');
+  for (const [name, content, why] of [
+    ['broken.stl', boxStl([1, 1, 1]).slice(0, 200), /^broken\.stl:/],
+    ['noise.step', 'nothing', /^noise\.step:/],
+    ['.hidden.stl', boxStl([1, 1, 1]), /a plain name/],
+    ['notes.txt', 'hello', /is no geometry that Pliant reads/],
+  ]) {
+    await pick.setInputFiles(file(name, content));
+    await refused.waitFor(long);
+    assert.match(await refused.textContent(), why);
+    assert.ok(!(await refused.textContent()).includes('\n'));
+    await page.keyboard.press('Escape');
+    await page.getByTestId('geometry').waitFor({ state: 'detached' });
+    assert.ok(!existsSync(join(folder, name)), name);
+  }
+  await pick.setInputFiles(file('part.stl', boxStl([10, 10, 10])));
+  await page.getByTestId('geometry-new').waitFor(long);
+  await page.keyboard.press('Escape');
+  await pick.setInputFiles(file('part.stl', boxStl([12, 10, 10])));
+  await page.getByTestId('geometry-keep').click(long);
+  assert.equal(readFileSync(join(folder, 'part.stl'), 'utf8'), boxStl([10, 10, 10]), 'nothing is written over unasked');
+  await pick.setInputFiles(file('part.stl', boxStl([12, 10, 10])));
+  await page.getByTestId('geometry-replace').click(long);
+  await page.getByTestId('geometry-new').waitFor(long);
+  assert.equal(readFileSync(join(folder, 'part.stl'), 'utf8'), boxStl([12, 10, 10]));
+  // Into the robot that is there: another body, in its unit.
+  await page.getByTestId('geometry-unit').selectOption('cm');
+  const before = await readRobot(page);
+  await page.getByTestId('geometry-add').click();
+  await page.waitForFunction((b) => window.pliant.robotText.value !== b, before);
+  assert.match(await readRobot(page), /\[\[body\]\]\nname = "part"\nmaterial = "dragon-skin-30"\ngeometry = "part.stl"\nplace = \{ scale = 10 \}/);
+  assert.deepEqual(wrong.filter((w) => !/422|409/.test(w)), []);
+});
+
+test('chambers: a box that is drawn, and a cavity that is pointed at, and both are undone', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  const before = await readRobot(page);
+  await page.getByTestId('tab-build').click();
+  await page.getByTestId('view').focus();
+  await page.keyboard.press('5');
+  const click = async (p) => {
+    const [left, top] = await page.evaluate((q) => window.pliant.project(q), p);
+    const box = await page.getByTestId('view').boundingBox();
+    await page.mouse.click(box.x + left, box.y + top);
+  };
+  await page.getByTestId('place-chamber').click();
+  await page.getByTestId('chamber-box').click();
+  await page.getByTestId('box-x').fill('8');
+  for (const axis of ['y', 'z']) await page.getByTestId(`box-${axis}`).fill('4');
+  await page.getByTestId('box-z').press('Enter');
+  await click([32, 6, 12]);
+  await page.waitForFunction(() => !document.querySelector('[data-testid=make-box]').disabled);
+  await rebuilt(page, () => page.getByTestId('make-box').click());
+  const corners = /\[\[chamber\]\]\nname = "chamber 1"\ngeometry = \{ box = \[\[([^\]]+)\], \[([^\]]+)\]\] \}/.exec(await readRobot(page));
+  const [low, high] = [corners[1], corners[2]].map((s) => s.split(',').map(Number));
+  assert.ok(Math.abs(high[0] - low[0] - 8) < 1e-6 && Math.abs(high[2] - 10) < 0.05 && Math.abs((low[0] + high[0]) / 2 - 32) < 2, `${low} to ${high}`);
+  assert.ok((await page.evaluate(() => window.pliant.scene.value.head.actuators.some((a) => a.name === 'chamber 1'))));
+  // The cavity, through the section that cuts it open.
+  await page.getByRole('button', { name: 'Section' }).click();
+  await page.locator('.popover .segments button', { hasText: 'z' }).click();
+  await page.keyboard.press('Escape');
+  await page.getByRole('button', { name: 'Section' }).click();
+  await page.getByTestId('place-chamber').click();
+  await page.getByTestId('chamber-cavity').click();
+  await rebuilt(page, () => click([14, 6, 4]));
+  assert.match(await readRobot(page), /name = "chamber 2"\ninside = \[/);
+  for (let k = 0; k < 2; ++k) await rebuilt(page, () => page.getByTestId('build-undo').click());
+  assert.equal(await readRobot(page), before);
+  assert.deepEqual(wrong, []);
+});
+
+test('the gallery shows what can be opened as pictures that the program has drawn', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.getByTestId('open').click();
+  await page.waitForFunction(
+    () => {
+      const images = [...document.querySelectorAll('.open-list .thumb img')];
+      return images.length >= 8 && images.every((i) => i.complete && i.naturalWidth === 240);
+    },
+    undefined,
+    long,
+  );
+  assert.ok(await page.locator('.open-list .item', { hasText: 'finger.toml' }).isVisible());
+  await page.keyboard.press('Escape');
+  assert.deepEqual(wrong, []);
+});
+
+/// Of the page's choice of results.
+const choose = (page, key) => page.getByTestId('sweep-result').selectOption(key);
+
+test('a sweep of one number gives a curve, of two a map; its values are used, and it can be given up', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.getByTestId('tab-sweep').click();
+  assert.ok(await page.getByTestId('find-sweep').isDisabled());
+  await page.getByTestId('sweep-0-key').selectOption('material.soft.youngs_modulus');
+  for (const [id, value] of [['from', '1'], ['to', '2'], ['count', '3']]) {
+    await page.getByTestId(`sweep-0-${id}`).fill(value);
+    await page.getByTestId(`sweep-0-${id}`).press('Enter');
+  }
+  await page.getByTestId('find-sweep').click();
+  await page.getByTestId('sweep-found').waitFor(long);
+  await choose(page, 'flexor_tension_N');
+  assert.equal(await page.locator('.response-dot').count(), 3);
+  await page.locator('details summary', { hasText: 'Table' }).click();
+  const cell = async (k) => Number(await page.locator('.sweep-table tbody tr').nth(k).locator('td').nth(1).textContent());
+  const [soft, stiff] = [await cell(0), await cell(2)];
+  assert.ok(Math.abs(stiff / soft - 2) < 0.01, `${soft} N and ${stiff} N`);
+  const [csv] = await Promise.all([page.waitForEvent('download'), page.getByTestId('sweep-csv').click()]);
+  assert.match(readFileSync(await csv.path(), 'utf8'), /^material\.soft\.youngs_modulus_MPa,flexor_tension_N,/);
+  const before = await readRobot(page);
+  await page.getByTestId('sweep-run-2').click();
+  await rebuilt(page, () => page.getByTestId('sweep-use').click());
+  assert.match(await readRobot(page), /youngs_modulus = "2 MPa"/);
+  // A second number: a map, a field for every combination.
+  await page.getByTestId('sweep-second').click();
+  await page.getByTestId('sweep-1-key').selectOption('cable.flexor.target.shortening');
+  await page.getByTestId('sweep-1-count').fill('2');
+  await page.getByTestId('sweep-1-count').press('Enter');
+  await page.getByTestId('find-sweep').click();
+  await page.waitForFunction(() => document.querySelectorAll('.heat').length === 6, undefined, long);
+  await page.getByTestId('sweep-overlay').click();
+  await page.getByTestId('tab-plots').click();
+  await page.getByTestId('run-sweep 1').waitFor();
+  // One that takes long is cancelled, and leaves what was found before.
+  await page.getByTestId('tab-sweep').click();
+  await page.getByTestId('sweep-0-count').fill('60');
+  await page.getByTestId('sweep-0-count').press('Enter');
+  await page.getByTestId('find-sweep').click();
+  await page.getByTestId('cancel-sweep').click();
+  await page.getByTestId('find-sweep').waitFor(long);
+  assert.equal(await page.locator('.heat').count(), 6);
+  await page.getByTestId('tab-build').click();
+  await rebuilt(page, () => page.getByTestId('build-undo').click());
+  assert.equal(await readRobot(page), before);
+  assert.deepEqual(wrong, []);
+});
+
+test('a workspace is found within ranges, and drawn', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.getByTestId('tab-workspace').click();
+  await page.getByTestId('workspace-side').fill('4');
+  await page.getByTestId('workspace-side').press('Enter');
+  assert.match(await page.getByTestId('workspace-count').textContent(), /^4 places will be solved/);
+  await page.getByTestId('find-workspace').click();
+  await page.getByTestId('workspace-found').waitFor(long);
+  assert.match(await page.getByTestId('workspace-found').textContent(), /[34] of 4 places have an equilibrium/);
+  assert.match(await page.getByTestId('reach-tip').textContent(), /\d to 40\.0/);
+  const [csv] = await Promise.all([page.waitForEvent('download'), page.getByTestId('workspace-csv').click()]);
+  assert.match(readFileSync(await csv.path(), 'utf8'), /tip_x_mm/);
+  assert.deepEqual(wrong, []);
+});
+
+test('the whole program is run beside, and played, paused and scrubbed', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.getByTestId('motion-run').click();
+  await page.getByTestId('motion-play').waitFor(long);
+  await page.waitForFunction(() => document.querySelector('[data-testid=motion-time]').textContent === '100 %', undefined, long);
+  const shortening = () => page.evaluate(() => 1 - window.pliant.shown().head.cables[0].ratio);
+  assert.ok((await shortening()) > 0.02);
+  const slider = page.getByTestId('motion-at');
+  await slider.focus();
+  await slider.press('Home');
+  await page.waitForFunction(() => window.pliant.shown().head.time === 0);
+  assert.ok(Math.abs(await shortening()) < 1e-9);
+  assert.equal(await page.getByTestId('motion-play').getAttribute('aria-label'), 'Play the motion');
+  await page.getByTestId('motion-leave').click();
+  await page.getByTestId('replay').waitFor();
+  assert.deepEqual(wrong, []);
+});
+
+test('two robots stand side by side, and the same hand moves both', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.getByTestId('rest').click();
+  await page.getByTestId('compare').click();
+  await page.locator('.compare-list .item', { hasText: 'This robot, as it is now' }).click();
+  await page.waitForSelector('[data-testid=beside][data-state=arrived]', long);
+  await page.getByTestId('tab-file').click();
+  await page.getByTestId('modulus-soft').fill('2');
+  await rebuilt(page, () => page.getByTestId('modulus-soft').press('Enter'));
+  await page.getByTestId('tab-move').click();
+  await page.getByTestId('number-flexor').fill('0.8');
+  await page.getByTestId('number-flexor').press('Enter');
+  // Twice as stiff takes twice the tension for the same shortening.
+  await page.waitForFunction(
+    () => {
+      const cells = [...document.querySelectorAll('[data-testid=compared-flexor_tension_N] td')].map((c) => Number(c.textContent.replace('≈', '')));
+      return cells[1] > 0 && Math.abs(cells[0] / cells[1] - 2) < 0.02;
+    },
+    undefined,
+    long,
+  );
+  const widths = await page.evaluate(() => [...document.querySelectorAll('.views canvas')].map((c) => c.clientWidth));
+  assert.ok(widths.length === 2 && Math.abs(widths[0] - widths[1]) < 3, `${widths}`);
+  await page.getByTestId('compare-leave').click();
+  await page.getByTestId('beside').waitFor({ state: 'detached' });
+  await page.getByTestId('tab-build').click();
+  await rebuilt(page, () => page.getByTestId('build-undo').click());
+  assert.deepEqual(wrong, []);
+});
+
+test('a film is taken home as GIF', async (t) => {
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  for (const value of ['0.3', '0.6', '0.9']) {
+    const at = await page.evaluate(() => window.pliant.frame.value.head.tag);
+    await page.getByTestId('number-flexor').fill(value);
+    await page.getByTestId('number-flexor').press('Enter');
+    await page.waitForFunction((t) => window.pliant.frame.value.head.tag > t && window.pliant.frame.value.head.arrived, at, long);
+  }
+  const [download] = await Promise.all([
+    page.waitForEvent('download', long),
+    (async () => {
+      await page.getByRole('button', { name: 'Export' }).click();
+      await page.locator('.popover .item', { hasText: 'GIF' }).click();
+    })(),
+  ]);
+  const bytes = readFileSync(await download.path());
+  assert.equal(bytes.toString('latin1', 0, 6), 'GIF89a');
+  assert.equal(bytes.readUInt16LE(6), 640);
+  // The browser can show it, and it moves.
+  const seen = await page.evaluate(async (data) => {
+    const decoder = 'ImageDecoder' in window ? new window.ImageDecoder({ type: 'image/gif', data: Uint8Array.from(atob(data), (c) => c.charCodeAt(0)) }) : null;
+    if (!decoder) return null;
+    await decoder.completed;
+    const count = decoder.tracks.selectedTrack.frameCount;
+    const pixels = async (k) => {
+      const { image } = await decoder.decode({ frameIndex: k });
+      const c = new OffscreenCanvas(image.displayWidth, image.displayHeight).getContext('2d');
+      c.drawImage(image, 0, 0);
+      return c.getImageData(0, 0, image.displayWidth, image.displayHeight).data;
+    };
+    const [a, b] = [await pixels(0), await pixels(count - 1)];
+    let differ = 0;
+    for (let i = 0; i < a.length; i += 4) if (Math.abs(a[i] - b[i]) > 30) ++differ;
+    return { count, differ };
+  }, bytes.toString('base64'));
+  if (seen) assert.ok(seen.count >= 3 && seen.differ > 100, JSON.stringify(seen));
+  assert.deepEqual(wrong, []);
+});
