@@ -47,13 +47,13 @@ Description cable_bar(int order) {
 namespace {
 
 /// Regions: solid and air.
-mesh::TetMesh air_bar_mesh() {
+mesh::TetMesh air_bar_mesh(int order) {
     mesh::TetMesh whole = reference::kuhn_box({0.06, 0.012, 0.012}, 36, 6, 6, [](Vec3 c) {
         const bool inside = c.x > 0.01 && c.x < 0.05 && c.y > 0.004 && c.y < 0.008 && c.z > 0.002 && c.z < 0.006;
         return inside ? 1 : 0;
     });
     whole.region_names = {"solid", "air"};
-    return whole;
+    return order == 2 ? mesh::to_quadratic(whole) : whole;
 }
 
 void add_clamp_and_tip(Description& d) {
@@ -63,8 +63,8 @@ void add_clamp_and_tip(Description& d) {
 
 }  // namespace
 
-Description air_bar() {
-    const mesh::TetMesh whole = air_bar_mesh();
+Description air_bar(int order) {
+    const mesh::TetMesh whole = air_bar_mesh(order);
     mesh::Extract solid = mesh::extract_regions(whole, {true, false});
     Description d;
     d.chambers.push_back({"air", wall_of_faces(whole, mesh::region_faces(whole, 1), solid.node), {}});
@@ -104,7 +104,7 @@ Description thesis_gap_bar() {
 
 Description thesis_air_bar() {
     Description d;
-    d.mesh = air_bar_mesh();
+    d.mesh = air_bar_mesh(1);
     std::vector<int> same(d.mesh.points.size());
     std::iota(same.begin(), same.end(), 0);
     d.chambers.push_back({"air", wall_of_faces(d.mesh, mesh::region_faces(d.mesh, 1), same), {}});

@@ -16,7 +16,7 @@ namespace pliant::bench {
 
 /// A block of 60 x 12 x 12 mm, 1 MPa, nu 0.45, clamped at one end, with a closed chamber of 40 x 4 x 4 mm near its
 /// lower side, inflated to 1.5 of its volume: 7,200 linear tets.
-[[nodiscard]] sim::Description air_bar();
+[[nodiscard]] sim::Description air_bar(int order = 1);
 
 /// The thesis' models at the size that it names: a bar of 100 x 20 x 15 mm of its two materials (T3.4 with equal
 /// weights, R_omega 1 and 7.08) with five notches that are meshed as gap elements (T3.5), and a cable that pulls it to

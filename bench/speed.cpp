@@ -113,6 +113,8 @@ void frames() {
         "chamber", [] { return bench::air_bar(); }, 1e-4);
     row(
         "cable, 1 % each, quadratic", [] { return bench::cable_bar(2); }, 1e-4);
+    row(
+        "chamber, quadratic", [] { return bench::air_bar(2); }, 1e-4);
 }
 
 double processor_s() {

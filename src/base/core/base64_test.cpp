@@ -22,6 +22,14 @@ TEST_CASE("base64 is read back, piece after piece, and wrong signs are noticed")
     CHECK(pliant::base64_decoded(base64(all), 256) == all);
     CHECK(pliant::base64_decoded("Zg==\n Zm9v", 4) == "ffoo");
     CHECK(pliant::base64_decoded("Zm9vYmFy", 2) == "fo");
+    // Long enough for groups at once, with line ends at any place and padding in the middle.
+    std::string lines;
+    for (const char c : base64(all + all)) lines += lines.size() % 7 == 6 ? std::string("\n") + c : std::string(1, c);
+    CHECK(pliant::base64_decoded(lines, 512) == all + all);
+    CHECK(pliant::base64_decoded(base64(all) + base64(all), 512) == all + all);
+    CHECK(pliant::base64_decoded(base64(all + all), 300) == (all + all).substr(0, 300));
+    for (std::size_t at = 0; at < 40; ++at)
+        CHECK_FALSE(pliant::base64_decoded(base64(all).replace(at, 1, "*"), 256));
     CHECK_FALSE(pliant::base64_decoded("Zm9v", 4));
     CHECK_FALSE(pliant::base64_decoded("Zm<9v", 3));
     CHECK_FALSE(pliant::base64_decoded("Zm9v", std::size_t{1} << 60));

@@ -65,14 +65,14 @@ void BlockRows::set(std::span<const double> values) {
     });
 }
 
-void BlockRows::multiply(const double* x, double* y) const {
+void BlockRows::multiply(const double* x, double* y, int columns) const {
     parallel_for(diagonal_.size(), grain,
-                 [&](std::size_t begin, std::size_t end) { multiply_rows(blocks(), begin, end, x, y); });
+                 [&](std::size_t begin, std::size_t end) { multiply_rows(blocks(), begin, end, columns, x, y); });
 }
 
-void BlockRows::multiply(const float* x, float* y) const {
+void BlockRows::multiply(const float* x, float* y, int columns) const {
     parallel_for(diagonal_.size(), grain,
-                 [&](std::size_t begin, std::size_t end) { multiply_rows(blocks(), begin, end, x, y); });
+                 [&](std::size_t begin, std::size_t end) { multiply_rows(blocks(), begin, end, columns, x, y); });
 }
 
 }  // namespace pliant::linalg

@@ -29,9 +29,10 @@ public:
                Eigen::Map<const Eigen::Matrix3f>(rest_.data() + at).cast<double>();
     }
     [[nodiscard]] Eigen::Matrix3d diagonal(int row) const { return block(diagonal_[row]); }
-    /// y (3 rows) <- A x. On all cores; the same bits on any number.
-    void multiply(const double* x, double* y) const;
-    void multiply(const float* x, float* y) const;
+    /// y (3 rows, columns) <- A x, of one column or of two side by side (multiply_rows). On all cores; the same bits on
+    /// any number.
+    void multiply(const double* x, double* y, int columns = 1) const;
+    void multiply(const float* x, float* y, int columns = 1) const;
 
     std::vector<int> start;   ///< (rows + 1)
     std::vector<int> column;  ///< (entries)

@@ -79,5 +79,20 @@ TEST_CASE("blocks and products are those of the matrix: 14 digits in double prec
         Eigen::VectorXf short_y(3 * nodes);
         rows.multiply(short_x.data(), short_y.data());
         CHECK(((short_y.cast<double>() - product).array().abs() <= 1e-6 * sizes.array()).all());
+
+        // Two side by side give what each gives alone; two numbers more are read.
+        Eigen::VectorXd both = Eigen::VectorXd::Zero(6 * nodes + 2), both_y(6 * nodes);
+        const Eigen::VectorXd other = Eigen::VectorXd::NullaryExpr(3 * nodes, [&] { return number(random); });
+        for (int i = 0; i < 3 * nodes; ++i) both.segment<2>(2 * i) << x[i], other[i];
+        rows.multiply(both.data(), both_y.data(), 2);
+        Eigen::VectorXd other_y(3 * nodes);
+        rows.multiply(other.data(), other_y.data());
+        for (int i = 0; i < 3 * nodes; ++i) CHECK(both_y.segment<2>(2 * i) == Eigen::Vector2d(y[i], other_y[i]));
+        const Eigen::VectorXf short_both = both.cast<float>(), short_other = other.cast<float>();
+        Eigen::VectorXf short_both_y(6 * nodes), short_other_y(3 * nodes);
+        rows.multiply(short_both.data(), short_both_y.data(), 2);
+        rows.multiply(short_other.data(), short_other_y.data());
+        for (int i = 0; i < 3 * nodes; ++i)
+            CHECK(short_both_y.segment<2>(2 * i) == Eigen::Vector2f(short_y[i], short_other_y[i]));
     }
 }

@@ -100,13 +100,12 @@ void CoarseSpace::find_pattern() {
     coarse_.resize(pattern_.entries());
 }
 
-void CoarseSpace::set(const BlockRows& matrix, std::span<const double> positions, const float* inverse_diagonal,
-                      float damping) {
-    positions_.assign(positions.begin(), positions.end());
+void CoarseSpace::set(const Fine& fine) {
+    positions_.assign(fine.positions.begin(), fine.positions.end());
     turns_.assign(static_cast<std::size_t>(groups_.count), Block33::Identity());
-    set_rigid_motions(positions);
-    smooth(matrix, inverse_diagonal, damping);
-    find_pulls(matrix);
+    set_rigid_motions(fine.positions);
+    smooth(fine.matrix, fine.inverse_diagonal, fine.damping);
+    find_pulls(fine.matrix);
     multiply();
 }
 
@@ -214,11 +213,12 @@ void CoarseSpace::put(std::size_t group, std::span<const Matrix6> sums) {
     }
 }
 
-void CoarseSpace::turn(std::span<const double> positions) {
+bool CoarseSpace::turn(std::span<const double> positions) {
     parallel_for(turns_.size(), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end; ++g)
             turns_[g] = rotation_between(members_[g], positions_, positions).cast<float>();
     });
+    return true;
 }
 
 /// Node by node, as P lies in memory. Each piece of the nodes has sums of its own, which are added in order.

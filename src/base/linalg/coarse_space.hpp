@@ -9,33 +9,24 @@
 #include "base/core/aligned_array.hpp"
 #include "base/linalg/aggregates.hpp"
 #include "base/linalg/block_rows.hpp"
+#include "base/linalg/coarse_level.hpp"
 #include "base/linalg/lists.hpp"
 #include "base/linalg/sparse.hpp"
 
 namespace pliant::linalg {
 
 /// Six unknowns a group, as two nodes of three: its translations and its rotations.
-class CoarseSpace {
+class CoarseSpace final : public CoarseLevel {
 public:
     explicit CoarseSpace(const BlockRows& matrix);
 
-    /// Takes the matrix and where its nodes are, (nodes, 3); `damping` is of the smoothing step, about 4/3 of the
-    /// inverse of the largest eigenvalue of D^-1 A with D its diagonal blocks, whose inverses are `inverse_diagonal`
-    /// (nodes, 9).
-    void set(const BlockRows& matrix, std::span<const double> positions, const float* inverse_diagonal, float damping);
-
-    /// Keeps all that, and turns it with the nodes, which are at `positions` now: what a turned body does is what it
-    /// did before, turned. Precondition: set() was called.
-    void turn(std::span<const double> positions);
-
-    /// Pattern and values of P^T A P, as of the last set().
-    [[nodiscard]] const SymmetricPattern& pattern() const { return pattern_; }
-    [[nodiscard]] const std::vector<double>& values() const { return coarse_; }
-
-    /// coarse (size of the pattern) <- P^T fine.
-    void restrict(const float* fine, double* coarse);
-    /// fine += P coarse.
-    void add_prolonged(const double* coarse, float* fine) const;
+    void set(const Fine& fine) override;
+    /// What a turned body does is what it did before, turned.
+    [[nodiscard]] bool turn(std::span<const double> positions) override;
+    [[nodiscard]] const SymmetricPattern& pattern() const override { return pattern_; }
+    [[nodiscard]] std::span<const double> values() const override { return coarse_; }
+    void restrict(const float* fine, double* coarse) override;
+    void add_prolonged(const double* coarse, float* fine) const override;
 
 private:
     using Matrix6 = Eigen::Matrix<double, 6, 6>;

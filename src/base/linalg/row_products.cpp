@@ -74,11 +74,86 @@ void multiply_any(const RowBlocks& matrix, std::size_t begin, std::size_t end, c
     }
 }
 
-void multiply_double(const RowBlocks& matrix, std::size_t begin, std::size_t end, const double* x, double* y) {
-    multiply_any(matrix, begin, end, x, y);
+/// Four rows of a column for two vectors side by side.
+template <class Real>
+using Both = hn::CappedTag<Real, 8>;
+
+template <class Real>
+HWY_INLINE hn::Vec<Both<Real>> load_for_both(const RowBlocks& matrix, std::size_t at) {
+    const Both<Real> d;
+    if constexpr (sizeof(Real) == sizeof(float)) {
+        return hn::LoadDup128(d, matrix.value + at);
+    } else {
+        const hn::Rebind<float, Both<Real>> half;
+        return hn::Add(hn::PromoteTo(d, hn::LoadDup128(half, matrix.value + at)),
+                       hn::PromoteTo(d, hn::LoadDup128(half, matrix.rest + at)));
+    }
 }
-void multiply_float(const RowBlocks& matrix, std::size_t begin, std::size_t end, const float* x, float* y) {
-    multiply_any(matrix, begin, end, x, y);
+
+/// Two vectors whose numbers stand in pairs: each block is read once for both.
+template <class Real>
+void multiply_two(const RowBlocks& matrix, std::size_t begin, std::size_t end, const Real* x, Real* y) {
+    const Both<Real> d;
+    using Index = hn::TFromD<hn::RebindToSigned<Both<Real>>>;
+    HWY_ALIGN static constexpr Index places[3][8] = {
+        {0, 0, 0, 0, 1, 1, 1, 1}, {2, 2, 2, 2, 3, 3, 3, 3}, {4, 4, 4, 4, 5, 5, 5, 5}};
+    const auto of_first = hn::SetTableIndices(d, places[0]), of_second = hn::SetTableIndices(d, places[1]);
+    const auto of_third = hn::SetTableIndices(d, places[2]);
+    for (std::size_t i = begin; i < end; ++i) {
+        auto first = hn::Zero(d), second = hn::Zero(d), third = hn::Zero(d);
+        for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
+            const std::size_t at = 9 * static_cast<std::size_t>(k);
+            hwy::Prefetch(matrix.value + at + 9 * ahead);
+            if constexpr (sizeof(Real) > sizeof(float)) hwy::Prefetch(matrix.rest + at + 9 * ahead);
+            const auto v = hn::LoadU(d, x + 6 * static_cast<std::size_t>(matrix.column[k]));
+            first = hn::MulAdd(load_for_both<Real>(matrix, at), hn::TableLookupLanes(v, of_first), first);
+            second = hn::MulAdd(load_for_both<Real>(matrix, at + 3), hn::TableLookupLanes(v, of_second), second);
+            third = hn::MulAdd(load_for_both<Real>(matrix, at + 6), hn::TableLookupLanes(v, of_third), third);
+        }
+        HWY_ALIGN Real sums[8];
+        hn::Store(hn::Add(hn::Add(first, second), third), d, sums);
+        for (std::size_t r = 0; r < 3; ++r) {
+            y[6 * i + 2 * r] = sums[r];
+            y[6 * i + 2 * r + 1] = sums[4 + r];
+        }
+    }
+}
+
+/// The same where vectors are too short for two.
+template <class Real>
+void multiply_each(const RowBlocks& matrix, std::size_t begin, std::size_t end, const Real* x, Real* y) {
+    for (std::size_t i = begin; i < end; ++i) {
+        Column<Real> sums[2];
+        for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
+            const std::size_t at = 9 * static_cast<std::size_t>(k);
+            const Real* v = x + 6 * static_cast<std::size_t>(matrix.column[k]);
+            for (std::size_t c = 0; c < 6; ++c) sums[c % 2].add_product(matrix, at + c / 2 * 3, v[c]);
+        }
+        for (std::size_t which = 0; which < 2; ++which) {
+            Real three[3];
+            sums[which].store(three);
+            for (std::size_t r = 0; r < 3; ++r) y[6 * i + 2 * r + which] = three[r];
+        }
+    }
+}
+
+template <class Real>
+void multiply_columns(const RowBlocks& matrix, std::size_t begin, std::size_t end, int columns, const Real* x,
+                      Real* y) {
+    if (columns == 1) return multiply_any(matrix, begin, end, x, y);
+    if constexpr (hn::MaxLanes(Both<Real>()) == 8)
+        multiply_two(matrix, begin, end, x, y);
+    else
+        multiply_each(matrix, begin, end, x, y);
+}
+
+void multiply_double(const RowBlocks& matrix, std::size_t begin, std::size_t end, int columns, const double* x,
+                     double* y) {
+    multiply_columns(matrix, begin, end, columns, x, y);
+}
+void multiply_float(const RowBlocks& matrix, std::size_t begin, std::size_t end, int columns, const float* x,
+                    float* y) {
+    multiply_columns(matrix, begin, end, columns, x, y);
 }
 
 }  // namespace pliant::linalg::HWY_NAMESPACE
@@ -90,11 +165,13 @@ namespace pliant::linalg {
 HWY_EXPORT(multiply_double);
 HWY_EXPORT(multiply_float);
 
-void multiply_rows(const RowBlocks& matrix, std::size_t begin, std::size_t end, const double* x, double* y) {
-    HWY_DYNAMIC_DISPATCH(multiply_double)(matrix, begin, end, x, y);
+void multiply_rows(const RowBlocks& matrix, std::size_t begin, std::size_t end, int columns, const double* x,
+                   double* y) {
+    HWY_DYNAMIC_DISPATCH(multiply_double)(matrix, begin, end, columns, x, y);
 }
-void multiply_rows(const RowBlocks& matrix, std::size_t begin, std::size_t end, const float* x, float* y) {
-    HWY_DYNAMIC_DISPATCH(multiply_float)(matrix, begin, end, x, y);
+void multiply_rows(const RowBlocks& matrix, std::size_t begin, std::size_t end, int columns, const float* x,
+                   float* y) {
+    HWY_DYNAMIC_DISPATCH(multiply_float)(matrix, begin, end, columns, x, y);
 }
 
 }  // namespace pliant::linalg

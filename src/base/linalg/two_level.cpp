@@ -2,7 +2,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "base/core/aligned_array.hpp"
@@ -16,39 +18,36 @@ namespace {
 
 constexpr std::size_t grain = 4096;     // numbers that one core takes at a time
 constexpr int degree = 2;               // of the polynomial that smooths
-constexpr float smoothed_part = 0.06F;  // of the spectrum, from the top; the rest is for the coarse level
+// Of the spectrum, from the top, where the coarse level is that of groups, and that of corners.
+constexpr float smoothed_of_groups = 0.06F, smoothed_of_corners = 0.06F;
 constexpr int first_powers = 12, later_powers = 1;
+constexpr int powers_of_corners = 6;  // every time: what was solved before must not change a bit
 /// Iterations that a coarse level costs to make (measured), and after how many it shows how good one is.
 constexpr double price_of_coarse = 7;
 constexpr int iterations_to_judge = 4;
-constexpr float safety = 1.15F;  // powers come from below
+constexpr float safety_of_groups = 1.15F, safety_of_corners = 1.25F;  // powers come from below
 
-/// Numbers of all nodes, with one more that is read but does not count.
+constexpr std::size_t most_columns = 2;  // that are solved for at once: each number of the matrix is read for both
+
+/// Numbers of all nodes, those of several columns side by side, with two more that are read but do not count.
 template <class Real>
 class Numbers {
 public:
-    explicit Numbers(std::size_t size) : values_(size + 1), size_(size) {
-        std::fill_n(values_.data(), size + 1, Real(0));
+    void resize(std::size_t size) {
+        if (values_.size() == size + 2) return;
+        values_.resize(size + 2);
+        std::fill_n(values_.data(), size + 2, Real(0));
     }
     [[nodiscard]] Real* data() const { return values_.data(); }
     [[nodiscard]] Real& operator[](std::size_t i) const { return values_[i]; }
-    [[nodiscard]] std::size_t size() const { return size_; }
 
 private:
     AlignedArray<Real> values_;
-    std::size_t size_;
 };
 using Vector = Numbers<double>;  ///< of the iteration
 using Rough = Numbers<float>;    ///< of its preconditioner
 
-template <class A, class B>
-double dot(const Numbers<A>& a, const Numbers<B>& b) {
-    return parallel_sum(a.size(), grain, [&](std::size_t begin, std::size_t end) {
-        double sum = 0;
-        for (std::size_t i = begin; i < end; ++i) sum += static_cast<double>(a[i]) * static_cast<double>(b[i]);
-        return sum;
-    });
-}
+using PerColumn = std::array<double, most_columns>;
 
 template <class Body>
 void for_numbers(std::size_t size, const Body& body) {
@@ -60,48 +59,74 @@ void for_numbers(std::size_t size, const Body& body) {
 }  // namespace
 
 struct TwoLevel::State {
-    explicit State(const SymmetricPattern& pattern)
+    enum class Kind { groups, corners };
+    State(const SymmetricPattern& pattern, BlockRows rows, std::unique_ptr<CoarseLevel> level, Kind of)
         : size(static_cast<std::size_t>(pattern.size())),
-          matrix(pattern),
-          space(matrix),
-          coarse(space.pattern(), Precision::single_),
+          kind(of),
+          matrix(std::move(rows)),
+          space(std::move(level)),
+          smoothed_part(kind == Kind::groups ? smoothed_of_groups : smoothed_of_corners),
+          safety(kind == Kind::groups ? safety_of_groups : safety_of_corners),
+          coarse(space->pattern(), Precision::single_),
           inverse_diagonal(9 * static_cast<std::size_t>(pattern.nodes)),
-          coarse_side(static_cast<std::size_t>(space.pattern().size())),
-          top(size),
-          residual(size),
-          direction(size),
-          product(size),
-          solution(size),
-          side(size),
-          correction(size),
-          step(size),
-          rest(size) {}
+          coarse_size(static_cast<std::size_t>(space->pattern().size())) {
+        top.resize(size);
+        set_columns(1);
+    }
+
+    /// Room for so many; their numbers are set by whoever uses them.
+    void set_columns(std::size_t count) {
+        columns = count;
+        for (Vector* v : {&residual, &direction, &product, &solution}) v->resize(count * size);
+        for (Rough* v : {&side, &correction, &step, &rest}) v->resize(count * size);
+        if (count > 1) one.resize(size);
+        coarse_side.resize(count * coarse_size);
+    }
+    template <class A, class B>
+    [[nodiscard]] double dot(const Numbers<A>& a, const Numbers<B>& b, std::size_t column) const {
+        return parallel_sum(size, grain, [&](std::size_t begin, std::size_t end) {
+            double sum = 0;
+            for (std::size_t i = begin * columns + column; i < end * columns; i += columns)
+                sum += static_cast<double>(a[i]) * static_cast<double>(b[i]);
+            return sum;
+        });
+    }
 
     [[nodiscard]] bool invert_diagonal();
     void find_largest();
     enum class Start { zero, where_it_is };
     void smoothe(Rough& x, Start start);
     void advance(Rough& x, Start start, float keep, float share);
+    template <std::size_t count>
+    void advance_columns(Rough& x, Start start, float keep, float share);
+    void correct();
     void precondition();
     [[nodiscard]] bool build();
     [[nodiscard]] bool is_outdated(int spent, double begun, double now, double enough) const;
-    [[nodiscard]] Outcome iterate(double tolerance, double& enough, int limit);
-    [[nodiscard]] Outcome solve(double* right_hand_side, double tolerance, int limit);
+    [[nodiscard]] Outcome iterate(double tolerance, PerColumn& enough, int limit);
+    [[nodiscard]] Outcome solve(double* right_hand_sides, std::size_t count, double tolerance, int limit);
 
     std::size_t size;
+    Kind kind;
+    std::size_t columns = 1;
     BlockRows matrix;
-    CoarseSpace space;
+    std::unique_ptr<CoarseLevel> space;
+    float smoothed_part;  ///< of the spectrum, from the top; the rest is for the coarse level
+    float safety;
     Cholesky coarse;
     AlignedArray<float> inverse_diagonal;
-    std::vector<double> coarse_side;
+    std::size_t coarse_size;
+    std::vector<double> coarse_side;  ///< (columns, coarse unknowns)
     Rough top;  ///< eigenvector of D^-1 A with the largest eigenvalue, roughly
     float largest = 0;
     bool powered = false;
     Vector residual, direction, product, solution;
     Rough side, correction, step, rest;
-    std::vector<double> positions;  ///< of the nodes, now
-    bool built = false;             ///< the coarse level is there,
-    bool turned = false;            ///< but of an earlier state
+    Rough one;                       ///< a column by itself
+    std::span<const double> values;  ///< of the matrix, while it is set
+    std::vector<double> positions;   ///< of the nodes, now
+    bool built = false;              ///< the coarse level is there,
+    bool turned = false;             ///< but of an earlier state
     /// Of the squared error, by an iteration with one of the present state, as a logarithm: four to five a digit, until
     /// one has shown.
     double usual_gain = 1;
@@ -123,7 +148,11 @@ bool TwoLevel::State::invert_diagonal() {
 
 /// Powers of D^-1 A, in the inner product of D.
 void TwoLevel::State::find_largest() {
-    if (!powered) {
+    set_columns(1);
+    const bool goes_on = powered && kind == Kind::groups;
+    const int powers = goes_on ? later_powers : kind == Kind::groups ? first_powers : powers_of_corners;
+    if (!goes_on) {
+        largest = 0;
         // Anything that has a share of every eigenvector: numbers without a pattern.
         unsigned seed = 1;
         for (std::size_t i = 0; i < size; ++i) {
@@ -132,11 +161,12 @@ void TwoLevel::State::find_largest() {
         }
     }
     std::fill_n(side.data(), size, 0.0F);
-    for (int k = 0; k < (powered ? later_powers : first_powers); ++k) {
+    for (int k = 0; k < powers; ++k) {
         std::copy_n(top.data(), size, correction.data());
         advance(correction, Start::where_it_is, 0, 1);  // step: -D^-1 A top
-        largest = std::max(powered ? largest : 0, static_cast<float>(std::sqrt(dot(step, step) / dot(top, top))));
-        const float shrink = static_cast<float>(-1 / std::sqrt(dot(step, step)));
+        const double squared = dot(step, step, 0);
+        largest = std::max(goes_on ? largest : 0, static_cast<float>(std::sqrt(squared / dot(top, top, 0))));
+        const float shrink = static_cast<float>(-1 / std::sqrt(squared));
         for_numbers(size, [&](std::size_t i) { top[i] = shrink * step[i]; });
     }
     powered = true;
@@ -162,46 +192,82 @@ void TwoLevel::State::smoothe(Rough& x, Start start) {
 /// step <- keep step + share D^-1 (side - A x); x <- x + step. In one pass for each node, its numbers read before any
 /// is written: arrays on big pages lie so that a processor takes the one for the other, and waits.
 void TwoLevel::State::advance(Rough& x, Start start, float keep, float share) {
-    using Three = Eigen::Map<Eigen::Vector3f>;
+    if (columns == 1)
+        advance_columns<1>(x, start, keep, share);
+    else
+        advance_columns<most_columns>(x, start, keep, share);
+}
+
+template <std::size_t count>
+void TwoLevel::State::advance_columns(Rough& x, Start start, float keep, float share) {
+    using Block = Eigen::Matrix<float, count, 3>;  // by columns: those of a component side by side
+    using At = Eigen::Map<Block>;
     const bool from_zero = start == Start::zero;
-    if (!from_zero) matrix.multiply(x.data(), rest.data());
+    if (!from_zero) matrix.multiply(x.data(), rest.data(), static_cast<int>(count));
     parallel_for(size / 3, grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            Eigen::Vector3f left = Three(side.data() + 3 * i), now = Eigen::Vector3f::Zero(), go = now;
+            const std::size_t at = 3 * count * i;
+            Block left = At(side.data() + at), now = Block::Zero(), go = Block::Zero();
             if (!from_zero) {
-                left -= Three(rest.data() + 3 * i);
-                now = Three(x.data() + 3 * i);
+                left -= At(rest.data() + at);
+                now = At(x.data() + at);
             }
-            if (keep != 0) go = keep * Three(step.data() + 3 * i);
-            go += share * (Eigen::Map<const Eigen::Matrix3f>(inverse_diagonal.data() + 9 * i) * left).eval();
+            if (keep != 0) go = keep * At(step.data() + at);
+            // The inverse of a block on the diagonal is symmetric.
+            const Eigen::Map<const Eigen::Matrix3f> inverse(inverse_diagonal.data() + 9 * i);
+            for (int c = 0; c < 3; ++c) {
+                const Eigen::Matrix<float, count, 1> sum =
+                    left.col(0) * inverse(c, 0) + left.col(1) * inverse(c, 1) + left.col(2) * inverse(c, 2);
+                go.col(c) += share * sum;
+            }
             now += go;
-            Three(step.data() + 3 * i) = go;
-            Three(x.data() + 3 * i) = now;
+            At(step.data() + at) = go;
+            At(x.data() + at) = now;
         }
     });
 }
 
+/// On the coarse level, by what is left of `side`, in `rest`.
+void TwoLevel::State::correct() {
+    for (std::size_t c = 0; c < columns; ++c) {
+        Rough& fine = columns == 1 ? rest : one;
+        if (columns > 1) for_numbers(size, [&](std::size_t i) { one[i] = rest[columns * i + c]; });
+        space->restrict(fine.data(), coarse_side.data() + c * coarse_size);
+    }
+    coarse.solve({coarse_side.data(), columns * coarse_size}, static_cast<int>(columns));
+    for (std::size_t c = 0; c < columns; ++c) {
+        const double* from = coarse_side.data() + c * coarse_size;
+        if (columns == 1) {
+            space->add_prolonged(from, correction.data());
+            continue;
+        }
+        for_numbers(size, [&](std::size_t i) { one[i] = 0; });
+        space->add_prolonged(from, one.data());
+        for_numbers(size, [&](std::size_t i) { correction[columns * i + c] += one[i]; });
+    }
+}
+
 /// correction <- about A^-1 residual: smooth, correct on the coarse level, smooth; symmetric.
 void TwoLevel::State::precondition() {
-    for_numbers(size, [&](std::size_t i) { side[i] = static_cast<float>(residual[i]); });
+    const std::size_t all = columns * size;
+    for_numbers(all, [&](std::size_t i) { side[i] = static_cast<float>(residual[i]); });
     smoothe(correction, Start::zero);
-    matrix.multiply(correction.data(), rest.data());
-    for_numbers(size, [&](std::size_t i) { rest[i] = side[i] - rest[i]; });
-    space.restrict(rest.data(), coarse_side.data());
-    coarse.solve(coarse_side, 1);
-    space.add_prolonged(coarse_side.data(), correction.data());
+    matrix.multiply(correction.data(), rest.data(), static_cast<int>(columns));
+    for_numbers(all, [&](std::size_t i) { rest[i] = side[i] - rest[i]; });
+    correct();
     smoothe(correction, Start::where_it_is);
 }
 
 /// Coarse level of the matrix and the positions at hand.
 bool TwoLevel::State::build() {
-    space.set(matrix, positions, inverse_diagonal.data(), 4.0F / 3 / (safety * largest));
+    space->set({matrix, values, positions, inverse_diagonal.data(), 4.0F / 3 / (safety * largest)});
     turned = false;
-    // What bends easily may be too much for single precision; once is enough to know.
-    built = coarse.factorise(space.values());
+    if (kind == Kind::corners && coarse.precision() == Precision::double_) coarse.use(Precision::single_);
+    // What bends easily may be too much for single precision; once is enough to know, of groups.
+    built = coarse.factorise(space->values());
     if (!built && coarse.precision() == Precision::single_) {
         coarse.use(Precision::double_);
-        built = coarse.factorise(space.values());
+        built = coarse.factorise(space->values());
     }
     coarse.release_work_space();
     return built;
@@ -215,55 +281,93 @@ bool TwoLevel::State::is_outdated(int spent, double begun, double now, double en
     return gain <= 0 || to_go / gain > to_go / usual_gain + price_of_coarse;
 }
 
-/// From where `solution` and `residual` are; `enough` of the squared error, as the preconditioner measures it, is left
-/// at the end. 0: the first one shall set it.
-TwoLevel::Outcome TwoLevel::State::iterate(double tolerance, double& enough, int limit) {
+/// From where `solution` and `residual` are; `enough` of the squared error of each column, as the preconditioner
+/// measures it, is left at the end. 0: the first one shall set it. A column that has what it wants stays as it is.
+TwoLevel::Outcome TwoLevel::State::iterate(double tolerance, PerColumn& enough, int limit) {
+    const std::size_t all = columns * size;
     precondition();
-    for_numbers(size, [&](std::size_t i) { direction[i] = correction[i]; });
-    double left = dot(residual, correction);
-    if (enough == 0) enough = tolerance * tolerance * left;
-    if (!(left > 0)) return Outcome::slow;
-    const double begun = left;
-    for (int k = 1; k <= limit; ++k) {
-        ++iterations;
-        matrix.multiply(direction.data(), product.data());
-        const double curvature = dot(direction, product);
-        if (!(curvature > 0)) return Outcome::indefinite;
-        const double advance = left / curvature;
+    for_numbers(all, [&](std::size_t i) { direction[i] = correction[i]; });
+    PerColumn left{}, begun{};
+    std::array<bool, most_columns> done{};
+    for (std::size_t c = 0; c < columns; ++c) {
+        begun[c] = left[c] = dot(residual, correction, c);
+        if (!(left[c] >= 0)) return Outcome::slow;
+        if (enough[c] == 0)
+            enough[c] = tolerance * tolerance * left[c];
+        else
+            done[c] = left[c] <= enough[c];
+        done[c] = done[c] || left[c] == 0;  // of nothing
+    }
+    const auto all_done = [&] { return std::all_of(done.begin(), done.begin() + columns, [](bool d) { return d; }); };
+    for (int k = 1; k <= limit && !all_done(); ++k) {
+        matrix.multiply(direction.data(), product.data(), static_cast<int>(columns));
+        PerColumn advance{}, keep{};
+        for (std::size_t c = 0; c < columns; ++c) {
+            if (done[c]) continue;
+            ++iterations;
+            const double curvature = dot(direction, product, c);
+            if (!(curvature > 0)) return Outcome::indefinite;
+            advance[c] = left[c] / curvature;
+        }
         for_numbers(size, [&](std::size_t i) {
-            solution[i] += advance * direction[i];
-            residual[i] -= advance * product[i];
+            for (std::size_t c = 0; c < columns; ++c) {
+                solution[columns * i + c] += advance[c] * direction[columns * i + c];
+                residual[columns * i + c] -= advance[c] * product[columns * i + c];
+            }
         });
         precondition();
-        const double now = dot(residual, correction);
-        if (now <= enough && now >= 0) {
-            if (!turned) usual_gain = std::log(begun / now) / k;
-            return Outcome::solved;
+        for (std::size_t c = 0; c < columns; ++c) {
+            if (done[c]) continue;
+            const double now = dot(residual, correction, c);
+            if (now <= enough[c] && now >= 0) {
+                if (!turned && now > 0) usual_gain = std::log(begun[c] / now) / k;
+                done[c] = true;
+                continue;
+            }
+            if (!(now > 0) || is_outdated(k, begun[c], now, enough[c])) return Outcome::slow;
+            keep[c] = now / left[c];
+            left[c] = now;
         }
-        if (!(now > 0) || is_outdated(k, begun, now, enough)) return Outcome::slow;
-        const double keep = now / left;
-        for_numbers(size, [&](std::size_t i) { direction[i] = correction[i] + keep * direction[i]; });
-        left = now;
+        for_numbers(size, [&](std::size_t i) {
+            for (std::size_t c = 0; c < columns; ++c) {
+                if (!done[c])
+                    direction[columns * i + c] = correction[columns * i + c] + keep[c] * direction[columns * i + c];
+            }
+        });
     }
-    return Outcome::slow;
+    return all_done() ? Outcome::solved : Outcome::slow;
 }
 
-TwoLevel::Outcome TwoLevel::State::solve(double* b, double tolerance, int limit) {
-    double scale = 0;  // forces may be of any size; single precision is not
-    for (std::size_t i = 0; i < size; ++i) scale = std::max(scale, std::fabs(b[i]));
-    if (scale == 0) return Outcome::solved;
-    for_numbers(size, [&](std::size_t i) {
-        residual[i] = b[i] / scale;
-        solution[i] = 0;
-    });
-    double enough = 0;
+TwoLevel::Outcome TwoLevel::State::solve(double* b, std::size_t count, double tolerance, int limit) {
+    set_columns(count);
+    PerColumn scale{}, enough{};  // forces may be of any size; single precision is not
+    for (std::size_t c = 0; c < count; ++c) {
+        const double* column = b + c * size;
+        for (std::size_t i = 0; i < size; ++i) scale[c] = std::max(scale[c], std::fabs(column[i]));
+        for_numbers(size, [&](std::size_t i) {
+            residual[count * i + c] = scale[c] > 0 ? column[i] / scale[c] : 0;
+            solution[count * i + c] = 0;
+        });
+    }
+    if (std::all_of(scale.begin(), scale.end(), [](double s) { return s == 0; })) return Outcome::solved;
     Outcome outcome = iterate(tolerance, enough, limit);
-    if (outcome == Outcome::slow && turned) outcome = build() ? iterate(tolerance, enough, limit) : Outcome::indefinite;
-    for_numbers(size, [&](std::size_t i) { b[i] = scale * solution[i]; });
+    if (outcome == Outcome::slow && turned) {
+        outcome = build() ? iterate(tolerance, enough, limit) : Outcome::indefinite;
+    }
+    for (std::size_t c = 0; c < count; ++c)
+        for_numbers(size, [&](std::size_t i) { b[c * size + i] = scale[c] * solution[count * i + c]; });
     return outcome;
 }
 
-TwoLevel::TwoLevel(const SymmetricPattern& pattern) : state_(std::make_unique<State>(pattern)) {}
+TwoLevel::TwoLevel(const SymmetricPattern& pattern) {
+    BlockRows rows(pattern);
+    auto level = std::make_unique<CoarseSpace>(rows);
+    state_ = std::make_unique<State>(pattern, std::move(rows), std::move(level), State::Kind::groups);
+}
+TwoLevel::TwoLevel(const SymmetricPattern& pattern, Nesting corners)
+    : state_(std::make_unique<State>(pattern, BlockRows(pattern),
+                                     std::make_unique<NestedSpace>(pattern, std::move(corners)), State::Kind::corners)) {
+}
 TwoLevel::TwoLevel(TwoLevel&&) noexcept = default;
 TwoLevel& TwoLevel::operator=(TwoLevel&&) noexcept = default;
 TwoLevel::~TwoLevel() = default;
@@ -271,11 +375,11 @@ TwoLevel::~TwoLevel() = default;
 bool TwoLevel::set(std::span<const double> values, std::span<const double> positions) {
     State& s = *state_;
     s.matrix.set(values);
+    s.values = values;
     s.positions.assign(positions.begin(), positions.end());
     if (!s.invert_diagonal()) return false;
     s.find_largest();
-    if (!s.built) return s.build();
-    s.space.turn(positions);
+    if (!s.built || !s.space->turn(positions)) return s.build();
     s.turned = true;
     return true;
 }
@@ -283,9 +387,10 @@ bool TwoLevel::set(std::span<const double> values, std::span<const double> posit
 TwoLevel::Outcome TwoLevel::solve(std::span<double> right_hand_sides, int columns, double tolerance, int limit) {
     state_->iterations = 0;
     Outcome worst = Outcome::solved;
-    for (int c = 0; c < columns && worst != Outcome::indefinite; ++c) {
-        const Outcome outcome =
-            state_->solve(right_hand_sides.data() + static_cast<std::size_t>(c) * state_->size, tolerance, limit);
+    const auto all = static_cast<std::size_t>(columns);
+    for (std::size_t c = 0; c < all && worst != Outcome::indefinite; c += most_columns) {
+        const std::size_t count = std::min(most_columns, all - c);
+        const Outcome outcome = state_->solve(right_hand_sides.data() + c * state_->size, count, tolerance, limit);
         if (outcome != Outcome::solved) worst = outcome;
     }
     return worst;

@@ -4,17 +4,21 @@
 #include <memory>
 #include <span>
 
+#include "base/linalg/nested_space.hpp"
 #include "base/linalg/sparse.hpp"
 
 namespace pliant::linalg {
 
-/// The fine level smooths (Chebyshev polynomials of D^-1 A), the coarse one (see CoarseSpace) is factorised. Time and
+/// The fine level smooths (Chebyshev polynomials of D^-1 A), the coarse one (CoarseSpace or, of quadratic tets,
+/// NestedSpace) is factorised. Time and
 /// memory grow with the number of nodes, where those of a factorisation grow with its square in bulky bodies. The same
 /// bits on any number of cores.
 class TwoLevel {
 public:
     /// Analyses the pattern. Precondition: blocks of 3.
     explicit TwoLevel(const SymmetricPattern& pattern);
+    /// On the corners of quadratic tets.
+    TwoLevel(const SymmetricPattern& pattern, Nesting corners);
     TwoLevel(TwoLevel&&) noexcept;
     TwoLevel& operator=(TwoLevel&&) noexcept;
     ~TwoLevel();

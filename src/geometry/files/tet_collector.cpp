@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/core/parallel.hpp"
+
 namespace pliant::mesh {
 namespace {
 
@@ -48,20 +50,32 @@ void raise_linear_tets(TetMesh& mesh, const std::vector<bool>& linear) {
 }
 
 void turn_inside_out_tets(TetMesh& mesh) {
-    std::size_t turned = 0;
+    constexpr std::size_t grain = 16384;
     const auto width = static_cast<std::size_t>(mesh.nodes_per_tet());
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-        int* n = mesh.nodes.data() + t * width;
-        if (signed_tet_volume(mesh.points[n[0]], mesh.points[n[1]], mesh.points[n[2]], mesh.points[n[3]]) >= 0)
-            continue;
-        ++turned;
-        reverse_tet({n, width});
-    }
+    const double sum = parallel_sum(mesh.tet_count(), grain, [&](std::size_t begin, std::size_t end) {
+        double found = 0;
+        for (std::size_t t = begin; t < end; ++t) {
+            int* n = mesh.nodes.data() + t * width;
+            if (signed_tet_volume(mesh.points[n[0]], mesh.points[n[1]], mesh.points[n[2]], mesh.points[n[3]]) >= 0)
+                continue;
+            ++found;
+            reverse_tet({n, width});
+        }
+        return found;
+    });
+    const auto turned = static_cast<std::size_t>(sum);
     if (turned > 0)
         mesh.notes.push_back(fmt::format("{} of {} tets were inside out and were turned", turned, mesh.tet_count()));
 }
 
 }  // namespace
+
+void TetCollector::reserve(std::size_t tets, std::size_t nodes) {
+    mesh_.nodes.reserve(nodes);
+    mesh_.region.reserve(tets);
+    mesh_.points.reserve(points_.size());
+    linear_.reserve(tets);
+}
 
 Status TetCollector::add(std::span<const std::int64_t> nodes, std::int64_t region) {
     if (nodes.size() != 4 && nodes.size() != 10) return input_error("a tetrahedron has {} nodes", nodes.size());
@@ -82,7 +96,12 @@ Status TetCollector::add(std::span<const std::int64_t> nodes, std::int64_t regio
     }
     linear_.push_back(nodes.size() == 4);
     if (nodes.size() == 10) mesh_.order = 2;
-    mesh_.region.push_back(region_of_.try_emplace(region, static_cast<int>(region_of_.size())).first->second);
+    // Neighbours in a file mostly are of one region.
+    const bool as_before = !mesh_.region.empty() && region == last_region_;
+    mesh_.region.push_back(
+        as_before ? mesh_.region.back()
+                  : region_of_.try_emplace(region, static_cast<int>(region_of_.size())).first->second);
+    last_region_ = region;
     return {};
 }
 

@@ -17,6 +17,9 @@ public:
     /// All points of the file.
     explicit TetCollector(std::vector<Vec3> points) : points_(std::move(points)), index_(points_.size(), -1) {}
 
+    /// Room for as many tets with as many nodes in all.
+    void reserve(std::size_t tets, std::size_t nodes);
+
     /// One tet of 4 or 10 nodes (indices into the file's points, order of VTK) in the region with this number.
     [[nodiscard]] Status add(std::span<const std::int64_t> nodes, std::int64_t region);
 
@@ -31,6 +34,7 @@ private:
     std::vector<int> index_;
     std::vector<bool> linear_;  ///< (tets) of 4 nodes
     std::map<std::int64_t, int> region_of_;
+    std::int64_t last_region_ = 0;  ///< of the tet that was added last
     TetMesh mesh_;
 };
 

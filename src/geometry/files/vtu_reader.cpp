@@ -2,16 +2,20 @@
 #include <libdeflate.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <pugixml.hpp>
 #include <span>
+#include <utility>
 
 #include "base/core/base64.hpp"
+#include "base/core/parallel.hpp"
 #include "geometry/files/tet_collector.hpp"
 #include "geometry/files/tet_file.hpp"
 
@@ -24,11 +28,72 @@ constexpr int vtk_quadratic_tetra = 24;
 /// Deflate shrinks by no more than this: a block that claims more is not believed.
 constexpr std::size_t most_expansion = 1032;
 
+constexpr std::size_t blocks_at_once = 16;
+constexpr std::size_t numbers_at_once = std::size_t{1} << 16;
+
 using Numbers = std::vector<double>;
 
 struct Piece {
     Numbers points, connectivity, offsets, types, regions;
 };
+
+/// Begins what stands in for the text of an array: no XML file may hold it.
+constexpr char stand_in = '\x01';
+
+/// The text of an XML file without that of its large arrays, which a tree of the document need not hold. What stands
+/// in for each is its number.
+struct Skeleton {
+    std::string xml;
+    std::vector<std::string_view> arrays;
+    struct Cut {
+        std::size_t at, left_out;  ///< where in `xml`, and how many bytes up to there are missing
+    };
+    std::vector<Cut> cuts;
+
+    /// Where in the file a place in the text is.
+    [[nodiscard]] std::size_t in_file(std::size_t at) const {
+        const auto next =
+            std::upper_bound(cuts.begin(), cuts.end(), at, [](std::size_t a, const Cut& cut) { return a < cut.at; });
+        return next == cuts.begin() ? at : at + (next - 1)->left_out;
+    }
+};
+
+/// The end of a tag, past its '>': one in the value of an attribute does not count.
+std::size_t end_of_tag(std::string_view text, std::size_t at) {
+    char quote = 0;
+    for (; at < text.size(); ++at) {
+        const char c = text[at];
+        if (quote != 0)
+            quote = c == quote ? '\0' : quote;
+        else if (c == '"' || c == '\'')
+            quote = c;
+        else if (c == '>')
+            return at + 1;
+    }
+    return std::string_view::npos;
+}
+
+Skeleton without_arrays(std::string_view text) {
+    constexpr std::string_view begin_of_array = "<DataArray";
+    constexpr std::size_t small = 256;  // bytes, which are left where they are
+    Skeleton result;
+    std::size_t copied = 0;
+    for (std::size_t tag = text.find(begin_of_array); tag != std::string_view::npos;
+         tag = text.find(begin_of_array, tag)) {
+        const std::size_t begin = end_of_tag(text, tag);
+        tag = begin;
+        if (begin == std::string_view::npos) break;
+        const std::size_t end = text.find('<', begin);
+        if (text[begin - 2] == '/' || end == std::string_view::npos || end - begin < small) continue;
+        result.xml += text.substr(copied, begin - copied);
+        result.xml += fmt::format("{}{}", stand_in, result.arrays.size());
+        result.arrays.push_back(text.substr(begin, end - begin));
+        copied = tag = end;
+        result.cuts.push_back({result.xml.size(), end - result.xml.size()});
+    }
+    result.xml += text.substr(copied);
+    return result;
+}
 
 /// A type of number in a file, by its name there.
 struct NumberType {
@@ -84,27 +149,40 @@ public:
 
 private:
     tl::unexpected<Error> error(const pugi::xml_node& where, std::string_view text) const {
-        const std::ptrdiff_t at = std::clamp<std::ptrdiff_t>(where.offset_debug(), 0, std::ssize(bytes_));
-        const auto line = 1 + std::count(bytes_.begin(), bytes_.begin() + at, '\n');
-        return input_error_at(name_, line, "{}", text);
+        return input_error_at(name_, line_of(where.offset_debug()), "{}", text);
+    }
+
+    /// Of a place in the skeleton.
+    std::ptrdiff_t line_of(std::ptrdiff_t place) const {
+        const std::size_t in_file = skeleton_.in_file(static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, place)));
+        const auto end = bytes_.begin() + static_cast<std::ptrdiff_t>(std::min(in_file, bytes_.size()));
+        return 1 + std::count(bytes_.begin(), end, '\n');
+    }
+
+    /// The text of an array in the file.
+    std::string_view text_of(const pugi::xml_node& array) const {
+        const std::string_view text = array.child_value();
+        if (!text.starts_with(stand_in)) return text;
+        std::size_t number = 0;
+        const auto [end, code] = std::from_chars(text.data() + 1, text.data() + text.size(), number);
+        const bool known = code == std::errc() && end == text.data() + text.size() && number < skeleton_.arrays.size();
+        return known ? skeleton_.arrays[number] : text;
     }
 
     /// Appended data may hold any bytes: the XML ends where they begin.
     Status load() {
-        std::string xml(bytes_);
+        skeleton_ = without_arrays(bytes_.substr(0, bytes_.find("<AppendedData")));
         if (const std::size_t tag = bytes_.find("<AppendedData"); tag != std::string_view::npos) {
             const std::size_t end = bytes_.find('>', tag);
             const std::size_t mark = end == std::string_view::npos ? end : bytes_.find('_', end);
             if (mark == std::string_view::npos)
                 return input_error("{}: the file ends in the middle of AppendedData", name_);
             appended_ = {bytes_.substr(mark + 1), bytes_.substr(tag, end - tag).find("raw") == std::string_view::npos};
-            xml = std::string(bytes_.substr(0, end + 1)) + "</AppendedData></VTKFile>";
+            skeleton_.xml += std::string(bytes_.substr(tag, end + 1 - tag)) + "</AppendedData></VTKFile>";
         }
-        const pugi::xml_parse_result result = document_.load_buffer(xml.data(), xml.size());
+        const pugi::xml_parse_result result = document_.load_buffer(skeleton_.xml.data(), skeleton_.xml.size());
         if (result) return {};
-        const auto at = std::clamp<std::ptrdiff_t>(result.offset, 0, std::ssize(xml));
-        return input_error_at(name_, 1 + std::count(xml.begin(), xml.begin() + at, '\n'), "is not well-formed XML: {}",
-                              result.description());
+        return input_error_at(name_, line_of(result.offset), "is not well-formed XML: {}", result.description());
     }
 
     Status read_encoding(const pugi::xml_node& file) {
@@ -168,7 +246,7 @@ private:
         const auto type = number_type(array.attribute("type").value());
         if (!type) return error(array, fmt::format("unknown type \"{}\" of an array", array.attribute("type").value()));
         if (format == "ascii") return read_text(array, numbers);
-        Source source{array.child_value(), true};
+        Source source{text_of(array), true};
         if (format == "appended") {
             const auto offset = array.attribute("offset").as_ullong();
             if (offset >= appended_.text.size())
@@ -179,14 +257,33 @@ private:
         }
         const auto bytes = compressed_ ? decompressed(source) : plain(source);
         if (!bytes) return error(array, "the data of the array are damaged or cut off");
-        numbers.reserve(bytes->size() / type->width);
-        for (std::size_t at = 0; at + type->width <= bytes->size(); at += type->width)
-            numbers.push_back(decode(*type, std::string_view(*bytes).substr(at, type->width)));
+        decode_all(*type, *bytes, numbers);
         return {};
     }
 
+    void decode_all(const NumberType& type, std::string_view bytes, Numbers& numbers) const {
+        numbers.resize(bytes.size() / type.width);
+        parallel_for(numbers.size(), numbers_at_once, [&](std::size_t begin, std::size_t end) {
+            const auto as_they_are = [&]<class T>(T) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    T value;
+                    std::memcpy(&value, bytes.data() + i * sizeof(T), sizeof(T));
+                    numbers[i] = static_cast<double>(value);
+                }
+            };
+            // The types of nearly all files, as this machine has them.
+            if (!big_endian_ && type.floating && type.width == 8) return as_they_are(double{});
+            if (!big_endian_ && type.floating) return as_they_are(float{});
+            if (!big_endian_ && type.is_signed && type.width == 8) return as_they_are(std::int64_t{});
+            if (!big_endian_ && type.is_signed && type.width == 4) return as_they_are(std::int32_t{});
+            if (!type.is_signed && type.width == 1) return as_they_are(std::uint8_t{});
+            for (std::size_t i = begin; i < end; ++i)
+                numbers[i] = decode(type, bytes.substr(i * type.width, type.width));
+        });
+    }
+
     Status read_text(const pugi::xml_node& array, Numbers& numbers) const {
-        const std::string_view text = array.child_value();
+        const std::string_view text = text_of(array);
         constexpr std::string_view blanks = " \t\r\n";
         for (std::size_t at = text.find_first_not_of(blanks); at != std::string_view::npos;
              at = text.find_first_not_of(blanks, at)) {
@@ -250,24 +347,43 @@ private:
         if (!all) return std::nullopt;
         std::string out;
         std::size_t at = header_bytes;
+        std::vector<Block> some;
         for (std::size_t b = 0; b < blocks; ++b) {
             const bool short_one = b + 1 == blocks && word(*header, 2) != 0;
-            const std::size_t packed = word(*header, 3 + b);
-            if (!inflate(std::string_view(*all).substr(at, packed), word(*header, short_one ? 2 : 1), out))
+            const std::string_view packed = std::string_view(*all).substr(at, word(*header, 3 + b));
+            const std::uint64_t size = word(*header, short_one ? 2 : 1);
+            if (size > most_expansion * (packed.size() + 1)) return std::nullopt;
+            some.push_back({packed, size});
+            at += packed.size();
+            if ((some.size() == blocks_at_once || b + 1 == blocks) && !inflate(std::exchange(some, {}), out))
                 return std::nullopt;
-            at += packed;
         }
         return out;
     }
 
-    static bool inflate(std::string_view packed, std::uint64_t size, std::string& out) {
-        if (size > most_expansion * (packed.size() + 1)) return false;
+    struct Block {
+        std::string_view packed;
+        std::size_t size;  ///< unpacked
+    };
+    /// Appends some blocks, on all cores: no more than what a few of them claim is taken on trust.
+    static bool inflate(const std::vector<Block>& blocks, std::string& out) {
+        std::vector<std::size_t> begin = {out.size()};
+        for (const Block& block : blocks) begin.push_back(begin.back() + block.size);
+        out.resize(begin.back());
+        std::atomic<bool> sound = true;
+        parallel_for(blocks.size(), 1, [&](std::size_t first, std::size_t end) {
+            for (std::size_t b = first; b < end; ++b) {
+                if (!inflate(blocks[b].packed, {out.data() + begin[b], blocks[b].size})) sound = false;
+            }
+        });
+        return sound;
+    }
+
+    static bool inflate(std::string_view packed, std::span<char> out) {
         const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> state(
             libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
-        const std::size_t begin = out.size();
-        out.resize(begin + size);
-        return libdeflate_zlib_decompress(state.get(), packed.data(), packed.size(), out.data() + begin, size,
-                                          nullptr) == LIBDEFLATE_SUCCESS;
+        return libdeflate_zlib_decompress(state.get(), packed.data(), packed.size(), out.data(), out.size(), nullptr) ==
+               LIBDEFLATE_SUCCESS;
     }
 
     /// Field data "region_names": character codes, each text ended by 0. Names are a courtesy: damaged ones are left
@@ -293,11 +409,20 @@ private:
     static Result<TetMesh> assemble(const std::vector<Piece>& pieces,
                                     const std::map<std::int64_t, std::string>& names) {
         std::vector<Vec3> points;
+        std::size_t numbers = 0;
+        for (const Piece& piece : pieces) numbers += piece.points.size();
+        points.reserve(numbers / 3);
         for (const Piece& piece : pieces) {
             for (std::size_t i = 0; i + 2 < piece.points.size(); i += 3)
                 points.push_back({piece.points[i], piece.points[i + 1], piece.points[i + 2]});
         }
         TetCollector collector(std::move(points));
+        std::size_t cells = 0, nodes = 0;
+        for (const Piece& piece : pieces) {
+            cells += piece.types.size();
+            nodes += piece.connectivity.size();
+        }
+        collector.reserve(cells, nodes);
         std::int64_t first_point = 0;
         for (const Piece& piece : pieces) {
             if (Status status = add_piece(piece, first_point, collector); !status)
@@ -332,6 +457,7 @@ private:
 
     std::string_view bytes_;
     std::string name_;
+    Skeleton skeleton_;
     pugi::xml_document document_;
     Source appended_;
     bool big_endian_ = false;

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 
@@ -165,6 +166,35 @@ TEST_CASE("broken files give a reason, and claims are not believed") {
         const std::string good = base64(block(points, false));
         CHECK(problem(replaced(packed, good, base64(header))).find("damaged or cut off") != std::string::npos);
     }
+}
+
+TEST_CASE("arrays of many blocks, and errors after them name their line") {
+    TetMesh many = two_tets();
+    const TetMesh two = many;
+    for (int copy = 1; copy < 30000; ++copy) {
+        const auto first = static_cast<int>(many.points.size());
+        for (const Vec3& p : two.points) many.points.push_back({p.x + 3 * copy, p.y, p.z / 3});
+        for (const int node : two.nodes) many.nodes.push_back(first + node);
+        many.region.insert(many.region.end(), two.region.begin(), two.region.end());
+    }
+    VtuData data;
+    data.cells.push_back({"region", 1, std::vector<std::int32_t>(many.region.begin(), many.region.end())});
+    const std::string text = *vtu_text(many, many.points, data);
+    const Result<TetMesh> back = parse_vtu(text, "a.vtu");
+    REQUIRE_MESSAGE(back, (back ? "" : back.error().message));
+    CHECK(back->tet_count() == many.tet_count());
+    CHECK(back->region == many.region);
+    CHECK(volume(*back) == near(volume(many), {.relative = 1e-12}));
+    const auto line_of = [&](std::string_view word) {
+        return std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<long>(text.find(word)), '\n'));
+    };
+    CHECK(problem(replaced(text, "</CellData>", "</Oops>")).find("a.vtu:" + line_of("</CellData>") + ": is not") == 0);
+    const std::string types = "type=\"UInt8\" Name=\"types\"";
+    CHECK(problem(replaced(text, types, "type=\"UInt9\" Name=\"types\"")).find("a.vtu:" + line_of(types)) == 0);
+    // A byte of a block in the middle of the connectivity.
+    std::string damaged = text;
+    damaged[text.find("Name=\"connectivity\"") + 40000] ^= 1;
+    CHECK(problem(damaged).find("damaged or cut off") != std::string::npos);
 }
 
 TEST_CASE("no beginning of a file makes the reader fall over") {

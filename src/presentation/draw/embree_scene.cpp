@@ -4,32 +4,36 @@
 
 namespace pliant::report {
 
-EmbreeDevice::EmbreeDevice() : device_(rtcNewDevice("set_affinity=0"), &rtcReleaseDevice) {}
+EmbreeDevice::EmbreeDevice()
+    : device_(library_.is_there() ? library_.new_device("set_affinity=0") : nullptr, library_.release_device) {}
 
 Status EmbreeDevice::status() const {
+    if (!library_.is_there()) return failure("pictures: the library {} is not installed", EmbreeLibrary::name());
     if (!device_) return failure("pictures: Embree cannot start on this machine");
-    if (const RTCError code = rtcGetDeviceError(device_.get()); code != RTC_ERROR_NONE) {
+    if (const RTCError code = library_.get_device_error(device_.get()); code != RTC_ERROR_NONE) {
         return failure("pictures: Embree reports error {}", static_cast<int>(code));
     }
     return {};
 }
 
 EmbreeScene::EmbreeScene(const EmbreeDevice& device)
-    : device_(device.get()), scene_(rtcNewScene(device_), &rtcReleaseScene) {
-    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+    : library_(&device.library()),
+      device_(device.get()),
+      scene_(library_->new_scene(device_), library_->release_scene) {
+    library_->set_scene_flags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
 }
 
 void EmbreeScene::attach(RTCGeometry geometry) {
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_.get(), geometry);
-    rtcReleaseGeometry(geometry);
+    library_->commit_geometry(geometry);
+    library_->attach_geometry(scene_.get(), geometry);
+    library_->release_geometry(geometry);
 }
 
 void EmbreeScene::add_triangles(std::span<const Vec3> points, std::span<const std::array<int, 3>> triangles) {
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+    RTCGeometry geometry = library_->new_geometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(library_->set_new_geometry_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                  3 * sizeof(float), points.size()));
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+    auto* indices = static_cast<unsigned*>(library_->set_new_geometry_buffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                                    3 * sizeof(unsigned), triangles.size()));
     if (vertices != nullptr && indices != nullptr) {
         for (const Vec3& p : points) {
@@ -44,26 +48,26 @@ void EmbreeScene::add_triangles(std::span<const Vec3> points, std::span<const st
 
 void EmbreeScene::add_tube(std::span<const Vec3> points, double radius) {
     const auto fill = [&](RTCGeometry geometry, double r) {
-        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+        auto* vertices = static_cast<float*>(library_->set_new_geometry_buffer(
             geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), points.size()));
         for (std::size_t i = 0; vertices != nullptr && i < points.size(); ++i) {
             for (std::size_t k = 0; k < 3; ++k) *vertices++ = static_cast<float>(points[i][k]);
             *vertices++ = static_cast<float>(r);
         }
     };
-    RTCGeometry curve = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
+    RTCGeometry curve = library_->new_geometry(device_, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
     fill(curve, radius);
     auto* segments = static_cast<unsigned*>(
-        rtcSetNewGeometryBuffer(curve, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(unsigned), points.size() - 1));
+        library_->set_new_geometry_buffer(curve, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(unsigned), points.size() - 1));
     for (unsigned i = 0; segments != nullptr && i + 1 < points.size(); ++i) segments[i] = i;
     attach(curve);
-    RTCGeometry beads = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    RTCGeometry beads = library_->new_geometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
     fill(beads, 1.7 * radius);
     attach(beads);
 }
 
 void EmbreeScene::commit() {
-    rtcCommitScene(scene_.get());
+    library_->commit_scene(scene_.get());
 }
 
 Hit EmbreeScene::closest(const Vec3& origin, const Vec3& direction) const {
@@ -79,7 +83,7 @@ Hit EmbreeScene::closest(const Vec3& origin, const Vec3& direction) const {
     ray.ray.tfar = std::numeric_limits<float>::infinity();
     ray.ray.mask = ~0U;
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_.get(), &context, &ray);
+    library_->intersect_1(scene_.get(), &context, &ray);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     return {true,
             ray.ray.tfar,
@@ -105,7 +109,7 @@ std::array<bool, 8> EmbreeScene::blocked(const Vec3& origin, std::span<const Vec
         rays.tfar[i] = static_cast<float>(reach);
         rays.mask[i] = ~0U;
     }
-    rtcOccluded8(all.data(), scene_.get(), &context, &rays);
+    library_->occluded_8(all.data(), scene_.get(), &context, &rays);
     std::array<bool, 8> result{};
     for (std::size_t i = 0; i < 8; ++i) result[i] = rays.tfar[i] < 0;
     return result;

@@ -1,8 +1,6 @@
 // Embree's device and scenes with owners, and the few questions that the pictures ask of them.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <array>
 #include <memory>
 #include <span>
@@ -10,6 +8,7 @@
 
 #include "base/core/error.hpp"
 #include "base/core/vec3.hpp"
+#include "presentation/draw/embree_library.hpp"
 
 namespace pliant::report {
 
@@ -26,10 +25,13 @@ class EmbreeDevice {
 public:
     EmbreeDevice();
     [[nodiscard]] RTCDevice get() const { return device_.get(); }
+    [[nodiscard]] const EmbreeLibrary& library() const { return library_; }
+    /// Where it is not sound, scenes are not to be made.
     [[nodiscard]] Status status() const;
 
 private:
-    std::unique_ptr<RTCDeviceTy, void (*)(RTCDevice)> device_;
+    EmbreeLibrary library_;
+    std::unique_ptr<RTCDeviceTy, decltype(&rtcReleaseDevice)> device_;
 };
 
 class EmbreeScene {
@@ -47,8 +49,9 @@ public:
 
 private:
     void attach(RTCGeometry geometry);
+    const EmbreeLibrary* library_;
     RTCDevice device_;
-    std::unique_ptr<RTCSceneTy, void (*)(RTCScene)> scene_;
+    std::unique_ptr<RTCSceneTy, decltype(&rtcReleaseScene)> scene_;
 };
 
 }  // namespace pliant::report

@@ -38,18 +38,19 @@ std::size_t cell(int columns, std::size_t row, std::size_t column) {
 /// Everything that is computed once per picture.
 class Renderer {
 public:
-    Renderer(const Scene& scene, const Camera& camera, int width, int height)
+    /// Precondition: the device is sound.
+    Renderer(const EmbreeDevice& device, const Scene& scene, const Camera& camera, int width, int height)
         : scene_(scene),
           camera_(camera),
           width_(width),
           height_(height),
           reach_(reach_of(scene)),
           lighting_(camera, reach_),
-          body_(device_),
-          things_(device_),
-          shade_(device_),
-          cables_(device_),
-          ghost_(device_) {
+          body_(device),
+          things_(device),
+          shade_(device),
+          cables_(device),
+          ghost_(device) {
         body_.add_triangles(scene.body.positions, scene.surface->triangles);
         for (const Cable& cable : scene.cables) {
             if (cable.points.size() >= 2) cables_.add_tube(cable.points, scene.cable_radius_m);
@@ -70,8 +71,6 @@ public:
         ghost_albedo_ = to_linear(ghost_colour);
         thing_albedo_ = to_linear(obstacle_colour);
     }
-
-    [[nodiscard]] Status status() const { return device_.status(); }
 
     /// At every fourth cell, and at those between where these differ.
     void prepare_floor(const Progress& progress) {
@@ -217,7 +216,6 @@ private:
     int width_, height_;
     double reach_;
     Lighting lighting_;
-    EmbreeDevice device_;
     EmbreeScene body_, things_, shade_, cables_, ghost_;  // shade_: all that throws shadows
     std::vector<const Thing*> seen_;                      // in the order of things_
     std::vector<Colour> albedo_;
@@ -459,8 +457,11 @@ std::uint8_t byte(double v) {
 }  // namespace
 
 Result<Image> render(const Scene& scene, const Camera& camera, int width_px, int height_px, const Progress& progress) {
-    Renderer renderer(scene, camera, width_px, height_px);
-    if (Status status = renderer.status(); !status) return tl::unexpected(status.error());
+    const EmbreeDevice device;
+    if (Status status = device.status(); !status) return tl::unexpected(status.error());
+    Renderer renderer(device, scene, camera, width_px, height_px);
+    // A scene that found no memory is one that rays pass through.
+    if (Status status = device.status(); !status) return tl::unexpected(status.error());
     renderer.prepare_floor(progress);
     renderer.prepare_light(progress);
     Image image{width_px, height_px, std::vector<std::uint8_t>(static_cast<std::size_t>(width_px * height_px) * 3)};

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "base/core/aligned_array.hpp"
@@ -7,6 +8,7 @@
 #include "base/linalg/gmres.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/solver/body_rotation.hpp"
+#include "simulation/solver/corner_nesting.hpp"
 #include "simulation/solver/curvature.hpp"
 #include "simulation/solver/step_memory.hpp"
 #include "simulation/solver/tangent_inverse.hpp"
@@ -24,7 +26,9 @@ public:
           layout_(laplacian.tangent_layout()),
           analysis_(laplacian.analysis()),
           rotation_(system, laplacian) {
-        two_levels_ = !system.has_skew() && two_levels_are_quicker(layout_->pattern, laplacian.work());
+        corners_ = nest_in_corners(system.model());
+        if (corners_ && corners_->coarse_nodes > most_corners) corners_.reset();
+        two_levels_ = starts_on_two_levels();
         inverse_ = make_inverse();
     }
 
@@ -134,6 +138,7 @@ public:
 private:
     /// The skew part wants the inverse of the very tangent.
     [[nodiscard]] std::unique_ptr<TangentInverse> make_inverse() {
+        if (two_levels_ && corners_) return make_nested_inverse(layout_->pattern, *corners_);
         if (two_levels_) return make_two_level_inverse(layout_->pattern);
         if (!analysis_) analysis_ = linalg::analyse(layout_->pattern);
         return make_direct_inverse(analysis_, system_->has_skew());
@@ -285,8 +290,10 @@ private:
     }
 
     [[nodiscard]] bool starts_on_two_levels() const {
-        return !system_->has_skew() &&
-               two_levels_are_quicker(laplacian_->tangent_layout()->pattern, laplacian_->work());
+        if (system_->has_skew()) return false;
+        const linalg::SymmetricPattern& pattern = laplacian_->tangent_layout()->pattern;
+        return corners_ ? nested_levels_are_quicker(pattern, laplacian_->work())
+                        : two_levels_are_quicker(pattern, laplacian_->work());
     }
 
     /// False if the inverse was made anew for it.
@@ -328,6 +335,7 @@ private:
     static constexpr double share_of_wanted = 0.02, largest_solution_error = 0.05;
     static constexpr double straight_share = 0.05;  // of what is wanted, that a step may spoil by not turning
     static constexpr double well_led = 0.3;
+    static constexpr int most_corners = 12000;  // that make one factor; groups of nodes are fewer
     static constexpr std::size_t most_remembered = 20000;
     static constexpr double skew_tolerance = 1e-8;
     static constexpr int skew_limit = 60;
@@ -344,6 +352,7 @@ private:
         const State* state;
         const Controls* controls;
     } at_{};                                  ///< what is at hand, until it is solved with
+    std::optional<linalg::Nesting> corners_;  ///< of quadratic tets, where they make the second level
     double enough_ = 0;                       ///< error of the next solution
     bool straight_ = false;                   ///< the next step need not turn
     Eigen::VectorXd positions_;               ///< of the free nodes, where the tangent was made

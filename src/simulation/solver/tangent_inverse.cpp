@@ -103,7 +103,8 @@ private:
 
 class TwoLevelInverse final : public TangentInverse {
 public:
-    explicit TwoLevelInverse(const linalg::SymmetricPattern& pattern) : levels_(pattern) {}
+    TwoLevelInverse(linalg::TwoLevel levels, int most_iterations)
+        : levels_(std::move(levels)), most_iterations_(most_iterations) {}
 
     [[nodiscard]] bool set(std::span<const double> values, const Eigen::VectorXd& positions, Effort) override {
         return levels_.set(values, {positions.data(), static_cast<std::size_t>(positions.size())});
@@ -111,7 +112,7 @@ public:
 
     [[nodiscard]] Outcome solve(Eigen::MatrixXd& columns, double error) override {
         const int count = static_cast<int>(columns.cols());
-        switch (levels_.solve(view(columns), count, std::max(error, least_error), most_iterations)) {
+        switch (levels_.solve(view(columns), count, std::max(error, least_error), most_iterations_)) {
             case linalg::TwoLevel::Outcome::solved:
                 return Outcome::solved;
             case linalg::TwoLevel::Outcome::indefinite:
@@ -132,8 +133,8 @@ public:
     [[nodiscard]] double factorisation_cost() const override { return 0; }
 
 private:
-    static constexpr int most_iterations = 100;  // ten do in a usual body
     linalg::TwoLevel levels_;
+    int most_iterations_;
 };
 
 }  // namespace
@@ -144,15 +145,33 @@ std::unique_ptr<TangentInverse> make_direct_inverse(std::shared_ptr<const linalg
 }
 
 std::unique_ptr<TangentInverse> make_two_level_inverse(const linalg::SymmetricPattern& pattern) {
-    return std::make_unique<TwoLevelInverse>(pattern);
+    constexpr int most_iterations = 100;  // ten do in a usual body
+    return std::make_unique<TwoLevelInverse>(linalg::TwoLevel(pattern), most_iterations);
+}
+
+std::unique_ptr<TangentInverse> make_nested_inverse(const linalg::SymmetricPattern& pattern, linalg::Nesting corners) {
+    constexpr int most_iterations = 40;  // more of them, and a factor is quicker
+    return std::make_unique<TwoLevelInverse>(linalg::TwoLevel(pattern, std::move(corners)), most_iterations);
+}
+
+namespace {
+
+double pairs_of(const linalg::SymmetricPattern& pattern) {
+    return 2 * static_cast<double>(pattern.node_row.size()) - pattern.nodes;
+}
+
+}  // namespace
+
+bool nested_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work) {
+    constexpr double even = 6000;  // as below
+    return 27 * factor_work > even * pairs_of(pattern);
 }
 
 bool two_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work) {
     // Multiply-adds of a factorisation, for each pair of nodes, that take as long as two levels do (measured: 10,000),
     // and half as much again, because bodies that are hard to solve take two levels longer, but no factor.
     constexpr double even = 15000;
-    const double pairs = 2 * static_cast<double>(pattern.node_row.size()) - pattern.nodes;
-    return 27 * factor_work > even * pairs;
+    return 27 * factor_work > even * pairs_of(pattern);
 }
 
 }  // namespace pliant::sim

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/linalg/analysis.hpp"
+#include "base/linalg/nested_space.hpp"
 #include "base/linalg/sparse.hpp"
 
 namespace pliant::sim {
@@ -47,8 +48,13 @@ public:
 [[nodiscard]] std::unique_ptr<TangentInverse> make_direct_inverse(std::shared_ptr<const linalg::Analysis> analysis,
                                                                   bool exact);
 [[nodiscard]] std::unique_ptr<TangentInverse> make_two_level_inverse(const linalg::SymmetricPattern& pattern);
+/// Of quadratic tets, whose corners are the second level.
+[[nodiscard]] std::unique_ptr<TangentInverse> make_nested_inverse(const linalg::SymmetricPattern& pattern,
+                                                                  linalg::Nesting corners);
 /// Which of the two is quicker, by what is known of the pattern alone. `factor_work`: multiply-adds of a factorisation
 /// with one unknown a node.
 [[nodiscard]] bool two_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work);
+/// The same of the second level that the corners of quadratic tets make.
+[[nodiscard]] bool nested_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work);
 
 }  // namespace pliant::sim

@@ -1,0 +1,41 @@
+// The coarse one of two levels (TwoLevel): fewer unknowns, and how fields go there and back.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/linalg/block_rows.hpp"
+#include "base/linalg/sparse.hpp"
+
+namespace pliant::linalg {
+
+class CoarseLevel {
+public:
+    /// The fine level: the matrix A, as rows and as the `values` of its pattern, where its nodes are (nodes, 3), the
+    /// inverses of its diagonal blocks D (nodes, 9), and 4/3 of the inverse of the largest eigenvalue of D^-1 A.
+    struct Fine {
+        const BlockRows& matrix;
+        std::span<const double> values;
+        std::span<const double> positions;
+        const float* inverse_diagonal;
+        float damping;
+    };
+
+    virtual ~CoarseLevel() = default;
+
+    virtual void set(const Fine& fine) = 0;
+    /// Keeps all that was set, and turns it with the nodes, which are at `positions` now. False: it does not turn, but
+    /// is quickly set again. Precondition: set() was called.
+    [[nodiscard]] virtual bool turn(std::span<const double> positions) = 0;
+
+    /// Pattern and values of P^T A P, as of the last set(). Blocks of 3.
+    [[nodiscard]] virtual const SymmetricPattern& pattern() const = 0;
+    [[nodiscard]] virtual std::span<const double> values() const = 0;
+
+    /// coarse (size of the pattern) <- P^T fine.
+    virtual void restrict(const float* fine, double* coarse) = 0;
+    /// fine += P coarse.
+    virtual void add_prolonged(const double* coarse, float* fine) const = 0;
+};
+
+}  // namespace pliant::linalg

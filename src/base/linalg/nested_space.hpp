@@ -1,0 +1,54 @@
+// Of quadratic tets, the motions that linear tets on the same corners can do: a node on an edge moves as the mean of its
+// ends. The nodes of the coarse level are the corners (p-multigrid: Ronquist and Patera 1987).
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "base/core/aligned_array.hpp"
+#include "base/linalg/coarse_level.hpp"
+
+namespace pliant::linalg {
+
+/// (fine nodes) the coarse nodes of which each is the mean: one of them twice, where it is on the coarse level itself;
+/// -1: an end that does not move.
+struct Nesting {
+    int coarse_nodes = 0;
+    std::vector<std::array<int, 2>> ends;
+};
+
+class NestedSpace final : public CoarseLevel {
+public:
+    /// `fine`: of the matrix; its points, if it has any, say where the coarse nodes are. Precondition: blocks of
+    /// 3, and each coarse node is one of the fine ones.
+    NestedSpace(const SymmetricPattern& fine, Nesting nesting);
+
+    void set(const Fine& fine) override;
+    [[nodiscard]] bool turn(std::span<const double>) override { return false; }
+    [[nodiscard]] const SymmetricPattern& pattern() const override { return pattern_; }
+    [[nodiscard]] std::span<const double> values() const override { return coarse_; }
+    void restrict(const float* fine, double* coarse) override;
+    void add_prolonged(const double* coarse, float* fine) const override;
+
+private:
+    /// What a block of the fine level adds to one of the coarse level: `share` times itself, its transpose, or both;
+    /// of one on the diagonal the lower triangle counts.
+    struct Use {
+        int target;
+        float share;
+        enum Kind : int { as_it_is, transposed, both, symmetric } kind;
+    };
+    void find_pattern(const SymmetricPattern& fine);
+    void find_uses(const SymmetricPattern& fine);
+
+    Nesting nesting_;
+    SymmetricPattern pattern_;
+    Lists on_;                    ///< (coarse nodes) fine nodes that each moves
+    std::vector<int> use_start_;  ///< (fine pairs + 1)
+    std::vector<Use> use_;
+    std::vector<double> coarse_;
+    AlignedArray<double> sums_;  ///< (pieces, entries) work space
+};
+
+}  // namespace pliant::linalg

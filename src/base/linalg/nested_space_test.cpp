@@ -1,0 +1,115 @@
+#include "base/linalg/nested_space.hpp"
+
+#include <doctest/doctest.h>
+#include <tbb/global_control.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+
+using namespace pliant;
+using namespace pliant::linalg;
+
+namespace {
+
+/// Corners 0, 3, 5 and a held one; nodes between them: 1 (0, 3), 2 (3, 0 again), 4 (5, held), 6 (held, held).
+const Nesting nesting{3, {{0, 0}, {0, 1}, {1, 0}, {1, 1}, {2, -1}, {2, 2}, {-1, -1}}};
+
+/// All are coupled with all but 0 with 5, which only the nodes between others couple.
+SymmetricPattern pattern() {
+    return make_pattern(7, 3, {{0, 1, 2, 3, 4, 6}, {1, 2, 3, 4, 5, 6}});
+}
+
+/// Columns of P.
+Eigen::MatrixXd prolongation() {
+    Eigen::MatrixXd P = Eigen::MatrixXd::Zero(21, 9);
+    for (int i = 0; i < 7; ++i) {
+        for (const int c : nesting.ends[static_cast<std::size_t>(i)]) {
+            if (c >= 0) P.block<3, 3>(3 * i, 3 * c) += 0.5 * Eigen::Matrix3d::Identity();
+        }
+    }
+    return P;
+}
+
+struct Matrix {
+    std::vector<double> values;
+    Eigen::MatrixXd dense;
+};
+
+/// Numbers without a pattern; what stands above the diagonal in its blocks does not count.
+Matrix numbers(const SymmetricPattern& p) {
+    Matrix m{std::vector<double>(p.entries()), Eigen::MatrixXd::Zero(3 * p.nodes, 3 * p.nodes)};
+    for (std::size_t k = 0; k < m.values.size(); ++k) m.values[k] = std::sin(12.9898 * static_cast<double>(k) + 1);
+    for (int j = 0; j < p.nodes; ++j) {
+        for (int k = p.node_start[j]; k < p.node_start[j + 1]; ++k)
+            m.dense.block<3, 3>(3 * p.node_row[k], 3 * j) = Eigen::Map<const Eigen::Matrix3d>(m.values.data() + 9 * k);
+    }
+    m.dense = Eigen::MatrixXd(m.dense.selfadjointView<Eigen::Lower>());
+    return m;
+}
+
+Eigen::MatrixXd dense(const SymmetricPattern& p, std::span<const double> values) {
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(3 * p.nodes, 3 * p.nodes);
+    for (int j = 0; j < p.nodes; ++j) {
+        for (int k = p.node_start[j]; k < p.node_start[j + 1]; ++k)
+            result.block<3, 3>(3 * p.node_row[k], 3 * j) = Eigen::Map<const Eigen::Matrix3d>(values.data() + 9 * k);
+    }
+    return result.selfadjointView<Eigen::Lower>();
+}
+
+void set(NestedSpace& space, const BlockRows& rows, const Matrix& m) {
+    space.set({rows, m.values, {}, nullptr, 0});
+}
+
+}  // namespace
+
+TEST_CASE("the matrix of the corners is that of the nodes for motions that corners can do") {
+    const SymmetricPattern fine = pattern();
+    const Matrix m = numbers(fine);
+    NestedSpace space(fine, nesting);
+    set(space, BlockRows(fine), m);
+    const Eigen::MatrixXd P = prolongation();
+    const Eigen::MatrixXd expected = P.transpose() * m.dense * P;
+    CHECK((dense(space.pattern(), space.values()) - expected).cwiseAbs().maxCoeff() < 1e-14 * m.dense.norm());
+}
+
+TEST_CASE("fields go to the corners and back by the same weights") {
+    NestedSpace space(pattern(), nesting);
+    const Eigen::MatrixXd P = prolongation();
+    const Eigen::VectorXf fine = Eigen::VectorXf::LinSpaced(21, -1, 2);
+    Eigen::VectorXd coarse(9);
+    space.restrict(fine.data(), coarse.data());
+    CHECK((coarse - P.transpose() * fine.cast<double>()).norm() < 1e-6);
+    Eigen::VectorXf back = fine;
+    space.add_prolonged(coarse.data(), back.data());
+    CHECK((back.cast<double>() - fine.cast<double>() - P * coarse).norm() < 1e-5);
+}
+
+TEST_CASE("long sums are the same bits on any number of threads") {
+    // A chain of corners with a node between each two.
+    constexpr int corners = 3000;
+    Nesting chain{corners, {}};
+    std::vector<std::vector<int>> cliques;
+    for (int c = 0; c < corners; ++c) {
+        chain.ends.push_back({c, c});
+        if (c + 1 < corners) chain.ends.push_back({c, c + 1});
+        if (c + 1 < corners) cliques.push_back({2 * c, 2 * c + 1, 2 * c + 2});
+    }
+    const SymmetricPattern fine = make_pattern(2 * corners - 1, 3, Lists(cliques));
+    const Matrix m{[&] {
+                       std::vector<double> values(fine.entries());
+                       for (std::size_t k = 0; k < values.size(); ++k)
+                           values[k] = std::sin(12.9898 * static_cast<double>(k));
+                       return values;
+                   }(),
+                   {}};
+    std::vector<double> first;
+    for (const std::size_t threads : {1, 2, 4}) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        NestedSpace space(fine, chain);
+        set(space, BlockRows(fine), m);
+        const std::vector<double> values(space.values().begin(), space.values().end());
+        if (threads == 1) first = values;
+        CHECK(values == first);
+    }
+}
