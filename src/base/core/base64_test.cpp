@@ -28,8 +28,7 @@ TEST_CASE("base64 is read back, piece after piece, and wrong signs are noticed")
     CHECK(pliant::base64_decoded(lines, 512) == all + all);
     CHECK(pliant::base64_decoded(base64(all) + base64(all), 512) == all + all);
     CHECK(pliant::base64_decoded(base64(all + all), 300) == (all + all).substr(0, 300));
-    for (std::size_t at = 0; at < 40; ++at)
-        CHECK_FALSE(pliant::base64_decoded(base64(all).replace(at, 1, "*"), 256));
+    for (std::size_t at = 0; at < 40; ++at) CHECK_FALSE(pliant::base64_decoded(base64(all).replace(at, 1, "*"), 256));
     CHECK_FALSE(pliant::base64_decoded("Zm9v", 4));
     CHECK_FALSE(pliant::base64_decoded("Zm<9v", 3));
     CHECK_FALSE(pliant::base64_decoded("Zm9v", std::size_t{1} << 60));

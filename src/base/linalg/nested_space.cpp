@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t grain = 1024;
 constexpr std::size_t pieces = 4;  // of the fine pairs, with sums of their own
 
-/// Calls visit(pair, column, a, b) for each pair of fine nodes and each end a of its row and b of its column that moves.
+/// Calls visit(pair, column, a, b) for each pair of fine nodes and each end a of its row and b of its column that
+/// moves.
 template <class Visit>
 void for_pairs(const SymmetricPattern& fine, const Nesting& nesting, const Visit& visit) {
     for (int j = 0; j < fine.nodes; ++j) {

@@ -1,5 +1,5 @@
-// Of quadratic tets, the motions that linear tets on the same corners can do: a node on an edge moves as the mean of its
-// ends. The nodes of the coarse level are the corners (p-multigrid: Ronquist and Patera 1987).
+// Of quadratic tets, the motions that linear tets on the same corners can do: a node on an edge moves as the mean of
+// its ends. The nodes of the coarse level are the corners (p-multigrid: Ronquist and Patera 1987).
 #pragma once
 
 #include <array>

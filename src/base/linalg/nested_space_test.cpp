@@ -6,7 +6,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-
 using namespace pliant;
 using namespace pliant::linalg;
 

@@ -169,8 +169,7 @@ void multiply_rows(const RowBlocks& matrix, std::size_t begin, std::size_t end, 
                    double* y) {
     HWY_DYNAMIC_DISPATCH(multiply_double)(matrix, begin, end, columns, x, y);
 }
-void multiply_rows(const RowBlocks& matrix, std::size_t begin, std::size_t end, int columns, const float* x,
-                   float* y) {
+void multiply_rows(const RowBlocks& matrix, std::size_t begin, std::size_t end, int columns, const float* x, float* y) {
     HWY_DYNAMIC_DISPATCH(multiply_float)(matrix, begin, end, columns, x, y);
 }
 

@@ -14,8 +14,8 @@ struct RowBlocks {
 };
 
 /// y (3 rows, columns) <- the rows from `begin` to `end` of the matrix times x (3 nodes, columns): of value + rest in
-/// double precision, of value alone in single. One column or two, whose numbers lie side by side: two take little longer
-/// than one. Precondition: two numbers after the end of x may be read.
+/// double precision, of value alone in single. One column or two, whose numbers lie side by side: two take little
+/// longer than one. Precondition: two numbers after the end of x may be read.
 void multiply_rows(const RowBlocks& matrix, std::size_t begin, std::size_t end, int columns, const double* x,
                    double* y);
 void multiply_rows(const RowBlocks& matrix, std::size_t begin, std::size_t end, int columns, const float* x, float* y);

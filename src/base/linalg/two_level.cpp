@@ -16,8 +16,8 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::size_t grain = 4096;     // numbers that one core takes at a time
-constexpr int degree = 2;               // of the polynomial that smooths
+constexpr std::size_t grain = 4096;  // numbers that one core takes at a time
+constexpr int degree = 2;            // of the polynomial that smooths
 // Of the spectrum, from the top, where the coarse level is that of groups, and that of corners.
 constexpr float smoothed_of_groups = 0.06F, smoothed_of_corners = 0.06F;
 constexpr int first_powers = 12, later_powers = 1;
@@ -117,7 +117,7 @@ struct TwoLevel::State {
     AlignedArray<float> inverse_diagonal;
     std::size_t coarse_size;
     std::vector<double> coarse_side;  ///< (columns, coarse unknowns)
-    Rough top;  ///< eigenvector of D^-1 A with the largest eigenvalue, roughly
+    Rough top;                        ///< eigenvector of D^-1 A with the largest eigenvalue, roughly
     float largest = 0;
     bool powered = false;
     Vector residual, direction, product, solution;
@@ -366,8 +366,8 @@ TwoLevel::TwoLevel(const SymmetricPattern& pattern) {
 }
 TwoLevel::TwoLevel(const SymmetricPattern& pattern, Nesting corners)
     : state_(std::make_unique<State>(pattern, BlockRows(pattern),
-                                     std::make_unique<NestedSpace>(pattern, std::move(corners)), State::Kind::corners)) {
-}
+                                     std::make_unique<NestedSpace>(pattern, std::move(corners)),
+                                     State::Kind::corners)) {}
 TwoLevel::TwoLevel(TwoLevel&&) noexcept = default;
 TwoLevel& TwoLevel::operator=(TwoLevel&&) noexcept = default;
 TwoLevel::~TwoLevel() = default;

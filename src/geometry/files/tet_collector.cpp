@@ -98,9 +98,9 @@ Status TetCollector::add(std::span<const std::int64_t> nodes, std::int64_t regio
     if (nodes.size() == 10) mesh_.order = 2;
     // Neighbours in a file mostly are of one region.
     const bool as_before = !mesh_.region.empty() && region == last_region_;
-    mesh_.region.push_back(
-        as_before ? mesh_.region.back()
-                  : region_of_.try_emplace(region, static_cast<int>(region_of_.size())).first->second);
+    mesh_.region.push_back(as_before
+                               ? mesh_.region.back()
+                               : region_of_.try_emplace(region, static_cast<int>(region_of_.size())).first->second);
     last_region_ = region;
     return {};
 }

@@ -8,8 +8,8 @@
 
 namespace pliant::report {
 
-/// The functions that are used, by their names there; all are there, or none. Once loaded it stays in the program, so that
-/// the next one of these costs nothing.
+/// The functions that are used, by their names there; all are there, or none. Once loaded it stays in the program, so
+/// that the next one of these costs nothing.
 class EmbreeLibrary {
 public:
     EmbreeLibrary();

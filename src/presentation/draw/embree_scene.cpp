@@ -31,10 +31,10 @@ void EmbreeScene::attach(RTCGeometry geometry) {
 
 void EmbreeScene::add_triangles(std::span<const Vec3> points, std::span<const std::array<int, 3>> triangles) {
     RTCGeometry geometry = library_->new_geometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(library_->set_new_geometry_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 3 * sizeof(float), points.size()));
-    auto* indices = static_cast<unsigned*>(library_->set_new_geometry_buffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                   3 * sizeof(unsigned), triangles.size()));
+    auto* vertices = static_cast<float*>(library_->set_new_geometry_buffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), points.size()));
+    auto* indices = static_cast<unsigned*>(library_->set_new_geometry_buffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), triangles.size()));
     if (vertices != nullptr && indices != nullptr) {
         for (const Vec3& p : points) {
             for (std::size_t k = 0; k < 3; ++k) *vertices++ = static_cast<float>(p[k]);
@@ -57,8 +57,8 @@ void EmbreeScene::add_tube(std::span<const Vec3> points, double radius) {
     };
     RTCGeometry curve = library_->new_geometry(device_, RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
     fill(curve, radius);
-    auto* segments = static_cast<unsigned*>(
-        library_->set_new_geometry_buffer(curve, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(unsigned), points.size() - 1));
+    auto* segments = static_cast<unsigned*>(library_->set_new_geometry_buffer(
+        curve, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(unsigned), points.size() - 1));
     for (unsigned i = 0; segments != nullptr && i + 1 < points.size(); ++i) segments[i] = i;
     attach(curve);
     RTCGeometry beads = library_->new_geometry(device_, RTC_GEOMETRY_TYPE_SPHERE_POINT);
