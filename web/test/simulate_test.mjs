@@ -41,7 +41,7 @@ poisson_ratio = 0.45
 [[body]]
 name = "block"
 material = "soft"
-geometry = { subtract = [{ box = [[0, 0, 0], ["= length", 12, 12]] }, { box = [[8, 4, 4], [20, 8, 8]] }] }
+geometry = { difference = [{ box = [[0, 0, 0], ["= length", 12, 12]] }, { box = [[8, 4, 4], [20, 8, 8]] }] }
 
 [mesh]
 size = "6 mm"
@@ -364,6 +364,7 @@ test('a film is taken home as GIF', async (t) => {
   const seen = await page.evaluate(async (data) => {
     const decoder = 'ImageDecoder' in window ? new window.ImageDecoder({ type: 'image/gif', data: Uint8Array.from(atob(data), (c) => c.charCodeAt(0)) }) : null;
     if (!decoder) return null;
+    await decoder.tracks.ready;
     await decoder.completed;
     const count = decoder.tracks.selectedTrack.frameCount;
     const pixels = async (k) => {

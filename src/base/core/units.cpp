@@ -34,6 +34,9 @@ constexpr Unit dose_units[] = {{"mJ/cm^2", 10}, {"J/m^2", 1}};
 constexpr Unit stiffness_units[] = {{"N/mm", 1e3}, {"N/m", 1}, {"mN/mm", 1}};
 constexpr Unit inertia_units[] = {{"kg m^2", 1}, {"g mm^2", 1e-9}, {"kg mm^2", 1e-6}, {"g cm^2", 1e-7}};
 constexpr Unit torque_units[] = {{"N mm", 1e-3}, {"N m", 1}, {"mN m", 1e-3}, {"mN mm", 1e-6}};
+constexpr double per_degree = 180 / std::numbers::pi;
+constexpr Unit torsional_stiffness_units[] = {
+    {"N mm/rad", 1e-3}, {"N m/rad", 1}, {"N mm/deg", 1e-3 * per_degree}, {"N m/deg", per_degree}};
 
 struct DimensionInfo {
     std::string_view text;
@@ -76,8 +79,23 @@ DimensionInfo info(Dimension dimension) {
             return {"a moment of inertia such as \"40 g mm^2\"", inertia_units};
         case Dimension::torque:
             return {"a torque such as \"15 N mm\"", torque_units};
+        case Dimension::torsional_stiffness:
+            return {"a torsional stiffness such as \"15 N mm/rad\"", torsional_stiffness_units};
     }
     return {"", {}};
+}
+
+/// "N*mm" and "N * mm" are "N mm".
+std::string with_spaces(std::string_view unit) {
+    std::string text;
+    for (const char c : unit) {
+        if (c != '*' && c != ' ') {
+            text += c;
+        } else if (!text.ends_with(' ')) {
+            text += ' ';
+        }
+    }
+    return text;
 }
 
 std::string_view trim(std::string_view text) {
@@ -94,9 +112,10 @@ std::string_view describe(Dimension dimension) {
 
 Result<double> unit_factor(std::string_view unit, Dimension dimension) {
     const DimensionInfo known = info(dimension);
+    const std::string wanted = with_spaces(unit);
     std::string names;
     for (const Unit& u : known.units) {
-        if (u.name == unit) return u.factor;
+        if (u.name == wanted) return u.factor;
         names += (names.empty() ? "" : ", ") + std::string(u.name);
     }
     return input_error("unknown unit \"{}\"; here the units are {}", unit, names);

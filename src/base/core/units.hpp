@@ -24,7 +24,8 @@ enum class Dimension {
     dose,
     stiffness,
     torque,
-    inertia
+    inertia,
+    torsional_stiffness
 };
 
 /// The name of a dimension and an example of it, for messages: `"a length such as \"2.5 mm\""`.
@@ -34,7 +35,8 @@ enum class Dimension {
 /// space between them; the error names the units that would be right.
 [[nodiscard]] Result<double> parse_quantity(std::string_view text, Dimension dimension);
 
-/// The factor from a unit's name to SI, as in `length_unit = "mm"`.
+/// The factor from a unit's name to SI, as in `length_unit = "mm"`. A product is written with a space or a star:
+/// "N mm" is "N*mm".
 [[nodiscard]] Result<double> unit_factor(std::string_view unit, Dimension dimension);
 
 }  // namespace pliant

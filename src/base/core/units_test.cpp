@@ -12,6 +12,9 @@ TEST_CASE("quantities convert to SI") {
     CHECK(*parse_quantity(" 1040 kg/m^3 ", Dimension::density) == near(1040, {.relative = 1e-12}));
     CHECK(*parse_quantity("-1.5e1 mm", Dimension::length) == near(-0.015, {.relative = 1e-12}));
     CHECK(*parse_quantity("+24 in", Dimension::length) == near(0.6096, {.relative = 1e-12}));
+    for (const char* text : {"15 N mm", "15 N*mm", "15N * mm"})
+        CHECK(*parse_quantity(text, Dimension::torque) == near(0.015, {.relative = 1e-12}));
+    CHECK(*parse_quantity("1 N m/deg", Dimension::torsional_stiffness) == near(57.29577951308232, {.relative = 1e-12}));
 }
 
 TEST_CASE("a quantity without a unit, with a foreign unit or without a number is refused") {

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "base/core/letters.hpp"
 #include "base/core/text.hpp"
@@ -24,33 +23,6 @@ bool turns(Kind kind) {
 }
 bool has_axis(Kind kind) {
     return turns(kind) || kind == Kind::slider;
-}
-
-/// "0.2 N*m": a force and, after the star, a length.
-std::optional<double> torque_of(std::string_view text) {
-    const std::size_t star = text.rfind('*');
-    if (star == std::string_view::npos) return std::nullopt;
-    const Result<double> force = parse_quantity(trimmed(text.substr(0, star)), Dimension::force);
-    const Result<double> arm = unit_factor(trimmed(text.substr(star + 1)), Dimension::length);
-    return force && arm ? std::optional(*force * *arm) : std::nullopt;
-}
-
-/// The same with "/rad" or "/deg" behind it.
-std::optional<double> turning_stiffness_of(std::string_view text) {
-    const std::size_t slash = text.rfind('/');
-    if (slash == std::string_view::npos) return std::nullopt;
-    const auto torque = torque_of(text.substr(0, slash));
-    const Result<double> angle = unit_factor(trimmed(text.substr(slash + 1)), Dimension::angle);
-    return torque && angle ? std::optional(*torque / *angle) : std::nullopt;
-}
-
-template <class Parse>
-double read_turning(Reader& reader, std::string_view key, std::string_view example, const Parse& parse) {
-    const std::string text = reader.text(key, "");
-    if (!reader.has(key)) return 0;
-    const std::optional<double> value = parse(text);
-    if (!value) reader.problem(key, fmt::format("\"{}\" is not {}", text, example));
-    return value.value_or(0);
 }
 
 std::vector<std::string> names_to_join(const Robot& robot) {
@@ -98,8 +70,7 @@ void read_drive(Reader& reader, JointSpec& joint) {
     const bool has_place = reader.has(place), has_force = reader.has(force);
     double wanted = 0;
     if (has_place) wanted = reader.quantity(place, slides ? Dimension::length : Dimension::angle);
-    if (has_force && slides) wanted = reader.quantity(force, Dimension::force);
-    if (has_force && !slides) wanted = read_turning(reader, force, "a torque such as \"0.2 N*m\"", torque_of);
+    if (has_force) wanted = reader.quantity(force, slides ? Dimension::force : Dimension::torque);
     (void)reader.raw(place);
     (void)reader.raw(force);
     if (has_place && has_force) reader.problem("", fmt::format("takes one of {} and {}", place, force));
@@ -138,8 +109,7 @@ void read_joint(Reader& reader, Context& context, JointSpec& joint) {
     joint.radius = reader.quantity("radius", Dimension::length, 0) / context.robot.unit_m;
     if (reader.has("radius") && !(joint.radius > 0)) reader.problem("radius", "must be above zero");
     if (turns(joint.kind))
-        joint.stiffness =
-            read_turning(reader, "stiffness", "a stiffness of a hinge such as \"0.1 N*m/rad\"", turning_stiffness_of);
+        joint.stiffness = reader.quantity("stiffness", Dimension::torsional_stiffness, 0);
     else if (joint.kind == Kind::slider)
         joint.stiffness = reader.quantity("stiffness", Dimension::stiffness, 0);
     else if (reader.raw("stiffness") != nullptr)

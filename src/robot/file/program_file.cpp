@@ -45,13 +45,12 @@ Driven driven(ChamberSpec& chamber) {
     return d;
 }
 
-/// A torque has no dimension of its own: N m, as a plain number.
 Driven driven(JointSpec& joint) {
     Driven d{
         joint.name, {}, 0, joint.wanted->value.back(), -1e300, 1e300, [&](Curve c) { joint.wanted = std::move(c); }};
     const bool slides = joint.kind == JointSpec::Kind::slider;
     if (!joint.by_force) d.dimension = slides ? Dimension::length : Dimension::angle;
-    if (joint.by_force && slides) d.dimension = Dimension::force;
+    if (joint.by_force) d.dimension = slides ? Dimension::force : Dimension::torque;
     return d;
 }
 

@@ -47,10 +47,20 @@ Driven driven(const ChamberSpec& chamber) {
             ratio ? 1.0 : 0.0, [&](double time) { return chamber.target.at(time); }};
 }
 
+/// Precondition: it is driven.
+Driven driven(const JointSpec& joint) {
+    const bool slides = joint.kind == JointSpec::Kind::slider;
+    const char* unit = joint.by_force ? (slides ? "N" : "N m") : (slides ? "m" : "rad");
+    return {joint.name, unit, 0, [&](double time) { return joint.wanted->at(time); }};
+}
+
 std::vector<Driven> everything_driven(const Robot& robot) {
     std::vector<Driven> list;
     for (const CableSpec& cable : robot.cables) list.push_back(driven(cable));
     for (const ChamberSpec& chamber : robot.chambers) list.push_back(driven(chamber));
+    for (const JointSpec& joint : robot.joints) {
+        if (joint.wanted) list.push_back(driven(joint));
+    }
     const auto share = [&](const std::string& name, const Curve& curve) {
         list.push_back({name, "", 0, [&](double time) { return curve.at(time); }});
     };

@@ -138,3 +138,31 @@ TEST_CASE("a program of waypoints stands on the robot file and leads where it sa
     REQUIRE_FALSE(more);
     CHECK(test::holds(more.error().message, "mesh"));
 }
+
+TEST_CASE("a program of waypoints moves motors and sliders as the robot's own program does") {
+    const test::Folder folder("goals_joints");
+    const std::filesystem::path file = folder.path() / "arm.toml";
+    const std::string arm = R"(
+name = "arm"
+length_unit = "mm"
+object = [{ name = "bar", geometry = { box = [[0, -5, -5], [100, 5, 5]] }, mass = "10 g" },
+          { name = "car", geometry = { box = [[0, 40, 0], [10, 50, 10]] }, mass = "10 g" }]
+joint = [{ name = "elbow", kind = "motor", between = ["world", "bar"], point = [0, 0, 0], axis = [0, 1, 0], torque = "4 N*mm" },
+         { name = "rail", kind = "slider", between = ["world", "car"], point = [5, 45, 5], axis = [1, 0, 0], position = "3 mm" }]
+[program]
+time_step = "10 ms"
+key = [{ time = "1 s", elbow = "15 N mm", rail = "2 mm" }, { time = "2 s", elbow = "5 N mm" }]
+)";
+    std::ofstream(file) << arm;
+    const auto robot = load_robot(file);
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    const auto text = program_text(*robot, file, {}, folder.path(), {{0.5, {}}, {2, {}}}, 1, 1e-5);
+    REQUIRE_MESSAGE(text, (text ? "" : text.error().message));
+    std::ofstream(folder.path() / "program.toml") << *text;
+    const auto led = load_robot(folder.path() / "program.toml");
+    REQUIRE_MESSAGE(led, (led ? "" : led.error().message));
+    // Waypoint k is reached at k + 1 s.
+    CHECK(led->joints[0].wanted->at(1) == near(7.5e-3, {.relative = 1e-12}));
+    CHECK(led->joints[0].wanted->at(2) == near(5e-3, {.relative = 1e-12}));
+    CHECK(led->joints[1].wanted->at(1) == near(1e-3, {.relative = 1e-12}));
+}
