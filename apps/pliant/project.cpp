@@ -80,7 +80,8 @@ Status list_displays(const Output& output) {
 
 Status release(const Options& options) {
     const std::optional<int> display = host::display_number(options.where);
-    if (!display) return input_error("--release: \"{}\" is no display; displays are numbers (--list)", options.where);
+    if (!display)
+        return input_error("--release: \"{}\" is not a display; displays are numbers (--list)", options.where);
     const Result<bool> released = host::release_display(*display);
     if (!released) return tl::unexpected(released.error());
     if (options.output.json && options.pattern.empty() && options.image.empty())

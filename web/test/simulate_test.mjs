@@ -140,7 +140,7 @@ test('files that no reader takes, that are there already, or that have a strange
     ['broken.stl', boxStl([1, 1, 1]).slice(0, 200), /^broken\.stl:/],
     ['noise.step', 'nothing', /^noise\.step:/],
     ['.hidden.stl', boxStl([1, 1, 1]), /a plain name/],
-    ['notes.txt', 'hello', /is no geometry that Pliant reads/],
+    ['notes.txt', 'hello', /is not geometry that Pliant reads/],
   ]) {
     await pick.setInputFiles(file(name, content));
     await refused.waitFor(long);

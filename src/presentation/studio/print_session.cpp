@@ -524,7 +524,7 @@ Status check_device(const std::string& device) {
             "device: there is no {}; is the machine plugged in and switched on? A port looks like /dev/ttyACM0",
             device);
     if (!real.string().starts_with("/dev/") || !std::filesystem::is_character_file(real, error))
-        return input_error("device: {} is no serial port; one such as /dev/ttyACM0 is needed", device);
+        return input_error("device: {} is not a serial port; one such as /dev/ttyACM0 is needed", device);
     return {};
 }
 

@@ -81,8 +81,8 @@ TEST_CASE("what cannot be taken is refused with its reason, and the machine at h
         return b.session.take_port(b.order, port).error().message;
     };
     CHECK(holds(refused_port("/dev/no_such_port"), "device: there is no /dev/no_such_port"));
-    CHECK(holds(refused_port(b.order.job.string()), "is no serial port"));  // would be written to
-    CHECK(holds(refused_port("/dev"), "is no serial port"));
+    CHECK(holds(refused_port(b.order.job.string()), "is not a serial port"));  // would be written to
+    CHECK(holds(refused_port("/dev"), "is not a serial port"));
     for (const double speed : {0.0, nan}) CHECK(holds(b.session.set_speed(speed).error().message, "speed: "));
     CHECK(holds(b.session.set_door(true).error().message, "has no door"));
     CHECK(b.about()["taken"] == 1);

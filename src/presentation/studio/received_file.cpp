@@ -95,7 +95,7 @@ Status check_geometry_name(std::string_view name) {
     if (std::ranges::any_of(endings, [&](std::string_view e) { return low.ends_with(e) && low.size() > e.size(); }))
         return {};
     return input_error(
-        "\"{}\": is no geometry that Pliant reads by its ending; surfaces (.stl, .obj, .ply, .off), solids (.step, "
+        "\"{}\": is not geometry that Pliant reads by its ending; surfaces (.stl, .obj, .ply, .off), solids (.step, "
         ".stp, .3mf) and tet meshes (.vtk, .vtu, .msh, .mesh, .inp) are",
         name);
 }

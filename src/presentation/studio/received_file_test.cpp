@@ -94,7 +94,7 @@ TEST_CASE("names that lead elsewhere, hide or say nothing of a format are refuse
     }
     CHECK(holds(refused(b.send(std::string(200, 'x') + ".stl", tetra(10))), "at most 120 bytes"));
     for (const char* name : {"robot.toml", "job.zip", "a.stl.exe", "stl"})
-        CHECK(holds(refused(b.send(name, tetra(10))), "is no geometry that Pliant reads by its ending"));
+        CHECK(holds(refused(b.send(name, tetra(10))), "is not geometry that Pliant reads by its ending"));
     CHECK(b.files() == 0);
 }
 

@@ -198,7 +198,7 @@ Status Journal::read_all() {
     auto parsed = parse_journal(text, path_.string());
     if (!parsed) return tl::unexpected(parsed.error());
     if (parsed->records.empty() && !text.empty() && text.find('\n') != std::string::npos)
-        return input_error("{}: this is no journal; give another name with --journal", path_.string());
+        return input_error("{}: this is not a journal; give another name with --journal", path_.string());
     if (parsed->good_bytes < text.size() && ::ftruncate(file_.number(), static_cast<off_t>(parsed->good_bytes)) != 0)
         return failure("{}: {}", path_.string(), std::strerror(errno));
     good_bytes_ = parsed->good_bytes;

@@ -24,7 +24,7 @@ NodeSelector read_nodes(Reader& reader) {
     NodeSelector selector;
     for (const double value : reader.numbers("nodes")) {
         if (value < 0 || value != std::floor(value) || value > 2e9)
-            reader.problem("nodes", "holds a value that is no node number");
+            reader.problem("nodes", "holds a value that is not a node number");
         else
             selector.nodes.push_back(static_cast<int>(value));
     }

@@ -47,7 +47,7 @@ Status read_scatters(const CsvTable& table, Header& header) {
         name.remove_suffix(scatter_ending.size());
         const auto of = std::ranges::find(header.channels, name, &Channel::column);
         if (of == header.channels.end())
-            return input_error("{}: column \"{}\" is the scatter of \"{}\", which is no column here",
+            return input_error("{}: column \"{}\" is the scatter of \"{}\", which is not a column of the table",
                                table.place(table.header_line), table.columns[c], name);
         header.columns[static_cast<std::size_t>(of - header.channels.begin())].scatter = c;
     }

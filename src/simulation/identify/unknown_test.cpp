@@ -81,7 +81,7 @@ TEST_CASE("what is no unknown is said in one line") {
           "\"material.soft.youngs_modulus\"?");
     CHECK(problem(bar, "mesh.size").starts_with("mesh.size: the robot has no such number that could be found"));
     CHECK(problem(bar, "material.soft.youngs_modulus=1 MPa") ==
-          "material.soft.youngs_modulus: \"1 MPa\" is no range; write LOW..HIGH, as in \"1 kPa..2 kPa\"");
+          "material.soft.youngs_modulus: \"1 MPa\" is not a range; write LOW..HIGH, as in \"1 kPa..2 kPa\"");
     CHECK(problem(bar, "material.soft.youngs_modulus=1..2")
               .starts_with("material.soft.youngs_modulus: \"1\" has no unit"));
     CHECK(problem(bar, "material.soft.youngs_modulus=2 MPa..1 MPa") ==
