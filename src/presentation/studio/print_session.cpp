@@ -373,7 +373,7 @@ Status PrintSession::leave() {
     std::shared_ptr<Machine> machine = this->machine();
     if (!machine) return {};
     if (under_way(machine->control.snapshot().state))
-        return failure("a print is under way: cancel it before the machine is given back");
+        return failure("a print is under way: cancel it before you disconnect");
     {
         const std::lock_guard lock(mutex_);
         machine_.reset();
@@ -389,7 +389,7 @@ Status PrintSession::discard() {
     const auto machine = this->machine();
     if (!machine || !machine->twin) return failure("there is no virtual printer");
     const host::Snapshot now = machine->control.snapshot();
-    if (under_way(now.state) || !now.can_resume) return failure("no interrupted print waits");
+    if (under_way(now.state) || !now.can_resume) return failure("there is no interrupted print");
     std::error_code error;
     if (!std::filesystem::remove(machine->ready.job.journal, error) || error)
         return failure("{}: cannot be removed: {}", machine->ready.job.journal.string(), error.message());

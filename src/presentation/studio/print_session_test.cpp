@@ -149,7 +149,7 @@ TEST_CASE("a virtual print with a journal beside its job is gone on with by the 
     CHECK(b.session.part(0, 0).size() > 200);  // what was printed is there again
     REQUIRE(b.session.ask("POST", "/api/job", R"({"command":"start","resume":true})").status == 204);
     CHECK(Json::parse(b.verdict())["passed"] == true);
-    CHECK(b.session.discard().error().message == "no interrupted print waits");
+    CHECK(b.session.discard().error().message == "there is no interrupted print");
     REQUIRE(b.session.give_back().has_value());
 
     REQUIRE(write_file(b.order.journal, broken_off).has_value());

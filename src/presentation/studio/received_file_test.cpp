@@ -118,9 +118,9 @@ TEST_CASE("what no reader takes, what is too large and what breaks off leaves no
     for (const bool known : {true, false})
         CHECK(holds(refused(b.send("big.stl", tetra(10), false, known, 300)), "are refused"));
     const ReadMore broken = [](char*, std::size_t) { return -1LL; };
-    CHECK(holds(refused(receive_geometry(b.project, "a.stl", false, 10, broken)), "the connection broke off"));
+    CHECK(holds(refused(receive_geometry(b.project, "a.stl", false, 10, broken)), "the connection was lost"));
     const ReadMore short_one = [](char*, std::size_t) { return 0LL; };
-    CHECK(holds(refused(receive_geometry(b.project, "a.stl", false, 10, short_one)), "the connection broke off"));
+    CHECK(holds(refused(receive_geometry(b.project, "a.stl", false, 10, short_one)), "the connection was lost"));
     CHECK(b.files() == 0);
 }
 

@@ -114,7 +114,7 @@ Status run_other(Reading& r, const Command& command) {
         return std::find(std::begin(list), std::end(list), command.number) != std::end(list);
     };
     const bool known = command.letter == 'G' ? knows(known_g) : knows(known_m);
-    return known ? Status{} : input_error("{}{} does not belong to the dialect", command.letter, command.number);
+    return known ? Status{} : input_error("{}{} is not a command that a job may hold", command.letter, command.number);
 }
 
 /// `N12 G1 X3*77` as it stands on the wire: only what it commands.

@@ -184,7 +184,7 @@ Result<Measurements> parse_measurements(std::string_view text, const std::string
     }
     if (std::ranges::all_of(result.values, &MeasuredValue::judged))
         return input_error("{}: {}", file,
-                           result.values.empty() ? "no row has a value" : "every row is kept to judge on, none to fit");
+                           result.values.empty() ? "no row has a value" : "all rows are held out, none is left to fit");
     return result;
 }
 

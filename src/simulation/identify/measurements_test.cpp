@@ -93,6 +93,6 @@ TEST_CASE("what is wrong is said with file and line") {
     check_problem("time,tip_x_mm,tip_x_mm_scatter\n1,59,\n", "m.csv:2: tip_x_mm_scatter \"\" is not a number");
     check_problem("time,use,tip_x_mm\n1,test,59\n", "m.csv:2: use \"test\" is neither fit nor judge");
     check_problem("time,tip_x_mm\n1,\n", "m.csv: no row has a value");
-    check_problem("time,use,tip_x_mm\n1,judge,59\n", "m.csv: every row is kept to judge on, none to fit");
+    check_problem("time,use,tip_x_mm\n1,judge,59\n", "m.csv: all rows are held out, none is left to fit");
     check_problem("time,middle-tap_angle_x_deg\n1,59\n", "m.csv:1: the robot has nothing that column");
 }

@@ -248,7 +248,7 @@ Result<Unknown> find_unknown(const robot::Robot& robot, std::string_view text) {
         std::vector<std::string> names;
         for (const Unknown& one : all) names.push_back(one.key);
         const std::string nearest = nearest_name(key, names);
-        return input_error("{}: the robot has no such number that could be found; {}", key,
+        return input_error("{}: the robot has no such parameter to find; {}", key,
                            nearest.empty() ? "it has " + join_names(names) : "did you mean \"" + nearest + "\"?");
     }
     Unknown unknown = *found;

@@ -494,7 +494,7 @@ TEST_CASE("slips in keys are named") {
     check_problem(key("time = 1\nflexor = 0.9"), "1 has no unit; write a time such as");
     check_problem(key("time = \"1 s\"\nflexor = 1.2"), "1.2 is not possible; a cable gets shorter: above 0, at most 1");
     check_problem(key("time = \"1 s\"\nflexor = \"8 N\""), "a finite number is needed");
-    check_problem(key("time = \"2 s\"\n[[program.key]]\ntime = \"1 s\""), "program.key[1].time: keys are in the order");
+    check_problem(key("time = \"2 s\"\n[[program.key]]\ntime = \"1 s\""), "program.key[1].time: times must increase");
     check_problem(with("steps = 3\n", "steps = 3\nduration = \"1 s\"\n[[program.key]]\ntime = \"2 s\"\nflexor = 0.9\n"),
                   "duration: ends before the last key");
     check_problem(with("steps = 3\n", "steps = 3\nduration = \"0 s\"\n"), "duration: must be above zero");

@@ -200,7 +200,7 @@ export const robotKeys: Record<string, Record<string, string>> = {
     center: '[x, y, z]',
     size: 'three lengths',
     inertia: 'three moments of inertia',
-    axes: 'two directions, square to each other',
+    axes: 'two directions at right angles',
     radius: 'length',
   },
   sensor: {
@@ -219,7 +219,7 @@ export const robotKeys: Record<string, Record<string, string>> = {
     point: '[x, y, z]',
     marker: 'name of a [[marker]]',
     object: 'name of a [[object]]',
-    axes: 'two directions, square to each other',
+    axes: 'two directions at right angles',
   },
   marker: {
     name: 'text',
