@@ -46,7 +46,7 @@ Status check_lights(const JournalFacts& facts, const machine::Printer& printer) 
     const auto allowed = [&](double seconds) { return seconds >= 0 && seconds <= printer.limits.exposure_s; };
     for (const auto& [step, light] : facts.lights) {
         if (!allowed(light.planned_s))
-            return input_error("the journal asks for {:g} s of light, {} allows up to {:g} s", light.planned_s,
+            return input_error("the journal asks for an exposure of {:g} s, {} allows up to {:g} s", light.planned_s,
                                printer.name, printer.limits.exposure_s);
     }
     for (const ChangeFact& change : facts.changes) {

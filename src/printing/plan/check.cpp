@@ -154,7 +154,7 @@ Status run_text(Reading& r, std::string_view line) {
 
 Status run_expose(Reading& r, const machine::Expose& expose) {
     if (expose.seconds > r.printer.limits.exposure_s) {
-        return input_error("{:g} s of light, the limit of {} is {:g} s", expose.seconds, r.printer.name,
+        return input_error("exposure of {:g} s, the limit of {} is {:g} s", expose.seconds, r.printer.name,
                            r.printer.limits.exposure_s);
     }
     if (Status status = r.interlock.light_on(r.moving); !status) return status;

@@ -66,5 +66,5 @@ TEST_CASE("the pump runs over the drain only, behind a fence, and not for ever")
     CHECK(holds(error_of(start + load + "M400\nM106 P1\n"), "the pump starts while the part is not over the drain"));
     CHECK(holds(error_of(push + "M400\nM106 P1\nG1 X0\n"), "line 12: a move away from the drain"));
     CHECK(holds(error_of(push + "M400\nM106 P1\nG4 S100\nG4 S100\n"), "line 13: the pump runs for over 120 s"));
-    CHECK(holds(error_of(start + load + "M400\n;@expose layer=0 material=0 seconds=61 image=a\n"), "61 s of light"));
+    CHECK(holds(error_of(start + load + "M400\n;@expose layer=0 material=0 seconds=61 image=a\n"), "exposure of 61 s"));
 }
