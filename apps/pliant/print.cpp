@@ -68,7 +68,7 @@ Result<int> print(Options& options) {
     if (options.twin && options.live.resume)
         return input_error("--resume needs --port DEVICE; the virtual printer of --twin ends with its command");
     if (!options.twin && options.live.projector.empty())
-        return input_error("say where the light comes from: --projector FOLDER");
+        return input_error("say where the light comes from: --projector DISPLAY or FOLDER");
     if (options.twin && !options.given_speed) return print_virtual(options.live, options.report_file);
     return print_live(options.live);
 }
@@ -93,7 +93,8 @@ void add_print(CLI::App& app, int& status) {
         ->type_name("FAULT")
         ->allow_extra_args(false);
     command->add_flag("--list-ports", options->list_ports, "list the serial ports");
-    command->add_option("--projector", live.projector, "folder whose shown.png is what the projector shows");
+    command->add_option("--projector", live.projector,
+                        "number of a display, or a folder whose shown.png is what the projector shows");
     command->add_flag("--resume", live.resume, "resume an interrupted print");
     command->add_option("--journal", live.journal, "journal file, in place of JOB.zip.journal");
     command->add_option("--assume-lit", live.assume_lit_s,
