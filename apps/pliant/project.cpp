@@ -240,7 +240,7 @@ void add_project(CLI::App& app, int& status) {
     command->add_flag("--release", options->release, "release the display, which otherwise stays black");
     command
         ->add_option("--measured", options->measured_mm,
-                     "X Y: measured width and height of the rectangle of the pattern border, in mm")
+                     "X Y: measured width and height of the rectangle in pattern border, in mm")
         ->expected(2);
     command->add_option("--mask-from", options->readings, "table of light readings, to make a mask from");
     command->add_option("--gamma", options->gamma, "gamma of the projector, for the mask; 1 if not given");

@@ -92,9 +92,9 @@ export const firstSteps = (): Step[] => {
       name: 'Remove part',
       body: () => (
         <ol class="reasons" data-testid="first-done">
-          <li>Disconnect if you like; the platform stays up and the part hangs clear of the vat.</li>
+          <li>Disconnect, or leave the platform up: the part hangs clear of the vat.</li>
           <li>Detach the part with a scraper; wash it in the cleaning solution, and let it dry.</li>
-          <li>Post-cure it under UV light, as its resin requires.</li>
+          <li>Post-cure it as its resin requires.</li>
           <li>Keep the report: it records what was printed, and how.</li>
         </ol>
       ),
