@@ -209,7 +209,8 @@ Result<std::vector<calibrate::ElongationRow>> one_test(const ElongationCommand& 
         {"--elongation", {&command.elongation, &test.elongation_m}},
         {"--joint", {&command.joint, &test.joint_m}}};
     for (const auto& [name, option] : options) {
-        if (option.first->empty()) return input_error("{} is missing; a test has four lengths", name);
+        if (option.first->empty())
+            return input_error("{} is missing; a test needs --length, --interface, --elongation and --joint", name);
         const Result<double> value = parse_quantity(*option.first, Dimension::length);
         if (!value) return input_error("{}: {}", name, value.error().message);
         *option.second = *value;
@@ -264,12 +265,15 @@ void add_ratio(CLI::App& parent, int& status) {
     auto c = std::make_shared<RatioCommand>();
     CLI::App* command = parent.add_subcommand("ratio", "the thesis' shape parameter for a ratio of materials");
     command->add_option("--ratios", c->options.ratios, "material ratios, stiff over soft")->delimiter(',')->required();
-    command->add_option("--strain", c->options.strain, "of the whole bar")->capture_default_str();
-    command->add_option("--poisson", c->options.poisson_ratio, "of the neo-Hookean reference")->capture_default_str();
-    command->add_option("--interface", c->interfaces, "where the stiff part ends, 0 to 1; several are compared")
+    command->add_option("--strain", c->options.strain, "strain of the whole bar")->capture_default_str();
+    command->add_option("--poisson", c->options.poisson_ratio, "Poisson ratio of the neo-Hookean reference")
+        ->capture_default_str();
+    command
+        ->add_option("--interface", c->interfaces,
+                     "share of the length at which the stiff part ends, 0 to 1; several are compared")
         ->delimiter(',')
         ->capture_default_str();
-    command->add_option("--cells", c->cells, "of the 100 x 10 x 10 mm bar, six tets each")
+    command->add_option("--cells", c->cells, "cells along x, y and z of the 100 x 10 x 10 mm bar, six tets each")
         ->delimiter(',')
         ->expected(3)
         ->capture_default_str();
@@ -282,11 +286,12 @@ void add_elongation(CLI::App& parent, int& status) {
     auto c = std::make_shared<ElongationCommand>();
     CLI::App* command = parent.add_subcommand("elongation", "ratio of two moduli from a bar of two materials (T3.7)");
     command->add_option("data", c->file, "CSV: length, interface, elongation and joint, each with its unit");
-    command->add_option("--length", c->length, "of the bar at rest, as \"100 mm\"");
-    command->add_option("--interface", c->interface, "from the held end to the joint, at rest");
-    command->add_option("--elongation", c->elongation, "of the bar");
-    command->add_option("--joint", c->joint, "how far the joint moves");
-    command->add_flag("--match", c->match, "also find the shape parameter with which the simulated bar does the same");
+    command->add_option("--length", c->length, "length of the bar at rest, as in \"100 mm\"");
+    command->add_option("--interface", c->interface, "distance from the held end to the joint at rest");
+    command->add_option("--elongation", c->elongation, "elongation of the bar");
+    command->add_option("--joint", c->joint, "displacement of the joint");
+    command->add_flag("--match", c->match,
+                      "also find the shape parameter with which a simulated bar gives the same displacement");
     add_files(*command, *c);
     command->footer(
         "Example: pliant calibrate elongation --length 100mm --interface 50mm --elongation 30mm --joint 5.14mm");
@@ -300,13 +305,17 @@ void add_tensile(CLI::App& parent, int& status) {
     command->add_option("--law", c->law, "elastic law")
         ->check(CLI::IsMember({"neo-hookean", "mooney-rivlin", "yeoh", "ogden"}))
         ->capture_default_str();
-    command->add_option("--terms", c->options.terms, "of Ogden's law")->check(CLI::Range(1, 3))->capture_default_str();
+    command->add_option("--terms", c->options.terms, "number of terms of Ogden's law")
+        ->check(CLI::Range(1, 3))
+        ->capture_default_str();
     command->add_option("--max-stretch", c->most_stretch, "ignore rows beyond this stretch")
         ->check(CLI::Range(1.0, 100.0));
-    command->add_option("--poisson", c->options.poisson_ratio, "for the robot file; the fit is incompressible")
+    command
+        ->add_option("--poisson", c->options.poisson_ratio,
+                     "Poisson ratio for the robot file; the fit is incompressible")
         ->check(CLI::Range(0.0, 0.4999))
         ->capture_default_str();
-    command->add_option("--name", c->name, "of the material (default: of the file)");
+    command->add_option("--name", c->name, "name of the material (default: that of the file)");
     add_files(*command, *c);
     command->footer("Example: pliant calibrate tensile pull.csv --law yeoh --max-stretch 3 -o fit");
     on_call(*command, status, [c] {

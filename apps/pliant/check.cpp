@@ -60,8 +60,9 @@ Result<std::string> check_robot(const std::string& file, Progress& progress) {
 Result<std::string> check_printer(const std::string& file) {
     const Result<machine::Printer> printer = read_printer(file);
     if (!printer) return tl::unexpected(printer.error());
-    return fmt::format("printer \"{}\": {} places, {} vats, {} x {} px", printer->name, printer->slot_count(),
-                       printer->vats.size(), printer->projector.width_px, printer->projector.height_px);
+    return fmt::format("printer \"{}\": {}, {}, {} x {} px", printer->name,
+                       counted(static_cast<std::size_t>(printer->slot_count()), "slot"),
+                       counted(printer->vats.size(), "vat"), printer->projector.width_px, printer->projector.height_px);
 }
 
 /// Robot and printer files are told apart by what only one of them has.

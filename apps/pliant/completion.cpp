@@ -29,7 +29,7 @@ bool takes_files(const OptionEntry& entry) {
 }
 
 void add_completion(CLI::App& app, int& status) {
-    CLI::App* command = app.add_subcommand("completion", "print what a shell loads to complete command lines");
+    CLI::App* command = app.add_subcommand("completion", "print the completion script of a shell");
     command->group("");  // for packages and profiles, not for every day
     auto shell = std::make_shared<std::string>();
     command->add_option("shell", *shell, "bash, zsh or fish; json: the table of all commands and options")

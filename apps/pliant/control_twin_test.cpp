@@ -752,7 +752,7 @@ TEST_CASE("a skipped layer gets no light") {
     b.start();
     CHECK(b.snapshot().finished);
     CHECK(b.lights() == 8);
-    CHECK(has_event(b, "log", "the light of layer 4 is left out"));
+    CHECK(has_event(b, "log", "the exposure of layer 4 is skipped"));
     CHECK(b.report().missing_layers == 1);
 }
 
@@ -842,7 +842,7 @@ TEST_CASE("another program that has spoken to the controller in between is notic
     b.twin->advance_to(b.twin->now() + 30);
     b.new_host();
     b.start({true, {}});
-    CHECK(b.last_error().find("another program has spoken") != std::string::npos);
+    CHECK(b.last_error().find("another program has used") != std::string::npos);
     b.must_finish({true, {std::nullopt, true}});
 }
 
@@ -853,7 +853,7 @@ TEST_CASE("another program whose line numbers are higher proves nothing") {
     b.twin->advance_to(b.twin->now() + 30);
     b.new_host();
     b.start({true, {}});
-    CHECK(b.last_error().find("another program has spoken") != std::string::npos);
+    CHECK(b.last_error().find("another program has used") != std::string::npos);
 }
 
 TEST_CASE("a host that has connected before it goes on is as sure as one that goes on at once") {

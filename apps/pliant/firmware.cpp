@@ -42,7 +42,8 @@ Status check_target(const std::filesystem::path& folder) {
     for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
         const std::string name = entry.path().filename().string();
         if (name != "Configuration.h" && name != "Configuration_adv.h" && name != record_name)
-            return input_error("--write {}: holds {} and is not overwritten; name a new folder", folder.string(), name);
+            return input_error("--write {}: holds {} and is not overwritten; choose another folder", folder.string(),
+                               name);
     }
     return {};
 }
@@ -79,8 +80,8 @@ Status write_marlin(const Options& options, const machine::Printer& printer) {
         options.write, machine::name_of(printer.controller.firmware), printer.name, files->changed, settings->size(),
         files->added);
     if (!files->author.empty())
-        fmt::print("note: {} is the work of {}; what the list does not name stays as it is there\n",
-                   configuration->path, files->author);
+        fmt::print("note: {} is by {}; settings that are not in the list are kept\n", configuration->path,
+                   files->author);
     return {};
 }
 
@@ -106,7 +107,7 @@ Status run_firmware(const Options& options) {
         printer->controller.firmware = *release;
     }
     if (options.write.empty() != options.marlin.empty())
-        return input_error("--write and --marlin go together: Marlin's own files in, files for the machine out");
+        return input_error("--write and --marlin go together: the source of Marlin in, configured files out");
     if (!options.write.empty()) return write_marlin(options, *printer);
     const Result<std::string> ini = machine::firmware_ini(*printer);
     if (!ini) return input_error("{}: {}", options.printer, ini.error().message);
@@ -126,12 +127,12 @@ Status run_firmware(const Options& options) {
 
 void add_firmware(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("firmware", "list what Marlin must be built with for a machine");
+    CLI::App* command = app.add_subcommand("firmware", "list the build settings of Marlin that a machine needs");
     command->add_option("printer", options->printer, "printer file (TOML)")->required();
     command->add_option("--release", options->release,
                         "release of Marlin: 2.1.1, 2.1.2 or 2.1.3 (default: controller.firmware of the printer file)");
     command->add_option("-o,--output", options->save, "file for the list (config.ini of Marlin)");
-    command->add_option("--marlin", options->marlin, "folder of that release's source, as downloaded");
+    command->add_option("--marlin", options->marlin, "folder with the source of that release, as downloaded");
     command->add_option("--write", options->write, "folder for complete configuration files, ready to be compiled");
     add_output_options(*command, options->output, true);
     command->footer(

@@ -1,4 +1,4 @@
-// pliant identify: finds numbers of a robot from measurements on it.
+// pliant identify: finds parameters of a robot from measurements.
 #include "pliant/identify.hpp"
 
 #include <fmt/core.h>
@@ -67,16 +67,18 @@ Result<int> identify(const Options& options) {
 
 void add_identify(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("identify", "finds numbers of a robot from measurements on it");
+    CLI::App* command = app.add_subcommand("identify", "find parameters of a robot from measurements");
     command->add_option("robot", options->robot, "robot file")->required();
-    command->add_option("--measured", options->measured, "CSV of what was measured, at which time of the program")
+    command->add_option("--measured", options->measured, "CSV of measurements, each row at a time of the program")
         ->required();
-    command->add_option("--unknown", options->unknowns, "key of a number to find, or KEY=LOW..HIGH; may be repeated")
+    command
+        ->add_option("--unknown", options->unknowns,
+                     "key of a parameter to find, or KEY=LOW..HIGH with bounds; may be repeated")
         ->type_name("KEY")
         ->allow_extra_args(false)
         ->required();
     command->add_option("--judge-on", options->judge_on,
-                        "rows to keep out of the fit and judge it on: every-second or second-half");
+                        "rows to hold out of the fit and validate it with: every-second or second-half");
     command->add_option("--set", options->assignments, "KEY=VALUE: change any key of the robot file")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);

@@ -170,7 +170,7 @@ TEST_CASE("interrupted while it draws, everything but the pictures is there") {
     REQUIRE(wait_for([&] { return fs::exists(folder / "out.partial/robot.glb"); }));
     program.send(SIGTERM);
     CHECK(program.exit_status() == 1);
-    CHECK(program.last_line() == finger + ": cancelled before all pictures were drawn; the other results are there");
+    CHECK(program.last_line() == finger + ": cancelled before all pictures were drawn; the other results are written");
     REQUIRE(fs::exists(out / "summary.json"));
     CHECK(summary_in(out)["converged"] == true);
     CHECK(summary_in(out)["steps"].size() == 2);

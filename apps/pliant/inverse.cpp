@@ -1,4 +1,4 @@
-// pliant inverse: what to pull so that the robot meets its goals.
+// pliant inverse: finds the inputs of the actuators with which the robot meets its goals.
 #include "pliant/inverse.hpp"
 
 #include <fmt/core.h>
@@ -60,14 +60,15 @@ Result<int> inverse(const Options& options) {
 
 void add_inverse(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("inverse", "what to pull so that the robot meets its goals");
+    CLI::App* command =
+        app.add_subcommand("inverse", "find the inputs of the actuators with which the robot meets its goals");
     command->add_option("robot", options->robot, "robot file (TOML) with [[goal]], and ranges of actuators")
         ->required();
     command->add_option("-o,--output", options->folder,
-                        "folder for the program that was found and its results; without it only a summary is printed");
+                        "folder for the resulting program and its results; without it only a summary is printed");
     command
         ->add_option("--starts", options->search.starts,
-                     "beginnings spread over the ranges that are tried where the way from rest does not reach")
+                     "starts spread over the ranges, tried where the path from rest does not reach the first waypoint")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
     command->add_option("--set", options->assignments, "KEY=VALUE: change any key, as in goal.reach.tolerance=\"1 mm\"")

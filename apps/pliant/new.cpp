@@ -78,7 +78,7 @@ Status check_name(const std::string& name) {
 
 Status make(const Options& options) {
     if (!options.robot.empty() && !options.printer.empty())
-        return input_error("give a template of a robot, or --printer with one of a printer");
+        return input_error("give the template of a robot, or --printer with that of a printer");
     const bool of_robots = options.printer.empty();
     const std::string& name = of_robots ? options.robot : options.printer;
     const auto files = of_robots ? studio::example_robots() : studio::example_printers();
@@ -105,9 +105,9 @@ Status make(const Options& options) {
 
 void add_new(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("new", "write a robot file, or a printer file, to begin with");
-    command->add_option("template", options->robot, "robot to begin with; without it all templates are listed");
-    command->add_option("--printer", options->printer, "write a printer file instead: the one to begin with");
+    CLI::App* command = app.add_subcommand("new", "write a robot file or a printer file from a template");
+    command->add_option("template", options->robot, "template of a robot; without it all templates are listed");
+    command->add_option("--printer", options->printer, "write a printer file instead, from this template");
     command->add_option("-o,--output", options->file, "file to write (.toml); TEMPLATE.toml if not given");
     command->add_option("--name", options->name, "name of the robot, or of the printer, in the file");
     add_output_options(*command, options->output, true);

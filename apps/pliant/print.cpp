@@ -66,9 +66,9 @@ Result<int> print(Options& options) {
         options.live.faults.push_back(*fault);
     }
     if (options.twin && options.live.resume)
-        return input_error("--resume needs a printer that is still there: --port DEVICE");
+        return input_error("--resume needs --port DEVICE; the virtual printer of --twin ends with its command");
     if (!options.twin && options.live.projector.empty())
-        return input_error("say where the light comes from: --projector FOLDER");
+        return input_error("say where the light comes from: --projector DISPLAY or FOLDER");
     if (options.twin && !options.given_speed) return print_virtual(options.live, options.report_file);
     return print_live(options.live);
 }
@@ -89,23 +89,25 @@ void add_print(CLI::App& app, int& status) {
         ->allow_extra_args(false);
     command
         ->add_option("--fault", options->faults,
-                     "with --twin: something that goes wrong, KIND[:N[:AMOUNT]], repeatable: " + twin::fault_names())
+                     "with --twin: a fault to inject, KIND[:N[:AMOUNT]], repeatable: " + twin::fault_names())
         ->type_name("FAULT")
         ->allow_extra_args(false);
     command->add_flag("--list-ports", options->list_ports, "list the serial ports");
-    command->add_option("--projector", live.projector, "folder whose shown.png is what the projector shows");
+    command->add_option("--projector", live.projector,
+                        "number of a display, or a folder whose shown.png is what the projector shows");
     command->add_flag("--resume", live.resume, "resume an interrupted print");
     command->add_option("--journal", live.journal, "journal file, in place of JOB.zip.journal");
     command->add_option("--assume-lit", live.assume_lit_s,
-                        "seconds that the interrupted exposure had lasted, where the journal does not know");
+                        "duration of the interrupted exposure in seconds, where the journal does not know it");
     command->add_flag("--assume-vats-untouched", live.assume_vats_untouched,
                       "another program has used the controller since, but moved no vat");
     command->add_option(
         "--emergency-line", live.emergency_line,
-        "line that an emergency stop switches, in place of the printer file's: dtr:PORT, rts:PORT, file:FILE (1 "
+        "line that an emergency stop switches, overriding the printer file: dtr:PORT, rts:PORT, file:FILE (1 "
         "stops), file-low:FILE (0 stops), none");
     command->add_flag("--yes", live.yes, "the vats are in place and filled: do not ask");
-    command->add_option("--after-layer", live.after_layer, "command after every layer, its number in PLIANT_LAYER");
+    command->add_option("--after-layer", live.after_layer,
+                        "command to run after every layer, with its number in PLIANT_LAYER");
     command->add_option("--report", live.report,
                         "HTML report of the print (.html); without --port and --twin: from the journal");
     CLI::Option* speed =

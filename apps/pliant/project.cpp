@@ -72,7 +72,7 @@ Status list_displays(const Output& output) {
         return {};
     }
     for (const host::PanelInfo& d : *displays) {
-        const std::string rate = d.refresh_hz > 0 ? fmt::format("{:g} Hz", d.refresh_hz) : "rate not known";
+        const std::string rate = d.refresh_hz > 0 ? fmt::format("{:g} Hz", d.refresh_hz) : "unknown refresh rate";
         fmt::print("display {}: {} x {} px, {}, {}\n", d.number, d.width_px, d.height_px, rate, d.name);
     }
     return {};
@@ -80,13 +80,14 @@ Status list_displays(const Output& output) {
 
 Status release(const Options& options) {
     const std::optional<int> display = host::display_number(options.where);
-    if (!display) return input_error("--release: \"{}\" is no display; displays are numbers (--list)", options.where);
+    if (!display)
+        return input_error("--release: \"{}\" is not a display; displays are numbers (--list)", options.where);
     const Result<bool> released = host::release_display(*display);
     if (!released) return tl::unexpected(released.error());
     if (options.output.json && options.pattern.empty() && options.image.empty())
         fmt::print("{}\n", nlohmann::json{{"released", *released}}.dump(1));
     else if (!options.output.quiet && !options.output.json)
-        fmt::print("{}\n", *released ? "released" : "it was not in use");
+        fmt::print("{}\n", *released ? "released" : "it was not held");
     return {};
 }
 
@@ -107,11 +108,11 @@ Status calibrate_size(const Options& options, const Setting& setting) {
     fmt::print("x {:.3f} um, y {:.3f} um per pixel: they differ by {:.2f} %\n", size->x_um, size->y_um,
                size->off_percent);
     if (p.pixel_um > 0)
-        fmt::print("the printer file says {:.3f} um: parts come out {:+.2f} %\n", p.pixel_um,
+        fmt::print("the printer file says {:.3f} um: parts come out {:+.2f} % in size\n", p.pixel_um,
                    100 * (size->pixel_um / p.pixel_um - 1));
-    fmt::print("put into its [projector]:\npixel = \"{:.3f} um\"\n", size->pixel_um);
+    fmt::print("set in its [projector]:\npixel = \"{:.3f} um\"\n", size->pixel_um);
     if (std::abs(size->off_percent) > 0.2)
-        fmt::print(stderr, "warning: pixels are not square to 0.2 %: square up projector and vat floor first\n");
+        fmt::print(stderr, "warning: pixels are not square to 0.2 %: square the projector to the vat floor first\n");
     return {};
 }
 
@@ -131,9 +132,9 @@ Status make_mask(const Options& options, const Setting& setting) {
         fmt::print("{}\n", nlohmann::json{{"mask", options.save}, {"least_share", mask.least}}.dump(1));
         return {};
     }
-    fmt::print("{}: {} x {} px; every pixel gets {:.1f} % of the brightest place's light\n", options.save, p.width_px,
-               p.height_px, 100 * mask.least);
-    fmt::print("put it beside the printer file, and into its [projector]:\nmask = \"{}\"\n",
+    fmt::print("{}: {} x {} px; every pixel gets {:.1f} % of the light at the brightest point\n", options.save,
+               p.width_px, p.height_px, 100 * mask.least);
+    fmt::print("put it next to the printer file, and set in its [projector]:\nmask = \"{}\"\n",
                std::filesystem::path(options.save).filename().string());
     return {};
 }
@@ -169,10 +170,10 @@ Status light(const Options& options, Setting setting) {
     const Status lit = options.seconds > 0 ? projector->show_for(*image, options.seconds) : projector->show(*image);
     if (!lit) return lit;
     if (!options.output.quiet && !options.output.json)
-        fmt::print("{} x {} px at {:g} Hz ({}), {}; Ctrl-C is black\n", panel.width_px, panel.height_px,
+        fmt::print("{} x {} px at {:g} Hz ({}), {}; Ctrl-C turns it black\n", panel.width_px, panel.height_px,
                    panel.refresh_hz, panel.name,
                    options.seconds > 0 ? fmt::format("{:g} s", std::min(options.seconds, screen.longest_light_s))
-                                       : "until it is ended");
+                                       : "until ended");
     std::fflush(stdout);
     const auto begin = std::chrono::steady_clock::now();
     const auto end = begin + std::chrono::duration<double>(
@@ -228,18 +229,20 @@ void add_project(CLI::App& app, int& status) {
         app.add_subcommand("project", "show test patterns and images on the projector, and calibrate it");
     command->add_option("projector", options->where, "number of a display (0), or a folder for the images");
     command->add_flag("--list", options->list, "list the displays");
-    command->add_option("--printer", options->printer, "printer file: the panel must have its size");
-    command->add_option("--size", options->size_px, "WIDTH HEIGHT in pixels, without a printer file")->expected(2);
+    command->add_option("--printer", options->printer, "printer file; the display must have its resolution");
+    command->add_option("--size", options->size_px, "WIDTH HEIGHT in pixels, in place of a printer file")->expected(2);
     command->add_option("--pattern", options->pattern, "white, black, checkerboard, grid, border, ramp or points");
     command->add_option("--square", options->square_px, "pixels per square of the checkerboard; 1 if not given");
     command->add_option("--points", options->points, "COLUMNS ROWS of the pattern points; 5 3 if not given")
         ->expected(2);
-    command->add_option("--image", options->image, "image file (.png) of the panel's size");
+    command->add_option("--image", options->image, "image file (.png) in the resolution of the display");
     command->add_option("--seconds", options->seconds, "duration; until Ctrl-C if not given");
     command->add_flag("--release", options->release, "release the display, which otherwise stays black");
-    command->add_option("--measured", options->measured_mm, "X Y: measured size of the rectangle of pattern border, mm")
+    command
+        ->add_option("--measured", options->measured_mm,
+                     "X Y: measured width and height of the rectangle in pattern border, in mm")
         ->expected(2);
-    command->add_option("--mask-from", options->readings, "table of light readings: make a mask from them");
+    command->add_option("--mask-from", options->readings, "table of light readings, to make a mask from");
     command->add_option("--gamma", options->gamma, "gamma of the projector, for the mask; 1 if not given");
     command->add_option("-o,--output", options->save, "write the pattern or the mask to a file (.png)");
     add_output_options(*command, options->output, true);

@@ -86,7 +86,8 @@ Result<Point> read_view(const std::string& text) {
     const bool read = std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &v.x, &v.y, &v.z, &used) == 3 &&
                       used == static_cast<int>(text.size());
     if (!read || !is_finite(v) || !(norm(v) > 1e-6 && norm(v) < 1e6))
-        return input_error("--view: \"{}\" is not possible; write the direction to the eye, as in 1,-1,0.5", text);
+        return input_error("--view: \"{}\" is not possible; write the direction towards the viewer, as in 1,-1,0.5",
+                           text);
     return Point{v.x, v.y, v.z};
 }
 
@@ -104,7 +105,7 @@ Result<ResultsOptions> read_pictures(const Options& options) {
         {"all", Pictures::all},
     }};
     const auto* const named = std::ranges::find(sets, options.pictures, [](const auto& set) { return set.first; });
-    if (named == sets.end()) return input_error("--pictures: \"{}\" is none of none, few, all", options.pictures);
+    if (named == sets.end()) return input_error("--pictures: \"{}\" must be none, few or all", options.pictures);
     ResultsOptions choice{
         .pictures = named->second, .film = options.film, .enough_pictures = [] { return interrupted(); }};
     if (!options.picture_size.empty()) {
@@ -141,7 +142,7 @@ int tell(const Options& options, const Model& model, const ProgramResult& result
         fmt::print(stderr, "{}: warning: {}\n", options.robot, warning);
     if (result.converged() && all_drawn) return exit_done;
     fmt::print(stderr, "{}: {}\n", options.robot,
-               result.converged() ? "cancelled before all pictures were drawn; the other results are there"
+               result.converged() ? "cancelled before all pictures were drawn; the other results are written"
                                   : result.message());
     return exit_failed;
 }
@@ -161,7 +162,7 @@ RunOptions run_options(const Options& options, const Robot& robot) {
     run.checkpoint = options.folder + ".checkpoint";
     if (!options.output.quiet && !options.output.json)
         run.on_resume = [steps = robot.steps()](int step) {
-            fmt::print("going on after step {} of {}\n", step, steps);
+            fmt::print("resuming after step {} of {}\n", step, steps);
         };
     return run;
 }
@@ -171,18 +172,18 @@ void put_away(const Options& options, const ProgramResult& result) {
     if (!interrupted()) return result.remove_checkpoint();
     if (options.checkpoint_every == 0 && !options.resume) return;
     if (!options.output.quiet && !options.output.json)
-        fmt::print("checkpoint: {}.checkpoint; the same command with --resume goes on from there\n", options.folder);
+        fmt::print("checkpoint: {}.checkpoint; the same command with --resume continues from there\n", options.folder);
 }
 
 Status check_options(const Options& options, const std::vector<sim::Solver>& solvers) {
     const bool kept = options.checkpoint_every > 0 || options.resume;
     if (kept && options.folder.empty())
-        return input_error("--{} needs --output: the checkpoint stands beside that folder",
+        return input_error("--{} needs --output: the checkpoint is kept next to that folder",
                            options.resume ? "resume" : "checkpoint-every");
     if (options.film && options.folder.empty())
         return input_error("--film needs --output: film.gif goes into that folder");
     if (kept && solvers.size() > 1)
-        return input_error("a comparison of solvers keeps no checkpoint; leave --checkpoint-every and --resume out");
+        return input_error("a comparison of solvers has no checkpoints; leave out --checkpoint-every and --resume");
     return expect(FileKind::robot, options.robot);
 }
 
@@ -230,17 +231,17 @@ void add_simulate(CLI::App& app, int& status) {
         "none; few: the final state over the rest shape; all: also rest, intermediate states and stress (few)");
     command->add_option("--picture-size", options->picture_size,
                         "WIDTHxHEIGHT of the pictures in pixels (800x500 of few, 1600x1000 of all)");
-    command->add_flag("--film", options->film, "also film.gif, the motion as an animated GIF");
+    command->add_flag("--film", options->film, "also write film.gif, the motion as an animated GIF");
     command->add_option("--view", options->view,
-                        "X,Y,Z: viewing direction of the pictures (default: where the motion is seen best)");
+                        "X,Y,Z: direction towards the viewer (default: from where the motion is seen best)");
     command->add_option("--measured", options->measured,
                         "CSV of measured markers, columns as in markers.csv, compared with the simulated ones");
     command
         ->add_option("--checkpoint-every", options->checkpoint_every,
-                     "keep the run every so many steps, in FOLDER.checkpoint, to go on with it after a stop")
+                     "write a checkpoint every so many steps to FOLDER.checkpoint, to resume from after a stop")
         ->check(CLI::Range(1, 100000));
     command->add_flag("--resume", options->resume,
-                      "go on from FOLDER.checkpoint; the results are the same as without a stop");
+                      "resume from FOLDER.checkpoint; the results are the same as without a stop");
     command
         ->add_option("--set", options->assignments,
                      "KEY=VALUE: change any key, as in cable.flexor.target.length_ratio=0.8")

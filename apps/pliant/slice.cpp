@@ -162,11 +162,12 @@ void add_slice_options(CLI::App& command, SliceOptions& options) {
         ->required();
     command.add_option("--printer", options.printer, "printer file (TOML)")->required();
     command.add_option("-o,--output", options.job, "job file to write (.zip)")->required();
-    command.add_option("--picture", options.picture, "PNG file: the part from the front, and some layers");
-    command.add_option("--layer", order.layer, "layer height, as in \"50 um\"; the printer file's where not given");
+    command.add_option("--picture", options.picture,
+                       "PNG file for a picture: the part from the front, and some layers");
+    command.add_option("--layer", order.layer, "layer height, as in \"50 um\" (default: that of the printer file)");
     command.add_option(
         "--least-layer", order.least_layer,
-        "adaptive layers: as thin as this where the surface is flat, as thick as --layer where it is steep");
+        "adaptive layers: minimum height, where the surface is flat; --layer is the maximum, where it is steep");
     const auto each = [&](const char* name, std::vector<std::string>& values, const char* type, const char* text) {
         command.add_option(name, values, text)->type_name(type)->allow_extra_args(false);
     };
@@ -184,9 +185,8 @@ void add_slice_options(CLI::App& command, SliceOptions& options) {
     command.add_option("--copies", order.copies, "number of copies, side by side");
     command.add_option("--spacing", order.spacing, "distance between copies, as in \"2 mm\"")->capture_default_str();
     command.add_option("--turn", order.turn, "X Y Z: rotation in degrees about each axis, in this order")->expected(3);
-    command.add_option("--scale", order.scale, "factor by which the part is printed larger or smaller, 0.01 to 100")
-        ->capture_default_str();
-    command.add_option("--at", order.at, "X Y: where the part's middle stands, in mm from that of the platform")
+    command.add_option("--scale", order.scale, "scale factor of the part, 0.01 to 100")->capture_default_str();
+    command.add_option("--at", order.at, "X Y: position of the part's centre, in mm from the centre of the platform")
         ->expected(2);
     command.add_flag("--no-anti-alias", order.no_anti_alias, "no anti-aliasing: each pixel is fully lit or dark");
     command.add_option("--threshold", order.threshold, "without anti-aliasing: minimum coverage of a lit pixel")
@@ -198,9 +198,9 @@ void add_slice_options(CLI::App& command, SliceOptions& options) {
     command.add_option("--support-tip", order.support_tip, "diameter of a tip where it touches the part (\"0.4 mm\")");
     command.add_option("--support-pillar", order.support_pillar, "diameter of a pillar (\"1 mm\")");
     command.add_option("--support-paint", options.paint,
-                       "table of places painted by hand where supports are wanted, or blocked (CSV)");
+                       "CSV of supports painted by hand: places where they are enforced or blocked");
     command.add_option("--lift", order.lift, "height of the part above the platform, on supports");
-    command.add_option("--raft", order.raft, "thickness of a plate under the supports");
+    command.add_option("--raft", order.raft, "thickness of the raft under the supports");
     command.add_option("--hollow", order.hollow, "hollow the part, leaving walls of this thickness, as in \"2 mm\"");
     command.add_option("--drain", order.drain, "diameter of the drain holes of a hollow part");
     each("--set", order.assignments, "KEY=VALUE", "change any key of the robot file");

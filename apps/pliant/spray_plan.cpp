@@ -51,7 +51,8 @@ Result<std::optional<SprayResult>> look_at_spray(const SprayOrder& order, const 
     const Result<wash::PartCells> part = part_of(archive, printer.projector);
     if (!part) return tl::unexpected(part.error());
     const std::vector<wash::Face> faces = wash::wet_faces(*part);
-    if (faces.empty()) return input_error("{}: nothing is printed, so nothing gets wet", archive.manifest().name);
+    if (faces.empty())
+        return input_error("{}: nothing is printed, so there is nothing to clean", archive.manifest().name);
     SprayResult result;
     if (order.cleanness) {
         if (Status status = use_best(*part, *order.cleanness, printer, result); !status)
@@ -90,7 +91,7 @@ std::string with_spray(const std::string& plan_json, const std::optional<SprayRe
 std::string spray_text(const std::optional<SprayResult>& spray) {
     if (!spray) return "";
     std::string text =
-        fmt::format("  {:<10}{:>8.1f} %   of the film comes off; {:.1f} % of the surface nothing reaches\n", "spray",
+        fmt::format("  {:<10}{:>8.1f} %   of the film is removed; no spray reaches {:.1f} % of the surface\n", "spray",
                     100 * spray->removed, 100 * spray->unseen);
     if (!spray->now_ml) return text;
     text += fmt::format("  {:<10}{:>7.1f} ml   of solution for one cleaning, {:.1f} ml before; in the printer file:\n",

@@ -139,7 +139,7 @@ Result<int> run_chunk(const Options& options) {
 
 void print_figures(const study::Plan& plan, const study::ResultFigures& result) {
     if (result.count == 0) {
-        fmt::print("{}: no row gave it\n", result.name);
+        fmt::print("{}: no row has this result\n", result.name);
         return;
     }
     fmt::print("{}: {:.6g} to {:.6g}, mean {:.6g}, standard deviation {:.3g}\n", result.name, result.least, result.most,
@@ -199,7 +199,7 @@ tl::unexpected<Error> stopped(const study::Plan& plan, const fs::path& folder, c
     const auto rows = study::collect(plan, folder);
     const std::size_t recorded = rows ? rows->recorded() : 0;
     return tl::unexpected(Error{
-        Cause::cancelled, fmt::format("cancelled: {} of {} rows are in {}; the same command with --resume goes on",
+        Cause::cancelled, fmt::format("cancelled: {} of {} rows are in {}; the same command with --resume continues",
                                       recorded, plan.rows.size(), folder.string())});
 }
 
@@ -275,12 +275,14 @@ void add_study(CLI::App& app, int& status) {
     command
         ->add_option(
             "--jobs", options->jobs,
-            "rows at a time (all cores; of a rank 1); with --on slurm tasks at a time (all that the cluster gives)")
+            "rows at a time (default: all cores; 1 in each rank); with --on slurm: tasks at a time (default: no limit)")
         ->check(CLI::Range(1, 100000));
-    command->add_flag("--resume", options->resume, "go on with the rows that are in the folder already");
-    command->add_flag("--plan-only", options->plan_only, "plan the rows into the folder, and run none");
+    command->add_flag("--resume", options->resume, "resume: keep the rows that are already in the folder");
+    command->add_flag("--plan-only", options->plan_only,
+                      "write the plan of the rows to the folder without running any");
     command
-        ->add_option("--chunk", options->chunk, "run the rows of this chunk, from 0 on: what a task of a cluster does")
+        ->add_option("--chunk", options->chunk,
+                     "run only the rows of this chunk, counted from 0, as a task of a cluster does")
         ->check(CLI::Range(0, 1000000));
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant study examples/study/finger.toml -o out");

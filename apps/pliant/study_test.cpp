@@ -181,7 +181,7 @@ TEST_CASE("Ctrl-C stops in good order and says how to go on") {
     CHECK(ended.status == 1);
     CHECK(ended.errors.starts_with("cancelled: "));
     CHECK(ended.errors.find("of 5000 rows are in") != std::string::npos);
-    CHECK(ended.errors.find("--resume goes on") != std::string::npos);
+    CHECK(ended.errors.find("--resume continues") != std::string::npos);
 }
 
 TEST_CASE("ranks that mpirun or srun would start share the rows") {

@@ -165,7 +165,7 @@ void add_twin(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand(
         "twin", "run the virtual printer as a serial device that speaks Marlin, in real time or faster");
     command->add_option("--printer", options->printer, "printer file (TOML)")->required();
-    command->add_option("--pty", options->link, "symbolic link to make to the device, such as /tmp/printer");
+    command->add_option("--pty", options->link, "symbolic link to create to the device, such as /tmp/printer");
     command->add_option("--projector", options->projector, "folder whose shown.png is what the projector shows");
     command->add_option("--clock", options->clock,
                         "file for its clock, for print --clock: both then measure exposures by the same clock");

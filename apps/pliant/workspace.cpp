@@ -27,7 +27,7 @@ struct Options {
 Result<WorkspaceOptions> search_options(const Options& options) {
     WorkspaceOptions search = options.search;
     if (options.folder.empty() && search.resume)
-        return input_error("--resume needs --output: what was done stands beside that folder");
+        return input_error("--resume needs --output: the checkpoint is kept next to that folder");
     if (!options.folder.empty()) search.checkpoint = options.folder + ".checkpoint";
     return search;
 }
@@ -36,7 +36,7 @@ int tell_cancelled(const Options& options, const WorkspaceOptions& search) {
     fmt::print(stderr, "{}: cancelled{}\n", options.robot,
                search.checkpoint.empty()
                    ? ""
-                   : fmt::format("; the same command with --resume goes on from {}", search.checkpoint.string()));
+                   : fmt::format("; the same command with --resume continues from {}", search.checkpoint.string()));
     return exit_failed;
 }
 
@@ -72,18 +72,21 @@ Result<int> workspace(const Options& options) {
 
 void add_workspace(CLI::App& app, int& status) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand("workspace", "where markers can get within the ranges of the actuators");
+    CLI::App* command =
+        app.add_subcommand("workspace", "find where markers can get within the ranges of the actuators");
     command->add_option("robot", options->robot, "robot file (TOML) with ranges of actuators")->required();
     command->add_option("-o,--output", options->folder, "folder for table, surfaces and picture");
-    command->add_option("--side", options->search.side, "places along each input of a sheet")
+    command
+        ->add_option("--side", options->search.side, "samples along each input of a sheet, over which two inputs vary")
         ->check(CLI::Range(2, 1000))
         ->capture_default_str();
     command
-        ->add_option("--between", options->search.between, "inputs that are spread over the ranges beside the sheets")
+        ->add_option("--between", options->search.between,
+                     "samples spread over the ranges, besides those of the sheets")
         ->check(CLI::Range(0, 1000000))
         ->capture_default_str();
     command->add_flag("--resume", options->search.resume,
-                      "go on from FOLDER.checkpoint; the results are the same as without a stop");
+                      "resume from FOLDER.checkpoint; the results are the same as without a stop");
     command->add_option("--set", options->assignments, "KEY=VALUE: change any key, as in cable.flexor.range=[0.8, 1]")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);

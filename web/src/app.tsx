@@ -105,7 +105,7 @@ function Helm() {
   if (h.asked)
     return (
       <span class="helm asked" data-testid="helm" data-state="asked">
-        someone requests control
+        another page requests control
         <button class="primary small" onClick={() => send({ type: 'steer', action: 'give' })}>
           Hand over
         </button>

@@ -78,7 +78,7 @@ test('an open door pauses the print and says so; an empty vat asks for resin; th
   await state(page, 'door', 'shut');
   await state(page, 'switch-z_max', 'free').catch(() => state(page, 'switch-z_max', 'pressed'));
   assert.match(await text(page, 'emergency-line'), /none: an emergency stop relies on the firmware/);
-  assert.match(await text(page, 'known'), /it will pause for you once: layer 1\d, refill the vat of slot 1/);
+  assert.match(await text(page, 'known'), /the print will pause once for a refill: layer 1\d, refill the vat of slot 1/);
   for (const box of await page.locator('.checklist input').all()) await box.check();
   await page.getByTestId('move-door').click();
   await state(page, 'door', 'open');

@@ -355,7 +355,7 @@ test('a link brings back the state and the view; a film and a picture for print 
     ]);
     return readFileSync(await file.path());
   };
-  const webm = await download(second, 'Film');
+  const webm = await download(second, 'WebM');
   assert.equal(webm.readUInt32BE(0), 0x1a45dfa3, 'EBML');
   assert.ok(webm.length > 1000);
   const png = await download(second, 'Picture for print');

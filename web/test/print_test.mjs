@@ -59,7 +59,7 @@ test('what is no serial port, and a job that is in no folder, are refused', asyn
   await page.getByTestId('projector').fill('light');
   await page.getByTestId('take-port').click();
   await page.waitForSelector('[data-testid=notice]');
-  assert.match(await page.getByTestId('notice').textContent(), /no serial port/);
+  assert.match(await page.getByTestId('notice').textContent(), /not a serial port/);
   const outside = await page.evaluate(async (device) => {
     const answer = await fetch('/api/print/port', { method: 'POST', headers: { 'X-Pliant-Page': window.pliant.page }, body: JSON.stringify({ device, projector: '../light' }) });
     return [answer.status, (await answer.json()).error];

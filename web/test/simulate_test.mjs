@@ -140,7 +140,7 @@ test('files that no reader takes, that are there already, or that have a strange
     ['broken.stl', boxStl([1, 1, 1]).slice(0, 200), /^broken\.stl:/],
     ['noise.step', 'nothing', /^noise\.step:/],
     ['.hidden.stl', boxStl([1, 1, 1]), /a plain name/],
-    ['notes.txt', 'hello', /is no geometry that Pliant reads/],
+    ['notes.txt', 'hello', /is not geometry that Pliant reads/],
   ]) {
     await pick.setInputFiles(file(name, content));
     await refused.waitFor(long);
@@ -251,7 +251,7 @@ test('a sweep of one number gives a curve, of two a map; its values are used, an
   await page.getByTestId('sweep-run-2').click();
   await rebuilt(page, () => page.getByTestId('sweep-use').click());
   assert.match(await readRobot(page), /youngs_modulus = "2 MPa"/);
-  // A second number: a map, a field for every combination.
+  // A second parameter: a map, a field for every combination.
   await page.getByTestId('sweep-second').click();
   await page.getByTestId('sweep-1-key').selectOption('cable.flexor.target.shortening');
   await page.getByTestId('sweep-1-count').fill('2');
@@ -284,7 +284,7 @@ test('a workspace is found within ranges, and drawn', async (t) => {
   assert.match(await page.getByTestId('workspace-count').textContent(), /^4 places will be solved/);
   await page.getByTestId('find-workspace').click();
   await page.getByTestId('workspace-found').waitFor(long);
-  assert.match(await page.getByTestId('workspace-found').textContent(), /[34] of 4 places have an equilibrium/);
+  assert.match(await page.getByTestId('workspace-found').textContent(), /Equilibrium found at [34] of 4 samples/);
   assert.match(await page.getByTestId('reach-tip').textContent(), /\d to 40\.0/);
   const [csv] = await Promise.all([page.waitForEvent('download'), page.getByTestId('workspace-csv').click()]);
   assert.match(readFileSync(await csv.path(), 'utf8'), /tip_x_mm/);

@@ -79,7 +79,7 @@ test('a port that is not there is named; one that does not answer too', async (t
   await page.waitForSelector('[data-testid=print-state]');
   await page.waitForFunction(() => document.querySelector('[data-testid=print-state]').textContent === 'Error');
   assert.match(await page.locator('.steer').innerText(), /\/dev\/null/);
-  assert.match(await page.getByTestId('known').textContent(), /the machine does not answer/);
+  assert.match(await page.getByTestId('known').textContent(), /the machine does not respond/);
   assert.ok(await page.getByTestId('start').isDisabled());
   await page.getByTestId('leave').click();
   await page.getByTestId('take-port').waitFor();

@@ -198,9 +198,9 @@ test('a table of measurements is read, or its mistake is said with its line', ()
   assert.equal(read.columns.flexor_tension_N[0], 2);
   assert.ok(Number.isNaN(read.columns.flexor_tension_N[1]));
   assert.deepEqual(page.readTable('m.csv', 'a;b\n1;2\n').columns, { a: [1], b: [2] });
-  assert.match(page.readTable('m.csv', ''), /^m\.csv:1: a head line/);
+  assert.match(page.readTable('m.csv', ''), /^m\.csv:1: a header line/);
   assert.match(page.readTable('m.csv', '1,2\n3,4\n'), /^m\.csv:1: the first line must name/);
-  assert.match(page.readTable('m.csv', 'a,b\n1,2\n3\n'), /^m\.csv:3: 1 columns, and the head line names 2/);
+  assert.match(page.readTable('m.csv', 'a,b\n1,2\n3\n'), /^m\.csv:3: 1 columns, but the header line names 2/);
   assert.match(page.readTable('m.csv', 'a,b\n1,two\n'), /^m\.csv:2: "two" is not a number/);
   assert.match(page.readTable('m.csv', 'a,b\n'), /no rows/);
 });

@@ -51,7 +51,7 @@ test('set up a machine: from the list, over the port, axes and vats; comments st
   await page.getByTestId('wizard-device').fill(realpathSync(join(folder, 'printer')));
   await page.getByTestId('ask-board').click();
   await page.getByTestId('board').waitFor({ timeout: 60_000 });
-  assert.match(await page.getByTestId('board').innerText(), /Pliant twin.*answers/);
+  assert.match(await page.getByTestId('board').innerText(), /Pliant twin.*responds/);
   await page.getByTestId('baud').fill('250000');
   await next(page, 2);
   await page.getByTestId('axis-carriage-max').fill('360');
@@ -95,7 +95,7 @@ test('focus and size of the projector: a pattern is shown when asked for, and wh
   const lit = () => existsSync(join(folder, 'light', 'shown.png'));
   assert.ok(!lit(), 'nothing is lit unasked');
   await page.getByTestId('pattern-show').click();
-  await page.waitForFunction(() => /is lit/.test(document.querySelector('[data-testid=pattern-state]').textContent));
+  await page.waitForFunction(() => / is on/.test(document.querySelector('[data-testid=pattern-state]').textContent));
   for (let k = 0; k < 100 && !lit(); ++k) await pause(100);
   assert.ok(lit());
   await page.getByTestId('pattern-dark').click();
@@ -134,7 +134,7 @@ test('exposure finder: one job with a ramp of exposures, and the piece that is p
   assert.ok(await page.getByTestId('wizard-next').isDisabled(), 'nothing is picked yet');
   await page.getByTestId('piece-3').check();
   await next(page, 3);
-  assert.match(await page.getByTestId('finder-kept').innerText(), /semi-flex now 3 s/);
+  assert.match(await page.getByTestId('finder-kept').innerText(), /semi-flex now has 3 s/);
   assert.match(file(), /exposure = "3 s"/);
   assert.deepEqual(wrong, []);
 });

@@ -167,7 +167,7 @@ private:
 
 Result<Document> parse(std::string_view text, const std::filesystem::path& file) {
     if (text.size() > max_text_bytes)
-        return input_error("{}: larger than 16 MB, that is no robot or printer file", file.string());
+        return input_error("{}: larger than 16 MB, which is not a robot or printer file", file.string());
     if (nested_too_deep(text)) return input_error("{}: brackets nested too deep", file.string());
     try {
         const toml::table table = toml::parse(text, file.string());

@@ -115,7 +115,7 @@ std::string with_new_table(std::string_view text, const std::vector<std::string>
 Status is_value(std::string_view value) {
     const auto alone = parsed(fmt::format("v = {}\n", value));
     if (alone && alone->size() == 1 && value.find('\n') == std::string_view::npos) return {};
-    return input_error("\"{}\" is no value as TOML has them", value);
+    return input_error("\"{}\" is not a TOML value", value);
 }
 
 /// A change must leave a text that can be read.

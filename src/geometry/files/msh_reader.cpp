@@ -57,7 +57,7 @@ private:
         if (section == "$Elements")
             return version_ == 2 ? read_elements_2() : read_blocks(&MshReader::read_element_block);
         if (section.starts_with('$')) return in_.skip_section(section);
-        return in_.error(fmt::format("\"{}\" is no section of a .msh file", section.substr(0, 40)));
+        return in_.error(fmt::format("\"{}\" is not a section of a .msh file", section.substr(0, 40)));
     }
 
     Status read_format() {

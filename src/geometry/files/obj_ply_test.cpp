@@ -118,7 +118,7 @@ TEST_CASE("OBJ: broken files give a reason with the line") {
     CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 7 0")).find("names vertex 0") != std::string::npos);
     CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 7 -9")).find("names vertex -9") != std::string::npos);
     CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3")).find("a face has 2 corners") != std::string::npos);
-    CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 x")).find("\"x\" is no corner") != std::string::npos);
+    CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 x")).find("\"x\" is not a corner") != std::string::npos);
     CHECK(problem(replaced(obj, "v 2 0 0", "v 2 0 nan")).find("a:5: \"nan\" is not a finite number") == 0);
     CHECK(problem("v 1 2 3\n").find("holds no faces") != std::string::npos);
 }

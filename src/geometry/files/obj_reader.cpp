@@ -37,7 +37,7 @@ private:
         const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
         const auto count = static_cast<std::int64_t>(surface_.vertex_count());
         if (code != std::errc() || end != digits.data() + digits.size())
-            return scan_.error(fmt::format("\"{}\" is no corner of a face", word.substr(0, 40)));
+            return scan_.error(fmt::format("\"{}\" is not a corner of a face", word.substr(0, 40)));
         const std::int64_t index = number < 0 ? count + number : number - 1;
         if (number == 0 || index < 0 || index >= count)
             return scan_.error(fmt::format("a face names vertex {}, there are {} so far", number, count));

@@ -100,7 +100,7 @@ TEST_CASE("OFF: broken files give a reason with the line") {
     CHECK(problem("4OFF\n1 1 1\n").find("three dimensions") != std::string::npos);
     CHECK(problem("nOFF 3\n1 1 1\n").find("three dimensions") != std::string::npos);
     CHECK(problem("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n").find("holds no faces") != std::string::npos);
-    CHECK(problem("OFFICE\n").find("no surface that Pliant reads") != std::string::npos);
+    CHECK(problem("OFFICE\n").find("not a surface that Pliant reads") != std::string::npos);
     for (std::size_t length = 0; length < off.size() - 10; ++length)
         CHECK_FALSE(parse_surface(off.substr(0, length), "a"));
 }

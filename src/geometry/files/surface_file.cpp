@@ -42,7 +42,7 @@ Result<SurfaceFile> parse_any(std::string_view bytes, const std::string& name) {
     if (looks_like_off(bytes)) return parse_off(bytes, name);
     if (looks_like_obj(bytes)) return parse_obj(bytes, name);
     if (looks_like_stl(bytes)) return parse_stl(bytes, name);
-    return input_error("{}: is no surface that Pliant reads (.stl, .obj, .ply or .off, by content)", name);
+    return input_error("{}: is not a surface that Pliant reads (.stl, .obj, .ply or .off, by content)", name);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace pliant::mesh {
 namespace {
 
 tl::unexpected<Error> unknown_format(const std::string& name) {
-    return input_error("{}: is no tet mesh that Pliant reads ({}, by content)", name, tet_format_list);
+    return input_error("{}: is not a tet mesh that Pliant reads ({}, by content)", name, tet_format_list);
 }
 
 /// TetGen writes two files; this is the other one.

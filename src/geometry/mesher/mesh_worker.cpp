@@ -268,7 +268,7 @@ Result<std::filesystem::path> mesher_program() {
     std::error_code error;
     if (const char* const named = std::getenv("PLIANT_MESH"); named != nullptr) {
         if (fs::is_regular_file(named, error)) return fs::path(named);
-        return input_error("PLIANT_MESH names \"{}\", which is no file; it must be the program pliant-mesh", named);
+        return input_error("PLIANT_MESH names \"{}\", which is not a file; it must be the program pliant-mesh", named);
     }
     const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
     for (const fs::path& folder : {here, folder_of_this_code()}) {

@@ -140,7 +140,7 @@ TEST_CASE("a program that is no mesher, or none, is told by name") {
     {
         const Variable nowhere("PLIANT_MESH", "/nowhere/pliant-mesh");
         CHECK(mesh_cube(5, silent).error().message ==
-              "PLIANT_MESH names \"/nowhere/pliant-mesh\", which is no file; it must be the program pliant-mesh");
+              "PLIANT_MESH names \"/nowhere/pliant-mesh\", which is not a file; it must be the program pliant-mesh");
     }
     const Variable other("PLIANT_MESH", "/bin/true");
     const Result<TetMesh> mesh = mesh_cube(5, silent);

@@ -71,7 +71,7 @@ TEST_CASE("a file is described by what it holds, with what was odd about it") {
 TEST_CASE("a file that no reader knows is told so with all formats; a known one that is broken by its reader") {
     for (const std::string& junk : {std::string("hello"), std::string(200, 'x')}) {
         const std::string text = described(junk);
-        CHECK(text.find("is no geometry that Pliant reads") != std::string::npos);
+        CHECK(text.find("is not geometry that Pliant reads") != std::string::npos);
         for (const char* format : {".vtk", ".vtu", ".msh", ".stl", ".obj", ".ply"})
             CHECK_MESSAGE(text.find(format) != std::string::npos, format);
     }

@@ -52,7 +52,7 @@ Result<Geometry> open_geometry(const std::filesystem::path& path) {
     if (looks_like_surface(*bytes)) return as_geometry(parse_surface(*bytes, name));
     if (bytes->empty()) return input_error("{}: the file is empty", name);
     return input_error(
-        "{}: is no geometry that Pliant reads "
+        "{}: is not geometry that Pliant reads "
         "(surfaces: .stl, .obj, .ply or .off; solids: .step, .3mf; tet meshes: {}; by content)",
         name, tet_format_list);
 }

@@ -83,7 +83,7 @@ TEST_CASE("what no reader knows is told with what they know") {
     const auto letter = write(folder, "letter.txt", "Dear reader,\nthis is no mesh.\n");
     const Result<Geometry> unknown = open_geometry(letter);
     REQUIRE_FALSE(unknown);
-    CHECK(unknown.error().message.find(letter.string() + ": is no geometry that Pliant reads") == 0);
+    CHECK(unknown.error().message.find(letter.string() + ": is not geometry that Pliant reads") == 0);
     CHECK(open_geometry(write(folder, "empty.stl", "")).error().message.ends_with("empty.stl: the file is empty"));
     CHECK_FALSE(open_geometry(folder.path() / "nowhere.stl"));
 }

@@ -73,7 +73,7 @@ PropertyGroup read_composites(const XmlPart& part, const pugi::xml_node& node, c
     const PropertyGroup* base = group(part, node, "matid", id, properties, problem);
     if (base == nullptr || problem.found()) return result;
     if (base->kind != Kind::base)
-        problem.note(part.at(node, fmt::format("matid: {} is no group of base materials", id)));
+        problem.note(part.at(node, fmt::format("matid: {} is not a group of base materials", id)));
     std::string name;
     for (const int i : used) {
         if (i >= static_cast<int>(base->materials.size())) {

@@ -26,7 +26,7 @@ public:
     static KeptPieces create(const fs::path& folder, const std::string& origin) {
         if (!may_replace_folder(folder, origin_name))
             throw Failure(Failure::Kind::input,
-                          folder.string() + ": is there already, and is no checkpoint; move it away");
+                          folder.string() + ": is there already, and is not a checkpoint; move it away");
         std::error_code code;
         fs::remove_all(folder, code);
         fs::create_directories(folder, code);

@@ -143,7 +143,7 @@ Result<double> JsonPath::number_in(const nlohmann::json& json) const {
     if (at->is_boolean()) return at->get<bool>() ? 1 : 0;
     if (at->is_null()) return std::numeric_limits<double>::quiet_NaN();
     if (at->is_number()) return at->get<double>();
-    return input_error("{} is no number: it is {}", way, contents(*at));
+    return input_error("{} is not a number: it is {}", way, contents(*at));
 }
 
 }  // namespace pliant::study

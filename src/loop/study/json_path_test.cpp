@@ -57,8 +57,8 @@ TEST_CASE("what is not there is answered with what is") {
     CHECK(mistake("cables.flexr.tension_N") ==
           "steps[-1].cables has no \"flexr\"; did you mean \"flexor\"?: there is flexor and left one");
     CHECK(mistake("steps[2].markers") == "steps has no [2]: it is a list of 2, [0] to [1]");
-    CHECK(mistake("markers.tip") == "steps[-1].markers.tip is no number: it is a list of 3, [0] to [2]");
-    CHECK(mistake("robot") == "robot is no number: it is a text");
+    CHECK(mistake("markers.tip") == "steps[-1].markers.tip is not a number: it is a list of 3, [0] to [2]");
+    CHECK(mistake("robot") == "robot is not a number: it is a text");
     CHECK(mistake("nodes.more") == "nodes has no \"more\": there is a single value");
     CHECK(mistake("tension") == "the result has no \"tension\": there is converged, energy, nodes, robot and steps");
 }

@@ -136,7 +136,7 @@ Result<Plan> parse_plan(std::string_view text, const std::string& file) {
         if (!fits_together(plan)) return input_error("{}: its rows and keys do not fit together", file);
         return plan;
     } catch (const nlohmann::json::exception&) {
-        return input_error("{}: is no plan of a study, or was damaged", file);
+        return input_error("{}: is not the plan of a study, or was damaged", file);
     }
 }
 

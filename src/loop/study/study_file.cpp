@@ -209,8 +209,8 @@ Status read_table_rows(const CsvTable& table, Plan& plan) {
             const auto measure = read_measure(row.cells[k]);
             const bool number = measure && measure->unit.empty();
             if (!number && !plan.keys[k].unit.empty())
-                return input_error("{}: \"{}\" is no number, but the column \"{}\" has a unit", table.place(row.line),
-                                   row.cells[k], plan.keys[k].name);
+                return input_error("{}: \"{}\" is not a number, but the column \"{}\" has a unit",
+                                   table.place(row.line), row.cells[k], plan.keys[k].name);
             plan.keys[k].numeric = plan.keys[k].numeric && number;
         }
         if (row.cells.size() > plan.keys.size())

@@ -117,7 +117,7 @@ TEST_CASE("a table of rows: columns are keys of the robot file, or of the study 
     REQUIRE(write_file(folder / "designs.csv", "a (MPa)\nsoft\n"));
     const auto word = parsed(text, file);
     REQUIRE_FALSE(word);
-    CHECK(word.error().message.ends_with("designs.csv:2: \"soft\" is no number, but the column \"a\" has a unit"));
+    CHECK(word.error().message.ends_with("designs.csv:2: \"soft\" is not a number, but the column \"a\" has a unit"));
 }
 
 TEST_CASE("mistakes are one line that says where and what would be right") {

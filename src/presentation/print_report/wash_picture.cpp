@@ -112,7 +112,7 @@ void draw_scale(Canvas& canvas) {
 
 Result<std::string> wash_picture(std::string_view title, const wash::PartCells& part,
                                  const std::vector<wash::Face>& faces, const wash::Cleanness& cleanness) {
-    if (faces.empty()) return input_error("{}: nothing is printed, so nothing gets wet", title);
+    if (faces.empty()) return input_error("{}: nothing is printed, so there is nothing to clean", title);
     Canvas canvas(width_px, height_px, paper);
     for (const bool from_platform : {false, true}) {
         const int wide = width_px / 2, high = height_px - title_px;
@@ -122,7 +122,7 @@ Result<std::string> wash_picture(std::string_view title, const wash::PartCells& 
     }
     canvas.text({60, 62}, title, {.size = 32, .colour = ink, .bold = true});
     canvas.text({60, 98},
-                fmt::format("{:.1f} % of the film comes off; {:.1f} % of the surface nothing reaches",
+                fmt::format("{:.1f} % of the film is removed; no spray reaches {:.1f} % of the surface",
                             100 * cleanness.removed, 100 * cleanness.unseen),
                 {.size = 22, .colour = ink});
     draw_scale(canvas);

@@ -52,7 +52,7 @@ struct Verdict {
 Verdict verdict_of(const sim::Trajectory& result) {
     if (!result.converged) return {"bad", "stopped early"};
     const auto loose = [](const sim::Step& step) { return !step.converged; };
-    if (std::any_of(result.steps.begin(), result.steps.end(), loose)) return {"warn", "converged on looser terms"};
+    if (std::any_of(result.steps.begin(), result.steps.end(), loose)) return {"warn", "accepted above the tolerance"};
     if (!result.warnings.empty()) return {"warn", "converged, with a warning"};
     return {"good", "converged"};
 }

@@ -42,7 +42,7 @@ Result<std::vector<Columns>> read_header(const CsvTable& table, const std::vecto
             name.remove_suffix(suffixes[axis].size());
             const std::size_t marker = index_of(markers, name);
             if (marker == markers.size())
-                return input_error("{}: \"{}\" is no marker of the robot; it has {}", table.place(table.header_line),
+                return input_error("{}: \"{}\" is not a marker of the robot; it has {}", table.place(table.header_line),
                                    name, known_names(markers));
             auto of = std::find_if(found.begin(), found.end(), [&](const Columns& f) { return f.marker == marker; });
             if (of == found.end()) of = found.insert(found.end(), Columns{marker, {}});

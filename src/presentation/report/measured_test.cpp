@@ -89,7 +89,7 @@ TEST_CASE("what is wrong is said with file and line") {
     check_problem("", "m.csv: is empty; the first line names the columns: tip_x_mm");
     check_problem("x,y\n1,2\n",
                   "m.csv:1: no column is named as in \"tip_x_mm\"; markers of the robot: \"tip\" and \"middle\"");
-    check_problem("top_x_mm\n1\n", "m.csv:1: \"top\" is no marker of the robot; it has \"tip\" and \"middle\"");
+    check_problem("top_x_mm\n1\n", "m.csv:1: \"top\" is not a marker of the robot; it has \"tip\" and \"middle\"");
     check_problem("tip_x_mm\n1\nabc\n", "m.csv:3: tip \"abc\" is not a number");
     check_problem("tip_x_mm,tip_y_mm\n1\n", "m.csv:2: 1 columns");
     check_problem("tip_x_mm,middle_x_mm\n1,\n", "m.csv: middle has no point");

@@ -32,7 +32,7 @@ Result<GeometryContent> content_of(const threemf::ThreeMf& plate) {
     if (plate.bodies.size() == 1) content.text = "3MF file, 1 body";
     for (const threemf::Body& body : plate.bodies) {
         if (!body.slices.empty())
-            return input_error("{}: is a stack of slices, which can be printed and not simulated; surfaces are needed",
+            return input_error("{}: is a stack of slices, which can be printed but not simulated; surfaces are needed",
                                body.name);
         for (const Vec3& p : body.mesh_mm.points) content.box.add(p);
         if (std::ranges::find(content.parts, body.material) == content.parts.end())

@@ -47,7 +47,7 @@ Result<sim::Steered> steered(const Built& built, const Possible& possible, const
     if (!(input.low < input.high))
         return input_error("{}: the range from {:g} to {:g} is empty", range.name, range.low, range.high);
     if (!is_possible(input, kind, possible.rest_measures[input.actuator]))
-        return input_error("{}: the range from {:g} to {:g} has values that it cannot have", range.name, range.low,
+        return input_error("{}: the range from {:g} to {:g} has values that are not possible", range.name, range.low,
                            range.high);
     return input;
 }
@@ -68,7 +68,7 @@ Status add_inputs(const Built& built, const std::vector<InputRange>& ranges, sim
 
 Result<sim::InverseTask> workspace_task(const Built& built, const WorkspaceOrder& order) {
     if (built.robot.program.dynamics)
-        return input_error("program: time_step: a workspace is that of a robot at rest at every place; leave it out");
+        return input_error("program: time_step: a workspace is that of a robot at rest; leave it out");
     if (built.model.description().markers.empty())
         return input_error("a workspace is where markers can get, and this robot has no [[marker]]");
     sim::InverseTask task;

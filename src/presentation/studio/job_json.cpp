@@ -49,10 +49,10 @@ std::string from_one(const std::string& text) {
 
 /// What the slicer has found, with a place; then its remarks.
 Json issues_json(const job::Manifest& manifest) {
-    static const std::map<std::string, const char*> names = {{"island", "island, begins in mid-air"},
-                                                             {"trap", "trap, closed for good around resin"},
-                                                             {"cup", "cup, holds on to the vat until it opens"},
-                                                             {"thin", "thin, narrower than asked for"}};
+    static const std::map<std::string, const char*> names = {{"island", "island in mid-air"},
+                                                             {"trap", "resin trap, closed for good"},
+                                                             {"cup", "suction cup until it opens"},
+                                                             {"thin", "feature narrower than the limit"}};
     Json issues = Json::array();
     for (const job::Finding& f : manifest.findings) {
         const auto name = names.find(f.kind);

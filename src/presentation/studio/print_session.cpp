@@ -373,7 +373,7 @@ Status PrintSession::leave() {
     std::shared_ptr<Machine> machine = this->machine();
     if (!machine) return {};
     if (under_way(machine->control.snapshot().state))
-        return failure("a print is under way: cancel it before the machine is given back");
+        return failure("a print is under way: cancel it before you disconnect");
     {
         const std::lock_guard lock(mutex_);
         machine_.reset();
@@ -389,7 +389,7 @@ Status PrintSession::discard() {
     const auto machine = this->machine();
     if (!machine || !machine->twin) return failure("there is no virtual printer");
     const host::Snapshot now = machine->control.snapshot();
-    if (under_way(now.state) || !now.can_resume) return failure("no interrupted print waits");
+    if (under_way(now.state) || !now.can_resume) return failure("there is no interrupted print");
     std::error_code error;
     if (!std::filesystem::remove(machine->ready.job.journal, error) || error)
         return failure("{}: cannot be removed: {}", machine->ready.job.journal.string(), error.message());
@@ -524,7 +524,7 @@ Status check_device(const std::string& device) {
             "device: there is no {}; is the machine plugged in and switched on? A port looks like /dev/ttyACM0",
             device);
     if (!real.string().starts_with("/dev/") || !std::filesystem::is_character_file(real, error))
-        return input_error("device: {} is no serial port; one such as /dev/ttyACM0 is needed", device);
+        return input_error("device: {} is not a serial port; one such as /dev/ttyACM0 is needed", device);
     return {};
 }
 

@@ -81,8 +81,8 @@ TEST_CASE("what cannot be taken is refused with its reason, and the machine at h
         return b.session.take_port(b.order, port).error().message;
     };
     CHECK(holds(refused_port("/dev/no_such_port"), "device: there is no /dev/no_such_port"));
-    CHECK(holds(refused_port(b.order.job.string()), "is no serial port"));  // would be written to
-    CHECK(holds(refused_port("/dev"), "is no serial port"));
+    CHECK(holds(refused_port(b.order.job.string()), "is not a serial port"));  // would be written to
+    CHECK(holds(refused_port("/dev"), "is not a serial port"));
     for (const double speed : {0.0, nan}) CHECK(holds(b.session.set_speed(speed).error().message, "speed: "));
     CHECK(holds(b.session.set_door(true).error().message, "has no door"));
     CHECK(b.about()["taken"] == 1);
@@ -149,7 +149,7 @@ TEST_CASE("a virtual print with a journal beside its job is gone on with by the 
     CHECK(b.session.part(0, 0).size() > 200);  // what was printed is there again
     REQUIRE(b.session.ask("POST", "/api/job", R"({"command":"start","resume":true})").status == 204);
     CHECK(Json::parse(b.verdict())["passed"] == true);
-    CHECK(b.session.discard().error().message == "no interrupted print waits");
+    CHECK(b.session.discard().error().message == "there is no interrupted print");
     REQUIRE(b.session.give_back().has_value());
 
     REQUIRE(write_file(b.order.journal, broken_off).has_value());

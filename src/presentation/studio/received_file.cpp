@@ -41,8 +41,8 @@ private:
 };
 
 Error too_large(const std::string& name, long long largest) {
-    return {Cause::input, fmt::format("{}: more than {} MB are refused; put it into the project folder by hand", name,
-                                      largest >> 20)};
+    return {Cause::input,
+            fmt::format("{}: larger than {} MB; copy it into the project folder yourself", name, largest >> 20)};
 }
 
 Status write_all(const fs::path& path, const std::string& name, long long length, const ReadMore& more,
@@ -54,7 +54,7 @@ Status write_all(const fs::path& path, const std::string& name, long long length
         if (length >= 0 && had >= length) break;
         const auto most = length >= 0 ? std::min<long long>(length - had, piece.size()) : piece.size();
         const long long got = more(piece.data(), static_cast<std::size_t>(most));
-        if (got < 0 || (got == 0 && length >= 0)) return failure("{}: the connection broke off", name);
+        if (got < 0 || (got == 0 && length >= 0)) return failure("{}: the connection was lost", name);
         if (got == 0) break;
         had += got;
         if (had > largest) return tl::unexpected(too_large(name, largest));
@@ -95,7 +95,7 @@ Status check_geometry_name(std::string_view name) {
     if (std::ranges::any_of(endings, [&](std::string_view e) { return low.ends_with(e) && low.size() > e.size(); }))
         return {};
     return input_error(
-        "\"{}\": is no geometry that Pliant reads by its ending; surfaces (.stl, .obj, .ply, .off), solids (.step, "
+        "\"{}\": is not geometry that Pliant reads by its ending; surfaces (.stl, .obj, .ply, .off), solids (.step, "
         ".stp, .3mf) and tet meshes (.vtk, .vtu, .msh, .mesh, .inp) are",
         name);
 }

@@ -94,7 +94,7 @@ TEST_CASE("names that lead elsewhere, hide or say nothing of a format are refuse
     }
     CHECK(holds(refused(b.send(std::string(200, 'x') + ".stl", tetra(10))), "at most 120 bytes"));
     for (const char* name : {"robot.toml", "job.zip", "a.stl.exe", "stl"})
-        CHECK(holds(refused(b.send(name, tetra(10))), "is no geometry that Pliant reads by its ending"));
+        CHECK(holds(refused(b.send(name, tetra(10))), "is not geometry that Pliant reads by its ending"));
     CHECK(b.files() == 0);
 }
 
@@ -118,9 +118,9 @@ TEST_CASE("what no reader takes, what is too large and what breaks off leaves no
     for (const bool known : {true, false})
         CHECK(holds(refused(b.send("big.stl", tetra(10), false, known, 300)), "are refused"));
     const ReadMore broken = [](char*, std::size_t) { return -1LL; };
-    CHECK(holds(refused(receive_geometry(b.project, "a.stl", false, 10, broken)), "the connection broke off"));
+    CHECK(holds(refused(receive_geometry(b.project, "a.stl", false, 10, broken)), "the connection was lost"));
     const ReadMore short_one = [](char*, std::size_t) { return 0LL; };
-    CHECK(holds(refused(receive_geometry(b.project, "a.stl", false, 10, short_one)), "the connection broke off"));
+    CHECK(holds(refused(receive_geometry(b.project, "a.stl", false, 10, short_one)), "the connection was lost"));
     CHECK(b.files() == 0);
 }
 

@@ -98,10 +98,11 @@ void add_project_routes(std::vector<Route>& routes) {
                       [](Studio& s, const Request& r) { return done(s.open_file(body_text(r, "name"))); }, json});
     routes.push_back(
         {"POST", "/api/example", "opens {\"name\"}, a robot that is built in", json, true, open_example, json});
-    routes.push_back({"POST", "/api/compare",
-                      "a second robot beside, in the same hands: {\"name\"} of the folder, {\"example\"}, or {}: the "
-                      "robot as it stands now",
-                      json, true, compare, json});
+    routes.push_back(
+        {"POST", "/api/compare",
+         "a second robot beside, driven by the same inputs: {\"name\"} of the folder, {\"example\"}, or {}: the "
+         "robot as it stands now",
+         json, true, compare, json});
     routes.push_back({"POST", "/api/compare/leave", "one robot again", json, true, [](Studio& s, const Request&) {
                           s.stop_comparing();
                           return json_response("{}");

@@ -118,8 +118,8 @@ void add_search_routes(std::vector<Route>& routes) {
     routes.push_back(
         {"POST", "/api/goal", "looks for inputs that bring a marker along a path", json, true, begin_goal, json});
     routes.push_back(
-        {"GET", "/api/unknowns", "numbers of the robot that measurements could tell", json, false, unknowns});
-    routes.push_back({"POST", "/api/identify", "looks for numbers with which the program follows measurements", json,
+        {"GET", "/api/unknowns", "parameters of the robot that measurements could identify", json, false, unknowns});
+    routes.push_back({"POST", "/api/identify", "looks for parameters with which the program follows measurements", json,
                       true, begin_identify, json});
     routes.push_back({"POST", "/api/workspace", "looks for the places that the markers can get to", json, true,
                       begin_workspace, json});

@@ -115,7 +115,7 @@ Result<SearchResult> workspace_found(const Built& built, const sim::InverseTask&
     if (found->cancelled) return tl::unexpected(cancelled());
     const report::WorkspaceReport report{built.robot.name, built.model, task, *found};
     const Json summary = Json::parse(report::workspace_json(report));
-    if (summary["found"] == 0) return failure("no place within these ranges has an equilibrium");
+    if (summary["found"] == 0) return failure("no equilibrium was found within these ranges");
     Json reach = Json::array();
     for (std::size_t m = 0; m < built.model.description().markers.size(); ++m) reach.push_back(reach_of(report, m));
     Json json = {{"summary", summary}, {"reach", reach}, {"csv", report::workspace_csv(report)}};

@@ -77,7 +77,7 @@ TEST_CASE("goals that no robot can have are refused in one line") {
     order.inputs = {{"flexor", 1, 1}};
     CHECK(problem(*built, order) == "flexor: the range from 1 to 1 is empty");
     order.inputs = {{"flexor", 0, 9}};
-    CHECK(problem(*built, order) == "flexor: the range from 0 to 9 has values that it cannot have");
+    CHECK(problem(*built, order) == "flexor: the range from 0 to 9 has values that are not possible");
     order.inputs = {{"flexor", 0, 1}, {"flexor", 0, 1}};
     CHECK(problem(*built, order) == "flexor: is named twice");
     CHECK(holds(
@@ -99,7 +99,7 @@ TEST_CASE("a search tells of its end, and its result stays until the next one") 
     CHECK(result["found"]["waypoints"][0]["reached"] == true);
     b.events.clear();
     REQUIRE(b.session.identify(built, {{"material.soft.nothing"}, "time,tip_z_mm\n1,1\n", "t.csv", ""}));
-    CHECK(holds(b.end(), "material.soft.nothing: the robot has no such number"));
+    CHECK(holds(b.end(), "material.soft.nothing: the robot has no such parameter"));
     CHECK(Json::parse(b.session.result()->json) == result);
 }
 

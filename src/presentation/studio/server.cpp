@@ -132,7 +132,7 @@ struct Server::State {
             case Access::wrong_host:
                 return refuse(wire, 403, "this name is not the studio's; use the address that it printed");
             case Access::wrong_origin:
-                return refuse(wire, 403, "requests of other pages are refused");
+                return refuse(wire, 403, "requests from other pages are refused");
             case Access::no_token:
                 return refuse(wire, 401, "the token is missing: use the address that the studio printed");
         }

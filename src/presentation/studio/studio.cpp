@@ -357,7 +357,7 @@ void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_
     }
     if (std::holds_alternative<Ping>(*message))
         return connection->send_text(std::make_shared<const std::string>(R"({"type":"pong"})"));
-    if (connection->page.empty() || !hub_.may_steer(connection->page)) return refuse("another page steers");
+    if (connection->page.empty() || !hub_.may_steer(connection->page)) return refuse("another page has control");
     steer(*message, *simulation_, false);
     if (const auto second = beside()) steer(*message, *second, true);
 }

@@ -297,7 +297,7 @@ TEST_CASE("who does not steer changes nothing") {
     studio.receive(stranger, R"({"type":"play","on":true})");
     const auto answer = stranger->next();
     REQUIRE(answer);
-    CHECK(answer->bytes->find("another page steers") != std::string::npos);
+    CHECK(answer->bytes->find("another page has control") != std::string::npos);
 }
 
 TEST_CASE("a robot is sliced, its layers and plan are there, and slicing can be given up") {

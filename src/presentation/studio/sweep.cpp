@@ -138,7 +138,7 @@ Result<Sweep> run_sweep(const RobotText& source, const SweepOrder& order, Progre
         // A key may add or take away results, as where it repeats something: a plot needs the same ones everywhere.
         const bool same = row && row->columns.size() == sweep.columns.size();
         sweep.runs.push_back({all[k], same ? std::move(row->values) : std::vector<double>(),
-                              row ? (same ? "" : "it has other results than the first one") : row.error().message});
+                              row ? (same ? "" : "its results are not those of the first run") : row.error().message});
     }
     if (sweep.columns.empty()) return tl::unexpected(*first);
     return sweep;

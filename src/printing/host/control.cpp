@@ -159,12 +159,12 @@ namespace {
 
 Status only_when_idle(const Snapshot& s) {
     if (s.state == State::idle) return {};
-    return failure("not now: the printer is {}", state_text(s.state));
+    return failure("not possible now: the printer is {}", state_text(s.state));
 }
 
 Status only_when_printing(const Snapshot& s) {
     if (is_printing(s.state)) return {};
-    return failure("not now: no print is under way");
+    return failure("not possible now: no print is under way");
 }
 
 }  // namespace
@@ -178,7 +178,7 @@ Status Control::connect() {
         State::connecting,
         [](const Snapshot& s) -> Status {
             if (s.state == State::offline || s.state == State::halted) return {};
-            return failure("not now: the printer is {}", state_text(s.state));
+            return failure("not possible now: the printer is {}", state_text(s.state));
         },
         [this] { state_->do_connect(); });
 }
@@ -188,7 +188,7 @@ Status Control::disconnect() {
         State::offline,
         [](const Snapshot& s) -> Status {
             if (!is_printing(s.state) && s.state != State::working) return {};
-            return failure("not now: the printer is {}", state_text(s.state));
+            return failure("not possible now: the printer is {}", state_text(s.state));
         },
         [this] { state_->close(); });
 }
@@ -202,7 +202,7 @@ Status Control::load(PrintJob job) {
         std::nullopt,
         [](const Snapshot& s) -> Status {
             if (!is_printing(s.state) && s.state != State::working && s.state != State::connecting) return {};
-            return failure("not now: the printer is {}", state_text(s.state));
+            return failure("not possible now: the printer is {}", state_text(s.state));
         },
         [this, job = std::move(job), script = std::move(*script), times = std::move(*times)]() mutable {
             state_->job = std::move(job);
@@ -228,7 +228,7 @@ Status Control::start(const StartOptions& options) {
         State::printing,
         [&](const Snapshot& s) -> Status {
             if (s.state != State::idle && s.state != State::offline && s.state != State::halted)
-                return failure("not now: the printer is {}", state_text(s.state));
+                return failure("not possible now: the printer is {}", state_text(s.state));
             return {};
         },
         [this, options] { state_->do_start(options, false); });
@@ -243,8 +243,8 @@ Status Control::pause(PauseWhen when) {
 
 Status Control::resume() {
     const Snapshot now = snapshot();
-    if (now.state != State::paused) return failure("not now: the print is not paused");
-    if (now.door_open.value_or(false)) return failure("not now: the door is open; close it first");
+    if (now.state != State::paused) return failure("not possible now: the print is not paused");
+    if (now.door_open.value_or(false)) return failure("not possible now: the door is open; close it first");
     state_->desk.wish([](Wishes& w) { w.resume = true; });
     return {};
 }
@@ -294,7 +294,7 @@ Status Control::set_exposure(int material, double seconds) {
     if (material < 0 || static_cast<std::size_t>(material) >= now.exposures_s.size())
         return input_error("the job has no material {}", material);
     if (!(seconds > 0 && seconds <= most_s))
-        return input_error("{:g} s of light: {} allows up to {:g} s", seconds, state_->setup.printer.name, most_s);
+        return input_error("exposure of {:g} s: {} allows up to {:g} s", seconds, state_->setup.printer.name, most_s);
     if (Status status = only_when_printing(now); !status) return status;
     state_->desk.change_exposure(material, seconds);
     return {};
@@ -408,7 +408,8 @@ Status Control::prime(double seconds) {
 Status Control::expose_test(job::Image image, double seconds) {
     const machine::Printer& printer = state_->setup.printer;
     if (!(seconds > 0 && seconds <= printer.limits.exposure_s))
-        return input_error("{:g} s of light: {} allows up to {:g} s", seconds, printer.name, printer.limits.exposure_s);
+        return input_error("exposure of {:g} s: {} allows up to {:g} s", seconds, printer.name,
+                           printer.limits.exposure_s);
     if (image.width_px != printer.projector.width_px || image.height_px != printer.projector.height_px)
         return input_error("the image has {} x {} pixels, the projector {} x {}", image.width_px, image.height_px,
                            printer.projector.width_px, printer.projector.height_px);
@@ -441,7 +442,7 @@ Status Control::reset_controller() {
         State::connecting,
         [](const Snapshot& s) -> Status {
             if (!is_printing(s.state) && s.state != State::working) return {};
-            return failure("not now: the printer is {}", state_text(s.state));
+            return failure("not possible now: the printer is {}", state_text(s.state));
         },
         [this] {
             State_& s = *state_;

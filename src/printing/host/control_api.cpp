@@ -299,10 +299,10 @@ ApiAnswer handle_api(Control& control, std::string_view method, std::string_view
         if (route.path != path) continue;
         path_known = true;
         if (route.method != method) continue;
-        if (!parsed.is_object()) return refusal(400, "the body is no JSON object");
+        if (!parsed.is_object()) return refusal(400, "the body is not a JSON object");
         return route.run({control, std::move(parsed)});
     }
-    return path_known ? refusal(405, "this path takes another method") : refusal(404, "there is no such path");
+    return path_known ? refusal(405, "this path does not take this method") : refusal(404, "there is no such path");
 }
 
 std::string history_message(const Control& control, long& last_event) {

@@ -156,10 +156,10 @@ Result<JournalText> parse_journal(std::string_view text, std::string_view where)
         if (!record) {
             if (bad_line == 0) bad_line = number;
         } else if (bad_line > 0) {
-            return input_error("{}: line {} is damaged in the middle of the journal; it proves nothing any more", where,
-                               bad_line);
+            return input_error("{}: line {} is damaged in the middle of the journal, which can no longer be trusted",
+                               where, bad_line);
         } else if (record->number != static_cast<long>(journal.records.size()) + 1) {
-            return input_error("{}: line {} has number {}, {} would follow", where, number, record->number,
+            return input_error("{}: line {} has number {}, {} was expected", where, number, record->number,
                                journal.records.size() + 1);
         } else {
             journal.records.push_back(*record);
@@ -198,7 +198,7 @@ Status Journal::read_all() {
     auto parsed = parse_journal(text, path_.string());
     if (!parsed) return tl::unexpected(parsed.error());
     if (parsed->records.empty() && !text.empty() && text.find('\n') != std::string::npos)
-        return input_error("{}: this is no journal; give another name with --journal", path_.string());
+        return input_error("{}: this is not a journal; give another name with --journal", path_.string());
     if (parsed->good_bytes < text.size() && ::ftruncate(file_.number(), static_cast<off_t>(parsed->good_bytes)) != 0)
         return failure("{}: {}", path_.string(), std::strerror(errno));
     good_bytes_ = parsed->good_bytes;

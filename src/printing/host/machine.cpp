@@ -194,8 +194,8 @@ Status Machine::wait_for_homing(std::string_view command) {
         where += fmt::format("{}the {} did not reach its switch ({})", where.empty() ? "" : " or ",
                              machine::axis_name(axis), home_switch(printer_, axis));
     }
-    return failure("homing failed: {}; the board is halted: look at switch, plug and wire, then reset the board",
-                   where);
+    return failure(
+        "homing failed: {}; the board is halted: check the switch, its plug and its wire, then reset the board", where);
 }
 
 /// Of every axis that `command` has homed.
@@ -299,7 +299,7 @@ Status Machine::rest_in_place() {
         }
         if (found == Position::agrees) break;
         if (found == Position::differs && std::exchange(differed, true))
-            return failure("the controller is not where it was sent: it says {}", said);
+            return failure("the controller is not at the commanded position: it reports {}", said);
     }
     return look_at_switches();
 }

@@ -151,7 +151,7 @@ Status PrintRun::expose(std::size_t step) {
     LightFact& fact = found->second;
     if (is_new && skipped(light.layer)) {
         facts_.lights.erase(found);
-        run_.desk.event("log", fmt::format("the light of layer {} is left out", light.layer + 1));
+        run_.desk.event("log", fmt::format("the exposure of layer {} is skipped", light.layer + 1));
         return {};
     }
     if (is_new) fact = {light.layer, light.material, exposure_s(light), 0, false, 0, 0};

@@ -46,7 +46,7 @@ Status check_lights(const JournalFacts& facts, const machine::Printer& printer) 
     const auto allowed = [&](double seconds) { return seconds >= 0 && seconds <= printer.limits.exposure_s; };
     for (const auto& [step, light] : facts.lights) {
         if (!allowed(light.planned_s))
-            return input_error("the journal asks for {:g} s of light, {} allows up to {:g} s", light.planned_s,
+            return input_error("the journal asks for an exposure of {:g} s, {} allows up to {:g} s", light.planned_s,
                                printer.name, printer.limits.exposure_s);
     }
     for (const ChangeFact& change : facts.changes) {
@@ -74,8 +74,8 @@ Result<Standing> standing_of(const JournalFacts& facts, const Script& script, co
     const bool proven = is_proven(facts, last_line, commands.size());
     if (!proven && last_line > 0 && !facts.stopped_short && !assume.vats_untouched) {
         return failure(
-            "another program has spoken to the controller since this print was interrupted; if every vat is "
-            "where it was then, go on with --assume-vats-untouched");
+            "another program has used the controller since this print was interrupted; if every vat is "
+            "where it was then, continue with --assume-vats-untouched");
     }
     const machine::Switch& magnet = printer.hooks.magnet.coil;
     const bool needs_power = !magnet.on.empty() && !machine::on_without_power(magnet);
@@ -154,7 +154,7 @@ Result<Recovery> recovery_of(const JournalFacts& facts, const Script& script, co
                       standing.on_hooks};
     if (facts.last_light) {
         if (*facts.last_light >= script.steps.size() || script.light(*facts.last_light) == nullptr)
-            return input_error("the journal speaks of step {}, which is no light of this job", *facts.last_light);
+            return input_error("the journal names step {}, which is not an exposure of this job", *facts.last_light);
         const Interlock lit = state_before(script, printer, *facts.last_light + 1);
         recovery.last_lit_vat = lit.hooked_vat().value_or(-1);
         Interlock::State state = recovery.state.state();

@@ -27,7 +27,7 @@ Status follow_step(const Script& script, const machine::Printer& printer, std::s
     if (const auto* command = std::get_if<std::string>(&script.steps[step])) return at.line(printer, *command);
     const machine::Expose& light = *script.light(step);
     if (light.seconds > printer.limits.exposure_s)
-        return input_error("{:g} s of light, the limit of {} is {:g} s", light.seconds, printer.name,
+        return input_error("exposure of {:g} s, the limit of {} is {:g} s", light.seconds, printer.name,
                            printer.limits.exposure_s);
     if (Status status = at.lock.light_on(false); !status) return status;
     at.lock.light_off();

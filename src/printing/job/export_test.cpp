@@ -334,7 +334,7 @@ TEST_CASE("pixels that two stacks light go to one of them, and it is said") {
     REQUIRE(made->manifest.layers.at(0).images.size() == 1);
     CHECK(made->manifest.layers[0].images[0].material == 1);
     CHECK(made->manifest.warnings.at(0) ==
-          "images of \"soft\": 0.025 mm^3 are lit by other materials too, which keep them");
+          "images of \"soft\": 0.025 mm^3 are exposed by other materials too, which keep them");
 }
 
 TEST_CASE("stacks with gaps, without images and of other sizes are refused") {

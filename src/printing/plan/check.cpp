@@ -114,7 +114,7 @@ Status run_other(Reading& r, const Command& command) {
         return std::find(std::begin(list), std::end(list), command.number) != std::end(list);
     };
     const bool known = command.letter == 'G' ? knows(known_g) : knows(known_m);
-    return known ? Status{} : input_error("{}{} does not belong to the dialect", command.letter, command.number);
+    return known ? Status{} : input_error("{}{} is not a command that a job may hold", command.letter, command.number);
 }
 
 /// `N12 G1 X3*77` as it stands on the wire: only what it commands.
@@ -154,7 +154,7 @@ Status run_text(Reading& r, std::string_view line) {
 
 Status run_expose(Reading& r, const machine::Expose& expose) {
     if (expose.seconds > r.printer.limits.exposure_s) {
-        return input_error("{:g} s of light, the limit of {} is {:g} s", expose.seconds, r.printer.name,
+        return input_error("exposure of {:g} s, the limit of {} is {:g} s", expose.seconds, r.printer.name,
                            r.printer.limits.exposure_s);
     }
     if (Status status = r.interlock.light_on(r.moving); !status) return status;

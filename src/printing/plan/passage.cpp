@@ -141,21 +141,21 @@ Status Passage::check_approach(int z_um) const {
         return input_error("the platform goes down faster than {:g} mm/s within {:g} mm of the layer",
                            platform.approach_speed_mm_s, platform.approach_um / 1000.0);
     if (!enough(rest_s_, platform.settle_s))
-        return input_error("the resin rests for {:g} s before the light, {} asks for {:g} s", rest_s_, printer_->name,
-                           platform.settle_s);
+        return input_error("the resin rests for {:g} s before the exposure, {} asks for {:g} s", rest_s_,
+                           printer_->name, platform.settle_s);
     return {};
 }
 
 Status Passage::check_peel(int z_um) const {
     const machine::Platform& platform = printer_->platform;
     if (!enough(rest_after_light_s_, printer_->projector.delay_s))
-        return input_error("the machine moves {:g} s after the light, the projector is dark after {:g} s",
+        return input_error("the machine moves {:g} s after the exposure, the projector is dark after {:g} s",
                            rest_after_light_s_, printer_->projector.delay_s);
     if (printer_->has_carriage() && sheared_um_ < printer_->carriage.shear_um)
         return input_error("the carriage moves {:g} mm aside to loosen the layer, {} asks for {:g} mm",
                            sheared_um_ / 1000.0, printer_->name, printer_->carriage.shear_um / 1000.0);
     if (top_um_ < z_um + platform.lift_um)
-        return input_error("the platform lifts {:g} mm after the light, {} asks for {:g} mm",
+        return input_error("the platform lifts {:g} mm after the exposure, {} asks for {:g} mm",
                            std::max(0, top_um_ - z_um) / 1000.0, printer_->name, platform.lift_um / 1000.0);
     if (went_up_fast_ && fast_up_from_um_ < z_um + platform.lift_um)
         return input_error("the platform peels the layer faster than {:g} mm/s", platform.lift_speed_mm_s);

@@ -115,7 +115,8 @@ void choose_order(Plan& plan, const std::vector<VatList>& layers, const Printer&
     const ChangeCosts costs = change_costs(plan, printer);
     const LeastCost least = least_cost_order(layers, costs);
     if (!least.exact)
-        plan.warnings.emplace_back("layers of more than 12 vats: their order is near the best, not proved");
+        plan.warnings.emplace_back(
+            "layers of more than 12 vats: their order is close to the optimum, not proved to be it");
     for (const OrderRule each : {OrderRule::naive, OrderRule::thesis, OrderRule::least_cost}) {
         std::vector<VatList> order = each == OrderRule::least_cost ? least.order : order_vats(layers, each);
         plan.compared.push_back({each, count_swaps(order), change_cost(order, costs)});

@@ -142,11 +142,12 @@ private:
         }
         const std::string& name = material_name(light.material);
         if (layer.images[k].file != light.image)
-            return input_error("light of \"{}\": shows {}, the manifest has {}", name, light.image,
+            return input_error("exposure of \"{}\": shows {}, the manifest has {}", name, light.image,
                                layer.images[k].file);
         const double asked_s = job::exposure_s(job_, static_cast<std::size_t>(light.layer), k);
         if (std::abs(light.seconds - asked_s) > light_tolerance_s)
-            return input_error("light of \"{}\": lasts {:g} s, the manifest says {:g} s", name, light.seconds, asked_s);
+            return input_error("exposure of \"{}\": lasts {:g} s, the manifest says {:g} s", name, light.seconds,
+                               asked_s);
         return {};
     }
 
@@ -155,14 +156,14 @@ private:
         const auto layer = static_cast<std::size_t>(light.layer);
         const std::string& name = material_name(light.material);
         if (layer < open_layer_)
-            return input_error("layer {}: light of \"{}\" after layer {}", layer, name, open_layer_);
+            return input_error("layer {}: exposure of \"{}\" after layer {}", layer, name, open_layer_);
         if (layer > open_layer_) {
             if (Status status = check_complete(layer); !status) return status;
             open_layer_ = layer;
             lit_.clear();
         }
         if (!lit_.insert(light.material).second)
-            return input_error("layer {}: light of \"{}\" a second time", layer, name);
+            return input_error("layer {}: exposure of \"{}\" a second time", layer, name);
         return {};
     }
 
@@ -171,7 +172,7 @@ private:
         for (std::size_t layer = open_layer_; layer < end; ++layer) {
             for (const job::LayerImage& image : job_.layers[layer].images) {
                 if (layer != open_layer_ || !lit_.contains(image.material))
-                    return input_error("layer {}: the light of \"{}\" is missing", layer,
+                    return input_error("layer {}: the exposure of \"{}\" is missing", layer,
                                        material_name(image.material));
             }
         }
@@ -184,13 +185,13 @@ private:
         const std::string& name = material_name(light.material);
         const int at_um = machine.position()[Axis::platform];
         if (at_um != layer.z_um)
-            return input_error("light of \"{}\": the platform stands at {:.3f} mm, the layer's height is {:.3f} mm",
+            return input_error("exposure of \"{}\": the platform stands at {:.3f} mm, the layer's height is {:.3f} mm",
                                name, at_um / 1000.0, layer.z_um / 1000.0);
         const auto vat = static_cast<std::size_t>(*machine.hooked_vat());
         const std::string& asked = job_.materials[static_cast<std::size_t>(light.material)].resin;
         const machine::Vat& used = printer_.vats[vat];
         if (used.resin != asked)
-            return input_error("light of \"{}\": over the vat of slot {} with \"{}\", its resin is \"{}\"", name,
+            return input_error("exposure of \"{}\": over the vat of slot {} with \"{}\", its resin is \"{}\"", name,
                                used.slot, used.resin, asked);
         return fillings_.draw(static_cast<std::size_t>(light.layer), index_of(layer, light.material), vat);
     }
@@ -202,8 +203,8 @@ private:
 
     /// What must not happen during a light: idle motors would let the platform sink, a fan would move the resin.
     [[nodiscard]] Status check_rest() const {
-        if (!motors_stay_) return input_error("motors may let go during the light: M84 S0 before it is missing");
-        if (passage_.fans_run()) return input_error("a fan runs during the light");
+        if (!motors_stay_) return input_error("motors may switch off during the exposure: M84 S0 before it is missing");
+        if (passage_.fans_run()) return input_error("a fan runs during the exposure");
         return {};
     }
 

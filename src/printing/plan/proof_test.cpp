@@ -109,7 +109,7 @@ TEST_CASE("a light that is missing, doubled, longer, shorter, of another image i
     const auto with = [](const char* what, const char* instead) {
         return [=](std::string line) { return line.replace(line.find(what), std::string(what).size(), instead); };
     };
-    CHECK(holds(changed([](const std::string&) { return std::string(); }), "layer 2: the light of \""));
+    CHECK(holds(changed([](const std::string&) { return std::string(); }), "layer 2: the exposure of \""));
     CHECK(holds(changed([](const std::string& line) { return line + "\n" + line; }), "a second time"));
     CHECK(holds(changed(with("seconds=12.000", "seconds=11.990")), "lasts 11.99 s, the manifest says 12 s"));
     CHECK(holds(changed(with("seconds=12.000", "seconds=24.000")), "lasts 24 s"));
@@ -141,7 +141,7 @@ TEST_CASE("a wrong height, a missing lift, rest, stroke or approach is found") {
     };
     const auto dropped = [](const std::string&) { return std::string(); };
     CHECK(holds(changed("G1 Z0.100", 0, [](std::string l) { return l.replace(0, 9, "G1 Z0.070"); }),
-                "layer 1: light of \"m0\": the platform stands at 0.070 mm, the layer's height is 0.100 mm"));
+                "layer 1: exposure of \"m0\": the platform stands at 0.070 mm, the layer's height is 0.100 mm"));
     CHECK(holds(changed("G1 Z0.100", 0, [](const std::string&) { return "G1 Z0.100 F6000.0"; }), "goes down faster"));
     const std::string lift = fmt::format("G1 Z{:.3f}", (50 + tower.platform.lift_um) / 1000.0);
     CHECK(holds(changed(lift, 0, dropped), "layer 0: the platform lifts"));
@@ -222,7 +222,7 @@ TEST_CASE("other vats than the job's resins are in, and vats that run dry, are f
     Case c = two_materials();
     std::swap(c.printer.vats[0].resin, c.printer.vats[1].resin);
     c.plan = make_plan(c.job, c.printer).value();
-    CHECK(holds(c.error(), "layer 0: light of \"m0\": over the vat of slot 1"));
+    CHECK(holds(c.error(), "layer 0: exposure of \"m0\": over the vat of slot 1"));
     c = two_materials();
     c.printer.vats[2].resin = c.printer.vats[0].resin;  // the plan goes over to the second vat, the program does not
     for (job::Layer& layer : c.job.layers) layer.images.front().area_mm2 = 5e6;

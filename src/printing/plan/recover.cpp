@@ -58,7 +58,8 @@ Status home_all(Sequence& s, const Interlock& state) {
         const bool by_hand = s.printer().axis(axis).homes_by_hand;
         if (by_hand && !state.homed(axis))
             return failure(
-                "the {} has no limit switch, and the controller has lost its position: nobody knows where it stands",
+                "the {} has no limit switch, and the controller has lost its position, so that where it stands is "
+                "unknown",
                 machine::axis_name(axis, s.printer().store()));
         if (!by_hand) s.home(axis);
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "base/core/counted.hpp"
 #include "printing/prepare/option_text.hpp"
 #include "printing/prepare/paint_file.hpp"
 #include "printing/prepare/settings.hpp"
@@ -14,6 +15,10 @@
 
 namespace pliant::prepare {
 namespace {
+
+std::string number(int count, std::string_view word) {
+    return counted(static_cast<std::size_t>(count), word);
+}
 
 Status read_lengths(std::initializer_list<std::tuple<const char*, const std::string*, double*>> wanted) {
     for (const auto& [option, text, um] : wanted) {
@@ -142,8 +147,9 @@ Status hollow_part(const Order& order, job::JobSettings& settings, Drawing& draw
     if (!made) return tl::unexpected(made.error());
     settings.slicing.removed = made->removed;
     drawing.warnings.insert(drawing.warnings.end(), made->warnings.begin(), made->warnings.end());
-    notes.push_back(
-        fmt::format("hollow: {} cavities of {:.1f} mm^3, {} drains", made->cavities, made->volume_mm3, made->drains));
+    notes.push_back(fmt::format("hollow: {} of {:.1f} mm^3, {}",
+                                made->cavities == 1 ? "1 cavity" : fmt::format("{} cavities", made->cavities),
+                                made->volume_mm3, number(made->drains, "drain")));
     return {};
 }
 
@@ -172,12 +178,12 @@ Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,
     if (!supported) return {};
     auto supports = slice::make_supports(drawing.bodies, settings.slicing, wanted, progress);
     if (!supports) return tl::unexpected(supports.error());
-    notes.push_back(fmt::format("supports: {} tips, {} of them on the part itself, {} struts, {:.1f} mm^3",
-                                supports->tips, supports->on_part, supports->struts, supports->volume_mm3));
+    notes.push_back(fmt::format("supports: {}, {} of them on the part itself, {}, {:.1f} mm^3",
+                                number(supports->tips, "tip"), supports->on_part, number(supports->struts, "strut"),
+                                supports->volume_mm3));
     if (!wanted.paint.empty()) notes.push_back(fmt::format("painted supports: {} of the tips", supports->painted));
     if (supports->islands_left > 0)
-        drawing.warnings.push_back(
-            fmt::format("{} islands are left that supports do not reach", supports->islands_left));
+        drawing.warnings.push_back(fmt::format("supports do not reach {}", number(supports->islands_left, "island")));
     drawing.bodies.insert(drawing.bodies.begin(), std::make_move_iterator(supports->bodies.begin()),
                           std::make_move_iterator(supports->bodies.end()));
     return {};

@@ -148,7 +148,7 @@ TEST_CASE("--least-layer makes layers of many heights, --hollow cavities") {
     });
     CHECK(hollow.settings.slicing.removed != nullptr);
     REQUIRE(hollow.notes.size() == 1);
-    CHECK(hollow.notes[0].find("hollow: 1 cavities of ") == 0);
+    CHECK(hollow.notes[0].find("hollow: 1 cavity of ") == 0);
     CHECK(refused([](Order& o) { o.drain = "1 mm"; }) == "--drain: needs --hollow");
     CHECK(refused([](Order& o) { o.hollow = "0 mm"; }).find("must be above 0") != std::string::npos);
     CHECK(refused([](Order& o) { o.hollow = "2 mm"; }).find("nothing of the part lies") != std::string::npos);

@@ -159,7 +159,7 @@ Result<Drawing> read_drawing(const std::vector<std::string>& inputs, const std::
     Drawing drawing;
     for (const std::string& input : inputs) {
         if (std::filesystem::path(input).extension() == ".toml")
-            return input_error("{}: a robot file stands alone; for other files write MATERIAL=FILE", input);
+            return input_error("{}: a robot file must be the only input; for other files write MATERIAL=FILE", input);
         if (auto status = add_file(input, drawing); !status) return tl::unexpected(status.error());
     }
     if (!drawing.stacks.empty() && !drawing.bodies.empty())

@@ -207,8 +207,8 @@ void note_findings(const slice::Findings& findings, const std::vector<slice::Thi
     note_thin(thin, settings, manifest);
     for (std::string& line : describe(findings, settings.slicing.raster)) manifest.warnings.push_back(std::move(line));
     if (static_cast<int>(findings.pieces.size()) > settings.copies)
-        manifest.warnings.push_back(
-            fmt::format("{} pieces touch each other nowhere; {} expected", findings.pieces.size(), settings.copies));
+        manifest.warnings.push_back(fmt::format("the part falls apart into {} separate pieces; {} expected",
+                                                findings.pieces.size(), settings.copies));
     note_rare_materials(manifest);
     note_volume(manifest);
 }
@@ -382,7 +382,7 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
         add_drawn(stacks[i].material, lit[i] * voxel_mm3, 0, job.manifest.materials);
         if (lost_px[i] * voxel_mm3 > voxel_mm3)
             job.manifest.warnings.push_back(
-                fmt::format("images of \"{}\": {:.4g} mm^3 are lit by other materials too, which keep them",
+                fmt::format("images of \"{}\": {:.4g} mm^3 are exposed by other materials too, which keep them",
                             stacks[i].material, lost_px[i] * voxel_mm3));
     }
     job.summary.layer_count = source.count;

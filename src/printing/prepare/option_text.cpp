@@ -25,7 +25,7 @@ Result<double> length_um(const char* option, const std::string& text, double oth
     const Result<double> length = parse_quantity(text, Dimension::length);
     if (!length) return input_error("{}: {}", option, length.error().message);
     const double um = *length * 1e6;
-    if (!std::isfinite(um)) return input_error("{} {}: is no length of this world", option, text);
+    if (!std::isfinite(um)) return input_error("{} {}: is not a possible length", option, text);
     return um;
 }
 

@@ -19,7 +19,7 @@ TEST_CASE("lengths have a unit and come out in micrometres") {
         CHECK(length.error().cause == Cause::input);
         CHECK(length.error().message.find("--x: ") == 0);
     }
-    CHECK(length_um("--x", "1e303 m", 7).error().message == "--x 1e303 m: is no length of this world");
+    CHECK(length_um("--x", "1e303 m", 7).error().message == "--x 1e303 m: is not a possible length");
 }
 
 TEST_CASE("lengths within limits, the limits included") {

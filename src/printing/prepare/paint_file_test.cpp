@@ -35,7 +35,7 @@ TEST_CASE("what is wrong in a table of painted supports is told with its line") 
     CHECK(holds(refused("wish,x (mm)\nblock,1\n"), "p.csv:1: there is no column \"y (mm)\""));
     CHECK(holds(refused(head + "forbid,1,2,3,0,0,-1,1\n"), "p.csv:2: \"forbid\" must be enforce, block or usual"));
     CHECK(holds(refused(head + "block,1,2,3,0,0,-1,0\n"), "p.csv:2: painted supports: a radius of 0 mm"));
-    CHECK(holds(refused(head + "block,1,2,3,0,0,0,1\n"), "p.csv:2: painted supports: a normal of no length"));
+    CHECK(holds(refused(head + "block,1,2,3,0,0,0,1\n"), "p.csv:2: painted supports: a normal of length 0"));
     CHECK(holds(refused(head + "block,1,2,inch,0,0,-1,1\n"), "p.csv:2"));
     CHECK(holds(refused(head + "block,1,2\n"), "p.csv:2"));
     CHECK_FALSE(refused("").empty());

@@ -265,9 +265,9 @@ Result<std::optional<double>> stacked_layer_um(const Drawing& drawing) {
         if (!s.stack.layer_um()) continue;
         if (first == nullptr) first = &s;
         if (std::fabs(*s.stack.layer_um() - *first->stack.layer_um()) > same_um)
-            return input_error("images of \"{}\" are for layers of {}, those of \"{}\" for {}: slice them alike",
-                               first->material, um_text(*first->stack.layer_um()), s.material,
-                               um_text(*s.stack.layer_um()));
+            return input_error(
+                "images of \"{}\" are for layers of {}, those of \"{}\" for {}: slice them in the same layer height",
+                first->material, um_text(*first->stack.layer_um()), s.material, um_text(*s.stack.layer_um()));
     }
     if (first == nullptr) return std::nullopt;
     return first->stack.layer_um();
@@ -284,7 +284,7 @@ Result<int> layer_of(const Order& order, const machine::Printer& printer, Drawin
         if (!drawing.stacks.empty() && order.layer.empty())
             drawing.warnings.push_back(
                 fmt::format("layer images do not say how high their layers are: {} "
-                            "of the printer file are assumed; --layer says otherwise",
+                            "of the printer file are assumed; --layer gives another height",
                             um_text(*asked)));
         return asked;
     }
@@ -295,7 +295,7 @@ Result<int> layer_of(const Order& order, const machine::Printer& printer, Drawin
     if (!order.layer.empty() && *asked != static_cast<int>(um))
         return input_error(
             "--layer {}: the layer images are for layers of {}, the part would come out {:.3g} times as high: leave "
-            "--layer out, or slice anew",
+            "--layer out, or slice again",
             order.layer, um_text(um), *asked / um);
     return static_cast<int>(um);
 }

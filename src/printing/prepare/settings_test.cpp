@@ -81,9 +81,10 @@ TEST_CASE("layer images are printed as high as they were sliced") {
     CHECK(layer_or_error("", stacks(folder, "", "0.025")) == "25");  // one of them says it
     CHECK(layer_or_error("50 um", stacks(folder, "0.1")) ==
           "--layer 50 um: the layer images are for layers of 100 um, the part would come out 0.5 times as high: leave "
-          "--layer out, or slice anew");
+          "--layer out, or slice again");
     CHECK(layer_or_error("", stacks(folder, "0.1", "0.05")) ==
-          "images of \"soft\" are for layers of 100 um, those of \"firm\" for 50 um: slice them alike");
+          "images of \"soft\" are for layers of 100 um, those of \"firm\" for 50 um: slice them in the same layer "
+          "height");
     CHECK(layer_or_error("", stacks(folder, "0.0125")).find("layer images are for layers of 12.5 um") == 0);
     CHECK(layer_or_error("", stacks(folder, "1.5")).find("layer images are for layers of 1500 um") == 0);
 }

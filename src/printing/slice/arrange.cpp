@@ -57,7 +57,7 @@ Status scale(std::vector<Body>& bodies, double factor) {
 
 Status turn(std::vector<Body>& bodies, const Vec3& degrees) {
     if (!is_finite(degrees))
-        return input_error("a turn by {}, {}, {} degrees is no turn", degrees.x, degrees.y, degrees.z);
+        return input_error("rotation by {}, {}, {} degrees: must be finite", degrees.x, degrees.y, degrees.z);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         if (!bodies[i].slices.empty() && (degrees.x != 0 || degrees.y != 0))
             return input_error("{}: consists of slices, which can be turned about z only", describe(bodies[i], i));
@@ -83,7 +83,7 @@ Status turn(std::vector<Body>& bodies, const Vec3& degrees) {
 Status repeat(std::vector<Body>& bodies, int count, double spacing_um, const Raster& raster) {
     if (count < 1 || count > most_copies) return input_error("{} copies: must be 1 to {}", count, most_copies);
     if (!(spacing_um >= 0 && std::isfinite(spacing_um)))
-        return input_error("copies {:.6g} um apart: must be a length from 0 on", spacing_um);
+        return input_error("copies {:.6g} um apart: must be 0 or more", spacing_um);
     if (count == 1) return {};
     const auto box = bounds_of_all(bodies);
     if (!box) return tl::unexpected(box.error());

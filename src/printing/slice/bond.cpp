@@ -26,7 +26,8 @@ Status check(const Bond& bond) {
         return input_error("overlap of '{}' into '{}': {} layers: must be 0 to 1000", bond.first, bond.second,
                            bond.layers);
     if (bond.depth_px == 0 && bond.layers == 0)
-        return input_error("overlap of '{}' into '{}': by no pixel and no layer is none", bond.first, bond.second);
+        return input_error("overlap of '{}' into '{}': 0 pixels and 0 layers: one of them must be above 0", bond.first,
+                           bond.second);
     return {};
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/core/counted.hpp"
 #include "printing/slice/holes.hpp"
 #include "printing/slice/shells.hpp"
 
@@ -21,8 +22,8 @@ std::string hole_warning(const Holes& holes, const std::string& label, const Lay
 }
 
 std::string join_warning(std::size_t points, const std::string& label, double join_um) {
-    return fmt::format("{}: {} point(s) at open edges lay within {:.3g} um of another and were joined to it", label,
-                       points, join_um);
+    return fmt::format("{}: joined {} at open edges to another one within {:.3g} um", label, counted(points, "point"),
+                       join_um);
 }
 
 /// Orients triangles and closes holes.
@@ -30,7 +31,8 @@ Status close_surface(GridSurface& surface, const std::string& label, const Layer
                      std::vector<std::string>& warnings) {
     const double area = area_mm2(surface);
     if (const int turned = orient_consistently(surface); turned > 0)
-        warnings.push_back(fmt::format("{}: {} triangles ran against their neighbours and were turned", label, turned));
+        warnings.push_back(fmt::format("{}: flipped {} that ran against the neighbours", label,
+                                       counted(static_cast<std::size_t>(turned), "triangle")));
     const Holes holes = close_holes(surface);
     if (holes.area_mm2 > 0.25 * area)
         return input_error(
@@ -59,8 +61,9 @@ Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& labe
         uses = edge_uses(surface.triangles);
     }
     if (const int turned = turn_inverted_shells(surface, uses); turned > 0)
-        result.warnings.push_back(
-            fmt::format("{}: {} shell{} inside out turned outwards", label, turned, turned == 1 ? "" : "s"));
+        result.warnings.push_back(fmt::format("{}: flipped {} that {} inside out", label,
+                                              counted(static_cast<std::size_t>(turned), "shell"),
+                                              turned == 1 ? "was" : "were"));
     // A solid thinner than a grid unit everywhere is a sheet that was drawn twice.
     if (volume_mm3(surface) < 0.5e-3 / grid_per_um * area)
         return input_error("{}: the surface encloses no volume; a closed surface is needed", label);

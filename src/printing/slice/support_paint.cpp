@@ -14,7 +14,7 @@ constexpr double looks_down = -0.01;  // of the normal's z: flatter than a verti
 Status check(const SupportTouch& t) {
     constexpr double most_um = 100000;
     if (!is_finite(t.at_um) || !is_finite(t.normal)) return input_error("painted supports: a number is not finite");
-    if (!(norm(t.normal) > 0)) return input_error("painted supports: a normal of no length");
+    if (!(norm(t.normal) > 0)) return input_error("painted supports: a normal of length 0");
     if (!(t.radius_um > 0 && t.radius_um <= most_um))
         return input_error("painted supports: a radius of {:.6g} mm: must be above 0 and at most 100 mm",
                            t.radius_um / 1000);

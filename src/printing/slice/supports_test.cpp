@@ -223,7 +223,7 @@ TEST_CASE("supports that make no sense are refused") {
     s.paint = {touch(SupportWish::block, {0, 0, 0}, 0)};
     CHECK(refused(s) == "painted supports: a radius of 0 mm: must be above 0 and at most 100 mm");
     s.paint = {touch(SupportWish::block, {0, 0, 0}, 1000, {0, 0, 0})};
-    CHECK(refused(s) == "painted supports: a normal of no length");
+    CHECK(refused(s) == "painted supports: a normal of length 0");
 }
 
 TEST_CASE("tall supports are braced, the braces need no support themselves, and one alone has a broad foot") {

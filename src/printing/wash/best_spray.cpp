@@ -121,7 +121,7 @@ Result<BestSpray> best_spray(const PartCells& part, const Printer& printer, doub
     }
     if (search.best()) return *search.best();
     return input_error(
-        "no oscillation cleans the part to {:.1f} %: at most {:.1f} % within {:g} s; the rest nothing reaches",
+        "no oscillation cleans the part to {:.1f} %: at most {:.1f} % within {:g} s; no spray reaches the rest",
         100 * wanted, 100 * search.cleanest(), printer.limits.cleaning_s);
 }
 

@@ -66,7 +66,7 @@ TEST_CASE("what cannot be reached is said, and what is missing") {
     const Result<BestSpray> scaffold = best_spray(coarsened(wash::test::scaffold(), 32), p, 0.99);
     REQUIRE_FALSE(scaffold);
     CHECK(holds(scaffold.error().message, "no oscillation cleans the part to 99.0 %: at most "));
-    CHECK(holds(scaffold.error().message, "the rest nothing reaches"));
+    CHECK(holds(scaffold.error().message, "no spray reaches the rest"));
     machine::Printer dry = p;
     dry.sprinklers.clear();
     CHECK(holds(best_spray(disc(), dry, 0.9).error().message, "has no [[sprinkler]] tables"));

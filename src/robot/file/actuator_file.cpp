@@ -84,9 +84,10 @@ std::optional<double> read_weight(Reader& reader) {
     if (!reader.has("weight")) return std::nullopt;
     const double weight = reader.number("weight");
     if (weight > 0 && weight <= largest_space_weight) return weight;
-    reader.problem("weight", fmt::format("is the stiffness of the elements beside the softest Young's modulus: above 0 "
-                                         "and at most {:.6g}",
-                                         largest_space_weight));
+    reader.problem("weight",
+                   fmt::format("is the stiffness of the elements relative to the softest Young's modulus: above 0 "
+                               "and at most {:.6g}",
+                               largest_space_weight));
     return std::nullopt;
 }
 
@@ -111,9 +112,9 @@ void read_cable(Reader& reader, Context& context, CableSpec& cable) {
         reader.problem("weight", "is that of gap elements, which act with model = \"gap-elements\" only");
     cable.weight = read_weight(reader).value_or(cable.weight);
     if (cable.gap_elements && cable.friction > 0)
-        reader.problem("friction", "model = \"gap-elements\" closes the gaps and knows no guides; leave it out");
+        reader.problem("friction", "model = \"gap-elements\" closes the gaps and has no guides; leave it out");
     if (cable.gap_elements && cable.target.kind == CableTarget::Kind::tension_N)
-        reader.problem("target", "model = \"gap-elements\" knows lengths only: length_ratio or shortening");
+        reader.problem("target", "model = \"gap-elements\" takes lengths only: length_ratio or shortening");
 }
 
 void read_spring(Reader& reader, Context& context, SpringSpec& spring) {
@@ -234,7 +235,7 @@ void read_chamber(Reader& reader, Context& context, ChamberSpec& chamber) {
     chamber.steering = read_steering(reader, steered_by(chamber.target));
     const auto kind = chamber.target.kind;
     if (chamber.elements && kind != ChamberTarget::Kind::volume_ratio && kind != ChamberTarget::Kind::volume_change_m3)
-        reader.problem("target", "model = \"elements\" knows volumes only: volume_ratio or volume_change");
+        reader.problem("target", "model = \"elements\" takes volumes only: volume_ratio or volume_change");
 }
 
 void read_gap(Reader& reader, Context& context, GapSpec& gap) {

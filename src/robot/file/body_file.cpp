@@ -53,7 +53,7 @@ double read_size(Reader& reader, std::string_view key, const Context& context) {
     }
     const double size = reader.quantity(key, Dimension::length, 1) / context.robot.unit_m;
     if (!(size > 0)) reader.problem(key, "must be above zero");
-    if (context.robot.mesh.file) reader.problem(key, "has no meaning beside a mesh file");
+    if (context.robot.mesh.file) reader.problem(key, "has no meaning together with a mesh file");
     return size;
 }
 
@@ -65,7 +65,7 @@ void read_close_gaps(Reader& reader, Context& context) {
     }
     const double width = reader.quantity("close_gaps", Dimension::length, 0) / context.robot.unit_m;
     if (!(width >= 0)) reader.problem("close_gaps", "must not be below zero; \"0 mm\" closes none");
-    if (context.robot.mesh.file) reader.problem("close_gaps", "has no meaning beside a mesh file");
+    if (context.robot.mesh.file) reader.problem("close_gaps", "has no meaning together with a mesh file");
     context.robot.mesh.close_gaps = width;
 }
 
@@ -100,7 +100,7 @@ void read_mesh(Reader& root, Context& context) {
         mesh.elements_through_wall = static_cast<int>(reader.integer("elements_through_wall", 3));
         if (*mesh.elements_through_wall < 0 || *mesh.elements_through_wall > 20)
             reader.problem("elements_through_wall", "is a whole number from 0 to 20");
-        if (mesh.file) reader.problem("elements_through_wall", "has no meaning beside a mesh file");
+        if (mesh.file) reader.problem("elements_through_wall", "has no meaning together with a mesh file");
     }
     (void)reader.raw("elements_through_wall");
     reader.finish();

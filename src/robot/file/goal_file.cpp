@@ -177,7 +177,7 @@ void read_force(Reader& reader, const Context& context, GoalSpec& goal) {
     }
     goal.wanted = {{Vec3{reader.quantity("force", Dimension::force), 0, 0}}};
     if (!contact) reader.problem("force", "of a support has three components: [\"0 N\", \"0 N\", \"2 N\"]");
-    if (goal.wanted[0][0].x < 0) reader.problem("force", "is how hard the obstacle presses in all: not below zero");
+    if (goal.wanted[0][0].x < 0) reader.problem("force", "is the total contact force of the obstacle: not below zero");
 }
 
 double read_tolerance(Reader& reader, const GoalSpec& goal, double unit_m) {
@@ -219,7 +219,7 @@ void read_goal(Reader& reader, Context& context, GoalSpec& goal) {
     goal.markers = read_marker_names(reader, context);
     if (given.size() != 1) {
         reader.problem("", given.empty()
-                               ? std::string("wants nothing; add point, points, path, plane, direction or force")
+                               ? std::string("has no target; add point, points, path, plane, direction or force")
                                : "takes only one of " + join_names(given));
     } else if (given[0] == "plane") {
         goal.kind = Kind::plane;
@@ -262,7 +262,7 @@ void check_together(Reader& root, Robot& robot) {
             root.problem("goal", fmt::format("\"{}\" has {} waypoints, another goal has {}; they are reached together",
                                              goal.name, goal.wanted.size(), waypoints));
         if (!goal.times.empty() && goal.times != times)
-            root.problem("goal", fmt::format("\"{}\" has other times than another goal", goal.name));
+            root.problem("goal", fmt::format("\"{}\" has other times than those of another goal", goal.name));
     }
     const auto steered = [](const auto& actuator) { return actuator.steering.has_value(); };
     if (!robot.goals.empty() && std::ranges::none_of(robot.cables, steered) &&

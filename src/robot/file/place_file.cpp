@@ -24,7 +24,7 @@ NodeSelector read_nodes(Reader& reader) {
     NodeSelector selector;
     for (const double value : reader.numbers("nodes")) {
         if (value < 0 || value != std::floor(value) || value > 2e9)
-            reader.problem("nodes", "holds a value that is no node number");
+            reader.problem("nodes", "holds a value that is not a node number");
         else
             selector.nodes.push_back(static_cast<int>(value));
     }
@@ -87,7 +87,8 @@ void read_directions(Reader& reader, FixedSpec& fixed) {
     }
     if (fixed.directions.empty()) reader.problem("directions", direction_help);
     if (reader.has("rotate"))
-        reader.problem("directions", "has no meaning beside rotate: a support that rotates holds all directions");
+        reader.problem("directions",
+                       "has no meaning together with rotate: a support that rotates holds all directions");
 }
 
 void read_support(Reader& reader, Context& context, FixedSpec& fixed) {
@@ -223,7 +224,7 @@ void read_inertia(Reader& reader, const Context& context, MassSpec& mass) {
         if (!(I.x >= 0 && I.y >= 0 && I.z >= 0))
             reader.problem("inertia", "must not be below zero");
         else if (I.x > I.y + I.z + slack || I.y > I.x + I.z + slack || I.z > I.x + I.y + slack)
-            reader.problem("inertia", "is of no body: none of the three is larger than the sum of the others");
+            reader.problem("inertia", "is not possible: each of the three moments is at most the sum of the other two");
     }
     const bool inert = reader.has("size") || reader.has("inertia");
     mass.axes = read_axes(reader);
@@ -273,7 +274,7 @@ std::array<Vec3, 2> read_axes(Reader& reader) {
     const bool two = axes.size() == 2 && norm(axes[0]) > 0 && norm(axes[1]) > 0 &&
                      std::fabs(dot(unit(axes[0]), unit(axes[1]))) < 1e-6;
     if (two) return {unit(axes[0]), unit(axes[1])};
-    reader.problem("axes", "are two that are square to each other, as [[1, 0, 0], [0, 1, 0]]");
+    reader.problem("axes", "must be two directions at right angles, as [[1, 0, 0], [0, 1, 0]]");
     return none;
 }
 

@@ -91,7 +91,7 @@ std::vector<double> read_times(std::vector<Reader>& keys) {
     for (Reader& key : keys) {
         const double time = key.quantity("time", Dimension::time);
         if (time < 0 || (!times.empty() && time <= times.back()))
-            key.problem("time", "keys are in the order of time, none below zero");
+            key.problem("time", "times must increase from key to key, none below zero");
         times.push_back(time);
     }
     return times;
@@ -218,7 +218,7 @@ void read_program(config::Reader& root, Robot& robot) {
     program.imperfection_m = reader.quantity("imperfection", Dimension::length, 0);
     if (!(program.imperfection_m >= 0)) reader.problem("imperfection", "must not be below zero; 0 only warns");
     robot.ambient_pressure_Pa = reader.quantity("ambient_pressure", Dimension::pressure, 101325);
-    if (!(robot.ambient_pressure_Pa > 0)) reader.problem("ambient_pressure", "is absolute: above zero");
+    if (!(robot.ambient_pressure_Pa > 0)) reader.problem("ambient_pressure", "is an absolute pressure: above zero");
     read_dynamics(reader, robot);
     read_keys(reader, robot);
     if (robot.program.dynamics) spread_steps(reader, robot);

@@ -94,7 +94,8 @@ Result<Robot> load_robot(const fs::path& file, const std::vector<std::string>& a
     Result<config::Document> document = config::load(file);
     if (!document && is_geometry(file))
         return input_error(
-            "{}: is geometry, no robot file; write a robot file that names it, as in geometry = \"{}\" of a [[body]]",
+            "{}: is geometry, not a robot file; write a robot file that names it, as in geometry = \"{}\" of a "
+            "[[body]]",
             file.string(), file.filename().string());
     if (!document) return tl::unexpected(document.error());
     return read_robot(std::move(*document), assignments);

@@ -10,7 +10,7 @@ using config::Reader;
 
 double read_price(Reader& price, std::string_view key) {
     const double value = price.number(key, 0);
-    if (!(value >= 0 && value <= 1e6)) price.problem(key, "is a weight beside other prices: 0 to 1000000");
+    if (!(value >= 0 && value <= 1e6)) price.problem(key, "is a weight relative to other prices: 0 to 1000000");
     return value;
 }
 

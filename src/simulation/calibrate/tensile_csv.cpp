@@ -41,7 +41,7 @@ Result<Columns> read_header(const CsvTable& table) {
     const auto strain = stretch ? stretch : find_column(low, "strain");
     const auto stress = find_column(low, "stress");
     if (!strain)
-        return input_error("{}: no column is named \"stretch\" or \"strain\" (of the engineer, not true strain)",
+        return input_error("{}: no column is named \"stretch\" or \"strain\" (engineering strain, not true strain)",
                            place);
     if (!stress)
         return input_error("{}: no column is named \"stress\", as in \"stress (MPa)\" (nominal, not true stress)",
@@ -70,7 +70,8 @@ Status read_row(const CsvTable& table, const CsvRow& row, const Columns& columns
     const double stretch = *strain * columns.strain_factor + (columns.is_stretch ? 0 : 1);
     if (!(stretch > 0 && stretch <= 100))
         return input_error("{}: the stretch is {:.4g}; it is length over rest length, between 0 and 100{}",
-                           table.place(row.line), stretch, columns.is_stretch ? "" : ", and the strain is it less one");
+                           table.place(row.line), stretch,
+                           columns.is_stretch ? "" : ", and the strain is the stretch less 1");
     test.stretch.push_back(stretch);
     test.stress_Pa.push_back(*stress * columns.stress_factor);
     return {};

@@ -180,7 +180,7 @@ private:
                 result.warnings.push_back(fmt::format(
                     "{}: nothing that was measured depends on it; its value means nothing", found.unknown.key));
             else if (found.at_bound)
-                result.warnings.push_back(fmt::format("{}: is at its bound, {}; the data would have it beyond",
+                result.warnings.push_back(fmt::format("{}: is at its bound, {}; the data ask for a value beyond it",
                                                       found.unknown.key, found.unknown.shown(found.value)));
         }
         for (const auto& group : known.mixed) {
@@ -192,11 +192,10 @@ private:
                 join_names(names), names.size() > 2 ? "s" : "", names.size() > 2 ? "some" : "one"));
         }
         if (fitted_.size() == unknowns_.size())
-            result.warnings.emplace_back(
-                "as many unknowns as measured values: there is no telling how well they are known");
+            result.warnings.emplace_back("as many unknowns as measured values: how well they are known cannot be told");
         if (!result.converged)
             result.warnings.push_back(
-                fmt::format("the search ended after {} trials and could come nearer", result.trials));
+                fmt::format("the search stopped after {} trials, before it converged", result.trials));
     }
 
     [[nodiscard]] Identification conclude(const LeastSquaresEnd& end, const VectorXd& low, const VectorXd& high) const {

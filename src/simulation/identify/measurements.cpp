@@ -47,7 +47,7 @@ Status read_scatters(const CsvTable& table, Header& header) {
         name.remove_suffix(scatter_ending.size());
         const auto of = std::ranges::find(header.channels, name, &Channel::column);
         if (of == header.channels.end())
-            return input_error("{}: column \"{}\" is the scatter of \"{}\", which is no column here",
+            return input_error("{}: column \"{}\" is the scatter of \"{}\", which is not a column of the table",
                                table.place(table.header_line), table.columns[c], name);
         header.columns[static_cast<std::size_t>(of - header.channels.begin())].scatter = c;
     }
@@ -184,7 +184,7 @@ Result<Measurements> parse_measurements(std::string_view text, const std::string
     }
     if (std::ranges::all_of(result.values, &MeasuredValue::judged))
         return input_error("{}: {}", file,
-                           result.values.empty() ? "no row has a value" : "every row is kept to judge on, none to fit");
+                           result.values.empty() ? "no row has a value" : "all rows are held out, none is left to fit");
     return result;
 }
 

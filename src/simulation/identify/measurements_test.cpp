@@ -78,8 +78,9 @@ TEST_CASE("what is wrong is said with file and line") {
     check_problem("time,top_x_mm\n1,59\n",
                   "m.csv:1: the robot has nothing that column \"top_x_mm\" could be; did you mean \"tip_x_mm\"?");
     check_problem("time,tip_x_mm,tip_x_mm\n1,59,59\n", "m.csv:1: there are two columns \"tip_x_mm\"");
-    check_problem("time,tip_x_mm,tip_z_mm_scatter\n1,59,0.1\n",
-                  "m.csv:1: column \"tip_z_mm_scatter\" is the scatter of \"tip_z_mm\", which is no column here");
+    check_problem(
+        "time,tip_x_mm,tip_z_mm_scatter\n1,59,0.1\n",
+        "m.csv:1: column \"tip_z_mm_scatter\" is the scatter of \"tip_z_mm\", which is not a column of the table");
     check_problem("time,tip_x_mm\n0.5,59\n,58\n", "m.csv:3: time is empty; every row needs one");
     check_problem("time,tip_x_mm\n3,59\n", "m.csv:2: time 3 is outside the program, which goes from 0 to 2");
     check_problem("step,tip_x_mm\n-1,59\n", "m.csv:2: step -1 is outside the program, which goes from 0 to 4");
@@ -92,6 +93,6 @@ TEST_CASE("what is wrong is said with file and line") {
     check_problem("time,tip_x_mm,tip_x_mm_scatter\n1,59,\n", "m.csv:2: tip_x_mm_scatter \"\" is not a number");
     check_problem("time,use,tip_x_mm\n1,test,59\n", "m.csv:2: use \"test\" is neither fit nor judge");
     check_problem("time,tip_x_mm\n1,\n", "m.csv: no row has a value");
-    check_problem("time,use,tip_x_mm\n1,judge,59\n", "m.csv: every row is kept to judge on, none to fit");
+    check_problem("time,use,tip_x_mm\n1,judge,59\n", "m.csv: all rows are held out, none is left to fit");
     check_problem("time,middle-tap_angle_x_deg\n1,59\n", "m.csv:1: the robot has nothing that column");
 }

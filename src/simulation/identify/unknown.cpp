@@ -157,7 +157,7 @@ Result<double> read_bound(const Unknown& unknown, std::string_view text) {
 Status take_bounds(Unknown& unknown, std::string_view text) {
     const std::size_t dots = text.find("..");
     if (dots == std::string_view::npos)
-        return input_error("{}: \"{}\" is no range; write LOW..HIGH, as in {}", unknown.key, text.substr(0, 40),
+        return input_error("{}: \"{}\" is not a range; write LOW..HIGH, as in {}", unknown.key, text.substr(0, 40),
                            find_unit(unknown.unit) != nullptr
                                ? fmt::format("\"1 {0}..2 {0}\"", find_unit(unknown.unit)->shown)
                                : "0.1..0.4");
@@ -248,7 +248,7 @@ Result<Unknown> find_unknown(const robot::Robot& robot, std::string_view text) {
         std::vector<std::string> names;
         for (const Unknown& one : all) names.push_back(one.key);
         const std::string nearest = nearest_name(key, names);
-        return input_error("{}: the robot has no such number that could be found; {}", key,
+        return input_error("{}: the robot has no such parameter to find; {}", key,
                            nearest.empty() ? "it has " + join_names(names) : "did you mean \"" + nearest + "\"?");
     }
     Unknown unknown = *found;

@@ -77,11 +77,11 @@ TEST_CASE("bounds, with units where the key has one") {
 TEST_CASE("what is no unknown is said in one line") {
     const Bar bar(rich);
     CHECK(problem(bar, "material.sof.youngs_modulus") ==
-          "material.sof.youngs_modulus: the robot has no such number that could be found; did you mean "
+          "material.sof.youngs_modulus: the robot has no such parameter to find; did you mean "
           "\"material.soft.youngs_modulus\"?");
-    CHECK(problem(bar, "mesh.size").starts_with("mesh.size: the robot has no such number that could be found"));
+    CHECK(problem(bar, "mesh.size").starts_with("mesh.size: the robot has no such parameter to find"));
     CHECK(problem(bar, "material.soft.youngs_modulus=1 MPa") ==
-          "material.soft.youngs_modulus: \"1 MPa\" is no range; write LOW..HIGH, as in \"1 kPa..2 kPa\"");
+          "material.soft.youngs_modulus: \"1 MPa\" is not a range; write LOW..HIGH, as in \"1 kPa..2 kPa\"");
     CHECK(problem(bar, "material.soft.youngs_modulus=1..2")
               .starts_with("material.soft.youngs_modulus: \"1\" has no unit"));
     CHECK(problem(bar, "material.soft.youngs_modulus=2 MPa..1 MPa") ==

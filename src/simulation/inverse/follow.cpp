@@ -74,8 +74,8 @@ private:
             if (best && !other.reached && !(other.cost < clearly * best->cost)) continue;
             if (begin && (other.reached || other.cost < clearly * from_rest))
                 note_ = fmt::format(
-                    "from rest the way to the first waypoint ended further off; beginning {} of {} that are spread "
-                    "over the ranges came nearer",
+                    "from rest the path to the first waypoint ended further away; start {} of {} spread over the "
+                    "ranges came nearer",
                     n + 1, options_.starts);
             best = std::move(other);
         }

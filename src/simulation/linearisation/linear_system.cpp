@@ -416,7 +416,7 @@ Error SystemSolver::redundancy() const {
         names += (count++ == 0 ? "" : ", ") + system_->multipliers[static_cast<std::size_t>(k)];
     }
     if (count == 1) return {Cause::failed, names + " moves nothing and cannot be given another length or volume"};
-    return {Cause::failed, names + " do the same and are asked for different things: nothing gives both"};
+    return {Cause::failed, names + " have the same effect but different targets, which cannot be met at once"};
 }
 
 Result<Eigen::VectorXd> SystemSolver::solve(const Eigen::VectorXd& b, Side side) {

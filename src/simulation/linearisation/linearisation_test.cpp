@@ -260,7 +260,7 @@ TEST_CASE("cables that do the same share what they do; asked for different thing
     const auto differ = at.response(derivative(at, inputs(at)[0]));
     REQUIRE_FALSE(differ);
     CHECK(differ.error().message ==
-          "cable \"left\", cable \"right\" do the same and are asked for different things: nothing gives both");
+          "cable \"left\", cable \"right\" have the same effect but different targets, which cannot be met at once");
 }
 
 TEST_CASE("a cable between held points moves nothing") {

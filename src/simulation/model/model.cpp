@@ -146,11 +146,11 @@ Status check_growths(const Description& d) {
         if (growth.actuator >= cables) {
             const auto kind = d.chambers[a - d.cables.size()].target.kind;
             if (kind != ChamberTarget::Kind::volume_ratio && kind != ChamberTarget::Kind::volume_change_m3)
-                return input_error("chamber \"{}\": elements know volumes only", d.chambers[a - d.cables.size()].name);
+                return input_error("chamber \"{}\": elements take volumes only", d.chambers[a - d.cables.size()].name);
             continue;
         }
         if (d.cables[a].target.kind == CableTarget::Kind::tension_N || d.cables[a].friction > 0)
-            return input_error("cable \"{}\": gap elements know neither tension nor friction", d.cables[a].name);
+            return input_error("cable \"{}\": gap elements take neither tension nor friction", d.cables[a].name);
         if (!(growth.length_m > 0) || !(std::fabs(norm(growth.direction) - 1) < 1e-6))
             return input_error("cable \"{}\": a gap needs a direction and a length", d.cables[a].name);
     }
@@ -231,7 +231,7 @@ Status check_joint(const Joint& joint, const Description& d, int nodes) {
         return input_error("{}: its stiffness and its arm must be above zero", owner);
     if (!(joint.law.stiffness >= 0) || !(joint.law.damping >= 0))
         return input_error("{}: stiffness and damping must not be negative", owner);
-    if (!(joint.law.low <= joint.law.high)) return input_error("{}: its limits leave no way", owner);
+    if (!(joint.law.low <= joint.law.high)) return input_error("{}: its limits leave no range of motion", owner);
     return {};
 }
 

@@ -43,7 +43,7 @@ Json json_of(const ChecksState& checks) {
 std::vector<std::size_t> indices(Reader& in, const char* key, std::size_t end) {
     std::vector<std::size_t> out;
     const Json& list = in.at(key);
-    if (!list.is_array()) in.fail(std::string(key) + " is no list");
+    if (!list.is_array()) in.fail(std::string(key) + " is not a list");
     for (const Json& one : list) {
         if (!one.is_number_unsigned() || one.get<std::uint64_t>() >= end) {
             in.fail(std::string(key) + " has an entry that is out of range");
@@ -76,7 +76,7 @@ Json crossings_of(const std::vector<Step>& steps) {
 
 void take_crossings(Reader& in, std::vector<Step>& steps) {
     const Json& list = in.at("crossings");
-    if (!list.is_array()) in.fail("crossings is no list");
+    if (!list.is_array()) in.fail("crossings is not a list");
     for (const Json& one : list) {
         const bool good = one.is_array() && one.size() == 4 && one[0].is_number_unsigned() &&
                           one[0].get<std::uint64_t>() < steps.size() &&
@@ -117,7 +117,7 @@ Status read_steps(const fs::path& file, std::uintmax_t bytes, std::size_t count,
 Result<Checkpoint> Checkpoint::create(const fs::path& folder, std::string origin, int every) {
     std::error_code code;
     if (!may_replace_folder(folder, steps_name))
-        return input_error("{}: is there already, and is no checkpoint; move it away", folder.string());
+        return input_error("{}: is there already, and is not a checkpoint; move it away", folder.string());
     fs::remove_all(folder, code);
     if (!fs::create_directories(folder, code))
         return failure("{}: cannot be made: {}", folder.string(), code.message());

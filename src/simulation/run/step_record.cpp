@@ -85,14 +85,14 @@ private:
     template <class Take>
     void each(const char* key, std::size_t count, const Take& take) {
         const Json& list = in_.at(key);
-        if (!list.is_array()) in_.fail(std::string(key) + " is no list");
+        if (!list.is_array()) in_.fail(std::string(key) + " is not a list");
         for (const Json& one : list) {
             const bool is_named =
                 one.is_array() && one.size() == 2 && one[0].is_string() && one[1].is_array() && one[1].size() == count;
             if (!is_named) return in_.fail(std::string(key) + " has an entry of another kind");
             std::vector<double> numbers;
             for (const Json& value : one[1]) {
-                if (!value.is_number()) return in_.fail(std::string(key) + " has an entry that is no number");
+                if (!value.is_number()) return in_.fail(std::string(key) + " has an entry that is not a number");
                 numbers.push_back(value.get<double>());
             }
             take(one[0].get_ref<const std::string&>(), numbers);
@@ -102,7 +102,7 @@ private:
     /// Each a name and its readings: name, measure, value.
     void sensors(Step& step) {
         const Json& list = in_.at("sensors");
-        if (!list.is_array()) return in_.fail("sensors is no list");
+        if (!list.is_array()) return in_.fail("sensors is not a list");
         for (const Json& one : list) {
             if (!one.is_array() || one.size() != 2 || !one[0].is_string() || !one[1].is_array())
                 return in_.fail("sensors has an entry of another kind");
@@ -126,14 +126,14 @@ private:
     std::vector<IterationRecord> history() {
         std::vector<IterationRecord> records;
         const Json& list = in_.at("history");
-        if (!list.is_array()) in_.fail("history is no list");
+        if (!list.is_array()) in_.fail("history is not a list");
         for (const Json& one : list) {
             if (!one.is_array() || one.size() != 9) {
                 in_.fail("history has an entry of another kind");
                 break;
             }
             for (const Json& value : one) {
-                if (!value.is_number()) in_.fail("history has an entry that is no number");
+                if (!value.is_number()) in_.fail("history has an entry that is not a number");
             }
             if (in_.status() && !(one[2] >= 0 && one[2] <= last_solver)) in_.fail("a solver that does not exist");
             if (!in_.status()) break;

@@ -55,7 +55,7 @@ std::vector<bool> held_by_joints(const Model& model) {
 std::vector<std::string> warnings_of(const Step& step) {
     std::vector<std::string> warnings;
     if (step.crossing_m) warnings.push_back(crossing_text(*step.crossing_m));
-    if (!step.converged) warnings.push_back("accepted on looser terms: " + step.reason);
+    if (!step.converged) warnings.push_back("accepted above the tolerance: " + step.reason);
     return warnings;
 }
 
@@ -116,7 +116,7 @@ void add_warnings(Trajectory& trajectory) {
         return (loose(a) ? a.residual : 0) < (loose(b) ? b.residual : 0);
     });
     trajectory.warnings.push_back(fmt::format(
-        "{} of {} steps, the first of them step {}, were accepted on looser terms than the tolerance. The "
+        "{} of {} steps, the first of them step {}, were accepted above the tolerance. The "
         "worst is step {}: {}",
         std::count_if(first, steps.end(), loose), steps.size() - 1, first->index, worst->index, worst->reason));
 }

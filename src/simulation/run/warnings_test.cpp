@@ -186,6 +186,6 @@ TEST_CASE("steps on looser terms are counted, and the worst of them is named") {
     add_warnings(t);
     REQUIRE(t.warnings.size() == 1);
     CHECK(t.warnings[0] ==
-          "2 of 4 steps, the first of them step 2, were accepted on looser terms than the tolerance. The worst is step "
+          "2 of 4 steps, the first of them step 2, were accepted above the tolerance. The worst is step "
           "2: this");
 }

@@ -183,7 +183,7 @@ TEST_CASE("gap elements take the weight of their gap, else that of their cable")
     const double of_gap = weight_Pa(built_of(notched(cable("flexor", path, "weight = 0.2") + gap + "weight = 0.4\n")));
     CHECK(of_gap == near(4 * usual, {.relative = 1e-12}));
     check_problem(notched(cable("flexor", path, "fill_notches = true\nweight = 0")), "above 0 and at most 1000");
-    check_problem(notched(cable("flexor", path, "fill_notches = true\nfriction = 0.1")), "knows no guides");
+    check_problem(notched(cable("flexor", path, "fill_notches = true\nfriction = 0.1")), "has no guides");
     std::string length = notched(cable("flexor", path, "weight = 1"));
     length.replace(length.find("gap-elements"), 12, "length");
     check_problem(length, "act with model = \"gap-elements\" only");

@@ -102,7 +102,7 @@ TEST_CASE("slips in goals and ranges are named, with their line") {
     check_problem(test::replaced(body, "range = [0.8, 1.0]\n", ""), "belongs to an actuator with a range");
     const std::string unranged = test::replaced(body, "range = [0.8, 1.0]\nrate = 0.05\nprice = { tension = 2 }\n", "");
     check_problem(unranged + reach + "point = [38, 5, 9]\n", "no actuator may move for it");
-    check_problem(body + reach, "wants nothing");
+    check_problem(body + reach, "has no target");
     check_problem(body + reach + "point = [1, 2, 3]\ntolerance = \"0 mm\"\n", "tolerance: must be above zero");
     check_problem(body + reach + "path = [[1, 2, 3], [2, 3, 4]]\n[[goal]]\nname = \"b\"\nmarker = \"middle\"\n" +
                       "path = [[1, 2, 3], [2, 3, 4], [3, 4, 5]]\n",

@@ -208,10 +208,10 @@ TEST_CASE("mistakes in loads and masses are told in one line") {
     const auto mass = [](const std::string& keys) {
         return beam("[[mass]]\nname = \"it\"\npoint = [100, 5, 5]\nmass = \"1 g\"\n" + keys);
     };
-    check_problem(mass("inertia = [\"1 g mm^2\", \"1 g mm^2\", \"3 g mm^2\"]\n"), "inertia: is of no body");
+    check_problem(mass("inertia = [\"1 g mm^2\", \"1 g mm^2\", \"3 g mm^2\"]\n"), "inertia: is not possible");
     check_problem(mass("size = [\"1 mm\", \"1 mm\", \"1 mm\"]\ninertia = [\"1 g mm^2\", \"1 g mm^2\", \"1 g mm^2\"]\n"),
                   "inertia: give either size or inertia");
     check_problem(mass("axes = [[1, 0, 0], [0, 1, 0]]\n"), "axes: have no meaning without size or inertia");
     check_problem(mass("size = [\"1 mm\", \"1 mm\", \"1 mm\"]\naxes = [[1, 0, 0], [1, 1, 0]]\n"),
-                  "axes: are two that are square to each other");
+                  "axes: must be two directions at right angles");
 }

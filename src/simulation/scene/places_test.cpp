@@ -69,7 +69,7 @@ TEST_CASE("directions are named where they are wrong") {
     check_problem(replaced(eighth, "directions = [\"y\"]", "directions = \"normal\""), "\"normal\" is that of a plane");
     check_problem(
         replaced(eighth, "directions = [\"x\"],", "directions = [\"x\"], rotate = { angle = 5, axis = [1,0,0] },"),
-        "has no meaning beside rotate");
+        "has no meaning together with rotate");
 }
 
 TEST_CASE("a spring holds a block against a load") {

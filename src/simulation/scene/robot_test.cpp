@@ -121,7 +121,7 @@ TEST_CASE("slips in the text are named with their line") {
     check_problem(with("poisson_ratio = 0.4\n[material.hard]", "poisson_ratio = 0.5\n[material.hard]"),
                   "0.5 is not possible");
     check_problem(with("length_ratio = 0.97", "length_ratio = 1.2"), "a cable gets shorter");
-    check_problem(with("geometry = { box = [[20", "geometry = { boxx = [[20"), "is no shape; did you mean \"box\"?");
+    check_problem(with("geometry = { box = [[20", "geometry = { boxx = [[20"), "is not a shape; did you mean \"box\"?");
     check_problem(good + "surplus = 1\n", "bar.toml:39: program.surplus: unknown key");
     check_problem(with("steps = 3", "steps = 0"), "between 1 and 100000");
     check_problem(with("name = \"right\"", "name = \"left\""), "two bodies named \"left\"");
@@ -494,7 +494,7 @@ TEST_CASE("slips in keys are named") {
     check_problem(key("time = 1\nflexor = 0.9"), "1 has no unit; write a time such as");
     check_problem(key("time = \"1 s\"\nflexor = 1.2"), "1.2 is not possible; a cable gets shorter: above 0, at most 1");
     check_problem(key("time = \"1 s\"\nflexor = \"8 N\""), "a finite number is needed");
-    check_problem(key("time = \"2 s\"\n[[program.key]]\ntime = \"1 s\""), "program.key[1].time: keys are in the order");
+    check_problem(key("time = \"2 s\"\n[[program.key]]\ntime = \"1 s\""), "program.key[1].time: times must increase");
     check_problem(with("steps = 3\n", "steps = 3\nduration = \"1 s\"\n[[program.key]]\ntime = \"2 s\"\nflexor = 0.9\n"),
                   "duration: ends before the last key");
     check_problem(with("steps = 3\n", "steps = 3\nduration = \"0 s\"\n"), "duration: must be above zero");
@@ -558,10 +558,10 @@ TEST_CASE("the drawing itself, handed over as a robot, is told to be one; a robo
     };
     for (const std::string& content :
          {std::string("solid x\nfacet normal 0 0 1\n"), std::string("ISO-10303-21;\n"), std::string("PK\x03\x04...")})
-        CHECK(message("part.stl", content).find("is geometry, no robot file") != std::string::npos);
+        CHECK(message("part.stl", content).find("is geometry, not a robot file") != std::string::npos);
     std::string binary = std::string(80, ' ') + std::string("\x64\0\0\0", 4);  // 100 facets
     binary += std::string(100 * 50, '\0');
-    CHECK(message("part.stl", binary).find("is geometry, no robot file") != std::string::npos);
+    CHECK(message("part.stl", binary).find("is geometry, not a robot file") != std::string::npos);
     CHECK(message("robot.toml", "# \u00e9l\u00e9phant\nname = \n").find("not valid TOML") != std::string::npos);
 }
 

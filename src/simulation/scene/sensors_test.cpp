@@ -270,6 +270,6 @@ TEST_CASE("mistakes in sensors are told in one line") {
     check_problem(sensor("kind = \"motion\"\nmarker = \"tip\"\npoint = [1, 5, 5]\n"),
                   "takes one of point, marker and object");
     check_problem(sensor("kind = \"motion\"\nmarker = \"tip\"\naxes = [[1, 0, 0], [1, 1, 0]]\n"),
-                  "axes: are two that are square to each other");
+                  "axes: must be two directions at right angles");
     check_problem(sensor("kind = \"contact\"\nbox = [[40, 4, 4], [60, 6, 6]]\n"), "catches no triangle of the surface");
 }

@@ -64,7 +64,7 @@ std::string_view name(Flaw flaw) {
         case Flaw::pierced:
             return "makes surfaces touch or pass through each other";
         case Flaw::collapsed:
-            return "leaves a chamber without volume (walls that shall rest on each other need [contact])";
+            return "leaves a chamber without volume (walls that are to rest on each other need [contact])";
     }
     return {};
 }

@@ -60,7 +60,7 @@ public:
     [[nodiscard]] double number(const char* key) {
         const Json& value = at(key);
         if (value.is_number()) return value.get<double>();
-        fail(std::string(key) + " is no number");
+        fail(std::string(key) + " is not a number");
         return 0;
     }
     [[nodiscard]] int integer(const char* key, int least, int most) {
@@ -81,7 +81,7 @@ public:
     [[nodiscard]] std::string text(const char* key) {
         const Json& value = at(key);
         if (value.is_string()) return value.get<std::string>();
-        fail(std::string(key) + " is no text");
+        fail(std::string(key) + " is not a text");
         return {};
     }
     template <class T>
@@ -93,7 +93,7 @@ public:
     [[nodiscard]] std::vector<T> numbers_of(const char* key, const Json& value) {
         std::vector<T> out;
         if (!value.is_binary() || value.get_binary().size() % sizeof(T) != 0) {
-            fail(std::string(key) + " is no list of numbers");
+            fail(std::string(key) + " is not a list of numbers");
             return out;
         }
         out.resize(value.get_binary().size() / sizeof(T));

@@ -98,7 +98,7 @@ Prediction predict(const Equilibrium& system, const FactoredLaplacian& laplacian
         p.evaluation = system.evaluate(p.state, wanted);
         if (p.evaluation.possible()) return p;
     }
-    p.reason = possible ? "the prescribed motion passes through something in one go"
+    p.reason = possible ? "the prescribed motion passes through something within one step"
                         : fmt::format("the prescribed motion {}", flaw);
     return p;
 }

@@ -201,7 +201,7 @@ private:
         static const Json none = Json::array();
         const Json& value = in.at(key);
         if (value.is_array()) return value;
-        in.fail(std::string(key) + " is no list");
+        in.fail(std::string(key) + " is not a list");
         return none;
     }
 

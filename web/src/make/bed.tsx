@@ -407,7 +407,7 @@ function Brush({ materials, lookUp }: { materials: string[]; lookUp: () => void 
       <button class="small" disabled={strokes.value.length === 0} onClick={() => (strokes.value = [])} data-testid="brush-clear">
         Clear
       </button>
-      <button class="small" disabled={strokes.value.length === 0} onClick={save} title="A table for pliant slice --support-paint" data-testid="brush-save">
+      <button class="small" disabled={strokes.value.length === 0} onClick={save} title="CSV file for pliant slice --support-paint" data-testid="brush-save">
         Save
       </button>
       <label class="button small file-button">
@@ -479,7 +479,7 @@ export function Bed() {
         {isBrush(tool.value) ? (
           <p class="estimate">
             <span class="swatch" style={{ background: '#a3317f' }} />
-            undersides flatter than {angle}° get supports by themselves; only faces that look down can touch one
+            undersides flatter than {angle}° are supported automatically; only downward-facing faces can be painted
           </p>
         ) : (
           estimate && (

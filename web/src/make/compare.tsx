@@ -91,7 +91,7 @@ async function drawDifference(canvas: HTMLCanvasElement, job: Job, other: Job, l
   canvas.height = y1 - y0;
   canvas.getContext('2d')!.putImageData(image, -x0, -y0);
   const mm2 = (n: number) => `${((n * pixel_um * pixel_um) / 1e6).toFixed(2)} mm²`;
-  return `only here ${mm2(count.here)}, only there ${mm2(count.there)}, another resin ${mm2(count.changed)}`;
+  return `only in this job ${mm2(count.here)}, only in the other ${mm2(count.there)}, in another resin ${mm2(count.changed)}`;
 }
 
 function LayerDifference({ job, other }: { job: Job; other: Job }) {
@@ -110,7 +110,7 @@ function LayerDifference({ job, other }: { job: Job; other: Job }) {
       gone = true;
     };
   }, [l, other, alike, theme.value]);
-  if (!alike) return <p class="quiet">The images of the two jobs are not of the same size: their layers cannot be laid over each other.</p>;
+  if (!alike) return <p class="quiet">The images of the two jobs differ in size: their layers cannot be overlaid.</p>;
   return (
     <figure class="layer-difference">
       <figcaption>
@@ -157,13 +157,13 @@ export function Compare({ job }: { job: Job }) {
       <label class="inline">
         Compare with
         <select value={chosen.value} onChange={(e) => (chosen.value = e.currentTarget.value)} data-testid="compare-with">
-          <option value="">the job before</option>
+          <option value="">the previous job</option>
           {names.map((n) => (
             <option value={n}>{n}</option>
           ))}
         </select>
       </label>
-      {why && <p class="quiet" data-testid="compare-none">{chosen.value ? why : 'There is no job before this one yet: slice with another setting, or choose a job of the folder.'}</p>}
+      {why && <p class="quiet" data-testid="compare-none">{chosen.value ? why : 'There is no previous job yet: slice again with other settings, or choose a job from the folder.'}</p>}
       {other && (
         <>
           <table class="compare-table">
@@ -171,7 +171,7 @@ export function Compare({ job }: { job: Job }) {
               <tr>
                 <th />
                 <th scope="col">this job</th>
-                <th scope="col">{other.saved ? other.file : 'the job before'}</th>
+                <th scope="col">{other.saved ? other.file : 'previous job'}</th>
                 <th scope="col">difference</th>
               </tr>
             </thead>

@@ -243,7 +243,7 @@ function Bonds({ materials }: { materials: string[] }) {
           Add a bond
         </button>
       ) : (
-        <p class="quiet small-print">This robot has one material.</p>
+        <p class="quiet small-print">This robot has only one material.</p>
       )}
     </Group>
   );
@@ -264,14 +264,14 @@ function Supports({ materials }: { materials: string[] }) {
       <Problem option="support" />
       {support.value && (
         <>
-          <Field option="support-angle" label="Overhang angle" hint="45" title="Undersides flatter than this get supports; 0: islands only" />
+          <Field option="support-angle" label="Overhang angle" hint="45" title="Undersides flatter than this are supported; 0: islands only" />
           <Field option="support-spacing" label="Max tip spacing" hint="3" />
           <Field option="support-tip" label="Tip diameter" hint="0.4" />
           <Field option="support-pillar" label="Pillar diameter" hint="1" />
           <Field option="lift" label="Lift above platform" hint="0" />
           <Field option="raft" label="Raft thickness" hint="none" />
           <p class="quiet small-print" data-testid="painted">
-            {strokes.value.length === 0 ? 'Nothing is painted by hand: Paint supports, below the part.' : `${counted(strokes.value.length, 'stroke')} painted by hand.`}
+            {strokes.value.length === 0 ? 'None painted by hand yet: use Paint supports below the 3D view.' : `${counted(strokes.value.length, 'stroke')} painted by hand.`}
           </p>
           <Problem option="support-paint" />
         </>

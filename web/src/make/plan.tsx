@@ -211,7 +211,7 @@ function Compare({ job, plan }: { job: Job; plan: Plan }) {
               <td>{r.file.replace(/_/g, ' ')}</td>
               {r.error ? (
                 <td colSpan={3} class="quiet">
-                  {/projector/.test(r.error) ? 'different projector: slice again for it' : 'cannot print it'}
+                  {/projector/.test(r.error) ? 'different projector: slice again for this printer' : 'cannot print this job'}
                 </td>
               ) : (
                 <>

@@ -33,11 +33,11 @@ function Known() {
     <ul class="checklist known" data-testid="known">
       <li class={connected ? 'good' : 'bad'}>
         <Icon name={connected ? 'check' : 'warn'} />
-        <span>{!known.value ? 'not known whether the machine answers' : connected ? `${i.twin ? 'the virtual printer' : i.device} answers: ${n.machine.firmware || 'unnamed firmware'}` : 'the machine does not answer'}</span>
+        <span>{!known.value ? 'unknown whether the machine responds' : connected ? `${i.twin ? 'the virtual printer' : i.device} responds: ${n.machine.firmware || 'unnamed firmware'}` : 'the machine does not respond'}</span>
       </li>
       <li class={connected ? 'good' : 'bad'}>
         <Icon name={connected ? 'check' : 'warn'} />
-        <span>{!known.value ? 'not known whether the projector is dark' : !connected ? 'not connected: the projector was told to be dark' : 'the projector is open and dark'}</span>
+        <span>{!known.value ? 'unknown whether the projector is dark' : !connected ? 'not connected: the projector was last set to dark' : 'the projector is connected and dark'}</span>
       </li>
       <li class="good">
         <Icon name="check" />
@@ -55,7 +55,7 @@ function Known() {
         <li>
           <Icon name="warn" />
           <span>
-            it will pause for you {i.refills.length === 1 ? 'once' : `${i.refills.length} times`}: {i.refills.map((r) => `layer ${r.layer + 1}, ${r.text}`).join('; ')}
+            the print will pause {i.refills.length === 1 ? 'once' : `${i.refills.length} times`} for a refill: {i.refills.map((r) => `layer ${r.layer + 1}, ${r.text}`).join('; ')}
           </span>
         </li>
       )}
@@ -67,7 +67,7 @@ function Checklist() {
   const i = info.value!;
   const items: [string, string][] = [
     ...i.vats.map((v): [string, string] => [`slot${v.slot}`, `slot ${v.slot} holds at least ${Math.ceil(v.ml)} ml of ${v.resin}`]),
-    ['platform', 'the platform is clean, tight and level'],
+    ['platform', 'the platform is clean, tightened and level'],
     ['path', 'carriage, tower and platform are free to move'],
     ['solution', 'the cleaning solution is full, the drain is clear'],
   ];
@@ -137,7 +137,7 @@ function GoOn() {
               Discard
             </button>
           ) : (
-            <button disabled={!may || flags.value.error} onClick={() => host('connection', { command: 'connect' })} title="to discard it, or to inspect the machine first">
+            <button disabled={!may || flags.value.error} onClick={() => host('connection', { command: 'connect' })} title="Connect without resuming, to discard the print or to inspect the machine first">
               Connect only
             </button>
           )
@@ -146,7 +146,7 @@ function GoOn() {
       <details>
         <summary>If the journal is incomplete</summary>
         <label class="field-row">
-          <span>The interrupted exposure had lasted</span>
+          <span>Duration of the interrupted exposure</span>
           <span class="number">
             <input type="number" min={0} step="any" value={lit} onInput={(e) => setLit(e.currentTarget.value)} />
             <span class="unit">s</span>
@@ -212,7 +212,7 @@ function Lost() {
       <Icon name="warn" />
       <span>
         <b>Connection lost, reconnecting…</b>
-        This page has lost the studio, so the state of the machine is unknown. A print continues without this page as long as the studio runs; if the studio has ended, the light
+        This page has lost its connection to the studio, so the state of the machine is unknown. A print continues without this page as long as the studio runs; if the studio has ended, the light
         is off and the machine stands still. To stop the machine now, use its own switch.
       </span>
     </div>
@@ -233,7 +233,7 @@ function Waiting() {
     : refill
       ? ['Resin is needed', `Fill the vat of slot ${refill.slot} with ${vat?.resin ?? 'its resin'}${vat ? `, up to ${Math.round(vat.fill_ml)} ml` : ''}. Nothing moves meanwhile.`]
       : prompt?.startsWith('the door')
-        ? ['The door is closed again', 'The rest of the exposure is given when you resume.']
+        ? ['The door is closed again', 'The interrupted exposure is completed when you resume.']
         : prompt
           ? ['The print is waiting for you', prompt]
           : ['Paused', 'The part hangs clear of the vat. Nothing moves until you resume.'];
@@ -472,7 +472,7 @@ function Machine3D() {
         <canvas ref={canvas} tabIndex={0} aria-label={`The machine in 3D. ${orbitHelp}`} data-testid="machine-view" />
         <div class="names" ref={names} aria-hidden="true" />
       </div>
-      <span class="segments view-of" role="group" aria-label="What is shown">
+      <span class="segments view-of" role="group" aria-label="3D view of">
         {([[false, 'Machine'], [true, 'Part']] as const).map(([only, name]) => (
           <button
             aria-pressed={near === only}

@@ -63,7 +63,7 @@ export function Queue() {
         )}
       </div>
       {lines.length === 0 ? (
-        <p class="quiet">No job waits. Jobs are printed one after the other, each when you have taken the part before it off.</p>
+        <p class="quiet">The queue is empty. Jobs are printed one after another; you start each one after removing the previous part.</p>
       ) : (
         <>
           <ol class="queue">
@@ -82,7 +82,7 @@ export function Queue() {
                   <Icon name="down" />
                 </button>
                 <button class="small" disabled={!mayDrive.value || l.name === here || Boolean(l.error)} onClick={() => post('/api/open', { name: l.name })} data-testid="queue-open">
-                  {l.name === here ? 'at hand' : 'Open'}
+                  {l.name === here ? 'Current' : 'Open'}
                 </button>
                 <button class="bare" disabled={!mayDrive.value} aria-label={`Remove ${l.name} from the queue`} onClick={() => void set(queue.value.filter((_, i) => i !== k))}>
                   <Icon name="close" />
@@ -90,7 +90,7 @@ export function Queue() {
               </li>
             ))}
           </ol>
-          {lines.length > 1 && total > 0 && <p class="quiet small-print">{clock(total)} in all, without the time between the prints.</p>}
+          {lines.length > 1 && total > 0 && <p class="quiet small-print">{clock(total)} in total, not counting the time between prints.</p>}
         </>
       )}
     </section>
@@ -116,7 +116,7 @@ export function NextInQueue() {
           <span class="quiet"> once the part is off the platform</span>
         </span>
         <button class="primary small" disabled={!mayDrive.value || flags.value.error} onClick={() => void take()} data-testid="queue-next">
-          {i.twin ? 'Connect it' : 'Open it'}
+          {i.twin ? 'Open and connect' : 'Open'}
         </button>
       </div>
     </section>

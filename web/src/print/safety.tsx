@@ -7,7 +7,7 @@ function lineText(line: MachineInfo['emergency'], twin: boolean): string {
   const on = line.device ? ` (${line.device})` : '';
   if (line.signal === 'controller') return `a relay at pin ${line.pin} of the board cuts the power when the firmware is killed`;
   if (line.signal === 'none') return 'none: an emergency stop relies on the firmware (M112)';
-  const what = line.signal === 'file' ? `a pin of this computer${on}` : `the ${line.signal.toUpperCase()} line of a port of its own${on}`;
+  const what = line.signal === 'file' ? `a pin of this computer${on}` : `the ${line.signal.toUpperCase()} line of a separate port${on}`;
   return twin ? `${what}; not used by the virtual printer` : `${what} cuts the power, whatever the firmware does`;
 }
 

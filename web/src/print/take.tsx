@@ -52,7 +52,7 @@ function TakeTwin() {
           speed
         </label>
       </div>
-      {!job.value?.saved && <p class="quiet small-print">A job that is saved keeps a journal: then a virtual print, too, can be resumed after the studio has ended.</p>}
+      {!job.value?.saved && <p class="quiet small-print">Only a saved job keeps a print journal, with which a virtual print can be resumed after the studio has been closed.</p>}
     </section>
   );
 }

@@ -54,7 +54,7 @@ export function Notifications() {
     localStorage.setItem('pliant_notify', on ? 'yes' : 'no');
   };
   return (
-    <button class="small" aria-pressed={wanted.value} title="This browser tells you when the print has ended or waits for you" data-testid="notify" onClick={() => void toggle()}>
+    <button class="small" aria-pressed={wanted.value} title="Notify in this browser when the print has ended or waits for you" data-testid="notify" onClick={() => void toggle()}>
       {wanted.value ? 'Notifications on' : 'Notify me'}
     </button>
   );

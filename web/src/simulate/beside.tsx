@@ -70,7 +70,7 @@ export function Compare() {
   if (comparing.value)
     return (
       <span class="chip pinned" data-testid="comparing">
-        beside: {title.value.replace(/_/g, ' ')}
+        compared with: {title.value.replace(/_/g, ' ')}
         <button class="bare" aria-label="Stop comparing" disabled={!mayDrive.value} data-testid="compare-leave" onClick={() => void post('/api/compare/leave')}>
           <Icon name="close" />
         </button>
@@ -90,7 +90,7 @@ export function Compare() {
       </button>
       {project && (
         <div class="popover right compare-list" onClick={() => setProject(null)}>
-          <h2>Beside, in the same hands</h2>
+          <h2>Show beside this robot, driven alike</h2>
           {item('This robot, as it is now', {})}
           {robots.length > 0 && <h2>This folder</h2>}
           {robots.map((name) => item(name, { name }))}
@@ -156,7 +156,7 @@ export function CanvasBeside({ options }: { options: () => ViewOptions }) {
   const state = problem.value ? problem.value : stage.value ? `building: ${stage.value}` : !head ? '' : head.stuck ? `did not converge: ${head.stuck}` : head.arrived ? (isRough(frameBeside.value) ? '≈ linear preview' : 'at equilibrium') : 'Solving…';
   return (
     <div class="canvas second" data-testid="beside" data-state={head?.arrived ? 'arrived' : problem.value ? 'problem' : 'busy'}>
-      <canvas ref={canvas} role="img" aria-label={`The second robot, ${title.value}, in 3D. Its view goes with that of the first one.`} data-testid="view-beside" />
+      <canvas ref={canvas} role="img" aria-label={`The second robot, ${title.value}, in 3D. Its camera follows that of the first one.`} data-testid="view-beside" />
       <p class="beside-name" role="status">
         <b>{sceneBeside.value?.head.robot ?? title.value.replace(/_/g, ' ')}</b> <span class={problem.value ? 'problems-inline' : 'quiet'}>{state}</span>
       </p>
@@ -178,11 +178,11 @@ export function Compared() {
   const missing = one.actuators.filter((x) => !other.actuators.some((y) => y.name === x.name && y.type === x.type));
   const more = other.actuators.filter((x) => !one.actuators.some((y) => y.name === x.name && y.type === x.type));
   return (
-    <section aria-label="Compared" data-testid="compared">
+    <section aria-label="Comparison" data-testid="compared">
       <table class="readings">
         <thead>
           <tr>
-            <th>Compared</th>
+            <th>Quantity</th>
             <th>{one.robot}</th>
             <th>{other.robot === one.robot ? title.value : other.robot}</th>
             <th>
@@ -203,8 +203,8 @@ export function Compared() {
             ))}
         </tbody>
       </table>
-      {missing.length > 0 && <p class="limit">The second robot has no {missing.map((m) => `${m.type} "${m.name}"`).join(', ')}: it does not follow there.</p>}
-      {more.length > 0 && <p class="limit">The first robot has no {more.map((m) => `${m.type} "${m.name}"`).join(', ')}: nothing moves it.</p>}
+      {missing.length > 0 && <p class="limit">The second robot has no {missing.map((m) => `${m.type} "${m.name}"`).join(', ')}: it does not follow this input.</p>}
+      {more.length > 0 && <p class="limit">The first robot has no {more.map((m) => `${m.type} "${m.name}"`).join(', ')}: it stays at rest in the second one.</p>}
     </section>
   );
 }

@@ -1,6 +1,7 @@
 // The robot file without typing: parameters, materials, and what is placed by pointing at the robot. Each change is made in
 // the text by the studio, with comments and order kept.
 import { computed, effect, signal } from '@preact/signals';
+import { counted } from '../counted';
 import { Icon } from '../icons';
 import { NumberField } from '../number_field';
 import { api, documentState, mayDrive, post, scene } from '../store';
@@ -27,9 +28,9 @@ export const library = signal<LibraryEntry[]>([]);
 
 const lists: Record<Kind, string> = { marker: 'marker', support: 'fixed', cable: 'cable', chamber: 'chamber' };
 const words: Record<Kind, string> = {
-  marker: 'Click the robot where the marker is to be.',
-  support: 'Click the robot where it is held: everything within the radius is.',
-  cable: 'Click the guide points in order, then finish the cable.',
+  marker: 'Click the robot where you want the marker.',
+  support: 'Click the robot where it is to be held: everything within the radius is fixed.',
+  cable: 'Click the guide points in order, then press Finish cable.',
   chamber: '',
 };
 
@@ -37,9 +38,9 @@ const words: Record<Kind, string> = {
 type Shape = 'ball' | 'box' | 'cavity';
 const shape = signal<Shape>('ball');
 const shapes: [Shape, string, string][] = [
-  ['ball', 'Round', 'Click the robot: a round chamber is made under that place.'],
-  ['box', 'Box', 'Click the robot where its middle is to be, set its size, then make it.'],
-  ['cavity', 'Cavity', 'Click a wall of a closed cavity that is there already (cut the robot open by Section to see it): all the air in it becomes the chamber.'],
+  ['ball', 'Round', 'Click the robot: a round chamber is created below that point.'],
+  ['box', 'Box', 'Click the robot where you want the centre of the box, set its size, then create the chamber.'],
+  ['cavity', 'Cavity', 'Click a wall of an existing closed cavity (use Section to cut the robot open): all the air in it becomes the chamber.'],
 ];
 const boxSize = [10, 6, 6].map((v) => signal(v)); // mm
 const boxPlace = signal<{ at: Point; inward: Point } | null>(null);
@@ -123,7 +124,7 @@ function Placing() {
   );
   return (
     <>
-      <h3>Place by pointing</h3>
+      <h3>Add by clicking</h3>
       <div class="row left wrap">
         {(Object.keys(lists) as Kind[]).map((k) => (
           <button key={k} class="small" aria-pressed={kind === k} disabled={!mayDrive.value} onClick={() => start(k)} data-testid={`place-${k}`}>
@@ -150,18 +151,18 @@ function Placing() {
               {['x', 'y', 'z'].map((axis, k) => field(`Size along ${axis}`, boxSize[k], `box-${axis}`))}
               <div class="row left">
                 <button class="primary small" disabled={!boxPlace.value} onClick={makeBox} data-testid="make-box">
-                  Make the chamber
+                  Create chamber
                 </button>
-                <span class="quiet">{boxPlace.value ? 'shown in the view' : 'no place yet'}</span>
+                <span class="quiet">{boxPlace.value ? 'shown in the view' : 'no position yet'}</span>
               </div>
             </>
           )}
           {kind === 'cable' && (
             <div class="row left">
               <button class="primary small" disabled={placed.value.length < 2} onClick={finishCable} data-testid="finish-cable">
-                Finish the cable
+                Finish cable
               </button>
-              <span class="quiet">{placed.value.length} points</span>
+              <span class="quiet">{counted(placed.value.length, 'point')}</span>
             </div>
           )}
         </div>
@@ -260,7 +261,7 @@ effect(() => {
 export function Build() {
   const changed = text.value !== theirs.value;
   if (changed)
-    return <p class="quiet">The text under File has changes that are not applied: apply or revert them first.</p>;
+    return <p class="quiet">The text under File has unapplied changes: apply or revert them first.</p>;
   return (
     <div class="build">
       <div class="row left">

@@ -35,7 +35,7 @@ let request: XMLHttpRequest | null = null;
 /// Sends one file; the studio reads it before it keeps it.
 function transfer(file: File, replace: boolean) {
   if (file.size > mostBytes) {
-    state.value = { step: 'refused', why: `${file.name}: more than 256 MB are refused; put it into the project folder by hand` };
+    state.value = { step: 'refused', why: `${file.name}: larger than 256 MB; copy it into the project folder yourself` };
     return;
   }
   state.value = { step: 'sending', file, share: 0 };
@@ -46,7 +46,7 @@ function transfer(file: File, replace: boolean) {
   r.upload.onprogress = (e) => {
     if (state.peek()?.step === 'sending') state.value = { step: 'sending', file, share: e.total ? e.loaded / e.total : 0 };
   };
-  r.onerror = () => (state.value = { step: 'refused', why: `${file.name}: the connection to the studio broke off` });
+  r.onerror = () => (state.value = { step: 'refused', why: `${file.name}: the connection to the studio was lost` });
   r.onload = () => {
     const answer = (() => {
       try {
@@ -67,7 +67,7 @@ export function takeFiles(files: ArrayLike<File>) {
   const file = files[0];
   if (!file) return;
   if (!mayDrive.peek()) return say('Another page has control: request it first.');
-  if (files.length > 1) say(`One file at a time: ${file.name} is taken.`);
+  if (files.length > 1) say(`One file at a time: only ${file.name} is imported.`);
   if (!/\.toml$/i.test(file.name)) return transfer(file, false);
   unlessLost(`Opening ${file.name}`, () => {
     void file
@@ -135,7 +135,7 @@ export function robotOf(content: Content, unit: string, material: string, side: 
   const box = [0, 1].map((end) => `[${[0, 1, 2].map((k) => bounds(k, end)).join(', ')}]`).join(', ');
   const bodies = bodiesOf(content, content.name, material, []);
   const entry = (body: Record<string, unknown>) => ['[[body]]', ...Object.entries(body).map(([key, v]) => `${key} = ${toml(v)}`)].join('\n');
-  const mesh = content.kind === 'tets' ? `file = ${quoted(content.name)}` : `size = "${nice(longest / 12)} ${unit}"    # finer is more exact, and slower`;
+  const mesh = content.kind === 'tets' ? `file = ${quoted(content.name)}` : `size = "${nice(longest / 12)} ${unit}"    # a smaller size is more accurate, but slower`;
   return [
     `name = ${quoted(stem(content.name))}`,
     `length_unit = ${quoted(unit)}`,
@@ -188,7 +188,7 @@ function Ready({ content, close }: { content: Content; close: () => void }) {
       ))}
       <div class="fields geometry-fields" ref={first}>
         {says ? (
-          <p class="quiet">The file says its unit.</p>
+          <p class="quiet">The file states its unit.</p>
         ) : (
           <label>
             Unit
@@ -242,9 +242,9 @@ function Body({ now, close }: { now: State; close: () => void }) {
     return (
       <>
         <h2 id="geometry-title">{now.file.name}</h2>
-        <div class="progress" role="progressbar" aria-label="Sending the file" aria-valuenow={Math.round(100 * now.share)} aria-valuemin={0} aria-valuemax={100}>
+        <div class="progress" role="progressbar" aria-label="File upload" aria-valuenow={Math.round(100 * now.share)} aria-valuemin={0} aria-valuemax={100}>
           <div style={{ width: `${100 * now.share}%` }} />
-          <span>{now.share < 1 ? `sending, ${Math.round(100 * now.share)} %` : 'reading it…'}</span>
+          <span>{now.share < 1 ? `uploading, ${Math.round(100 * now.share)} %` : 'reading…'}</span>
         </div>
         <div class="row left">
           <button ref={(b) => b?.focus()} onClick={() => (request?.abort(), close())}>Cancel</button>
@@ -255,7 +255,7 @@ function Body({ now, close }: { now: State; close: () => void }) {
     return (
       <>
         <h2 id="geometry-title">Replace {now.file.name}?</h2>
-        <p>The project folder has another file of this name. Robots that use it will have the new one.</p>
+        <p>The project folder already has a different file of this name. Robots that use it will get the new one.</p>
         <div class="row left wrap">
           <button class="primary" ref={(b) => b?.focus()} onClick={close} data-testid="geometry-keep">
             Keep the old one
@@ -271,7 +271,7 @@ function Body({ now, close }: { now: State; close: () => void }) {
     );
   return (
     <>
-      <h2 id="geometry-title">The file was not taken</h2>
+      <h2 id="geometry-title">The file was not imported</h2>
       <p class="problems" role="alert" data-testid="geometry-refused">{now.why}</p>
       <div class="row left">
         <button class="primary" ref={(b) => b?.focus()} onClick={close}>Close</button>

@@ -137,7 +137,7 @@ export function Ranges() {
                 value={+input[end].toPrecision(5)}
                 range={{ from: -1e9, to: 1e9 }}
                 unit={end === 'high' ? units[input.kind] : ''}
-                label={`${end === 'low' ? 'Lowest' : 'Highest'} value of ${input.name}`}
+                label={`${end === 'low' ? 'Minimum' : 'Maximum'} value of ${input.name}`}
                 testId={`goal-${end}-${input.name}`}
                 disabled={!input.used}
                 onValue={(v) => {
@@ -208,7 +208,7 @@ export function Goal() {
   const head = scene.value?.head;
   if (!head) return null;
   if (head.markers.length === 0) return <p class="quiet">A goal is a place for a marker. This robot has no marker: add a [[marker]] to its file.</p>;
-  if (inputs.value.length === 0) return <p class="quiet">This robot has no cable and no chamber that could bring a marker anywhere.</p>;
+  if (inputs.value.length === 0) return <p class="quiet">This robot has no cable and no chamber that could move a marker.</p>;
   return (
     <div class="search">
       <label class="row">

@@ -26,7 +26,7 @@ effect(() => {
 function Unknowns() {
   return (
     <fieldset class="material" disabled={!mayDrive.value}>
-      <legend>Numbers to find</legend>
+      <legend>Parameters to identify</legend>
       <div class="unknowns">
         {unknowns.value.map(({ key, shown }) => {
           const now = chosen.value[key] ?? { used: false, bounds: '' };
@@ -67,11 +67,11 @@ function Table() {
         />
       </label>
       <p class="quiet small-print">
-        CSV with a row for each instant: a column time or step, and any of {columns.slice(0, 4).join(', ')}
-        {columns.length > 4 && ' and so on'}, as in the exported histories.
+        CSV with one row per instant: a column time or step, and any of {columns.slice(0, 4).join(', ')}
+        {columns.length > 4 && ', …'}, as in the exported histories.
       </p>
       <label class="row">
-        Rows to keep back
+        Held-out rows
         <select value={judge.value} onChange={(e) => (judge.value = e.currentTarget.value)} data-testid="judge">
           <option value="">none</option>
           <option value="every-second">every second row</option>
@@ -90,7 +90,7 @@ function take(found: IdentifyFound) {
     const [, number, unit] = /^"?([^" ]+)(?: ([^"]+))?"?$/.exec(assignment.slice(at + 1)) ?? [];
     const value = unit ? `"${+Number(number).toPrecision(6)} ${unit}"` : `${+Number(number).toPrecision(6)}`;
     next = assign(next, assignment.slice(0, at), value);
-    if (next === null) return say(`${assignment.slice(0, at)} has no line of its own in the file: write ${value} there by hand`);
+    if (next === null) return say(`${assignment.slice(0, at)} has no line of its own in the file: set it to ${value} by hand`);
   }
   pinNow('before');
   text.value = next;
@@ -122,7 +122,7 @@ function Found() {
       <table class="readings">
         <thead>
           <tr>
-            <th>Found</th>
+            <th>Parameter</th>
             <th>before</th>
             <th>after</th>
           </tr>
@@ -140,12 +140,12 @@ function Found() {
               <tr class="of-above">
                 <td colSpan={3} class="quiet">
                   {!one.matters
-                    ? 'nothing that was measured depends on it'
+                    ? 'no measured quantity depends on it'
                     : one.at_bound
                       ? 'at its bound'
                       : found.shown[k].low
                         ? `95 % confidence: ${found.shown[k].low} to ${found.shown[k].high}`
-                        : 'the data give no interval'}
+                        : 'no confidence interval from these data'}
                 </td>
               </tr>
             </>
@@ -163,17 +163,17 @@ function Found() {
         </thead>
         <tbody>
           <Errors of="fitted" errors={found.fitted} />
-          <Errors of="kept back" errors={found.judged} />
+          <Errors of="held out" errors={found.judged} />
         </tbody>
       </table>
       {found.warnings.map((w) => (
         <p class="limit">{w}</p>
       ))}
       <button class="small" disabled={!mayDrive.value} onClick={() => take(found)} data-testid="identify-use">
-        Use these numbers
+        Use these values
       </button>
       {Array.from({ length: found.plots }, (_, k) => (
-        <img class="found-plot" key={k} src={`/api/search/plots/${k}?result=${resultNumber.value}`} alt="Measured values beside those that were simulated before and after" />
+        <img class="found-plot" key={k} src={`/api/search/plots/${k}?result=${resultNumber.value}`} alt="Measured values, and simulated ones before and after" />
       ))}
     </div>
   );

@@ -67,10 +67,10 @@ function Settings({ f }: { f: (typeof look.fieldNames)[number] }) {
           ))}
         </select>
       </label>
-      {field('Highest', 'range-high', high, (v) => set(low, v))}
-      {field('Lowest', 'range-low', low, (v) => set(v, high))}
+      {field('Maximum', 'range-high', high, (v) => set(low, v))}
+      {field('Minimum', 'range-low', low, (v) => set(v, high))}
       <button class="small" disabled={!fixed} onClick={() => (look.fixedRange.value = null)} data-testid="range-auto">
-        Range of the state
+        Fit range to data
       </button>
     </div>
   );

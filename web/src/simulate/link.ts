@@ -43,7 +43,7 @@ export function readLink(hash: string): Kept | null {
 }
 
 let pending = readLink(location.hash);
-if (location.hash.includes('?') && !pending) setTimeout(() => say('The link cannot be read: its state is left out.'), 0);
+if (location.hash.includes('?') && !pending) setTimeout(() => say('The link cannot be read: its state is ignored.'), 0);
 
 /// Once its robot and the view are there; the robot of a file is opened first.
 export async function restoreLink() {
@@ -58,7 +58,7 @@ export async function restoreLink() {
     if (!(await post('/api/open', { name: kept.file }))) pending = null;
     return;
   }
-  if (head.robot !== kept.robot) return say(`The link is of "${kept.robot}", and this is "${head.robot}".`);
+  if (head.robot !== kept.robot) return say(`The link is for "${kept.robot}", but the open robot is "${head.robot}".`);
   view.pose = kept.pose;
   look.field.value = kept.field;
   [look.sectionAxis.value, look.sectionAt.value] = kept.section;

@@ -165,7 +165,7 @@ export function MotionTrack() {
           <option value={s} key={s}>{s}×</option>
         ))}
       </select>
-      <button class="bare" aria-label="Leave the motion" title="Leave the motion" data-testid="motion-leave" onClick={leaveMotion}>
+      <button class="bare" aria-label="Close the motion" title="Close the motion" data-testid="motion-leave" onClick={leaveMotion}>
         <Icon name="close" />
       </button>
     </>
@@ -189,14 +189,14 @@ export function RunMotion() {
     <button
       class="small"
       disabled={!mayDrive.value || busy !== null}
-      title={head.program.timed ? 'Masses and damping take part, as with pliant simulate' : 'All steps of the program, as pliant simulate solves them'}
+      title={head.program.timed ? 'Dynamic, with inertia and damping, as pliant simulate solves it' : 'All steps of the program, as pliant simulate solves them'}
       data-testid="motion-run"
       onClick={() => {
         loaded = null;
         begin('motion', {});
       }}
     >
-      {head.program.timed ? 'Run in time' : 'Run program'}
+      {head.program.timed ? 'Run dynamics' : 'Run program'}
     </button>
   );
 }

@@ -3,6 +3,7 @@ import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
+import { counted } from '../counted';
 import { Icon } from '../icons';
 import { say, scene } from '../store';
 import { cssColour, theme } from '../theme';
@@ -261,7 +262,7 @@ function Runs() {
           <div class="run" key={run.name} data-testid={`run-${run.name}`}>
             <b>{run.name}</b>
             <span class="quiet">
-              {Object.values(run.columns)[0].length} states{' '}
+              {counted(Object.values(run.columns)[0].length, 'state')}{' '}
               {known.length === 0 && `· none of its columns (${Object.keys(run.columns).join(', ')}) is a result of this robot: columns are named as in ${[...keys].slice(0, 2).join(', ')}`}
             </span>
             <button class="bare" aria-label={`Remove ${run.name}`} onClick={() => (runs.value = runs.value.filter((r) => r !== run))}>

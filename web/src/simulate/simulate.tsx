@@ -1,6 +1,7 @@
 // The live robot: 3D view, actuators, plots, file.
 import { effect, signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
+import { counted } from '../counted';
 import { useDismiss } from '../dismiss';
 import { Icon } from '../icons';
 import { orbitHelp, orbitKeys } from '../orbit_keys';
@@ -157,7 +158,7 @@ function Canvas() {
         ref={canvas}
         tabIndex={0}
         role="application"
-        aria-label={`The robot in 3D. ${orbitHelp} 0 to 6 turn to a side.`}
+        aria-label={`The robot in 3D. ${orbitHelp} Keys 0 to 6 select a standard view.`}
         onKeyDown={keys}
         data-testid="view"
       />
@@ -298,7 +299,7 @@ function Timeline() {
           panel.value = 'file';
           void insertKeys(text.value, keys).then((done) => done && (recorded.value = []));
         }}>
-          Insert {recorded.value.length} samples as program
+          Insert {counted(recorded.value.length, 'sample')} as program
         </button>
       )}
       <MotionNotes />
@@ -315,9 +316,9 @@ function Export() {
   const items: [string, string, () => void][] = [
     ['Image', 'PNG', () => void theView.value?.png().then((b) => b && save(b, 'robot.png'))],
     ['Picture for print, 3840 pixels wide', 'PNG', () => void theView.value?.png(3840).then((b) => b && save(b, 'robot_print.png'))],
-    ['Film of the states since rest', 'WebM', () => void film().then((b) => (b ? save(b, 'robot.webm') : say('There is nothing to film yet: move the robot first.')))],
-    ['The same for slides and chats, 640 pixels wide', 'GIF', () => void gif().then((b) => (b ? save(b, 'robot.gif') : say('There is no film: move the robot first.')))],
-    ['Link to this state', 'copy', () => void navigator.clipboard.writeText(linkText()).then(() => say('The link is in the clipboard.'), () => say(linkText()))],
+    ['Video of the states since rest', 'WebM', () => void film().then((b) => (b ? save(b, 'robot.webm') : say('There is no motion to record yet: move the robot first.')))],
+    ['Video for slides and chats, 640 pixels wide', 'GIF', () => void gif().then((b) => (b ? save(b, 'robot.gif') : say('There is no motion to record yet: move the robot first.')))],
+    ['Link to this state', 'copy', () => void navigator.clipboard.writeText(linkText()).then(() => say('Link copied to the clipboard.'), () => say(linkText()))],
     ['Plot data', 'CSV', () => save(new Blob([tracksCsv()], { type: 'text/csv' }), 'plots.csv')],
     ['Force history', 'CSV', () => (location.href = '/api/export/steps.csv')],
     ['Marker history', 'CSV', () => (location.href = '/api/export/markers.csv')],
@@ -332,7 +333,7 @@ function Export() {
         </button>
       ) : (
         <button class="chip" onClick={stopFilming} data-testid="stop-filming">
-          Filming, {Math.round(100 * filming.value)} %: cancel
+          Rendering video, {Math.round(100 * filming.value)} %: cancel
         </button>
       )}
       {open && (

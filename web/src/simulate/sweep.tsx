@@ -1,5 +1,6 @@
 // One or two numbers of the robot over their ranges, and what its program comes to: a response plot.
 import { effect, signal } from '@preact/signals';
+import { counted } from '../counted';
 import { NumberField } from '../number_field';
 import { api, mayDrive, post, scene } from '../store';
 import { fieldColour, gradientCss } from './colormap';
@@ -85,12 +86,12 @@ function AxisFields({ which, axis }: { which: 0 | 1; axis: Axis }) {
   const id = `sweep-${which}`;
   return (
     <fieldset class="material" disabled={!mayDrive.value}>
-      <legend>{which === 0 ? 'Number' : 'Second number'}</legend>
+      <legend>{which === 0 ? 'Parameter' : 'Second parameter'}</legend>
       <label class="row">
         Key
         <select value={axis.other ? '?' : axis.key} data-testid={`${id}-key`} onChange={(e) => change(which, e.currentTarget.value === '?' ? { key: '', other: true } : axisOf(e.currentTarget.value))}>
           <option value="" disabled>choose one</option>
-          {[['parameters', 'Parameters'], ['targets', 'Targets of actuators'], ['others', 'Others']].map(([kind, label]) =>
+          {[['parameters', 'Parameters'], ['targets', 'Actuator targets'], ['others', 'Other keys']].map(([kind, label]) =>
             named(kind).length > 0 && (
               <optgroup label={label} key={kind}>
                 {named(kind).map((k) => <option value={k.key} key={k.key}>{k.key.replace(/^parameters\./, '')}</option>)}
@@ -103,7 +104,7 @@ function AxisFields({ which, axis }: { which: 0 | 1; axis: Axis }) {
       {axis.other && (
         <>
           <label class="row">
-            Key as of --set
+            Key as for --set
             <input value={axis.key} placeholder="body.tip.size" data-testid={`${id}-typed`} onInput={(e) => change(which, { key: e.currentTarget.value.trim() })} />
           </label>
           <label class="row">
@@ -116,12 +117,12 @@ function AxisFields({ which, axis }: { which: 0 | 1; axis: Axis }) {
         {(['from', 'to'] as const).map((end) => (
           <label key={end}>
             {end}
-            <NumberField value={axis[end]} range={{ from: -1e12, to: 1e12 }} unit={axis.unit} label={`${end} of ${axis.key || 'the number'}`} testId={`${id}-${end}`} onValue={(v) => change(which, { [end]: v })} />
+            <NumberField value={axis[end]} range={{ from: -1e12, to: 1e12 }} unit={axis.unit} label={`${end} of ${axis.key || 'the parameter'}`} testId={`${id}-${end}`} onValue={(v) => change(which, { [end]: v })} />
           </label>
         ))}
         <label>
           values
-          <NumberField value={axis.count} range={{ from: 1, to: 100 }} unit="" step={1} label={`values of ${axis.key || 'the number'}`} testId={`${id}-count`} onValue={(v) => change(which, { count: Math.round(v) })} />
+          <NumberField value={axis.count} range={{ from: 1, to: 100 }} unit="" step={1} label={`number of values of ${axis.key || 'the parameter'}`} testId={`${id}-count`} onValue={(v) => change(which, { count: Math.round(v) })} />
         </label>
       </div>
     </fieldset>
@@ -242,7 +243,7 @@ function Found() {
   const [low, high] = extent(values);
   return (
     <div class="search" data-testid="sweep-found">
-      {revision !== scene.value?.head.revision && <p class="quiet">The robot has been changed since.</p>}
+      {revision !== scene.value?.head.revision && <p class="quiet">The robot has been changed since this sweep.</p>}
       <label class="row">
         Result
         <select value={of.key} onChange={(e) => (column.value = e.currentTarget.value)} data-testid="sweep-result">
@@ -265,11 +266,11 @@ function Found() {
           </div>
         )}
       </figure>
-      {failed > 0 && <p class="limit">{failed} of {found.runs.length} have no equilibrium, marked ×.</p>}
+      {failed > 0 && <p class="limit">{failed} of {counted(found.runs.length, 'run')} found no equilibrium, marked ×.</p>}
       <Chosen found={found} />
       <div class="row left wrap">
         <button class="small" onClick={() => saveBlob(new Blob([sweepCsv(found)], { type: 'text/csv' }), 'sweep.csv')} data-testid="sweep-csv">CSV</button>
-        <button class="small" onClick={() => overlay(found)} data-testid="sweep-overlay">Lay over the plots</button>
+        <button class="small" onClick={() => overlay(found)} data-testid="sweep-overlay">Overlay on plots</button>
       </div>
       <details>
         <summary>Table</summary>
@@ -305,14 +306,14 @@ export function Sweep() {
   const ready = mayDrive.value && used.every((a) => a.key !== '') && count <= mostRuns;
   return (
     <div class="search">
-      <p class="quiet">Runs the program once for each value, from rest, and plots what it ends with.</p>
+      <p class="quiet">Runs the program once for each value, from rest, and plots the final state.</p>
       <AxisFields which={0} axis={first} />
       {second ? <AxisFields which={1} axis={second} /> : null}
       <div class="row left">
         <button class="small" onClick={() => change(1, second ? null : none)} data-testid="sweep-second">
-          {second ? 'One number only' : 'Add a second number'}
+          {second ? 'Remove second parameter' : 'Add second parameter'}
         </button>
-        <span class={count > mostRuns ? 'limit' : 'quiet'}>{count === 1 ? '1 run' : `${count} runs`}{count > mostRuns && `, at most ${mostRuns} are possible`}</span>
+        <span class={count > mostRuns ? 'limit' : 'quiet'}>{count === 1 ? '1 run' : `${count} runs`}{count > mostRuns && `, at most ${mostRuns}`}</span>
       </div>
       <Search
         kind="sweep"

@@ -145,13 +145,13 @@ export function readTable(name: string, text: string): Run | string {
   const lines = text.split(/\r?\n/);
   const cells = (l: string) => [...l.matchAll(/(?:"((?:[^"]|"")*)"|([^,;\t"]*))(?:[,;\t]|$)/g)].map((m) => (m[1]?.replace(/""/g, '"') ?? m[2]).trim()).slice(0, l.match(/[,;\t]$/) ? undefined : -1);
   const head = cells(lines[0] ?? '');
-  if (head.length < 2 || head.some((h) => h === '')) return `${name}:1: a head line with the names of two columns or more is needed`;
+  if (head.length < 2 || head.some((h) => h === '')) return `${name}:1: a header line with at least two column names is needed`;
   if (head.every((h) => Number.isFinite(Number(h)))) return `${name}:1: the first line must name the columns, as in shortening_mm,tension_N`;
   const columns: Record<string, number[]> = Object.fromEntries(head.map((h) => [h, []]));
   for (const [i, line] of lines.slice(1).entries()) {
     if (line.trim() === '') continue;
     const row = cells(line);
-    if (row.length !== head.length) return `${name}:${i + 2}: ${row.length} columns, and the head line names ${head.length}`;
+    if (row.length !== head.length) return `${name}:${i + 2}: ${row.length} columns, but the header line names ${head.length}`;
     for (const [k, text] of row.entries()) {
       const value = text === '' ? NaN : Number(text);
       if (text !== '' && !Number.isFinite(value)) return `${name}:${i + 2}: "${text}" is not a number`;

@@ -1,5 +1,6 @@
 // Where the markers can get within the ranges of the actuators: drawn around the robot.
 import { computed, effect, signal } from '@preact/signals';
+import { counted } from '../counted';
 import { NumberField } from '../number_field';
 import { mayDrive, scene } from '../store';
 import { inputs, Ranges } from './goal';
@@ -46,7 +47,7 @@ function Found() {
   return (
     <div class="search" data-testid="workspace-found">
       <p>
-        {f.summary.found} of {f.summary.samples} places have an equilibrium.
+        Equilibrium found at {f.summary.found} of {counted(f.summary.samples, 'sample')}.
       </p>
       <table class="readings">
         <thead>
@@ -86,23 +87,23 @@ function Found() {
 export function Workspace() {
   const head = scene.value?.head;
   if (!head) return null;
-  if (head.markers.length === 0) return <p class="quiet">A workspace is where markers can get. This robot has no marker: place one under Build.</p>;
-  if (inputs.value.length === 0) return <p class="quiet">This robot has no cable and no chamber that could bring a marker anywhere.</p>;
+  if (head.markers.length === 0) return <p class="quiet">A workspace is the space that markers can reach. This robot has no marker: add one under Build.</p>;
+  if (inputs.value.length === 0) return <p class="quiet">This robot has no cable and no chamber that could move a marker.</p>;
   const used = inputs.value.filter((i) => i.used);
   const count = samplesOf(used.length, side.value, between.value);
   return (
     <div class="search">
-      <p class="quiet">Finds the places that the markers can get to, and draws them around the robot.</p>
+      <p class="quiet">Finds the space that the markers can reach, and draws it around the robot.</p>
       <Ranges />
       <label class="row">
-        Places along each
-        <NumberField value={side.value} range={{ from: 2, to: 60 }} unit="" step={1} label="Places along each actuator's range" testId="workspace-side" onValue={(v) => void (side.value = Math.round(v))} />
+        Samples per range
+        <NumberField value={side.value} range={{ from: 2, to: 60 }} unit="" step={1} label="Samples along each actuator's range" testId="workspace-side" onValue={(v) => void (side.value = Math.round(v))} />
       </label>
       <label class="row">
-        Places in between
-        <NumberField value={between.value} range={{ from: 0, to: 2000 }} unit="" step={1} label="Places spread between" testId="workspace-between" onValue={(v) => void (between.value = Math.round(v))} />
+        Samples in between
+        <NumberField value={between.value} range={{ from: 0, to: 2000 }} unit="" step={1} label="Samples spread in between" testId="workspace-between" onValue={(v) => void (between.value = Math.round(v))} />
       </label>
-      <p class="quiet" data-testid="workspace-count">{count === 1 ? '1 place' : `${count} places`} will be solved.</p>
+      <p class="quiet" data-testid="workspace-count">{counted(count, 'sample')} will be solved.</p>
       <Search
         kind="workspace"
         label="Find the workspace"

@@ -1,5 +1,6 @@
 // Axes and swap: home, jog, limits, and one swap tried, on the virtual printer or the machine.
 import { useState } from 'preact/hooks';
+import { counted } from '../counted';
 import { ByHand } from '../print/print';
 import { Safety } from '../print/safety';
 import { flags, host, info, known, maySteer, now } from '../print/state';
@@ -41,7 +42,7 @@ function Connect() {
     );
   return (
     <>
-      <p>Try it on the virtual printer first: it obeys the same G-code by the same printer file, and nothing can break. Connecting moves nothing.</p>
+      <p>Try it on the virtual printer first: it runs the same G-code with the same printer file, and nothing can break. Connecting moves nothing.</p>
       <PickFile />
       <div class="row left wrap">
         <button class="primary" disabled={!mayDrive.value || busy || !setup.value} onClick={() => void begin(false)} data-testid="axes-twin">
@@ -71,7 +72,7 @@ function State() {
   if (!connected()) return <p class="problems">No machine is connected.</p>;
   return (
     <p role="status" data-testid="axes-state">
-      {!known.value ? 'What the machine does is not known: the connection to the studio is lost.' : `${now.value!.state.text}${now.value!.state.message ? `: ${now.value!.state.message}` : ''}`}
+      {!known.value ? 'The state of the machine is unknown: the connection to the studio is lost.' : `${now.value!.state.text}${now.value!.state.message ? `: ${now.value!.state.message}` : ''}`}
     </p>
   );
 }
@@ -79,7 +80,7 @@ function State() {
 function Home() {
   return (
     <>
-      <p>The axes go to their limit switches, one after the other, the platform first. Take everything out of their way; keep the emergency stop at hand.</p>
+      <p>The axes move to their limit switches one after another, the platform first. Clear their way, and keep the emergency stop within reach.</p>
       <State />
       <button class="primary" disabled={!connected() || !maySteer.value || !flags.value.ready} onClick={() => host('printer/axes', { command: 'home' })} data-testid="axes-home">
         Home all axes
@@ -92,7 +93,7 @@ function Home() {
 function Jog() {
   return (
     <>
-      <p>Jog each axis to its ends and see that it moves the right way, as far as it says. What is different is put right here, and written when you go on; it counts from the next connection on.</p>
+      <p>Jog each axis to both ends and check that it moves in the right direction and by the distance shown. Correct the values below where needed: they are saved when you go on, and take effect at the next connection.</p>
       <State />
       {connected() && <ByHand />}
       <AxesTable />
@@ -108,7 +109,7 @@ function Swap() {
   const fetch = (to: number) => void host('printer/vat', { slot: to }).then((done) => done && setTried((n) => n + 1));
   return (
     <>
-      <p>A vat is fetched, then another one in its place, then it is put away: one whole swap. Watch the hooks.</p>
+      <p>Fetch one vat, swap it for the other, then return it: one complete swap. Watch the hooks.</p>
       <State />
       <p data-testid="axes-slot">
         {slot === 0 ? 'No vat is in use.' : <>The vat of slot <b>{slot}</b> is in use.</>}
@@ -120,10 +121,10 @@ function Swap() {
           </button>
         ))}
         <button disabled={!ready || slot === 0} onClick={() => fetch(0)} data-testid="fetch-0">
-          Put it away
+          Return the vat
         </button>
       </div>
-      {tried > 0 && <p class="quiet">{tried} of 3 moves asked for.</p>}
+      {tried > 0 && <p class="quiet">{counted(tried, 'move')} requested, 3 make a complete swap.</p>}
     </>
   );
 }
@@ -132,7 +133,7 @@ function Ready() {
   return (
     <>
       <p>
-        Axes and swap of <b>{file.value}</b> are tried.
+        Axes and swap of <b>{file.value}</b> have been tested.
       </p>
       {connected() && (
         <button disabled={!mayDrive.value} onClick={() => post('/api/print/leave')} data-testid="axes-leave">

@@ -93,7 +93,7 @@ function Ask() {
         <span>Pieces</span>
         <SetupNumber label="Number of pieces" value={count.value} unit="" testId="finder-count" onValue={(t) => (count.value = t)} />
       </label>
-      {r && <p class="quiet small-print">The file gives {r.name} {r.exposure_s} s, and {r.bottom_exposure_s} s for its bottom layers.</p>}
+      {r && <p class="quiet small-print">In the file, {r.name} has {r.exposure_s} s, and {r.bottom_exposure_s} s for its bottom layers.</p>}
       {wrong() === '' && <Pieces list={seconds()} />}
     </>
   );
@@ -129,9 +129,9 @@ function PrintIt() {
           {j.plan && `, ${clock(j.plan.seconds.total)}`}.
         </p>
       )}
-      <p>{done ? 'It is printed.' : 'Print it on the machine like any other job; this wizard waits at the foot of the page.'}</p>
+      <p>{done ? 'The pieces are printed.' : 'Print it on the machine like any other job; this wizard waits at the bottom of the page.'}</p>
       <button class={done ? '' : 'primary'} disabled={!mayDrive.value || !ours} onClick={go} data-testid="finder-print">
-        To the print
+        Go to Print
       </button>
     </>
   );
@@ -142,8 +142,8 @@ function Pick() {
   if (!m) return <p class="quiet">No test print was made.</p>;
   return (
     <>
-      <p>Wash the pieces and look at them. Right is the shortest exposure at which the 3-pixel fin stands, the studs have sharp edges, and the gaps are open.</p>
-      <div role="radiogroup" aria-label="The piece that came out right">
+      <p>Wash the pieces and look at them. Choose the shortest exposure at which the 3-pixel fin stands, the studs have sharp edges, and the gaps are open.</p>
+      <div role="radiogroup" aria-label="Best piece">
         <Pieces list={m.seconds}>
           {(s, k) => (
             <label class="inline">
@@ -161,7 +161,7 @@ function Pick() {
 async function writeBest(tell: (why: string) => void): Promise<boolean> {
   const m = made.value!;
   const r = setup.value?.resins.find((x) => x.name === m.resin);
-  if (!r) return tell(`${file.value} has no resin ${m.resin} any more`), false;
+  if (!r) return tell(`${file.value} no longer has a resin ${m.resin}`), false;
   const s = m.seconds[best.value];
   const bottom = Math.round((100 * s * r.bottom_exposure_s) / r.exposure_s) / 100;
   return write(
@@ -178,14 +178,14 @@ function Kept() {
   const k = setup.value?.resins.find((x) => x.name === r);
   return (
     <p data-testid="finder-kept">
-      {file.value} gives <b>{r}</b> now {k?.exposure_s} s, and {k?.bottom_exposure_s} s for its bottom layers. Slice again what is to be printed with it.
+      In {file.value}, <b>{r}</b> now has {k?.exposure_s} s, and {k?.bottom_exposure_s} s for its bottom layers. Slice again whatever is to be printed with it.
     </p>
   );
 }
 
 export const exposureSteps = (): Step[] => [
-  { name: 'Pieces', body: () => <Ask />, lacks: wrong, leave: makeJob, next: slicing.value ? 'slicing…' : 'Make the test job' },
-  { name: 'Print', body: () => <PrintIt />, next: 'It is printed' },
-  { name: 'Choose', body: () => <Pick />, lacks: () => (made.value && best.value >= 0 ? '' : 'choose the piece that came out right'), leave: writeBest, next: 'Write it' },
+  { name: 'Pieces', body: () => <Ask />, lacks: wrong, leave: makeJob, next: slicing.value ? 'slicing…' : 'Create test job' },
+  { name: 'Print', body: () => <PrintIt />, next: 'Printed' },
+  { name: 'Choose', body: () => <Pick />, lacks: () => (made.value && best.value >= 0 ? '' : 'choose the best piece'), leave: writeBest, next: 'Save' },
   { name: 'Ready', body: () => <Kept /> },
 ];

@@ -33,7 +33,7 @@ export const firstSteps = (): Step[] => {
       name: 'Machine',
       body: () => (
         <>
-          <p>Which machine will print? Without one of your own, take a built-in one: it prints on the virtual printer.</p>
+          <p>Which machine will print? If you have none, choose a built-in one: it prints on the virtual printer.</p>
           <PickFile builtIn />
           {setup.value && (
             <p class="quiet small-print">
@@ -57,11 +57,11 @@ export const firstSteps = (): Step[] => {
             <b>{scene.value?.head.robot ?? 'The robot'}</b> stands on the platform of {printerInfo.value?.name ?? file.value}. Lay it on a flat face, see that it fits, and slice it.
           </p>
           <button class="primary" onClick={() => go('make')} data-testid="first-prepare">
-            To Prepare
+            Go to Prepare
           </button>
           {job.value && (
             <p class="quiet" data-testid="first-job">
-              Job at hand: {job.value.manifest.name}, {counted(job.value.manifest.layers.length, 'layer')}
+              Current job: {job.value.manifest.name}, {counted(job.value.manifest.layers.length, 'layer')}
               {job.value.plan && `, ${clock(job.value.plan.seconds.total)}`}, {job.value.issues.length === 0 ? 'no issues found' : counted(job.value.issues.length, 'issue')}.
             </p>
           )}
@@ -74,10 +74,10 @@ export const firstSteps = (): Step[] => {
       body: () => (
         <>
           <p>
-            Connect the virtual printer and print there once: it takes a minute, and its verdict tells whether the part cures as drawn. Then connect the machine, go through the list of what only you can see, and start.
+            Connect the virtual printer and print there once: it takes a minute and shows whether the part cures as drawn. Then connect the machine, go through the checklist, and start.
           </p>
           <button class="primary" onClick={toPrint} data-testid="first-print">
-            To the print
+            Go to Print
           </button>
           {connected && (
             <p class="quiet" role="status">
@@ -89,13 +89,13 @@ export const firstSteps = (): Step[] => {
       lacks: () => (printed ? '' : 'the print is not complete'),
     },
     {
-      name: 'Take it off',
+      name: 'Remove part',
       body: () => (
         <ol class="reasons" data-testid="first-done">
           <li>Disconnect, or leave the platform up: the part hangs clear of the vat.</li>
-          <li>Loosen the part with a flat blade; wash it in the solution, and let it dry.</li>
-          <li>Cure it once more in light, as its resin asks for.</li>
-          <li>Keep the report: it tells what was printed, and how.</li>
+          <li>Detach the part with a scraper; wash it in the cleaning solution, and let it dry.</li>
+          <li>Post-cure it as its resin requires.</li>
+          <li>Keep the report: it records what was printed, and how.</li>
         </ol>
       ),
     },

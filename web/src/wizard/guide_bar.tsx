@@ -13,12 +13,12 @@ export function GuideBar() {
     location.hash = 'print';
   };
   return (
-    <div class="guide-bar" role="region" aria-label="Wizard that waits" data-testid="guide-bar">
+    <div class="guide-bar" role="region" aria-label="Wizard in progress" data-testid="guide-bar">
       <span>
         <b>{titles[name]}</b> <span class="quiet">step {step.value + 1}</span>
       </span>
       <button class="primary small" onClick={back} data-testid="guide-back">
-        Go on with it
+        Continue
       </button>
       <button
         class="bare"

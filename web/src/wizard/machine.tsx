@@ -38,8 +38,8 @@ function Choose() {
   }, []);
   return (
     <>
-      <p>Choose what is most like your machine. Its printer file is copied into the folder, and changed step by step; comments in it stay.</p>
-      <div class="choices" role="radiogroup" aria-label="Printer to begin with">
+      <p>Choose the printer that is most like yours. Its printer file is copied into the folder and changed step by step; its comments stay.</p>
+      <div class="choices" role="radiogroup" aria-label="Printer to start from">
         {list.map((p) => (
           <label class="choice">
             <input type="radio" name="from" checked={from.value === p.name} onChange={() => (from.value = p.name)} data-testid={`from-${p.name}`} />
@@ -56,7 +56,7 @@ function Choose() {
             <input type="radio" name="from" checked={from.value === n} onChange={() => (from.value = n)} data-testid={`from-${n}`} />
             <span>
               <b>{n}</b>
-              <span class="quiet">of this folder: go on with it</span>
+              <span class="quiet">in this folder: edit it</span>
             </span>
           </label>
         ))}
@@ -122,7 +122,7 @@ function Port() {
   return (
     <>
       <p>
-        Plug the board in. It is only asked who it is and how it was built: <b>nothing moves</b>. Opening the port resets most boards. Without a machine, go on.
+        Plug in the board. It is only asked for its firmware and settings: <b>nothing moves</b>. Opening the port resets most boards. Without a machine, skip this step.
       </p>
       <PickPort ports={ports} look={look} />
       <label class="wizard-field">
@@ -135,7 +135,7 @@ function Port() {
         </datalist>
       </label>
       <button disabled={!mayDrive.value || !device.value || asking} onClick={() => void ask()} data-testid="ask-board">
-        {asking ? 'asking, some seconds…' : 'Ask the board'}
+        {asking ? 'querying, takes some seconds…' : 'Query board'}
       </button>
       {why && (
         <p class="problems" role="alert">
@@ -148,20 +148,20 @@ function Port() {
             <p class="board-line">
               <Icon name="check" />
               <span>
-                <b>{b.firmware}</b> answers
+                <b>{b.firmware}</b> responds
                 {b.switches.length > 0 && <span class="quiet"> · reads {b.switches.join(', ')}</span>}
               </span>
             </p>
           ) : (
             <p class="board-line">
               <Icon name="warn" />
-              <span>Nothing that speaks Marlin answers. Another baud rate, or another port?</span>
+              <span>No Marlin firmware responds. Try another baud rate or port.</span>
             </p>
           )}
-          {b.firmware && b.problems.length === 0 && <p class="quiet">It is built as this machine needs it.</p>}
+          {b.firmware && b.problems.length === 0 && <p class="quiet">The firmware is configured as this machine needs it.</p>}
           {b.problems.length > 0 && (
             <>
-              <p class="quiet">What does not fit this machine yet; the next steps change the printer file, a firmware is changed by building it again:</p>
+              <p class="quiet">What does not match this machine yet: the next steps change the printer file; firmware settings take a new firmware build.</p>
               <ul class="reasons" data-testid="board-problems">
                 {b.problems.map((p) => (
                   <li>{p}</li>
@@ -247,7 +247,7 @@ function Vats() {
   const s = setup.value;
   return (
     <>
-      <p>Which resin is in which vat. A new name is a resin that the file does not know yet: give it one of the known names, and find its exposure with the exposure finder.</p>
+      <p>Which resin is in each vat? For a resin that the file does not have yet, choose one of those that it has, and find the exposure with the exposure finder.</p>
       <datalist id="wizard-resins">
         {s?.resins.map((r) => (
           <option value={r.name} />
@@ -277,7 +277,7 @@ function Done() {
   return (
     <>
       <p>
-        <b>{file.value}</b> is your machine. Prepare slices for it from now on.
+        <b>{file.value}</b> is set up. From now on, Prepare slices for it.
       </p>
       <div class="row left wrap">
         <button onClick={() => open('projector')}>Focus and size of the projector</button>
@@ -309,7 +309,7 @@ export const machineSteps = (): Step[] => [
     name: 'Axes',
     body: () => (
       <>
-        <p>Travel is held by Pliant itself as soft limits; speeds are at most what the firmware allows.</p>
+        <p>Pliant enforces the travel as soft limits; speeds are at most what the firmware allows.</p>
         <AxesTable />
       </>
     ),

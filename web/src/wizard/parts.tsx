@@ -41,7 +41,7 @@ export function PickFile({ builtIn }: { builtIn?: boolean }) {
   if (names?.length === 0)
     return (
       <p class="problems" data-testid="no-printer-file">
-        This folder has no printer file yet. <i>Set up a machine</i> makes one.
+        This folder has no printer file yet. <i>Set up a machine</i> creates one.
       </p>
     );
   return (
@@ -94,7 +94,7 @@ export function PickProjector({ ports }: { ports: Ports | null }) {
       </label>
       <p class="quiet small-print">
         {ports?.displays.length
-          ? `Number of its display: ${ports.displays.map((d) => `${d.number} ${d.name}, ${d.width} × ${d.height}`).join(' · ')}. Anything else is a folder of the project, for a machine that reads its images from there.`
+          ? `Number of the display: ${ports.displays.map((d) => `${d.number} ${d.name}, ${d.width} × ${d.height}`).join(' · ')}. Anything else is a folder of the project, for a machine that reads its images from there.`
           : 'No display found: images are written to this folder of the project, for a machine that reads them from there.'}
       </p>
     </>

@@ -30,18 +30,18 @@ function Pattern({ pattern, children }: { pattern: string; children?: preact.Com
       <div>
         {children}
         <label class="wizard-field">
-          <span>Light for</span>
-          <SetupNumber label="Light for" value={seconds.value} unit="s" onValue={(t) => (seconds.value = t)} testId="pattern-seconds" />
+          <span>Duration</span>
+          <SetupNumber label="Duration" value={seconds.value} unit="s" onValue={(t) => (seconds.value = t)} testId="pattern-seconds" />
         </label>
         <div class="row left wrap">
           <button class="primary" disabled={!mayDrive.value || !projectorAt.value} onClick={() => void show(pattern)} data-testid="pattern-show">
-            Show it
+            Show
           </button>
           <button disabled={!lit.value} onClick={() => void dark()} data-testid="pattern-dark">
-            Dark
+            Turn off
           </button>
           <span class="quiet" role="status" data-testid="pattern-state">
-            {lit.value ? `${lit.value} is lit` : 'dark'}
+            {lit.value ? `${lit.value} is on` : 'dark'}
           </span>
         </div>
       </div>
@@ -54,7 +54,7 @@ function Where() {
   return (
     <>
       <p>
-        This light cures resin and hurts eyes: take the vats away, put white paper where the vat’s floor is, and do not look into the lens. Nothing is lit before you press <i>Show it</i>, and it goes dark by itself.
+        This light cures resin and is harmful to the eyes: remove the vats, put white paper where the vat’s floor is, and do not look into the lens. The light stays off until you press <i>Show</i>, and turns off by itself.
       </p>
       <PickFile />
       <PickProjector ports={ports} />
@@ -96,22 +96,22 @@ function Size() {
     <Pattern pattern="border">
       <p>Measure the inner rectangle, from the middle of a line to the middle of the opposite one.</p>
       <label class="wizard-field">
-        <span>Across</span>
-        <SetupNumber label="Across" value={across.value} unit="mm" testId="measured-x" onValue={(t) => (across.value = t)} />
+        <span>Width</span>
+        <SetupNumber label="Width" value={across.value} unit="mm" testId="measured-x" onValue={(t) => (across.value = t)} />
       </label>
       <label class="wizard-field">
-        <span>Along</span>
-        <SetupNumber label="Along" value={along.value} unit="mm" testId="measured-y" onValue={(t) => (along.value = t)} />
+        <span>Height</span>
+        <SetupNumber label="Height" value={along.value} unit="mm" testId="measured-y" onValue={(t) => (along.value = t)} />
       </label>
       {usual && (
         <p class="quiet small-print">
-          {usual.x_px} × {usual.y_px} pixels; with the pixel of {usual.pixel_um_now} µm in the file that would be {usual.x_mm.toFixed(2)} × {usual.y_mm.toFixed(2)} mm.
+          {usual.x_px} × {usual.y_px} pixels; with the pixel size of {usual.pixel_um_now} µm in the file that would be {usual.x_mm.toFixed(2)} × {usual.y_mm.toFixed(2)} mm.
         </p>
       )}
       {f?.pixel_um && (
         <p data-testid="pixel-found" data-um={f.pixel_um}>
           One pixel is <b>{f.pixel_um.toFixed(3)} µm</b>: parts came out {(100 * (f.pixel_um / f.pixel_um_now - 1)).toFixed(2)} % too {f.pixel_um > f.pixel_um_now ? 'large' : 'small'}.
-          {Math.abs(f.off_percent!) > 0.2 && <span class="problems-inline"> Pixels are not square by {f.off_percent!.toFixed(2)} %: square up projector and vat floor first.</span>}
+          {Math.abs(f.off_percent!) > 0.2 && <span class="problems-inline"> Width and height of a pixel differ by {f.off_percent!.toFixed(2)} %: square the projector to the vat floor first.</span>}
         </p>
       )}
     </Pattern>
@@ -134,19 +134,19 @@ export const projectorSteps = (): Step[] => [
       <Pattern pattern="checkerboard">
         <p>Turn the lens until the edges of the squares are sharp on the paper, in the middle and in all corners. Then make the squares smaller.</p>
         <label class="wizard-field">
-          <span>Square</span>
+          <span>Square size</span>
           <SetupNumber label="Edge of a square" value={square.value} unit="px" testId="pattern-square" onValue={(t) => (square.value = t)} />
         </label>
       </Pattern>
     ),
     leave: async () => (await dark(), true),
   },
-  { name: 'Size', body: () => <Size />, leave: async (tell) => (await dark(), writeSize(tell)), next: found.value?.pixel_um ? 'Write it and go on' : 'Leave as it is' },
+  { name: 'Size', body: () => <Size />, leave: async (tell) => (await dark(), writeSize(tell)), next: found.value?.pixel_um ? 'Save and continue' : 'Leave as it is' },
   {
     name: 'Ready',
     body: () => (
       <p data-testid="projector-ready">
-        A pixel of <b>{setup.value ? (1000 * setup.value.projector.pixel).toFixed(3) : '–'} µm</b> stands in {file.value}. Jobs that were sliced before keep the old one: slice them again.
+        The pixel size in {file.value} is <b>{setup.value ? (1000 * setup.value.projector.pixel).toFixed(3) : '–'} µm</b>. Jobs sliced before keep the old one: slice them again.
       </p>
     ),
   },
