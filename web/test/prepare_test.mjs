@@ -102,7 +102,7 @@ test('supports are painted on the part, blocked and rubbed out, and the job keep
   assert.match(await rows.filter({ hasText: 'resin semi-flex' }).innerText(), /\+\d/);
   assert.match(await rows.filter({ hasText: 'layers' }).innerText(), /same/);
   await page.getByTestId('compare-slider').fill('5');
-  await page.waitForFunction(() => /only here [\d.]*[1-9]/.test(document.querySelector('[data-testid=compare-layer]').textContent), undefined, { timeout: 60_000 });
+  await page.waitForFunction(() => /only in this job [\d.]*[1-9]/.test(document.querySelector('[data-testid=compare-layer]').textContent), undefined, { timeout: 60_000 });
   assert.deepEqual(wrong, []);
 });
 
