@@ -3,7 +3,7 @@ import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { api } from '../store';
 import { cssColour, theme } from '../theme';
-import type { Job } from '../types';
+import type { Job, Plan } from '../types';
 import { layer, load } from './layers';
 import { clock } from './plan';
 
@@ -19,10 +19,14 @@ interface Line {
 const whole = (v: number) => String(Math.round(v));
 const ml = (v: number) => `${v.toFixed(2)} ml`;
 
+/// Of one resin, which may be in several vats.
+const resinMl = (plan: Plan, resin: string) =>
+  plan.vats.filter((v) => v.resin === resin).reduce((sum, v) => sum + (plan.resin_ml[String(v.slot)] ?? 0), 0);
+
 /// What is compared, in its order; resins of either job.
 export function linesOf(a: Job, b: Job): Line[] {
   const plan = (pick: (p: NonNullable<Job['plan']>) => number) => (j: Job) => (j.plan ? pick(j.plan) : null);
-  const resins = [...new Set([a, b].flatMap((j) => Object.keys(j.plan?.resin_ml ?? {})))];
+  const resins = [...new Set([a, b].flatMap((j) => j.plan?.vats.map((v) => v.resin) ?? []))];
   return [
     { name: 'total time', of: plan((p) => p.seconds.total), show: clock },
     { name: 'exposure', of: plan((p) => p.seconds.expose), show: clock },
@@ -33,7 +37,7 @@ export function linesOf(a: Job, b: Job): Line[] {
     { name: 'layers', of: (j) => j.manifest.layers.length, show: whole },
     { name: 'height', of: (j) => (j.manifest.layers[j.manifest.layers.length - 1]?.z_um ?? 0) / 1000, show: (v) => `${v.toFixed(2)} mm` },
     { name: 'part volume', of: (j) => j.manifest.materials.reduce((sum, m) => sum + m.model_volume_mm3, 0) / 1000, show: ml },
-    ...resins.map((r): Line => ({ name: `resin ${r}`, of: (j) => (j.plan ? j.plan.resin_ml[r] ?? 0 : null), show: ml })),
+    ...resins.map((r): Line => ({ name: `resin ${r}`, of: plan((p) => resinMl(p, r)), show: ml })),
     { name: 'wasted', of: plan((p) => p.waste_ml), show: ml },
     { name: 'issues', of: (j) => j.issues.length, show: whole },
   ];

@@ -384,6 +384,12 @@ export function SliceForm() {
   return (
     <form
       class="slice-form"
+      onKeyDown={(e) => {
+        // Enter takes a value, as in any other field of the page; only the button slices.
+        if (e.key !== 'Enter' || !(e.target instanceof HTMLInputElement)) return;
+        e.preventDefault();
+        e.target.dispatchEvent(new Event('change', { bubbles: true }));
+      }}
       onSubmit={(e) => {
         e.preventDefault();
         sliceError.value = '';
