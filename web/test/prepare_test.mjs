@@ -108,6 +108,7 @@ test('supports are painted on the part, blocked and rubbed out, and the job keep
 
 test('the part is moved, scaled and copied on the platform, and the slicer does the same', async (t) => {
   const { page, wrong } = await withTable(t);
+  await page.getByTestId('make-bed').click();
   await page.getByTestId('option-layer').fill('500');
   await page.getByTestId('group-turn').locator('summary').click();
   await page.getByTestId('option-scale').fill('150');
@@ -148,11 +149,11 @@ test('the part is moved, scaled and copied on the platform, and the slicer does 
 
 test('the first layers of a large job are seen while it is being sliced', async (t) => {
   const { page, wrong } = await withTable(t);
-  await page.getByTestId('option-layer').fill('10');
+  await page.getByTestId('option-layer').fill('2');
   await page.getByTestId('slice').click();
   await page.waitForSelector('[data-testid=under-way] canvas', { timeout: 120_000 });
   assert.ok(await page.getByTestId('cancel-slice').isVisible(), 'it is still being sliced');
-  assert.match(await page.getByTestId('under-way').innerText(), /of 1300 layers/);
+  assert.match(await page.getByTestId('under-way').innerText(), /of 6500 layers/);
   await page.getByTestId('cancel-slice').click();
   await page.getByTestId('slice').waitFor({ timeout: 60_000 });
   assert.deepEqual(wrong, []);

@@ -70,6 +70,8 @@ test('a virtual print is gone on with after the studio was killed, and comes out
 
 test('jobs wait in a queue that outlives the studio, and the next one is a click behind the print before', async (t) => {
   const { page, wrong } = await openPage(browser, `${studio.address}#print`, t);
+  // The machine of the print before may still be connected.
+  await page.waitForSelector('[data-testid=leave], [data-testid=queue-add]');
   if (await page.getByTestId('leave').count()) await page.getByTestId('leave').click();
   await page.getByTestId('queue-add').click();
   await page.getByTestId('queued').first().waitFor();

@@ -89,7 +89,8 @@ Response under_way(Studio& studio, const Request&) {
 Response image_under_way(Studio& studio, const Request& request) {
     Result<std::string> png = studio.make().under_way().image(whole_number(request.parts.at("layer")),
                                                               whole_number(request.parts.at("material")));
-    if (!png) return error_response(404, png.error().message);
+    // Slicing may have ended since the page asked: that is no mistake of the page.
+    if (!png) return {204, "image/png", ""};
     return {200, "image/png", std::move(*png)};
 }
 
@@ -238,8 +239,9 @@ void add_make_routes(std::vector<Route>& routes) {
     routes.push_back({"GET", "/api/job/other/{layer}/{material}", "one image of it", "image/png", false, other_image});
     routes.push_back(
         {"GET", "/api/job/under-way", "the layers of the job that is being sliced, so far", json, false, under_way});
-    routes.push_back(
-        {"GET", "/api/job/under-way/{layer}/{material}", "one image of them", "image/png", false, image_under_way});
+    routes.push_back({"GET", "/api/job/under-way/{layer}/{material}",
+                      "one image of them; 204 without content if it is no longer there", "image/png", false,
+                      image_under_way});
     routes.push_back(
         {"GET", "/api/job/part", "the job as it will stand, a packet", "application/octet-stream", false, part});
     routes.push_back({"GET", "/api/job/timeline", "every device over the whole print", json, false, timeline});

@@ -9,7 +9,7 @@ const difference = signal(false);
 /// A pixel that the view shall go to.
 export const goal = signal<{ row: number; column: number } | null>(null);
 
-const cache = new Map<string, Promise<ImageData>>();
+const cache = new Map<string, Promise<ImageData | null>>();
 
 /// Grey values of one image; nothing where the material is not in the layer.
 export function load(job: Job, l: number, material: number): Promise<ImageData | null> {
@@ -25,9 +25,11 @@ export function load(job: Job, l: number, material: number): Promise<ImageData |
   return entry;
 }
 
-async function read(address: string): Promise<ImageData> {
-  const blob = await (await fetch(address)).blob();
-  const bitmap = await createImageBitmap(blob);
+/// Null if the image is not there any more, as of a job that was being sliced.
+async function read(address: string): Promise<ImageData | null> {
+  const answer = await fetch(address);
+  if (answer.status !== 200) return null;
+  const bitmap = await createImageBitmap(await answer.blob());
   const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
   const context = canvas.getContext('2d', { willReadFrequently: true })!;
   context.drawImage(bitmap, 0, 0);

@@ -66,7 +66,8 @@ function Connect() {
   );
 }
 
-const homed = () => connected() && Object.values(now.value!.machine.axes).every((a) => a.homed);
+/// All axes that this machine has: the controller knows of more.
+const homed = () => connected() && Object.keys(info.value!.machine!.axes).every((name) => now.value!.machine.axes[name]?.homed);
 
 function State() {
   if (!connected()) return <p class="problems">No machine is connected.</p>;

@@ -32,9 +32,9 @@ export function ramp(from: number, to: number, count: number): number[] {
 
 const head = (name: string) => `name = "${name}"\nlength_unit = "mm"\n`;
 const quoted = (text: string) => JSON.stringify(text);
-const material = (name: string, resin: string) => `\n[material.${name}]\nyoungs_modulus = "1 MPa"\npoisson_ratio = 0.45\nresin = ${quoted(resin)}\n`;
+const material = (name: string, resin: string, more = '') => `\n[material.${name}]\nyoungs_modulus = "1 MPa"\npoisson_ratio = 0.45\nresin = ${quoted(resin)}\n${more}`;
 
-/// One piece for each exposure, in rows as the image has room for.
+/// One piece for each exposure, in rows as the image has room for; all stick to the platform alike.
 export function exposureRobot(setup: PrinterSetup, resin: string, seconds: number[], bottom: number): string {
   const p = setup.projector;
   const room = Math.min(p.width * p.pixel, setup.platform.width_mm);
@@ -42,10 +42,11 @@ export function exposureRobot(setup: PrinterSetup, resin: string, seconds: numbe
   const bodies = seconds.map((s, k) => {
     const x = (k % columns) * (coupon.width + coupon.gap);
     const y = -Math.floor(k / columns) * (coupon.depth + coupon.gap);
-    return `\n[[body]]\nname = "piece ${k + 1}"\nmaterial = "test"\nexposure = "${f(s)} s"\nbottom_exposure = "${f(Math.max(bottom, s))} s"\ngeometry = { union = [${boxesOf(k + 1, x, y, p.pixel).map(boxText).join(', ')}] }\n`;
+    return `\n[[body]]\nname = "piece ${k + 1}"\nmaterial = "test"\nexposure = "${f(s)} s"\ngeometry = { union = [${boxesOf(k + 1, x, y, p.pixel).map(boxText).join(', ')}] }\n`;
   });
   const fixed = `\n[[fixed]]\nname = "base"\nbox = [[0, 0, 0], [${coupon.width}, ${coupon.depth}, 0]]\n`;
-  return head('exposure finder') + material('test', resin) + bodies.join('') + fixed;
+  const foot = `bottom_exposure = "${f(Math.max(bottom, ...seconds))} s"\n`;
+  return head('exposure finder') + material('test', resin, foot) + bodies.join('') + fixed;
 }
 
 /// Two small plates beside each other, each in the resin of a vat of its own where there are two: one swap.
