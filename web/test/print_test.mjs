@@ -71,7 +71,7 @@ test('what is no serial port, and a job that is in no folder, are refused', asyn
 test('a print at a port survives the end of the studio and is gone on with from the page', async (t) => {
   const first = await openPage(browser, `${studio.address}#print`, t);
   await connect(first.page, 'Operational');
-  assert.match(await first.page.getByTestId('known').textContent(), /answers: Pliant twin/);
+  assert.match(await first.page.getByTestId('known').textContent(), /responds: Pliant twin/);
   for (const box of await first.page.locator('.checklist input').all()) await box.check();
   await first.page.getByTestId('start').click();
   await first.page.waitForFunction(() => Number(document.querySelector('[data-testid=print-layer]').textContent) >= 2);

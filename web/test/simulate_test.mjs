@@ -112,7 +112,7 @@ test('an STL that is dropped onto the page becomes a robot, and a cable is pulle
   };
   for (const [k, x] of [4, 30, 56].entries()) {
     await page.mouse.click(...(await at(x)));
-    await page.waitForFunction((n) => document.querySelector('.placing')?.textContent.includes(`${n} points`), k + 1);
+    await page.waitForFunction((n) => document.querySelector('.placing')?.textContent.includes(n === 1 ? '1 point' : `${n} points`), k + 1);
   }
   await rebuilt(page, () => page.getByTestId('finish-cable').click());
   await page.getByTestId('tab-move').click();
@@ -281,7 +281,7 @@ test('a workspace is found within ranges, and drawn', async (t) => {
   await page.getByTestId('tab-workspace').click();
   await page.getByTestId('workspace-side').fill('4');
   await page.getByTestId('workspace-side').press('Enter');
-  assert.match(await page.getByTestId('workspace-count').textContent(), /^4 places will be solved/);
+  assert.match(await page.getByTestId('workspace-count').textContent(), /^4 samples will be solved/);
   await page.getByTestId('find-workspace').click();
   await page.getByTestId('workspace-found').waitFor(long);
   assert.match(await page.getByTestId('workspace-found').textContent(), /Equilibrium found at [34] of 4 samples/);

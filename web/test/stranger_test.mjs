@@ -97,7 +97,7 @@ test('a studio that is gone is said to be gone, in the middle of a print too', a
   assert.equal(await page.getByTestId('lost').count(), 0);
   other.child.kill('SIGKILL');
   await page.getByTestId('lost').waitFor();
-  assert.match(await page.getByTestId('lost').textContent(), /lost the studio.*use its own switch/);
+  assert.match(await page.getByTestId('lost').textContent(), /lost its connection to the studio.*use its own switch/);
   await page.getByTestId('emergency').click();
   await told(page, /The studio does not respond/);
 });
