@@ -43,7 +43,7 @@ const tasks = {
       const [left, top] = await page.evaluate((p) => window.pliant.project(p), [x, 6, 10]);
       const box = await page.getByTestId('view').boundingBox();
       await click({ click: () => page.mouse.click(box.x + left, box.y + top) });
-      await page.waitForFunction((n) => document.querySelector('.placing')?.textContent.includes(`${n} points`), k + 1);
+      await page.waitForFunction((n) => document.querySelector('.placing')?.textContent.includes(n === 1 ? '1 point' : `${n} points`), k + 1);
     }
     await click(page.getByTestId('finish-cable'));
     await page.waitForFunction(() => window.pliant.scene.value.head.actuators.length === 1, undefined, { timeout: 120_000 });
