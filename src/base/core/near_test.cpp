@@ -9,7 +9,7 @@
 using namespace pliant;
 
 TEST_CASE("a small number is not near another one because both are small") {
-    CHECK_FALSE(0.0 == near(1.9e-6, {.relative = 1e-2}));  // what doctest::Approx lets through
+    CHECK_FALSE(0.0 == near(1.9e-6, {.relative = 1e-2}));  // accepted by doctest::Approx
     CHECK_FALSE(1.9e-6 == near(0, {.relative = 1e-2}));
     CHECK_FALSE(1.6e-5 == near(1.7e-5, {.relative = 1e-2}));
     CHECK(1.69e-5 == near(1.7e-5, {.relative = 1e-2}));

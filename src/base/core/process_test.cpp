@@ -40,7 +40,7 @@ struct Ran {
     int status = 0;  ///< as of waitpid()
 };
 
-/// What /bin/sh says when it runs `script` with `input`; -1: without any.
+/// Output of /bin/sh running `script` with `input`; -1: no input.
 Ran run(const std::string& script, int input = -1) {
     Pipe pipe = make_pipe();
     const Result<pid_t> process =

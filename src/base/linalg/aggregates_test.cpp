@@ -1,4 +1,4 @@
-// Groups of the nodes of lattices.
+// Aggregates on lattices.
 #include "base/linalg/aggregates.hpp"
 
 #include <doctest/doctest.h>
@@ -28,7 +28,7 @@ BlockRows box(int along, int across) {
     return BlockRows(make_pattern((along + 1) * side * side, 3, cliques));
 }
 
-/// Nodes of a group that can be reached from its first one without leaving it.
+/// Number of nodes of a group reachable from its first one within the group.
 std::size_t reached(const BlockRows& matrix, const Aggregates& groups, const std::vector<int>& nodes) {
     std::vector<int> found{nodes.front()};
     for (std::size_t k = 0; k < found.size(); ++k) {

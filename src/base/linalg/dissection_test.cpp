@@ -30,7 +30,7 @@ struct Grid {
     Points points;
 };
 
-/// Nodes next to one another along the axes and the diagonals.
+/// Nodes adjacent along axes and diagonals.
 Grid grid(int nx, int ny, int nz) {
     Grid result;
     Edges edges;
@@ -59,7 +59,7 @@ bool is_permutation(std::vector<int> position) {
     return true;
 }
 
-/// Entries of the factor with its diagonal, by eliminating one node after the other.
+/// Entries of the factor including its diagonal, by naive elimination.
 double fill(const Graph& graph, const std::vector<int>& position) {
     std::vector<std::set<int>> later(position.size());
     for (int i = 0; i < graph.nodes(); ++i) {
@@ -86,10 +86,10 @@ TEST_CASE("every node of every graph gets a position of its own, with points and
     };
     check(graph_of_edges(0, {}), {});
     check(graph_of_edges(1, {}), {{0, 0, 0}});
-    check(graph_of_edges(300, {}), Points(300));  // nothing is next to anything
+    check(graph_of_edges(300, {}), Points(300));  // no edges
     const Grid cube = grid(9, 9, 9);
     check(cube.graph, cube.points);
-    check(cube.graph, Points(cube.points.size(), {1, 2, 3}));  // all at one place
+    check(cube.graph, Points(cube.points.size(), {1, 2, 3}));  // all points coincide
     Points far = cube.points;
     far[3] = {1e300, -1e300, 1e-300};
     check(cube.graph, far);

@@ -27,7 +27,7 @@ std::string number(std::uint64_t value, int bytes) {
     return text;
 }
 
-/// An archive of one stored entry by hand, each field as a liar may set it.
+/// A hand-made archive of one stored entry, in which each field can be falsified.
 struct ByHand {
     std::string name = "a";
     std::string data = "hello";
@@ -74,7 +74,7 @@ struct File {
         REQUIRE(write_file(path, bytes).has_value());
         return ZipReader::open(path);
     }
-    /// What is said of an archive that cannot be opened, or else of its entry "a".
+    /// The error for an archive that cannot be opened, or else for its entry "a".
     std::string refused(const std::string& bytes) const {
         const auto zip = open(bytes);
         const auto read = zip ? zip->read("a", 1000) : Result<std::string>(tl::unexpected(zip.error()));
@@ -86,7 +86,7 @@ struct File {
     }
 };
 
-/// Writes beyond `bytes` fail, as on a full disk, until this goes.
+/// Writes beyond `bytes` fail, as on a full disk, for the lifetime of this object.
 class FullDisk {
 public:
     explicit FullDisk(rlim_t bytes) {
@@ -161,7 +161,7 @@ TEST_CASE("a name comes once, and fits its field; a size fits too") {
     const std::string longest(65535, 'n');
     REQUIRE(zip->add(longest, "3", Method::store).has_value());
     CHECK(holds(zip->add(longest + "n", "4", Method::store).error().message, "too large for a zip file"));
-    const std::string_view huge(longest.data(), std::size_t{0xFFFFFFFF});  // refused before a byte of it is read
+    const std::string_view huge(longest.data(), std::size_t{0xFFFFFFFF});  // refused without reading any of it
     CHECK(holds(zip->add("huge", huge, Method::store).error().message, "huge: is too large for a zip file"));
     REQUIRE(zip->close().has_value());
     const auto read = ZipReader::open(file.path);
@@ -196,7 +196,7 @@ TEST_CASE("what is no file, and what is no archive, is refused") {
     CHECK(ZipReader::open(file.path).error().message == file.path.string() + ": no such file");
     CHECK(holds(ZipReader::open(file.folder.path()).error().message, ": is not a regular file"));
     REQUIRE(::mkfifo((file.folder / "fifo").c_str(), 0600) == 0);
-    CHECK(holds(ZipReader::open(file.folder / "fifo").error().message, ": is not a regular file"));  // nor waited for
+    CHECK(holds(ZipReader::open(file.folder / "fifo").error().message, ": is not a regular file"));  // must not block
     file.refused("");
     file.refused("PK");
     file.refused(std::string(70000, '\0'));
@@ -215,7 +215,7 @@ TEST_CASE("sizes that cannot be are refused before memory is taken") {
     CHECK(holds(file.refused(ByHand{.size = 0xFFFFFFF0}.zip()), "claims 4294967280 bytes"));
     CHECK(holds(file.refused(ByHand{.size = 5 * 1032 + 1, .method = 8}.zip()), "claims 5161 bytes"));
     file.refused(ByHand{.size = 5, .packed = 0xFFFFFFF0}.zip());
-    CHECK(holds(file.refused(ByHand{.size = 4, .packed = 4}.zip()), "a: "));  // the checksum is of five
+    CHECK(holds(file.refused(ByHand{.size = 4, .packed = 4}.zip()), "a: "));  // the checksum is for five bytes
     file.refused(ByHand{.offset = 40}.zip());
     file.refused(ByHand{.offset = 0xFFFFFFF0}.zip());
     file.refused(ByHand{.count = 2}.zip());
@@ -227,7 +227,7 @@ TEST_CASE("a wrong checksum, a secret and a method of its own are refused") {
     file.refused(ByHand{.checksum = 1}.zip());
     CHECK(holds(file.refused(ByHand{.flags = 1}.zip()), "a: must be stored or deflated, and not encrypted"));
     CHECK(holds(file.refused(ByHand{.method = 12}.zip()), "a: must be stored or deflated, and not encrypted"));
-    file.refused(ByHand{.method = 8}.zip());  // "hello" is nothing that was deflated
+    file.refused(ByHand{.method = 8}.zip());  // "hello" is not a deflate stream
 }
 
 TEST_CASE("sizes of eight bytes are read, and believed no more than those of four") {

@@ -93,7 +93,7 @@ TEST_CASE("version 2: physical volumes are regions with their names; all else is
     CHECK(mesh->points.size() == 5);
     CHECK(mesh->region_names == std::vector<std::string>{"grip", "soft foam"});
     CHECK(volume(*mesh, 0) == near(1.0 / 6, {.relative = 1e-12}));
-    CHECK(volume(*mesh, 1) == near(1.0 / 3, {.relative = 1e-12}));  // it was inside out
+    CHECK(volume(*mesh, 1) == near(1.0 / 3, {.relative = 1e-12}));  // it was inverted in the file
 }
 
 TEST_CASE("version 4: groups come by the volume they belong to") {

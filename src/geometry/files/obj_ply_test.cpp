@@ -104,7 +104,7 @@ TEST_CASE("OBJ: a backslash continues a line, but not a comment or a name") {
     REQUIRE_MESSAGE(file, (file ? "" : file.error().message));
     CHECK(file->mesh.triangles.size() == 12);
     CHECK(signed_volume(file->mesh) == near(8, {.relative = 1e-12}));
-    // Lines are still counted.
+    // Lines are counted correctly after a continuation.
     CHECK(problem(replaced(text, "f 3 4 8 7", "f 3 4 8 9")) == "a:21: a face names vertex 9, there are 8 so far");
     std::string old_mac;
     for (const char c : obj) old_mac += c == '\n' ? '\r' : c;

@@ -92,7 +92,7 @@ TEST_CASE("version 5 files keep offsets and connectivity apart") {
 
 TEST_CASE("an inside-out quadratic tet keeps its mid-edge nodes at their edges") {
     TetMesh mesh = to_quadratic(two_tets());
-    // Mirror the order of one tet: corners 1 and 2, and the edges that follow them.
+    // Mirror the node order of a tet: corners 1 and 2, and the edges at them.
     std::swap(mesh.nodes[1], mesh.nodes[2]);
     std::swap(mesh.nodes[4], mesh.nodes[6]);
     std::swap(mesh.nodes[8], mesh.nodes[9]);

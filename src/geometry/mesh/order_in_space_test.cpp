@@ -31,7 +31,7 @@ TEST_CASE("things near one another in space come near one another, whatever orde
         if (count < 1000) continue;
         double apart = 0;
         for (std::size_t k = 1; k < count; ++k) apart += norm(place[items[k]] - place[items[k - 1]]);
-        CHECK(apart / static_cast<double>(count) < 1.5 * layer);  // by chance they would be 1.3 apart, 15 layers
+        CHECK(apart / static_cast<double>(count) < 1.5 * layer);  // in random order they would be 1.3 apart, 15 layers
     }
 }
 

@@ -65,7 +65,7 @@ TEST_CASE("bodies that touch share the nodes of their common face") {
         area += 0.5 * norm(cross(p[face.nodes[1]] - p[face.nodes[0]], p[face.nodes[2]] - p[face.nodes[0]]));
     }
     CHECK(check_closed(outer));
-    CHECK(area == near(2 * 100 + 4 * 200, {.relative = 1e-12}));  // nothing of the common face is left outside
+    CHECK(area == near(2 * 100 + 4 * 200, {.relative = 1e-12}));  // the common face is not part of the outside
 }
 
 TEST_CASE("round bodies approach their volume, faster with curved quadratic tets") {
@@ -256,7 +256,7 @@ TEST_CASE("a narrow gap between bodies is closed and told, a wider one stays") {
     };
     struct Row {
         const std::vector<BodyGeometry>* bodies;
-        double whole, between;  ///< areas of the surface: of both bodies, of the face between them
+        double whole, between;  ///< surface areas: of both bodies, and of the face between them
     };
     const double pi = std::numbers::pi;
     for (const Row& row :
@@ -300,7 +300,7 @@ TEST_CASE("what cannot be meshed is refused with a reason") {
 }
 
 TEST_CASE("drawn solids get no sliver") {
-    // As Gmsh gives them these have angles of 0.3 to 3 degrees.
+    // As meshed by Gmsh these have angles of 0.3 to 3 degrees.
     struct Box {
         Vec3 sides;
         double size;

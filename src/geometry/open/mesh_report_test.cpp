@@ -27,7 +27,7 @@ TetMesh one_tet(const std::vector<Vec3>& points) {
     return mesh;
 }
 
-/// What is said of a file with this content.
+/// The description of a file with this content.
 std::string described(std::string_view bytes) {
     const pliant::test::Folder folder("mesh_report");
     REQUIRE(write_file(folder / "nameless", bytes));

@@ -53,7 +53,7 @@ TEST_CASE("a file is what it holds, not what it is called") {
 TEST_CASE("a solid's file is known by its head, and read by its reader alone") {
     const pliant::test::Folder folder("open_geometry");
     const auto step = write(folder, "huge.step", "ISO-10303-21;\nHEADER;\n");
-    std::filesystem::resize_file(step, std::uintmax_t{5} << 30);  // a hole on the disk, more than read_file() takes
+    std::filesystem::resize_file(step, std::uintmax_t{5} << 30);  // a sparse file, larger than read_file() accepts
     const Result<Geometry> solids = open_geometry(step);
     REQUIRE_MESSAGE(solids, (solids ? "" : solids.error().message));
     CHECK(std::holds_alternative<StepPath>(*solids));

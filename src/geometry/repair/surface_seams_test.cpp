@@ -14,7 +14,7 @@ using namespace pliant::mesh::test;
 
 namespace {
 
-/// Every triangle with points of its own, each moved by up to `by`.
+/// A triangle soup without shared points, each point moved by up to `by`.
 TriMesh torn(const TriMesh& surface, double by) {
     TriMesh result;
     int count = 0;

@@ -10,7 +10,7 @@ using namespace pliant::mesh;
 
 namespace {
 
-/// Adds a tetrahedron with legs of length `leg` at `at`, looking outwards, or inwards as a cavity does.
+/// Adds a tetrahedron with legs of length `leg` at `at`, oriented outwards, or inwards as a cavity.
 void add(TriMesh& mesh, Vec3 at, double leg, bool outwards = true) {
     const int n = static_cast<int>(mesh.points.size());
     for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{leg, 0, 0}, Vec3{0, leg, 0}, Vec3{0, 0, leg}})

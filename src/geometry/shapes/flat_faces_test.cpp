@@ -27,7 +27,7 @@ TriMesh triangles(const Solid& shape, double tolerance = 0.05) {
     return *surface;
 }
 
-/// Coordinates as an STL file holds them.
+/// Coordinates rounded as in an STL file.
 TriMesh rounded(TriMesh surface) {
     for (Vec3& p : surface.points) p = {double(float(p.x)), double(float(p.y)), double(float(p.z))};
     return surface;
@@ -41,7 +41,7 @@ std::size_t face_count(const FacetedSurface& surface) {
     return count;
 }
 
-/// Turned so that no face lies along an axis.
+/// Rotated so that no face is parallel to an axis.
 Solid askew(const Solid& shape) {
     return solid(RotatedSolid{shape, {1, 2, 3}, {1, 0.3, 0.7}, 0.6});
 }

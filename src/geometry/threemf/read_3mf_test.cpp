@@ -73,7 +73,7 @@ TEST_CASE("units, transforms and components place a body; a mirrored one keeps i
     CHECK(file.bodies[0].material == "default");
     CHECK(mesh::signed_volume(file.bodies[0].mesh_mm) == near(2000.0 / 6, {.relative = 1e-12}));
     CHECK(mesh::signed_volume(file.bodies[1].mesh_mm) == near(1000.0 / 6, {.relative = 1e-12}));
-    // The corner at 0 goes to x = 10 cm, then a quarter turn makes that y, then up by 3 cm.
+    // The corner at 0 goes to x = 10 cm, a quarter turn rotates that to y, then it moves up by 3 cm.
     CHECK(norm(file.bodies[0].mesh_mm.points[0] - Vec3{0, 100, 30}) < 1e-9);
 }
 

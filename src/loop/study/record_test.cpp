@@ -123,7 +123,7 @@ TEST_CASE("a chunk has one writer at a time, and the next one goes on behind the
         const auto second = RecordFile::claim(plan, folder.path(), 1);
         REQUIRE(second);
         CHECK_FALSE(second->has_value());
-        REQUIRE((*first)->append(record_line(record(5)).substr(0, 40)));  // as if it were killed here
+        REQUIRE((*first)->append(record_line(record(5)).substr(0, 40)));  // as if killed during this write
     }
     auto next = RecordFile::claim(plan, folder.path(), 1);
     REQUIRE((next && *next));

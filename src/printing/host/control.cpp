@@ -134,7 +134,7 @@ struct Control::State_ {
     void look_at_journal();
 };
 
-// --- requests ------------------------------------------------------------------------------------------------------
+// Requests.
 
 /// Checks the state and changes it to the next one atomically, so that only one of two concurrent requests succeeds.
 /// Without `next` the state is unchanged.
@@ -309,7 +309,7 @@ Status Control::skip_layer(int layer) {
     return {};
 }
 
-// --- manual operations ---------------------------------------------------------------------------------------------
+// Manual operations.
 
 /// From any thread: sends M410 to the current manual move. False if there is none, or the firmware would not act on it.
 bool Control::State_::stop_move() {
@@ -461,7 +461,7 @@ Status Control::reset_controller() {
         });
 }
 
-// --- queries -------------------------------------------------------------------------------------------------------
+// Queries.
 
 Snapshot Control::snapshot() const {
     return state_->desk.snapshot();
@@ -475,7 +475,7 @@ std::vector<Event> Control::events_since(long number) const {
     return state_->desk.events_since(number);
 }
 
-// --- the working thread --------------------------------------------------------------------------------------------
+// The working thread.
 
 bool Control::State_::run_next_task() {
     std::function<void()> task;

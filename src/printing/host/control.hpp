@@ -31,7 +31,7 @@ public:
     Control(const Control&) = delete;
     Control& operator=(const Control&) = delete;
 
-    // --- the working thread ---
+    // The working thread.
 
     /// Carries out requests until quit().
     void serve();
@@ -40,13 +40,13 @@ public:
     /// Ends serve(). A running print is suspended first: dark, parked, ready to be resumed.
     void quit();
 
-    // --- connection ---
+    // Connection.
 
     [[nodiscard]] Status connect();
     /// Refused while a print is running.
     [[nodiscard]] Status disconnect();
 
-    // --- the print ---
+    // The print.
 
     /// Replaces the previous job. Refused while a print is running. Errors: invalid G-code.
     [[nodiscard]] Status load(PrintJob job);
@@ -68,7 +68,7 @@ public:
     /// Skips the exposures of a layer that has not begun; recorded in the journal.
     [[nodiscard]] Status skip_layer(int layer);
 
-    // --- manual control, while no print is running ---
+    // Manual control, while no print is running.
 
     /// Moves to an absolute position; refused if the interlocks forbid it. During such a move or a jog(), another call
     /// stops that move at once (M410) and is itself refused: the axes must then be homed.
@@ -88,7 +88,7 @@ public:
     /// Deliberately resets the controller by DTR; needs a serial line that has it.
     [[nodiscard]] Status reset_controller();
 
-    // --- queries ---
+    // Queries.
 
     [[nodiscard]] Snapshot snapshot() const;
     /// The state in the snapshot, cheaper for frequent calls.

@@ -14,7 +14,7 @@ namespace {
 using json = nlohmann::json;
 using machine::Axis;
 
-// --- state as JSON -------------------------------------------------------------------------------------------------
+// State as JSON.
 
 json state_json(const Snapshot& s) {
     const bool connected = s.state != State::offline && s.state != State::connecting && s.state != State::halted;
@@ -100,7 +100,7 @@ std::string message(const Control& control, std::string_view kind, long& last_ev
     return json{{std::string(kind), content}}.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-// --- requests ------------------------------------------------------------------------------------------------------
+// Requests.
 
 ApiAnswer with(const json& content) {
     return {200, content.dump(-1, ' ', false, json::error_handler_t::replace)};

@@ -13,7 +13,7 @@ using nlohmann::json;
 
 namespace {
 
-/// A control of a printer that answers as a good Marlin, served in the calling thread.
+/// A control of a printer that behaves like a faultless Marlin, running in the calling thread.
 struct Bench {
     CountingClock clock;
     RememberingProjector projector;

@@ -1,5 +1,4 @@
-// One print on a wire whose other end is a function: what is sent in which order, and what is left behind when it
-// fails.
+// One print on a wire whose other end is a function: the order of what is sent, and what remains after a failure.
 #include "printing/host/control.hpp"
 
 #include <doctest/doctest.h>
@@ -35,7 +34,7 @@ struct Bench {
     std::function<std::string(const std::string&)> answer;
     bool opened = false;
     std::vector<Given> lights;
-    std::vector<std::string> written;  ///< kept when the wire is gone
+    std::vector<std::string> written;  ///< survives the wire
     Control control{setup()};
 
     explicit Bench(std::function<std::string(const std::string&)> says) : answer(std::move(says)) {}
@@ -56,7 +55,7 @@ struct Bench {
         s.after_light = [this](const Given& given) { lights.push_back(given); };
         return s;
     }
-    /// What load() said, or how the print ended.
+    /// The error of load(), or the outcome of the print.
     Status print(const std::string& text, const ImageSource& images = image_of) {
         PrintJob job;
         job.name = "a job";

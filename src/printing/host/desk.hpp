@@ -27,7 +27,7 @@ class Desk {
 public:
     explicit Desk(Clock& clock) : clock_(clock) {}
 
-    // --- any thread ---
+    // Any thread.
     [[nodiscard]] Snapshot snapshot() const;
     [[nodiscard]] State state() const;
     [[nodiscard]] std::vector<Event> events_since(long number) const;
@@ -41,7 +41,7 @@ public:
     void skip_layer(int layer);
     void stop_everything();
 
-    // --- the working thread ---
+    // The working thread.
     /// An error once an emergency stop was requested.
     [[nodiscard]] Status watch() const;
     [[nodiscard]] bool stopped() const;

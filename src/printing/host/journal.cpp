@@ -170,7 +170,7 @@ Result<JournalText> parse_journal(std::string_view text, std::string_view where)
     return journal;
 }
 
-// --- the file ------------------------------------------------------------------------------------------------------
+// The file.
 
 Result<Journal> Journal::open(const std::filesystem::path& path, bool sync) {
     const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);

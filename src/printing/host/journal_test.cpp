@@ -54,7 +54,7 @@ TEST_CASE("a torn end is passed over wherever it is torn; damage in the middle i
         const auto text = parse_journal(damaged, "x");
         if (at >= third)
             CHECK((text && text->records.size() == 2));
-        else if (at == third - 1)  // the line end between the last two: both are the torn end
+        else if (at == third - 1)  // the line end between the last two: both count as the damaged end
             CHECK((text && text->records.size() == 1));
         else
             CHECK_FALSE(text);
@@ -129,7 +129,7 @@ TEST_CASE("the facts: pieces of a light add up, an open light stays open, states
     CHECK(facts.lights.at(3).open_light == 4);
     CHECK(facts.lights.at(3).open_since_s == 90);
     records.push_back({5, "dark", {{"light", "2"}, {"on", "1"}, {"done", "1"}}});
-    CHECK_FALSE(facts_of(records));  // light 2 was not on any more
+    CHECK_FALSE(facts_of(records));  // exposure 2 had already ended
 
     machine::Interlock::State state;
     state.position = {{1, -2, 3, 4}};

@@ -122,7 +122,7 @@ Status Machine::note_go(long program, std::size_t step, const Interlock& before,
     return number ? Status{} : tl::unexpected(number.error());
 }
 
-// --- switches ------------------------------------------------------------------------------------------------------
+// Switches.
 
 void Machine::hear(std::string_view line) {
     if (!has_switches()) return;
@@ -224,7 +224,7 @@ Status Machine::leave_switch(Axis axis) {
     return status ? run(back + "\n") : status;
 }
 
-// --- sending -------------------------------------------------------------------------------------------------------
+// Sending.
 
 Status Machine::send(long program, std::size_t step, std::string_view command) {
     machine::Followed after = at_;

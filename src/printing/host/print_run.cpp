@@ -119,7 +119,7 @@ Result<Ending> PrintRun::steps_from(std::size_t first) {
     return Ending::finished;
 }
 
-// --- exposures -----------------------------------------------------------------------------------------------------
+// Exposures.
 
 double PrintRun::exposure_s(const machine::Expose& light) const {
     double seconds = light.seconds;
@@ -248,7 +248,7 @@ Status PrintRun::burn(double until_s, bool& whole) {
     return {};
 }
 
-// --- requests ------------------------------------------------------------------------------------------------------
+// Requests.
 
 bool PrintRun::wants_to_end() const {
     const Wishes wishes = run_.desk.wishes();
@@ -378,7 +378,7 @@ Status PrintRun::wait_for_resume() {
     return {};
 }
 
-// --- the door ------------------------------------------------------------------------------------------------------
+// The door.
 
 Status PrintRun::listen_at_door(double seconds) {
     if (Status status = run_.machine.ask_for_door(); !status) return status;
@@ -408,7 +408,7 @@ Result<Ending> PrintRun::wait_to_park(Ending ending) {
     return ending;
 }
 
-// --- the end -------------------------------------------------------------------------------------------------------
+// The end.
 
 Result<Ending> PrintRun::park(Ending ending) {
     (void)projector_.black();

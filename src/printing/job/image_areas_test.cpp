@@ -28,7 +28,7 @@ TEST_CASE("pieces hang together through sides of pixels; grey counts as its shar
                                          ".#..#.",  //
                                          ".....+",  //
                                          "......"}));
-    // Three whole pixels, one, and two faint ones that touch others by corners only.
+    // Three whole pixels, one, and two faint ones that touch others only at corners.
     CHECK(a.count == 4);
     CHECK(a.total_px == near(4.4, {.relative = 1e-12}));
     CHECK(a.largest_px == near(3, {.relative = 1e-12}));

@@ -46,7 +46,7 @@ TEST_CASE("every format says its layer height in its own words and unit") {
           near(50, {.relative = 1e-12}));
     CHECK(um({{"manifest.uvtools", "<Manifest><LayerHeight>0.1</LayerHeight></Manifest>"}}) ==
           near(100, {.relative = 1e-12}));
-    // The printer goes by config.ini.
+    // config.ini takes precedence, as on the printer.
     CHECK(um({{"config.ini", "layerHeight = 0.1"}, {"prusaslicer.ini", "layer_height = 0.05"}}) ==
           near(100, {.relative = 1e-12}));
     CHECK(um({{"config.ini", "nothing"}, {"prusaslicer.ini", "layer_height = 0.05"}}) == near(50, {.relative = 1e-12}));

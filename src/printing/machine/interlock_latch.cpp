@@ -10,7 +10,7 @@ Status Interlock::output(const Command& command) {
     return {};
 }
 
-// --- the magnet ----------------------------------------------------------------------------------------------------
+// The magnet.
 
 /// Switched off, it releases its vat where that is; switched on, it takes the vat before it.
 Status Interlock::magnet(bool on) {
@@ -37,7 +37,7 @@ Status Interlock::check_hold(const Position& to) const {
     return failure("the carriage moves with a vat that its magnet does not hold");
 }
 
-// --- the retriever of a wall ---------------------------------------------------------------------------------------
+// The retriever of a wall.
 
 std::optional<int> Interlock::tray_vat() const {
     return printer_->store() == Store::wall ? slots_.back() : std::nullopt;

@@ -125,7 +125,7 @@ TEST_CASE("with a brush the vat goes into the tower under a part that it wipes, 
     b.must(Axis::platform, 1000);
     REQUIRE(b.lock.light_on(false));
     b.lock.light_off();
-    // A part of 1 mm over the wall of 82.55 mm, 1 mm above its rim.
+    // A part of 1 mm above the vat's wall of 82.55 mm, 1 mm above the rim.
     b.must(Axis::platform, 84549);
     CHECK(b.refused(Axis::carriage, 355600, "the platform is down"));
     b.must(Axis::platform, 84550);

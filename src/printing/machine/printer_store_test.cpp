@@ -1,4 +1,4 @@
-// Slips in what a printer file says of magnets and walls: one clear line each.
+// Mistakes in a printer file about magnets and walls: one clear line each.
 #include <doctest/doctest.h>
 
 #include "base/core/files.hpp"
@@ -13,7 +13,7 @@ using pliant::test::holds;
 
 namespace {
 
-/// What the file says with `from` replaced by `to`; "" if it is still accepted.
+/// The error with `from` replaced by `to` in the file; "" if it is accepted.
 std::string message_with(const char* name, const std::string& from, const std::string& to) {
     std::string text = read_file(std::string("examples/printers/") + name + ".toml").value();
     const auto at = text.find(from);
@@ -31,7 +31,7 @@ void check_slips(const char* name, std::initializer_list<Slip> slips) {
     for (const Slip& slip : slips) {
         const std::string message = message_with(name, slip.from, slip.to);
         INFO(std::string(slip.to));
-        // What follows from the slip may stand behind it.
+        // Consequential errors may follow on further lines.
         CHECK_MESSAGE(holds(message.substr(0, message.find('\n')), slip.message), message);
     }
 }

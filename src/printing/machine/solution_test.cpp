@@ -60,14 +60,14 @@ TEST_CASE("what evaporates leaves its resin behind; a reservoir that has run low
     CHECK(c.resin_share() / (10.0 / 910) == near(1, {.relative = 1e-12}));
     c.wait(9 * 3600.0 + 60);
     CHECK(c.draws_air());
-    CHECK(c.needs() == SolutionCare::change);  // it has become too strong as well, which is worse
+    CHECK(c.needs() == SolutionCare::change);  // it also has too much resin, which is more urgent
     p.solution.spent_share = 1;
     CHECK(SolutionCircuit(c).needs() == SolutionCare::top_up);
     c.care(SolutionCare::top_up);
     CHECK(c.liquid_ml() == 1000);
     CHECK(c.resin_ml() == near(10, {.relative = 1e-12}));
     c.wait(1e9);
-    CHECK(c.liquid_ml() == near(10, {.relative = 1e-12}));  // never below its resin
+    CHECK(c.liquid_ml() == near(10, {.relative = 1e-12}));  // never less than its resin
 }
 
 TEST_CASE("a filter keeps its share until it is full") {

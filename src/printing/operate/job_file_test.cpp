@@ -1,4 +1,4 @@
-// Jobs on their way from a file to the host: opened, proved, made ready.
+// Jobs from a file to the host: opened, verified, prepared.
 #include "printing/operate/job_file.hpp"
 
 #include <doctest/doctest.h>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr int width_px = 8, height_px = 6;
 
-/// The left half of the projector in one material, the right half in the other.
+/// One half of the projector for each material, the left for the first.
 job::Image image_of_half(int material) {
     job::Image image{width_px, height_px, std::vector<std::uint8_t>(width_px * height_px)};
     for (std::size_t i = 0; i < image.pixels.size(); ++i)

@@ -60,7 +60,7 @@ TEST_CASE("host and virtual printer share a clock through a file") {
     CHECK(host->now() == 0);
     printer->set(12.5);
     CHECK(host->now() == 12.5);
-    // The host sleeps for as long as the printer's time takes, however long that is.
+    // The host sleeps for the printer's time, however long that is.
     std::thread time([&] {
         for (int i = 1; i <= 20; ++i, ::usleep(1000)) printer->set(12.5 + 0.1 * i);
     });

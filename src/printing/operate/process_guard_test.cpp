@@ -18,7 +18,7 @@ using namespace pliant::operate;
 
 namespace {
 
-/// A host that does so much with light 17 and is killed.
+/// A host that goes so far with exposure 17 and is then killed.
 void die(const ProcessGuard::Options& options, const std::function<void(ProcessGuard&)>& deeds) {
     const pid_t host = ::fork();
     if (host == 0) {
@@ -37,7 +37,7 @@ double now_s() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// What the next host hears of light 17; the guard of the last one may still be writing.
+/// What the next host learns of exposure 17; the guard of the previous one may still be writing.
 std::optional<double> heard(const ProcessGuard::Options& options) {
     auto guard = ProcessGuard::start(options);
     REQUIRE(guard);
@@ -105,6 +105,6 @@ TEST_CASE("the guard keeps nothing open that the program had open") {
     REQUIRE(guard);
     ::close(ends[1]);
     char byte = 0;
-    CHECK(::read(ends[0], &byte, 1) == 0);  // would wait for good if the guard held the other end
+    CHECK(::read(ends[0], &byte, 1) == 0);  // would block forever if the guard held the other end
     ::close(ends[0]);
 }

@@ -46,7 +46,7 @@ void dry_while(Sequence& s, Bring bring) {
     s.activity(Activity::move);
 }
 
-// --- towers, and what a wall has in common with them ---------------------------------------------------------------
+// Towers, and what a wall has in common with them.
 
 /// The times, in seconds of a push, at which the brush starts and ends passing the platform. The brush is on the far
 /// wall of a vat as long as the travel into the tower, with the platform at the vat's middle.
@@ -158,7 +158,7 @@ void store_in_tower(Sequence& s, int slot) {
     dry_while(s, [&] { s.move(Axis::carriage, p.carriage.print_um); });
 }
 
-// --- walls ---------------------------------------------------------------------------------------------------------
+// Walls.
 
 /// A move of the retriever during the spray, in pieces, so that the spray can end on time.
 void ride_way_in_strokes(Sequence& s, const RetrieverStep& way, double end_s) {
@@ -251,7 +251,7 @@ void store_in_wall(Sequence& s, int slot) {
     });
 }
 
-// --- tables --------------------------------------------------------------------------------------------------------
+// Tables.
 
 /// Moves to the cleaning station, down into it, and up again after `seconds` of bath, ultrasound or spray.
 void clean_on_table(Sequence& s, double seconds) {

@@ -9,7 +9,7 @@ using namespace pliant::host;
 
 namespace {
 
-/// Remembers what it was asked for, and whether two asked at once.
+/// Records requests, and whether two were concurrent.
 struct Source {
     std::atomic<int> inside = 0;
     std::atomic<bool> together = false;

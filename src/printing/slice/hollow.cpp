@@ -197,8 +197,8 @@ private:
         });
     }
 
-    /// Marks cells to be hollowed, allowing for walls that end inside the first cell that is not solid, and for
-    /// cavities that begin at the border of theirs.
+    /// Half a cell because a cavity extends to the border of its cells, and one more because a wall may end anywhere in
+    /// its last cell.
     void mark_hollow() {
         const double edge_um = cells_.edge_px * raster_.pixel_um;
         const double least = wanted_.wall_um / edge_um + 1.5;

@@ -56,7 +56,7 @@ long value_sum(const Image& image) {
     return sum;
 }
 
-/// Pixels that more than one image of a layer lights.
+/// Number of pixels lit by more than one image of a layer.
 int shared_pixels(const Sliced& sliced, int layer) {
     std::vector<int> uses(static_cast<std::size_t>(raster.width_px * raster.height_px), 0);
     for (const Shot& s : sliced.shots) {
@@ -199,7 +199,7 @@ TEST_CASE("gaps far below a pixel between materials leave no dark line") {
 }
 
 TEST_CASE("outer borders are not taken for gaps") {
-    // Both materials end 10 um short of a pixel's border, at the top and at the sides.
+    // Both materials end 10 um before a pixel's border, at the top and at the sides.
     const Sliced s = slice_all(
         {{"soft", box({-990, -1000, 0}, {0, 990, 50}), ""}, {"rigid", box({0, -1000, 0}, {990, 990, 50}), ""}});
     CHECK(s.summary.closed_gap_pixels == 0);

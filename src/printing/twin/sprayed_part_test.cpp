@@ -18,7 +18,7 @@ machine::Printer tower() {
     return printer;
 }
 
-/// A picture that is white where `solid` says so, x and y in pixels from the middle.
+/// An image that is white where `solid` is true; x and y in pixels from the centre.
 template <class Solid>
 job::Image picture(Solid solid) {
     job::Image image{60, 60, std::vector<std::uint8_t>(3600)};

@@ -95,7 +95,7 @@ void Twin::violation(const std::string& what) {
     say("Error:interlock: " + what);
 }
 
-// --- the receiving end ---------------------------------------------------------------------------------------------
+// The receiving end.
 
 void Twin::mishap(const std::string& what) {
     log_.mishaps.push_back(fmt::format("{:.3f} s: {}", now_s_, what));
@@ -244,7 +244,7 @@ void Twin::reset() {
         boot();
 }
 
-// --- the clock -----------------------------------------------------------------------------------------------------
+// The clock.
 
 /// When an idle firmware sends or does something by itself; infinite if never.
 double Twin::idle_event() const {

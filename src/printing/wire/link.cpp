@@ -61,7 +61,7 @@ bool Firmware::can(const std::string& capability) const {
 Link::Link(Wire& wire, Clock& clock, LinkOptions options)
     : wire_(wire), clock_(clock), options_(options), window_lines_(options.window_lines) {}
 
-// --- public functions ----------------------------------------------------------------------------------------------
+// Public functions.
 
 Status Link::put(std::string_view bytes) {
     Status status = wire_.write(bytes);
@@ -179,7 +179,7 @@ void Link::stop(const std::deque<std::string>& commands) {
     for (const std::string& command : commands) (void)wire_.write(command + "\n");
 }
 
-// --- sending -------------------------------------------------------------------------------------------------------
+// Sending.
 
 const std::string& Link::line_bytes(long number) const {
     return history_[static_cast<std::size_t>(number - base_ - 1)];
@@ -220,7 +220,7 @@ Status Link::run_until(const std::function<bool()>& done) {
     }
 }
 
-// --- receiving -----------------------------------------------------------------------------------------------------
+// Receiving.
 
 /// Handles the next answers; a long time without one means that it was lost, whatever other lines arrive.
 Status Link::listen() {
@@ -398,7 +398,7 @@ void Link::handle_wait() {
         (void)give_up_waiting();
 }
 
-// --- recovery ------------------------------------------------------------------------------------------------------
+// Recovery.
 
 /// The rate of errors caught by the checksum gives an estimate of those that it misses.
 Status Link::note_refusal() {

@@ -15,7 +15,7 @@ using pliant::test::holds;
 
 namespace {
 
-/// Answers `first` to the first line that holds `part`, otherwise as a good Marlin.
+/// Answers the first line that contains `part` with `first`, otherwise like a faultless Marlin.
 struct Once {
     std::string part, first;
     bool done = false;
@@ -26,7 +26,7 @@ struct Once {
     }
 };
 
-/// Answers as a good Marlin up to the first line of the print.
+/// Answers like a faultless Marlin up to the first line of the print.
 std::string deaf_to_moves(const std::string& line, bool& deaf) {
     deaf = deaf || line.find(" G1 ") != std::string::npos;
     return deaf ? "" : good_answer(line);
@@ -67,7 +67,7 @@ TEST_CASE("lines are numbered and checksummed from M110 on") {
 }
 
 TEST_CASE("a refused line is sent again from there, with or without the whole answer") {
-    for (const char* answer : {"Error:checksum mismatch, Last Line: 2\nResend: 3\nok\n",  // as it should be
+    for (const char* answer : {"Error:checksum mismatch, Last Line: 2\nResend: 3\nok\n",  // the normal case
                                "Error:checksum mismatch, Last Line: 2\nResend: 3\n",      // without ok
                                "Error:checksum mismatch, Last Line: 2\nok\n",             // without Resend
                                "Resend: 3\nok\n"}) {
@@ -116,7 +116,7 @@ TEST_CASE("the last line counts when it was named twice: half a number is none")
 }
 
 TEST_CASE("an ok that another host has left behind is not that of M110") {
-    // M110 gets lost; an ok of an old line comes in its place.
+    // M110 is lost; an ok for an old line arrives instead.
     Bench b(Once{"M110", "ok N77 P15 B3\n"});
     b.wire.forgets = "M110";
     REQUIRE(b.link.connect(1000000));
@@ -213,7 +213,7 @@ TEST_CASE("what means that the machine is not where we think ends the print") {
     CHECK(holds(Bench(Once{"X3*", "start\necho: External Reset\n"}).error_of_print(), "restarted"));
     CHECK(holds(Bench(Once{"X3*", "Watchdog Reset\n"}).error_of_print(), "restarted"));
     CHECK(holds(Bench(Once{"X3*", "Error:Printer halted. kill() called!\n"}).error_of_print(), "Printer halted"));
-    // A reset whose `start` got lost: the numbers begin anew, long after line 1 was taken.
+    // A reset whose `start` was lost: line numbers begin anew, long after line 1.
     const std::string anew = "Error:Line Number is not Last Line Number+1, Last Line: 0\nResend: 1\nok\n";
     Bench reset(Once{"X6*", "oksta" + anew});
     CHECK(holds(reset.error_of_print(), "restarted"));
@@ -271,7 +271,7 @@ TEST_CASE("garbage between the lines is passed over") {
 }
 
 TEST_CASE("the window holds lines and bytes back") {
-    // Nothing is answered: only what the window takes is written.
+    // Nothing is answered: only what fits the window is written.
     bool is_deaf = false;
     const auto deaf = [&](const std::string& line) { return deaf_to_moves(line, is_deaf); };
     Bench lines(deaf, {2, 120, 3, 12, 0.2, 1});
