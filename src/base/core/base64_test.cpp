@@ -16,7 +16,7 @@ TEST_CASE("base64 takes bytes above 127 and zeros") {
     CHECK(base64(std::string_view("\xff\xfe\x00", 3)) == "//4A");
 }
 
-TEST_CASE("base64 is read back, piece after piece, and wrong signs are noticed") {
+TEST_CASE("base64 is decoded piece by piece, and invalid characters are detected") {
     std::string all;
     for (int c = 0; c < 256; ++c) all += static_cast<char>(c);
     CHECK(pliant::base64_decoded(base64(all), 256) == all);

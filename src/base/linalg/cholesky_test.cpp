@@ -137,7 +137,7 @@ TEST_CASE("fields of three components agree with Eigen's solver, in both precisi
     }
 }
 
-TEST_CASE("single precision: as near as it can be, and refined as near as asked") {
+TEST_CASE("single precision: accuracy, and refinement to a tolerance") {
     int count = 1;
     for (const int block : {1, 3}) {
         const auto pattern = grid(13, 12, 11, block);

@@ -114,7 +114,7 @@ TEST_CASE("every node of every graph gets a position of its own, with points and
     check(graph_of_edges(202, two), line);
 }
 
-TEST_CASE("a square fills as George 1973 has it, a chain and a star hardly at all") {
+TEST_CASE("the fill of a square is that of George 1973, that of a chain or star minimal") {
     for (const int n : {15, 31, 63}) {
         const Grid square = grid(n, n, 1);
         const double bound = 7.75 * n * n * std::log2(n);
@@ -130,7 +130,7 @@ TEST_CASE("a square fills as George 1973 has it, a chain and a star hardly at al
     CHECK(fill(graph_of_edges(1001, star), dissect(graph_of_edges(1001, star))) == 2 * 1001 - 1);
 }
 
-TEST_CASE("a cube fills no more than by planes through its middle, and less than by rows") {
+TEST_CASE("a cube has no more fill than with mid-planes, and less than with rows") {
     const Grid cube = grid(15, 15, 15);
     std::vector<int> rows(cube.points.size());
     for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = static_cast<int>(k);

@@ -54,7 +54,7 @@ void check(const SymmetricPattern& pattern) {
 
 }  // namespace
 
-TEST_CASE("rows below each supernode are those that elimination fills, and few of them are zeros") {
+TEST_CASE("supernodes have the rows of naive elimination, with few zeros") {
     std::mt19937 random(11);
     for (const int nodes : {1, 2, 30, 400}) {
         for (const double cliques_per_node : {0.3, 1.0, 2.5}) {

@@ -62,7 +62,7 @@ void set(NestedSpace& space, const BlockRows& rows, const Matrix& m) {
 
 }  // namespace
 
-TEST_CASE("the matrix of the corners is that of the nodes for motions that corners can do") {
+TEST_CASE("the coarse matrix is exact for motions of the corners") {
     const SymmetricPattern fine = pattern();
     const Matrix m = numbers(fine);
     NestedSpace space(fine, nesting);
@@ -72,7 +72,7 @@ TEST_CASE("the matrix of the corners is that of the nodes for motions that corne
     CHECK((dense(space.pattern(), space.values()) - expected).cwiseAbs().maxCoeff() < 1e-14 * m.dense.norm());
 }
 
-TEST_CASE("fields go to the corners and back by the same weights") {
+TEST_CASE("restriction is the transpose of prolongation") {
     NestedSpace space(pattern(), nesting);
     const Eigen::MatrixXd P = prolongation();
     const Eigen::VectorXf fine = Eigen::VectorXf::LinSpaced(21, -1, 2);

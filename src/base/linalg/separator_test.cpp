@@ -67,7 +67,7 @@ int smallest_cover(const Graph& graph, int left, int right) {
 
 }  // namespace
 
-TEST_CASE("between two rows the smallest separator is found") {
+TEST_CASE("the separator between two rows is minimal") {
     std::mt19937 random(5);
     for (int trial = 0; trial < 200; ++trial) {
         const int left = 1 + static_cast<int>(random() % 10);
@@ -80,7 +80,7 @@ TEST_CASE("between two rows the smallest separator is found") {
     }
 }
 
-TEST_CASE("a side keeps the nodes that it must have") {
+TEST_CASE("no side drops below its minimum size") {
     std::mt19937 random(6);
     for (int trial = 0; trial < 50; ++trial) {
         Sides rows = two_rows(10, 3, random);

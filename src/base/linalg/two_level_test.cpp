@@ -100,7 +100,7 @@ constexpr int limit = 100;
 
 }  // namespace
 
-TEST_CASE("a slender beam is solved as the factor solves it, in few iterations whatever its size") {
+TEST_CASE("a slender beam is solved as by Cholesky, in few iterations at any size") {
     for (const int along : {12, 48, 96}) {
         const Problem p = beam(along, 4);
         TwoLevel levels(p.pattern);
@@ -113,7 +113,7 @@ TEST_CASE("a slender beam is solved as the factor solves it, in few iterations w
     }
 }
 
-TEST_CASE("a body that turned is solved with the coarse level of before, another one gets one of its own") {
+TEST_CASE("a rotated body reuses its coarse level, a different one gets a new one") {
     const Problem before = beam(48, 4);
     TwoLevel levels(before.pattern);
     REQUIRE(levels.set(before.values, before.positions));
@@ -147,7 +147,7 @@ TEST_CASE("a body that turned is solved with the coarse level of before, another
     CHECK(levels.iterations() <= fresh.iterations() + 12);
 }
 
-TEST_CASE("what is not positive definite is noticed, at once or while solving") {
+TEST_CASE("an indefinite matrix is detected, at once or while solving") {
     for (const double shift : {-0.05, -3.0, -1e3}) {
         Problem p = beam(24, 3);
         for (int n = 0; n < p.pattern.nodes; ++n)
@@ -161,7 +161,7 @@ TEST_CASE("what is not positive definite is noticed, at once or while solving") 
     }
 }
 
-TEST_CASE("bodies of any few nodes, lonely ones among them") {
+TEST_CASE("bodies of very few nodes, isolated ones included") {
     for (const auto& [nodes, cliques] :
          {std::pair{1, std::vector<std::vector<int>>{}}, {2, {{0, 1}}}, {5, {{0, 1}, {1, 2}}}}) {
         Problem p;

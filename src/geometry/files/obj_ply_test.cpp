@@ -133,7 +133,7 @@ TEST_CASE("PLY: text and bytes of both orders give the same surface") {
     }
 }
 
-TEST_CASE("PLY: broken files give a reason, and claims are not believed") {
+TEST_CASE("PLY: damaged files give a reason, and stated sizes are not trusted") {
     CHECK(problem(replaced(ply, "face 4", "face 4000000000000")).find("more than the file can hold") !=
           std::string::npos);
     CHECK(problem(replaced(ply, "face 4", "face 5")).find("the file ends") != std::string::npos);

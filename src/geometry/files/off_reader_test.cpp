@@ -63,7 +63,7 @@ TEST_CASE("OFF: polygons, colours and comments") {
     }
 }
 
-TEST_CASE("OFF: what vertices carry beside their place is passed over") {
+TEST_CASE("OFF: additional data of vertices are ignored") {
     const std::string tet = "4 4 6\n0 0 0 {}\n1 0 0 {}\n0 1 0 {}\n0 0 1 {}\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
     for (const auto& [keyword, more] : {std::pair{"OFF", ""},
                                         {"COFF", "255 0 0 255"},

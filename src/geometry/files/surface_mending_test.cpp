@@ -183,7 +183,7 @@ TEST_CASE("mending: round numbers are no imprecision, and a hole stays a hole") 
     CHECK_FALSE(check_closed(read(binary_stl(slit)).mesh));
 }
 
-TEST_CASE("mending: points in a row are not drawn together, step by step") {
+TEST_CASE("mending: chains of points are not drawn together") {
     // An open strip with border points closer together than the reach.
     TriMesh strip;
     constexpr int count = 200;

@@ -133,7 +133,7 @@ TEST_CASE("files are written by their extension and read by their content") {
     }
 }
 
-TEST_CASE("formats are told by their first words") {
+TEST_CASE("formats are recognised by their first words") {
     CHECK(tet_format(tetgen_nodes) == TetFormat::tetgen_nodes);
     CHECK(tet_format(tetgen_tets) == TetFormat::tetgen_tets);
     CHECK(tet_format(deck) == TetFormat::inp);
@@ -186,7 +186,7 @@ TEST_CASE("Abaqus: sections, then sets of element cards, then the smallest set g
     CHECK(nested->region_names == std::vector<std::string>{"outer"});
 }
 
-TEST_CASE("Abaqus: what is wrong is told with its line") {
+TEST_CASE("Abaqus: errors name the line") {
     CHECK(problem(replaced(deck, "20, 2, 3, 4, 9", "20, 2, 3, 4, 5")).find("a:16: element 20 names node 5") == 0);
     CHECK(problem(replaced(deck, "20, 2, 3, 4, 9", "20, 2, 3, 4")).find("a:16: an element of 4 nodes has 3") == 0);
     CHECK(problem(replaced(deck, "3, 4\n*ELEMENT", "*ELEMENT")).find("a:14: the nodes of an element are missing") == 0);
@@ -198,7 +198,7 @@ TEST_CASE("Abaqus: what is wrong is told with its line") {
     CHECK(problem(deck.substr(0, deck.find("3, 4\n*ELEM"))).find("ends in the middle") != std::string::npos);
 }
 
-TEST_CASE("Medit: keywords that are not asked for are passed over; P2 and references are read") {
+TEST_CASE("Medit: unknown keywords are ignored; P2 and references are read") {
     const std::string text =
         "MeshVersionFormatted 2\n# a remark\nDimension\n3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"
         "Triangles 1\n1 2 3 9\nTetrahedra\n1\n1 2 3 4 12\nCorners 1\n1\nEnd\n";

@@ -142,7 +142,7 @@ TEST_CASE("text arrays, and pieces that follow each other") {
     CHECK(two->region == std::vector<int>{0, 1});
 }
 
-TEST_CASE("broken files give a reason, and claims are not believed") {
+TEST_CASE("damaged files give a reason, and stated sizes are not trusted") {
     CHECK(problem("<VTKFile type=\"UnstructuredGrid\">\n<oops></VTKFile>").find("a.vtu:2: is not well-formed") == 0);
     CHECK(problem("<VTKFile type=\"PolyData\"><PolyData/></VTKFile>").find("only VTKFile type=\"UnstructuredGrid\"") !=
           std::string::npos);
@@ -197,7 +197,7 @@ TEST_CASE("arrays of many blocks, and errors after them name their line") {
     CHECK(problem(damaged).find("damaged or cut off") != std::string::npos);
 }
 
-TEST_CASE("no beginning of a file makes the reader fall over") {
+TEST_CASE("no truncated file crashes the reader") {
     const TetMesh mesh = two_tets();
     const std::string whole = *vtu_text(mesh, mesh.points, {});
     for (std::size_t length = 0; length < whole.size() - 12; ++length)

@@ -111,7 +111,7 @@ TEST_CASE("cancelling ends the mesher at once") {
     CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(5));
 }
 
-TEST_CASE("time and memory have limits that are told") {
+TEST_CASE("time and memory limits are reported") {
     Progress silent;
     {
         kill_all();
@@ -134,7 +134,7 @@ TEST_CASE("time and memory have limits that are told") {
 #endif
 }
 
-TEST_CASE("a program that is no mesher, or none, is told by name") {
+TEST_CASE("a missing or wrong mesher is reported by name") {
     kill_all();
     Progress silent;
     {
@@ -164,7 +164,7 @@ TEST_CASE("a mesher is found with an installation that PATH names") {
     CHECK(mesher_on((folder / "empty/bin").string()).empty());
 }
 
-TEST_CASE("answers that are remembered need no mesher, are the same, and go when there is no room") {
+TEST_CASE("cached answers need no mesher, are identical, and are dropped when the cache is full") {
     Progress silent;
     const Result<TetMesh> first = mesh_cube(5, silent);
     REQUIRE(first);

@@ -242,7 +242,7 @@ TEST_CASE("enclosed space is a region of its own, with a cap where it has a mout
     CHECK(volume(capped, 1) == near(7 * 16, {.relative = 1e-12}));
 }
 
-TEST_CASE("a narrow gap between bodies is closed and told, a wider one stays") {
+TEST_CASE("a narrow gap between bodies is closed and reported, a wider one stays") {
     const std::vector<BodyGeometry> bars = {{"left", box({0, 0, 0}, {10, 10, 10})},
                                             {"right", box({10.004, 2, 2}, {20, 8, 8})}};
     const Solid hole = solid(CylinderSolid{{5, 5, 0}, {5, 5, 4}, 2});
@@ -283,7 +283,7 @@ TEST_CASE("a narrow gap between bodies is closed and told, a wider one stays") {
     }
 }
 
-TEST_CASE("what cannot be meshed is refused with a reason") {
+TEST_CASE("invalid bodies are refused with a reason") {
     CHECK(problem({{"a", box({1, 1, 1}, {2, 2, 2})}, {"b", box({0, 0, 0}, {5, 5, 5})}}, 3)
               .find("body \"a\" is empty: all of it belongs to later ones") != std::string::npos);
     CHECK(problem({{"a", without(box({0, 0, 0}, {1, 1, 1}), box({-1, -1, -1}, {2, 2, 2}))}}, 1).find("is empty") !=
@@ -299,7 +299,7 @@ TEST_CASE("what cannot be meshed is refused with a reason") {
     CHECK_FALSE(tessellate(box({0, 0, 0}, {1, 1, 1}), 0));
 }
 
-TEST_CASE("drawn solids get no sliver") {
+TEST_CASE("meshes of drawn solids have no slivers") {
     // As meshed by Gmsh these have angles of 0.3 to 3 degrees.
     struct Box {
         Vec3 sides;

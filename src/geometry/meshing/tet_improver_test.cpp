@@ -122,7 +122,7 @@ TEST_CASE("a flat tet on a flat face is taken away") {
     CHECK(volume(mesh) == near(0.8 / 3, {.relative = 1e-6}));
 }
 
-TEST_CASE("a good mesh stays as it is, and the same mesh gives the same result") {
+TEST_CASE("a good mesh is not changed, and results are deterministic") {
     const TetMesh good = shaken_block(0);
     TetMesh mesh = good;
     improve_tets(mesh, {});

@@ -82,7 +82,7 @@ TEST_CASE("where a drawn solid and a surface overlap the later one has it; what 
     CHECK(outer_area(apart) == near(whole, {.relative = 0.02}));
 }
 
-TEST_CASE("a group holds all that hangs together, and nothing else") {
+TEST_CASE("a group holds all connected bodies, and nothing else") {
     const TriMesh ball = fine(solid(SphereSolid{{5, 5, 14}, 4}), 0.005);  // standing on the first box
     const std::vector<BodyGeometry> bodies{{"alone", box({50, 0, 0}, {60, 10, 10})},
                                            {"foot", box({0, 0, 0}, {10, 10, 10.02})},
@@ -96,7 +96,7 @@ TEST_CASE("a group holds all that hangs together, and nothing else") {
     CHECK(touching_groups(std::span(bodies).first(3), 2)->empty());
 }
 
-TEST_CASE("what encloses nothing is named") {
+TEST_CASE("a surface that encloses nothing is named") {
     TriMesh sheet;
     constexpr int side = 24;
     for (int i = 0; i <= side; ++i) {

@@ -125,7 +125,7 @@ TEST_CASE("the same surface gives the same mesh; one that encloses nothing is re
     CHECK(mesh_by_winding(hole, 1e-3, 30, silent).error().message.find("more than the") != std::string::npos);
 }
 
-TEST_CASE("sharp edges that cross or nearly touch are left out, so that the mesher comes to an end") {
+TEST_CASE("sharp edges that cross or nearly touch are left out, so that the mesher terminates") {
     // Two intersecting bars: their edges cross each other's faces, and their top faces are coplanar.
     TriMesh along = cube({0, 0, 0}, 1);
     TriMesh across = along;
@@ -165,7 +165,7 @@ TEST_CASE("edges that the mesh size cannot tell apart become one, and those that
     CHECK(sharp_edges(LabelledSpace({roof}), size, 30).dropped == 0);
 }
 
-TEST_CASE("a mesh size that cannot follow the surface gives way to a smaller one, and the mesh says so") {
+TEST_CASE("a size too coarse for the surface is reduced, with a note") {
     TriMesh frame = cube({0, 0, 0}, 20);
     TriMesh room = cube({2, 2, -5}, 16);
     for (auto& t : room.triangles) std::swap(t[0], t[1]);

@@ -54,7 +54,7 @@ TEST_CASE("cavities go with the shell around them, and islands in cavities are p
     for (const TriMesh& piece : *pieces) CHECK(check_closed(piece));
 }
 
-TEST_CASE("shells that make no sense are refused") {
+TEST_CASE("invalid shells are refused") {
     TriMesh twice;
     add(twice, {0, 0, 0}, 60);
     add(twice, {1, 1, 1}, 6);

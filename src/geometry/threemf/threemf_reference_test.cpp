@@ -117,7 +117,7 @@ TEST_CASE("consortium: slice stacks have the area times height of the bodies the
     CHECK(box.bodies[0].slices.back().contours.empty());
 }
 
-TEST_CASE("what cannot be built is refused by name") {
+TEST_CASE("objects that must not be built are refused by name") {
     CHECK(refused("consortium/beam_lattice_pyramid.3mf").find("requires the extension b") != std::string::npos);
     CHECK(refused("consortium/material_multiprop-metallic.3mf").find(":62: ") != std::string::npos);
 }
@@ -144,7 +144,7 @@ TEST_CASE("conformance: every file that must pass opens, every file that must fa
     CHECK(refusals == 18);
 }
 
-TEST_CASE("other makers' files") {
+TEST_CASE("files of other programs") {
     const ThreeMf pyramids = read("mit_models/pyramids.3mf");
     CHECK(pyramids.bodies.size() >= 9);
     const ThreeMf two = read("mit_models/cube_and_sphere_same_name.3mf");

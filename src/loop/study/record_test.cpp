@@ -39,7 +39,7 @@ Result<ChunkRecords> parsed(const Plan& plan, std::string_view text) {
 
 }  // namespace
 
-TEST_CASE("what is written is read, to the last bit") {
+TEST_CASE("records are read back to the last bit") {
     const Plan plan = ten_rows();
     RowRecord failed{5, false, true, "no convergence: \"x\"\n at step 3", {NAN, -0.0}, 1, 2};
     const TaskRecord task{"node1 job 7_3", 3, 2.5, 2.25};
@@ -104,7 +104,7 @@ TEST_CASE("rows of other chunks and second records do not count") {
     CHECK(found->doubled == 1);
 }
 
-TEST_CASE("a row that was begun and has no end is told, unless it was given up in good order") {
+TEST_CASE("a row that was begun and has no end is reported, unless it was given up properly") {
     const Plan plan = ten_rows();
     const auto found =
         parsed(plan, chunk_text(plan) + begun_line(5) + begun_line(5) + begun_line(7) + given_up_line(7));

@@ -100,7 +100,7 @@ TEST_CASE("rows run in parallel, each once, many in a process") {
     CHECK(again->rows == 0);
 }
 
-TEST_CASE("what goes wrong in a row is the failure of that row, with its reason") {
+TEST_CASE("an error in a row fails only that row, with its reason") {
     CHECK(reason_of_row_3(squares("fail")) == "finger.toml: step 4: no equilibrium");
     CHECK(reason_of_row_3(squares("silent")) == "the command printed no JSON");
     CHECK(reason_of_row_3(squares("crash")) == "crashed (signal 11: Segmentation fault)");

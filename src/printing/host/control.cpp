@@ -80,7 +80,7 @@ std::string job_digest(std::string_view bytes) {
     return digest.text();
 }
 
-/// The private state. Members below the line are used by the working thread only.
+/// The private state. The last members are used by the working thread only.
 struct Control::State_ {
     explicit State_(ControlSetup s) : setup(std::move(s)), desk(setup.clock) {}
 
@@ -95,7 +95,7 @@ struct Control::State_ {
     bool moves_by_hand = false;    ///< a single move, which the next one stops
     bool stopped_by_hand = false;  ///< this has happened
 
-    // ---------------
+    // Working thread only:
     std::unique_ptr<Machine> machine;
     bool touched = false;  ///< something was sent to the controller since the last start
     long last_line = 0;    ///< of the controller when the wire was opened

@@ -88,7 +88,7 @@ TEST_CASE("a way that no whole micrometres of an int can hold is refused, not ta
     }
 }
 
-TEST_CASE("what cannot be had now is a conflict, with the reason") {
+TEST_CASE("what the state forbids is a conflict, with the reason") {
     Bench b;
     for (const char* command : {"start", "pause", "cancel", "resume", "suspend"}) {
         const ApiAnswer answer = b.post("/api/job", {{"command", command}});

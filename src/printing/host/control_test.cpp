@@ -99,7 +99,7 @@ TEST_CASE("commands go to the wire, light comes behind a fence for its time") {
     CHECK(b.control.snapshot().lines_sent > 8);
 }
 
-TEST_CASE("a job that is none, or that the machine must not do, is refused before the wire is opened") {
+TEST_CASE("an invalid or forbidden job is refused before the wire is opened") {
     for (const char* text : {"G90\nhello\n", ";@expose layer=0\n", "G28 Z\nG1 X1 X2\n", "G28 Z\nG90\nG1 Z-1 F60\n",
                              "G90\n;@expose layer=0 material=0 seconds=2.5 image=a.png\n"}) {
         CAPTURE(text);
@@ -122,7 +122,7 @@ TEST_CASE("any failure leaves the projector black, stops motion and switches off
     CHECK(b.lights.size() == 1);
 }
 
-TEST_CASE("an image that cannot be had stops the print in the dark") {
+TEST_CASE("an unavailable image stops the print in the dark") {
     Bench b(good_answer);
     const Status status = b.print(job_text, [](int, int) -> Result<job::Image> { return input_error("gone"); });
     REQUIRE_FALSE(status);

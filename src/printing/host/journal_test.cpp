@@ -38,7 +38,7 @@ TEST_CASE("a record is a checksum, a number, a kind and values; any bytes surviv
     CHECK_FALSE(text.records[1].text("none"));
 }
 
-TEST_CASE("a torn end is passed over wherever it is torn; damage in the middle is not") {
+TEST_CASE("a damaged end is ignored wherever it begins; damage in the middle is not") {
     const std::string all = three_records();
     const std::size_t second = all.find('\n') + 1, third = all.find('\n', second) + 1;
     for (std::size_t bytes = 0; bytes <= all.size(); ++bytes) {
@@ -82,7 +82,7 @@ TEST_CASE("a journal is kept, locked, torn ends are cut off, and records go on b
     CHECK(journal.append("begin", {}).value() == 1);
 }
 
-TEST_CASE("what is no journal is not touched") {
+TEST_CASE("a file that is not a journal is not changed") {
     const pliant::test::Folder folder;
     const auto path = folder.path() / "picture.png";
     REQUIRE(write_file(path, "something else\nof two lines\n"));

@@ -101,7 +101,7 @@ TEST_CASE("a mask makes a light that falls off towards the edges the same everyw
     CHECK(5.5 * std::pow(curved.mask.at(75, 150) / 255.0, 2.2) == near(4.0, {.relative = 0.01}));
 }
 
-TEST_CASE("a table that is none is refused, by line") {
+TEST_CASE("an invalid table is refused, by line") {
     const auto said = [](std::string_view text) {
         const auto table = parse_light_table(text, "light.txt");
         return table ? std::string("read") : table.error().message;

@@ -82,7 +82,7 @@ std::string little_endian(std::uint32_t value) {
 
 }  // namespace
 
-TEST_CASE("a job comes back as it went") {
+TEST_CASE("a job is read back as written") {
     const Folder folder;
     const fs::path path = folder / "a.zip";
     REQUIRE(write(path).has_value());
@@ -188,7 +188,7 @@ TEST_CASE("the writer refuses bad names, repeated names and missing folders") {
     CHECK(!Writer::create(folder / ".").has_value());
 }
 
-TEST_CASE("archives that are none, or that lack parts, are refused") {
+TEST_CASE("invalid or incomplete archives are refused") {
     const Folder folder;
     const fs::path path = folder / "a.zip";
     CHECK(refused(path).find("no such file") != std::string::npos);

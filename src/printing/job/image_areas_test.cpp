@@ -51,7 +51,7 @@ TEST_CASE("a ring is one piece, its hole none; a faint rim belongs to its piece"
     CHECK(a.smallest_px == a.total_px);
 }
 
-TEST_CASE("a dark image has nothing") {
+TEST_CASE("a dark image has no components") {
     const ImageAreas a = areas_of(image(3, 1, {"..."}));
     CHECK(a.count == 0);
     CHECK(a.total_px == 0);

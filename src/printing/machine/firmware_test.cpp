@@ -173,7 +173,7 @@ TEST_CASE("gear, pinion and screws become steps; the tower is a linear axis of i
     CHECK(value(three, "I_DRIVER_TYPE") == "(not there)");
 }
 
-TEST_CASE("what cannot be built says why") {
+TEST_CASE("impossible builds are refused with a reason") {
     CHECK(firmware_settings(load("rotary")).error().message.find("give per_turn") != std::string::npos);
     Printer fast = load("tower8");
     fast.axes[0].drive.microsteps = 64;

@@ -124,7 +124,7 @@ TEST_CASE("files of another release, of another program, or without a setting ar
           }).find("more of the list") != std::string::npos);
 }
 
-TEST_CASE("a vendor's configuration is told by its author") {
+TEST_CASE("a vendor's configuration is recognised by its author") {
     auto files = stock(MarlinRelease::v2_1_2);
     const std::string own = "\"(none, default config)\"";
     files[0].text.replace(files[0].text.find(own), own.size(), "\"(A Vendor, Model 3)\"");

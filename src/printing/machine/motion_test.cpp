@@ -37,7 +37,7 @@ TEST_CASE("in a coordinated move the slowest axis sets the pace") {
     CHECK(move_seconds(p, {{0, 0, 0}}, {{20000, 20000, 0}}, 0) == near(5.5, {.relative = 1e-12}));
 }
 
-TEST_CASE("the way is covered symmetrically") {
+TEST_CASE("motion is symmetric in time") {
     const Printer p = simple();
     const Position to{{100000, 0, 0}};
     const Profile way = profile(p, {}, to, 0);

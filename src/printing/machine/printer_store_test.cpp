@@ -38,7 +38,7 @@ void check_slips(const char* name, std::initializer_list<Slip> slips) {
 
 }  // namespace
 
-TEST_CASE("a magnet in the place of hooks is read, and what it must hold is checked") {
+TEST_CASE("a magnet instead of hooks is read, and its force is checked") {
     const Printer p = load_printer("examples/printers/tower_magnet.toml").value();
     CHECK(p.hooks.travel_um == 0);
     CHECK(p.hooks.magnet.engage_s == near(0.2, {.relative = 1e-12}));
@@ -54,7 +54,7 @@ TEST_CASE("a magnet in the place of hooks is read, and what it must hold is chec
               .empty());
 }
 
-TEST_CASE("slips in the table of a magnet are named") {
+TEST_CASE("mistakes in the table of a magnet are named") {
     check_slips("tower_magnet",
                 {{"\"electromagnet\"", "\"magnet\"", "hooks.kind"},
                  {"on = \"M42 P11 S255\"", "on = \"G1 X5\"", "must be an M106, M107 or M42 command"},
@@ -83,7 +83,7 @@ TEST_CASE("a wall of vats has its places in rows and columns") {
     CHECK(axis_name(Axis::tower, p.store()) == "lift");
 }
 
-TEST_CASE("slips in the table of a wall are named") {
+TEST_CASE("mistakes in the table of a wall are named") {
     check_slips("wall",
                 {{"rows = 4", "rows = 0", "wall.rows: is 0, must be from 1 to 100"},
                  {"bay = [\"480 mm\", \"300 mm\"]", "bay = [\"480 mm\"]", "wall.bay"},

@@ -50,7 +50,7 @@ TEST_CASE("solution goes round: what evaporates is gone, what is washed off gath
     CHECK(c.used_ml() == near(46 * 3 + in_it, {.relative = 1e-12}));
 }
 
-TEST_CASE("what evaporates leaves its resin behind; a reservoir that has run low is topped up") {
+TEST_CASE("evaporation leaves the resin behind; a low reservoir is topped up") {
     Printer p = printer_with_reservoir();
     p.solution.resin_share = 0.01;
     p.solution.evaporation_ml_h = 90;

@@ -137,7 +137,7 @@ TEST_CASE("a proved job is made ready: images, materials, journal beside it, vat
     }
 }
 
-TEST_CASE("what a person has to do before one layer is asked for once, in the order of the layers") {
+TEST_CASE("operator tasks before a layer are requested once, in the order of layers") {
     Job job;
     const double uses_ml = plan::make_plan(job.manifest, job.printer)->vats.front().resin_ml;
     job.set("fill", fmt::format("\"{} ml\"", 0.6 * uses_ml));

@@ -95,7 +95,7 @@ TEST_CASE("images that do not say how high their layers are take --layer, or the
     CHECK(layer_or_error("", stacks(folder, "")) == "50 assumed");
 }
 
-TEST_CASE("what is not asked for is the printer's") {
+TEST_CASE("options not given are the printer's") {
     const job::JobSettings s = settings_of([](Order&) {});
     CHECK(s.name == "blocks");
     CHECK(s.slicing.layer_um == 50);

@@ -150,7 +150,7 @@ TEST_CASE("one folder has one host; images of another size and lights of no leng
     CHECK(projector->finish());
 }
 
-TEST_CASE("what cannot be opened says why") {
+TEST_CASE("failures to open are explained") {
     ScreenOptions other = options();
     other.program = "/nowhere/pliant-screen";
     CHECK(ScreenProjector::open("/tmp", other).error().message.find("/nowhere/pliant-screen") != std::string::npos);

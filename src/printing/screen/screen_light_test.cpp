@@ -81,7 +81,7 @@ TEST_CASE("frames that come late do not make the light longer, unless the last o
     CHECK(late->longest_frame_s == near(6.0 / 60, {.relative = 1e-12}));
 }
 
-TEST_CASE("a light that is no longer wanted ends with the next frame") {
+TEST_CASE("a cancelled exposure ends with the next frame") {
     CountingPanel panel;
     int asked = 0;
     const Result<Light> got = light(panel, 10, [&] { return ++asked < 30; });

@@ -27,7 +27,7 @@ mesh::TriMesh pyramid(double half_base) {
 
 }  // namespace
 
-TEST_CASE("layers alike and layers of their own are counted the same way") {
+TEST_CASE("uniform and individual layers are counted alike") {
     const Layers alike(50), own(std::vector<int>{50, 100, 150});
     for (int z = -100; z < 400; ++z) {
         CHECK(alike.middles_up_to(z, 1) == own.middles_up_to(z, 1));

@@ -100,7 +100,7 @@ TEST_CASE("pieces that touch nowhere are counted") {
     CHECK(f.islands.empty());
 }
 
-TEST_CASE("layers of hairs are called faint") {
+TEST_CASE("layers of faint lines are reported") {
     const Findings f =
         findings_of({solid({-1000, -1000, 0}, {1000, 1000, 200}), solid({10, -1000, 200}, {40, 1000, 300})});
     CHECK(f.faint_layers == std::vector<int>{4, 5});

@@ -66,7 +66,7 @@ TEST_CASE("any missing triangle is put back, with a warning that names body and 
     CHECK(r.warnings[0] == "body 'b' (soft): 1 hole (4 open edges, 1 mm^2) closed in layers 0 to 20");
 }
 
-TEST_CASE("a T-junction is closed without a word") {
+TEST_CASE("a T-junction is closed without a warning") {
     TriMesh mesh = cube;
     // One triangle of the last side is split at the middle of its diagonal; its neighbour is not.
     const auto [a, b, c] = mesh.triangles.back();
@@ -138,7 +138,7 @@ TEST_CASE("two cubes that share an edge are two shells") {
     CHECK(volume_um3(r.surface) == near(2e9, {.relative = 1e-12}));
 }
 
-TEST_CASE("what is no solid is refused with the reason") {
+TEST_CASE("invalid solids are refused with the reason") {
     TriMesh sheet;
     add_triangle(sheet, {0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0});
     add_triangle(sheet, {0, 0, 0}, {1000, 1000, 0}, {0, 1000, 0});

@@ -198,7 +198,7 @@ TEST_CASE("gaps far below a pixel between materials leave no dark line") {
     }
 }
 
-TEST_CASE("outer borders are not taken for gaps") {
+TEST_CASE("outer borders do not count as gaps") {
     // Both materials end 10 um before a pixel's border, at the top and at the sides.
     const Sliced s = slice_all(
         {{"soft", box({-990, -1000, 0}, {0, 990, 50}), ""}, {"rigid", box({0, -1000, 0}, {990, 990, 50}), ""}});
@@ -268,7 +268,7 @@ TEST_CASE("a cone's layers have the polygon's area at mid height") {
     }
 }
 
-TEST_CASE("what cannot be printed is refused with numbers") {
+TEST_CASE("unprintable parts are refused with numbers") {
     const Settings settings{raster, 50, {}};
     const Body cube{"soft", box({-1000, -1000, 0}, {1000, 1000, 500}), "cube"};
     CHECK(refused({{"soft", box({-1000, -1000, 0}, {4000, 1000, 500}), ""}}, settings).find("x -1.000 to 4.000 mm") !=

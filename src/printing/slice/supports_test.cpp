@@ -205,7 +205,7 @@ TEST_CASE("painted by hand: no tip where it is blocked, not even under an island
     CHECK(one.islands == 0);
 }
 
-TEST_CASE("supports that make no sense are refused") {
+TEST_CASE("invalid supports are refused") {
     const std::vector<Body> plate{{"soft", box({-600, -400, 500}, {600, 400, 600}), ""}};
     Progress progress;
     const auto refused = [&](const SupportSettings& s) {

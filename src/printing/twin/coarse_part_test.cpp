@@ -91,7 +91,7 @@ TEST_CASE("however fine the part, the runs stay bounded, and the volume is kept"
     }
 }
 
-TEST_CASE("nonsense is left out") {
+TEST_CASE("invalid input is ignored") {
     CoarsePart part(100, 60, 50, 1000);
     part.add(100, 100, 0, block(0, 5, 0, 5));
     part.add(0, 50, -1, block(0, 5, 0, 5));

@@ -81,7 +81,7 @@ TEST_CASE("a light given in pieces adds up, whether the first piece cures or not
     CHECK(elsewhere.faults().size() == 2);
 }
 
-TEST_CASE("a second light on the same pixels is counted") {
+TEST_CASE("a second exposure of the same pixels is counted") {
     const auto printer = small();
     Cure cure(printer);
     cure.expose(left, 0, 2, 50);
@@ -102,7 +102,7 @@ TEST_CASE("thickness is the gap; a gap that is too deep is lost with all that fo
     CHECK(cure.faults().size() == 1);
 }
 
-TEST_CASE("what a vat no longer holds does not cure") {
+TEST_CASE("resin that a vat no longer holds does not cure") {
     auto printer = small();
     printer.vats[0].fill_ml = 2e-6;  // a layer of the left image takes 1.6e-6
     Cure cure(printer);
@@ -127,7 +127,7 @@ TEST_CASE("working curve: the exposure cures the stated depth, its critical shar
     CHECK(given.depth_um(50 * 2.718281828459045) == near(100, {.relative = 1e-12}));
 }
 
-TEST_CASE("light goes on through a ceiling and cures what should stay liquid below it, more with every layer") {
+TEST_CASE("light passes through a ceiling and cures liquid below it, more with every layer") {
     auto printer = small();
     printer.projector.irradiance_W_m2 = 100;
     printer.resins[0].penetration_um = 100;

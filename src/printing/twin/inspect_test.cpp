@@ -130,7 +130,7 @@ TEST_CASE("the right layers pass, with the drawn volume") {
     CHECK(report_json(r).find("\"passed\": true") != std::string::npos);
 }
 
-TEST_CASE("the part is taken off, the vat filled again: the next print begins anew") {
+TEST_CASE("after the part is removed and the vat filled the next print begins anew") {
     const auto printer = small_tower();
     Twin twin(printer);
     print(twin, {0.05, 0.1});
@@ -182,7 +182,7 @@ TEST_CASE("a volume that the images do not hold fails against the model") {
     CHECK(inspect(twin, job, half_image)->passed);
 }
 
-TEST_CASE("another resin than the material's is foreign") {
+TEST_CASE("cured in a resin other than the material's counts as foreign") {
     const auto printer = small_tower();
     Twin twin(printer);
     print(twin, {0.05, 0.1});
@@ -194,13 +194,13 @@ TEST_CASE("another resin than the material's is foreign") {
     CHECK(r.materials[0].missing_mm3 == 0);
 }
 
-TEST_CASE("an image that cannot be had is an error") {
+TEST_CASE("an unavailable image is an error") {
     const auto printer = small_tower();
     Twin twin(printer);
     CHECK_FALSE(inspect(twin, half_job(), [](int, int) -> Result<job::Image> { return input_error("gone"); }));
 }
 
-TEST_CASE("the oracle sees through the projector's grey and mask") {
+TEST_CASE("the inspection accounts for the projector's grey and mask") {
     machine::Printer printer = small_tower();
     printer.projector.grey = {0, 0.8, 1};
     // Two whole pixels and two covered by 128 / 255, to which the grey gives 204; the lower row is masked to 200.
@@ -257,7 +257,7 @@ TEST_CASE("ten times the light, and a tenth more or less, are a wrong dose and n
     CHECK(verdict(job, pyramid, lights).passed);
 }
 
-TEST_CASE("exchanged images of one material are found, whether the projector or the archive exchanges them") {
+TEST_CASE("swapped images of one material are found, whether the projector or the archive swaps them") {
     std::vector<Light> lights = lights_of(pyramid);
     std::swap(lights[0].image, lights[1].image);
     const Report shown = verdict(job_of(pyramid), pyramid, lights);
@@ -328,7 +328,7 @@ TEST_CASE(
     CHECK(printed({}).passed);
 }
 
-TEST_CASE("only what a job may mean can be accepted, and a slip is told") {
+TEST_CASE("only intended deviations can be accepted, and misspelt names are reported") {
     CHECK(accepted_finding("overcure").value() == Finding::Kind::overcure);
     CHECK(
         accepted_finding("missing").error().message ==

@@ -20,7 +20,7 @@ const std::vector<AskedImage> both{{0, left, 2.5}, {1, right, 2.5}};
 
 }  // namespace
 
-TEST_CASE("what is as asked differs nowhere, in whatever order it was shown") {
+TEST_CASE("correct layers have no difference, in any order of exposures") {
     const LayerDifference d = difference(both, {{1, &right, 2.5}, {0, &left, 2.5}}, slack_s);
     CHECK(d.wrong_px == 0);
     CHECK(d.wrong_dose_px == 0);

@@ -33,7 +33,7 @@ int value_at(const Runs& runs, int column) {
 
 }  // namespace
 
-TEST_CASE("without grey and mask a picture is what it shows") {
+TEST_CASE("without grey and mask an image is its coverage") {
     const Screen::Picture picture = Screen(projector({}), std::nullopt).coverage(ramp());
     CHECK(picture.runs == ramp());
     CHECK(picture.overlit_px == 0);

@@ -31,7 +31,7 @@ constexpr double light_s = 1e4;
 
 }  // namespace
 
-TEST_CASE("what hides from the jets stays wet: a tube of 4 mm is cleaned less than a plate") {
+TEST_CASE("surfaces hidden from the jets stay wet: a tube of 4 mm is cleaned less than a plate") {
     const machine::Printer printer = tower();
     const auto cleaned = [&](const job::Image& image) {
         Cure cure(printer);

@@ -75,7 +75,7 @@ TEST_CASE("two pockets that join further up are one, largest first; a solid part
     CHECK(trapped_in({}).empty());
 }
 
-TEST_CASE("a wall that two resins make together is a wall; one that is less than half cured leaks") {
+TEST_CASE("a wall made of two resins counts; one less than half cured leaks") {
     const std::vector<std::string> shared = {"       ", " ##### ", " #  +# ", " ##### ", "       "};
     const std::vector<std::string> weak = {"       ", " ##### ", " #  o+ ", " ##+## ", "       "};
     CHECK(trapped_in({drawn(1, plate), drawn(2, shared), drawn(3, plate)}).size() == 1);

@@ -61,7 +61,7 @@ TEST_CASE("on a machine whose moves take no time nobody who tries other strokes 
     }
 }
 
-TEST_CASE("what cannot be reached is said, and what is missing") {
+TEST_CASE("an unreachable goal is reported, and what is missing") {
     const machine::Printer p = tower();
     const Result<BestSpray> scaffold = best_spray(coarsened(wash::test::scaffold(), 32), p, 0.99);
     REQUIRE_FALSE(scaffold);
