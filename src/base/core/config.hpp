@@ -1,5 +1,5 @@
-// Robot and printer files: a TOML document as a plain tree with line numbers, and a reader that notices every key that
-// nobody reads.
+// Robot and printer files: a TOML document as a plain tree with line numbers, and a reader that reports every unknown
+// key.
 //
 //     Problems problems("finger.toml");
 //     Reader root(document.root, problems);

@@ -1,7 +1,7 @@
 // Numbers in tests: a measured one against an expected one, within a tolerance that the line states.
 //
-//    CHECK(measured == near(expected, {.relative = 1e-6}));
-//    CHECK(measured == near(0, {.absolute = 1e-9}));  // where the quantity's own scale is known: metres, newtons
+//   CHECK(measured == near(expected, {.relative = 1e-6}));
+//   CHECK(measured == near(0, {.absolute = 1e-9}));  // where the quantity's own scale is known: metres, newtons
 //
 // doctest::Approx is not used: it adds 1 to its scale, so that 0.0 equals Approx(1.9e-6), and its default tolerance is
 // invisible in the test. tools/check_tests reports any use of it.

@@ -1,8 +1,8 @@
 // GiD meshes as text. Format: GiD reference manual, "Mesh format": one or several blocks
 //
-//      MESH "name" dimension 3 ElemType Tetrahedra Nnode 4
-//      Coordinates / number x y z ... / end coordinates
-//      Elements / number n1 n2 n3 n4 [material] ... / end elements
+//     MESH "name" dimension 3 ElemType Tetrahedra Nnode 4
+//     Coordinates / number x y z ... / end coordinates
+//     Elements / number n1 n2 n3 n4 [material] ... / end elements
 //
 // Coordinates of all blocks form one list. The region of an element is its material or, without one, its block.
 #include <algorithm>

@@ -1,7 +1,7 @@
 // pliant-mesh: the mesher process of pliant, which starts it and talks to it over a socket as its standard input.
 //
-//      pliant-mesh GIGABYTES      limit of its memory
-//      pliant-mesh --version
+//     pliant-mesh GIGABYTES      limit of its memory
+//     pliant-mesh --version
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>

@@ -1,12 +1,12 @@
 // Control of a print: what a person, a page or a program may request of a machine, and what they can query.
 //
-//      Control control(setup);                       // devices, machine, programs
-//      std::thread worker([&] { control.serve(); }); // all talk to the devices happens here
-//      control.connect();
-//      control.load(job);
-//      control.start({});
-//      control.snapshot().seconds_left; control.events_since(n);
-//      control.quit(); worker.join();
+//     Control control(setup);                       // devices, machine, programs
+//     std::thread worker([&] { control.serve(); }); // all talk to the devices happens here
+//     control.connect();
+//     control.load(job);
+//     control.start({});
+//     control.snapshot().seconds_left; control.events_since(n);
+//     control.quit(); worker.join();
 //
 // Every function is thread-safe. A request returns at once and says only whether the present state allows it; its
 // progress shows in the snapshot and in the events. The library starts no thread: the owner provides one that runs

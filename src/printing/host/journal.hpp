@@ -2,7 +2,7 @@
 // so after any interruption (kill -9, a power cut, a pulled cable) the file says what was done and what was about to
 // be. One record per line:
 //
-//      5f3a9c21 17 light step=120 layer=3 material=0 planned=2.5 at=1234.567
+//     5f3a9c21 17 light step=120 layer=3 material=0 planned=2.5 at=1234.567
 //
 // checksum (CRC-32 of the rest), number (from 1, without gaps), kind, values. docs/reference/journal.md lists the
 // kinds.

@@ -4,8 +4,8 @@
 // per line, no line over `max_line_chars`. Exposures are not commands: they are directives for the host, comments that
 // never go to the wire:
 //
-//      ;@expose layer=12 material=1 seconds=2.500 image=layers/00012_soft.png
-//      ;@stop M107 P1          a command that the host sends if it must stop in the middle
+//     ;@expose layer=12 material=1 seconds=2.500 image=layers/00012_soft.png
+//     ;@stop M107 P1          a command that the host sends if it must stop in the middle
 #pragma once
 
 #include <optional>

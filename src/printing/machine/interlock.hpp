@@ -1,27 +1,25 @@
 // What the machine must never do, as a state machine over its commands. The planner checks its own G-code with it
 // before printing, and the virtual printer refuses what it forbids.
 //
-//    - move or expose before the axis is homed; move beyond an axis' travel
-//    - move the carriage while the platform or the part is in the vat (except for the shear stroke, and to push a vat
-//      away with the part at the height of its brush)
-//    - lower the platform into anything but the vat under it, or press the part on the vat's floor
-//    - move the tower while a vat is hooked or half in (except for the stroke of the hooks, carriage at the tower; and,
-//      while the vat is under the platform and out of the tower, to home it and to bring it level with an empty slot
-//      again: this is how a print resumes after the controller has lost its position)
-//    - enter or leave the tower unless a slot is level (with a vat) or the hooks are clear (without)
-//    - push a vat into an occupied slot
-//    - switch a magnet off while it holds a vat anywhere but in its slot, or on with no vat before it; move the
-// carriage
-//      with a vat that its magnet does not hold
-//    - put the fork of a retriever into the wall unless level with a place, empty below a vat or with a vat before an
-//      empty place; move lift or rail with the fork in the wall (except for the stroke that takes a vat off its place);
-//      pull the fork back half-way through that stroke
-//    - turn or shift the table unless the platform is clear of everything on it, and no vat is hooked or half in a
-// tower
-//    - lower the platform with the table between two stations
-//    - expose with no vat under the platform, with the platform above the tallest part, or while something moves; move
-//      during an exposure
-//    - run the pump anywhere but over the drain of the cleaning vat, or move away from there while it runs
+//   - move or expose before the axis is homed; move beyond an axis' travel
+//   - move the carriage while the platform or the part is in the vat (except for the shear stroke, and to push a vat
+//     away with the part at the height of its brush)
+//   - lower the platform into anything but the vat under it, or press the part on the vat's floor
+//   - move the tower while a vat is hooked or half in (except for the stroke of the hooks, carriage at the tower; and,
+//     while the vat is under the platform and out of the tower, to home it and to bring it level with an empty slot
+//     again: this is how a print resumes after the controller has lost its position)
+//   - enter or leave the tower unless a slot is level (with a vat) or the hooks are clear (without)
+//   - push a vat into an occupied slot
+//   - switch a magnet off while it holds a vat anywhere but in its slot, or on with no vat before it; move the carriage
+//     with a vat that its magnet does not hold
+//   - put the fork of a retriever into the wall unless level with a place, empty below a vat or with a vat before an
+//     empty place; move lift or rail with the fork in the wall (except for the stroke that takes a vat off its place);
+//     pull the fork back half-way through that stroke
+//   - turn or shift the table unless the platform is clear of everything on it, and no vat is hooked or half in a tower
+//   - lower the platform with the table between two stations
+//   - expose with no vat under the platform, with the platform above the tallest part, or while something moves; move
+//     during an exposure
+//   - run the pump anywhere but over the drain of the cleaning vat, or move away from there while it runs
 #pragma once
 
 #include <array>

@@ -186,7 +186,7 @@ TEST_CASE(
     Bench b;
     b.home();
     b.load();
-    b.must(Axis::carriage, 100000);  // half-way back into the tower, which stands level
+    b.must(Axis::carriage, 100000);  // half-way back into the tower, which is level
     b.lock.stopped_at({{90000, 200000, 30000}});
     REQUIRE(b.lock.home(Axis::platform));
     REQUIRE(b.lock.home(Axis::carriage));

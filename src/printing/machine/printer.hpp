@@ -2,15 +2,14 @@
 // describes the file; examples/printers has the machines of the thesis (chapter 4, appendix B) and related ones.
 //
 // A platform moves up and down over a vat. The other vats are in the store, which is one of four kinds:
-//    tower  A carriage carries the cleaning vat and drags the resin vat that is hooked to it: at `print_um` that vat
-//           is under the platform, at `tower_um` it is inside the tower and the cleaning vat under the platform. The
-//           tower lifts and lowers all its slots; slot n is level with the carriage at `level_um(n)`. Several towers
-//           stand on a table that brings one of them before the carriage, linearly or (a carousel) in a circle.
-//    wall   The same carriage, but what it meets at `tower_um` is the tray of a retriever: a lift on a rail along a
-// wall
-//           of vats in rows and columns, whose fork takes a vat from its place or puts it there.
-//    table  The vats and a cleaning station are on a table, one of them under the platform: a turntable or a conveyor.
-//    none   One vat, fixed under the platform.
+//   tower  A carriage carries the cleaning vat and drags the resin vat that is hooked to it: at `print_um` that vat
+//          is under the platform, at `tower_um` it is inside the tower and the cleaning vat under the platform. The
+//          tower lifts and lowers all its slots; slot n is level with the carriage at `level_um(n)`. Several towers
+//          stand on a table that brings one of them before the carriage, linearly or (a carousel) in a circle.
+//   wall   The same carriage, but what it meets at `tower_um` is the tray of a retriever: a lift on a rail along a wall
+//          of vats in rows and columns, whose fork takes a vat from its place or puts it there.
+//   table  The vats and a cleaning station are on a table, one of them under the platform: a turntable or a conveyor.
+//   none   One vat, fixed under the platform.
 // Positions are integer micrometres, those of a rotary axis thousandths of a degree; times are in seconds.
 #pragma once
 

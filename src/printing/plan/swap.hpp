@@ -2,12 +2,12 @@
 //
 // A tower: the swap of the thesis (chapter 4), step by step.
 //
-//    1  the carriage pushes the vat into the tower; the brush wipes the part on the way
-//    2  the pump starts; the tower lowers, the hooks come free, and the platform rises off the brush
-//    3  the cleaning vat backs off and oscillates in X, the platform in Z, while the tower brings the next slot (of
-//       several towers, the table first brings the right one)
-//    4  the carriage advances, the tower rises, the hooks engage; the pump stops
-//    5  the vat is pulled in while the fans dry the part
+//   1  the carriage pushes the vat into the tower; the brush wipes the part on the way
+//   2  the pump starts; the tower lowers, the hooks come free, and the platform rises off the brush
+//   3  the cleaning vat backs off and oscillates in X, the platform in Z, while the tower brings the next slot (of
+//      several towers, the table first brings the right one)
+//   4  the carriage advances, the tower rises, the hooks engage; the pump stops
+//   5  the vat is pulled in while the fans dry the part
 //
 // The spray lasts from step 2 to step 4: only then do the reported parts (24 + 3 + 15 + 24 s) give the reported 62 to
 // 63 s. A magnet is switched instead of the strokes of the hooks in steps 2 and 4, and the tower goes directly from

@@ -26,10 +26,10 @@ struct Drawing {
 };
 
 /// One robot file (.toml), with `assignments` as given by --set; or any number of
-///    FILE.3mf            bodies of the materials that the file names
-///    FILE.vtk|vtu|msh    a tet mesh: each region is a body of the material of its name
-///    MATERIAL=FILE       a surface, a STEP file or any of these, all of one material
-///    MATERIAL=STACK      a folder or zip file of layer images; then all inputs are stacks, each of its own material
+///   FILE.3mf            bodies of the materials that the file names
+///   FILE.vtk|vtu|msh    a tet mesh: each region is a body of the material of its name
+///   MATERIAL=FILE       a surface, a STEP file or any of these, all of one material
+///   MATERIAL=STACK      a folder or zip file of layer images; then all inputs are stacks, each of its own material
 /// Lengths without a unit are millimetres. A material is printed in the resin of its name.
 [[nodiscard]] Result<Drawing> read_drawing(const std::vector<std::string>& inputs,
                                            const std::vector<std::string>& assignments, Progress& progress);

@@ -1,9 +1,9 @@
 // A whole print on the virtual printer, by the same engine that prints on machines: control, interlocks, journal,
 // prompts and guard, with the virtual printer's wire, light and clock as devices. Hours of machine time take a second.
 //
-//      auto print = VirtualPrint::make(ready->printer, ready->job, {});
-//      if (Status done = (*print)->print(progress); done) twin::inspect((*print)->twin(), manifest, images);
-//      (*print)->journal();  // what `pliant print --port` would have left beside the job
+//     auto print = VirtualPrint::make(ready->printer, ready->job, {});
+//     if (Status done = (*print)->print(progress); done) twin::inspect((*print)->twin(), manifest, images);
+//     (*print)->journal();  // what `pliant print --port` would have left beside the job
 #pragma once
 
 #include <functional>

@@ -1,8 +1,8 @@
 // pliant-screen: holds a panel for a host, which starts it and reads its standard output.
 //
-//      pliant-screen --list
-//      pliant-screen NAME display NUMBER
-//      pliant-screen NAME folder DIR WIDTH HEIGHT
+//     pliant-screen --list
+//     pliant-screen NAME display NUMBER
+//     pliant-screen NAME folder DIR WIDTH HEIGHT
 //
 // NAME is that of the socket it serves. The light is controlled by a separate process, so that it ends when the host
 // does, however that ends. If that process itself dies, its parent starts another one.

@@ -48,12 +48,11 @@ struct ComposedLayer {
 
 /// Composes one layer. `cells` as returned by CellBuffer::sorted(); `material_of` names each body's material.
 ///
-/// A body covers |winding
-/// of a pixel, at most 1 (the nonzero rule). Where outlines cover more than a pixel's area they overlap: `overlapping`
-/// says so, later bodies have priority, and a pixel crossed by outer borders of both gets too much; divided() makes
-/// outlines that do not overlap, which is exact. `lost_px` and `doubled_px` are 0 here. The pixel goes entirely to the
-/// material with the largest share (on a tie, that of the latest body), with the light of all shares together: an
-/// interface between materials has neither a dark line nor a pixel in two images.
+/// A body covers |winding| of a pixel, at most 1 (the nonzero rule). Where outlines cover more than a pixel's area they
+/// overlap: `overlapping` says so, later bodies have priority, and a pixel crossed by outer borders of both gets too
+/// much; divided() makes outlines that do not overlap, which is exact. `lost_px` and `doubled_px` are 0 here. The pixel
+/// goes entirely to the material with the largest share (on a tie, that of the latest body), with the light of all
+/// shares together: an interface between materials has neither a dark line nor a pixel in two images.
 ///
 /// Where a gap of up to `close_gap_um` between different materials runs through a pixel or along its border, the pixel
 /// gets full light. Condition: it lacks at most that width and is, in its row or its column, between two pixels of

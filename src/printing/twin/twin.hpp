@@ -1,10 +1,10 @@
 // The virtual printer: speaks Marlin on a stream of bytes, moves on a virtual clock, obeys or refuses by the interlocks
 // of the machine, and cures what the projector shows it. The same G-code drives it and the real machine.
 //
-//      Twin twin(printer);
-//      twin.receive("N1 G28 Z*18\n");
-//      twin.advance_to(60);
-//      twin.take_output();   // "start\n...ok\n"
+//     Twin twin(printer);
+//     twin.receive("N1 G28 Z*18\n");
+//     twin.advance_to(60);
+//     twin.take_output();   // "start\n...ok\n"
 //
 // It does not use real time: the owner advances its clock. docs/reference/printer.md lists the supported parts of
 // Marlin.
