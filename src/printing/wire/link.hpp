@@ -35,7 +35,7 @@ struct LinkOptions {
     double talk_s = 60;           ///< maximum time that a controller which is not busy may send other lines before it
                                   ///< answers connect()
     int most_connects = 10;       ///< consecutive silences before connect() gives up
-    double watch_every_s = 0.02;  ///< minimum rate of calls of the watch while waiting
+    double watch_every_s = 0.02;  ///< longest interval between calls of the watch while waiting
     bool may_be_halted = false;   ///< the last session ended with an emergency stop or a halt, which explains silence
 };
 
