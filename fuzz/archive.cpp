@@ -1,4 +1,4 @@
-// Whole jobs: libzip reads files only.
+// Whole jobs, through a file because libzip reads only files.
 #include "file.hpp"
 #include "input.hpp"
 #include "printing/job/job.hpp"

@@ -1,4 +1,4 @@
-// `--set KEY=VALUE` over a good robot file, one a line.
+// `--set KEY=VALUE`, one per line, applied to a valid robot file.
 #include <string>
 #include <vector>
 

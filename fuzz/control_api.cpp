@@ -1,5 +1,5 @@
-// What a page or a program asks of a running host over HTTP: a method, a path and a body a line, three to a request.
-// The controller is one that answers well.
+// HTTP requests to a running host: method, path and body on one line each, three lines per request. The controller
+// behaves well.
 #include "printing/host/control_api.hpp"
 
 #include <string>
@@ -20,7 +20,7 @@ std::string_view take_line(std::string_view& text) {
     return line;
 }
 
-/// A control with a job, served in the calling thread.
+/// A control with a job, running in the calling thread.
 struct Bench {
     host::test::CountingClock clock;
     host::test::RememberingProjector projector;

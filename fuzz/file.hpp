@@ -1,4 +1,4 @@
-// For readers that take files only: the input takes the way over one, which is gone at the end.
+// For readers that only take files: passes the input through a temporary file.
 #pragma once
 
 #include <unistd.h>

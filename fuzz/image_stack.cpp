@@ -1,4 +1,4 @@
-// Layer images of other programs in a zip file: .sl1, .cws and their like.
+// Layer images of other programs in a zip file: .sl1, .cws and similar.
 #include "printing/job/image_stack.hpp"
 
 #include "file.hpp"
@@ -8,7 +8,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const TemporaryFile file(as_text(data, size), ".sl1");
     (void)pliant::job::is_image_stack(file.path());
     const auto stack = pliant::job::ImageStack::open(file.path());
-    // As large as a stack's first image may say, but not larger than a fuzzer's memory.
+    // As large as a stack's first image may be, but limited by the fuzzer's memory.
     if (!stack || static_cast<long long>(stack->width_px()) * stack->height_px() > (1 << 22)) return 0;
     for (int layer = 0; layer < stack->layer_count(); ++layer) {
         const auto image = stack->image(layer);

@@ -1,4 +1,4 @@
-// The door that libFuzzer knocks at.
+// The entry point that libFuzzer calls.
 #pragma once
 
 #include <cstddef>

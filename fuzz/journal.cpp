@@ -1,4 +1,4 @@
-// A journal of any bytes: what can be read of it must give facts or a reason, and where a print would go on from there.
+// A journal of arbitrary bytes: whatever can be parsed must give facts and a resume point, or a reason.
 #include "printing/host/journal.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace pliant;
 
-/// Records as they would be if every checksum were right, so that the fuzzer gets past it: "kind key=value ..." a line.
+/// Adds correct checksums to records "kind key=value ...", one per line, so that the fuzzer gets past that check.
 std::string with_checksums(std::string_view text) {
     std::string journal;
     long number = 0;

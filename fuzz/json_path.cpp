@@ -1,4 +1,4 @@
-// A path in the first line, and JSON behind it.
+// A path in the first line, followed by JSON.
 #include "loop/study/json_path.hpp"
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// A controller that says anything at all: the host's link must come to an end, and say why where it does not like it.
+// A controller that sends anything at all: the host's link must terminate, with a reason if it fails.
 #include "printing/wire/link.hpp"
 
 #include <algorithm>
@@ -18,8 +18,8 @@ public:
     double now_s = 0;
 };
 
-/// Hands the input out in pieces, some of them late; then it is silent. One that is `friendly` first lets itself be
-/// connected, which no input would hit upon.
+/// Delivers the input in pieces, some of them late, and then is silent. A `friendly` one first completes the
+/// connection, which random input would never achieve.
 class AnyWire final : public host::Wire {
 public:
     AnyWire(Bytes bytes, CountingClock& clock, bool friendly) : bytes_(bytes), clock_(clock), friendly_(friendly) {}

@@ -1,4 +1,4 @@
-// Which format is it? The readers have targets of their own.
+// Format detection. The readers have targets of their own.
 #include "geometry/files/surface_file.hpp"
 #include "geometry/files/tet_file.hpp"
 #include "input.hpp"

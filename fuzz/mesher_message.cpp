@@ -1,4 +1,4 @@
-// What the mesher and those who ask it read from each other: any bytes as any message.
+// Messages between the mesher and its clients: arbitrary bytes as any kind of message.
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -18,7 +18,7 @@ void read_as(std::string_view bytes) {
     T value{};
     unpack(in, value);
     if (!in.finished()) return;
-    mesh::Packer out;  // what could be read can be written, and is the same
+    mesh::Packer out;  // what was read must be written back unchanged
     pack(out, value);
     if (out.take() != bytes) __builtin_trap();
 }

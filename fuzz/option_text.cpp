@@ -1,4 +1,4 @@
-// What options of a slice say: a number that is taken is one, and within its limits.
+// Options of a slice: an accepted number is valid and within its limits.
 #include "printing/prepare/option_text.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Layer images: the size in the head is a claim, the decoder is told the size that the manifest promises.
+// Layer images: the size in the header cannot be trusted; the decoder gets the size from the manifest.
 #include "printing/job/png.hpp"
 
 #include "input.hpp"

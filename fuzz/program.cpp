@@ -1,4 +1,4 @@
-// Programs of G-code from anywhere: checked against the tower, and wherever they stand, ended safely.
+// Arbitrary G-code programs: checked against the tower, and ended safely from wherever they stop.
 #include "input.hpp"
 #include "printing/plan/check.hpp"
 #include "printing/plan/safe_stop.hpp"

@@ -1,4 +1,4 @@
-// Paths that a page names, and what its robot file names: nothing that is taken lies outside of the project's folder.
+// Paths from a page, and those in its robot file: no accepted path is outside the project's folder.
 #include <algorithm>
 #include <filesystem>
 #include <string>
@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder with a way out of it.
+/// A folder with a symbolic link that leads out of it.
 const pliant::studio::ProjectFolder& project() {
     static const fs::path root = [] {
         std::string pattern = (fs::temp_directory_path() / "pliant_fuzz_XXXXXX").string();

@@ -1,4 +1,4 @@
-// Runs a fuzz target on files and on the files of folders: the corpora, in every build and without a fuzzer.
+// Runs a fuzz target on files, and on all files of folders: the corpora, in every build, without a fuzzer.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

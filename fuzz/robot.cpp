@@ -1,4 +1,4 @@
-// Robot files: TOML, parameters and formulas, shapes, units; files that they name do not exist.
+// Robot files: TOML, parameters and formulas, shapes, units; referenced files do not exist.
 #include "input.hpp"
 #include "robot/file/robot_file.hpp"
 

@@ -1,5 +1,5 @@
-// What comes over the socket between a host and the program that holds its panel: raw bytes, and messages of any kind
-// to a panel's holder, which must be dark in the end.
+// The socket between a host and the program that holds its panel: raw bytes, and messages of any kind; the panel must
+// be dark at the end.
 #include "printing/screen/screen_wire.hpp"
 
 #include <fmt/format.h>
@@ -25,7 +25,7 @@ void receive_raw(std::string_view bytes) {
     }
 }
 
-/// Four by three pixels whose frames come as fast as they are asked for.
+/// Four by three pixels, frames without delay.
 class SmallPanel final : public host::Panel {
 public:
     [[nodiscard]] int width_px() const override { return 4; }

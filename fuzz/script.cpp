@@ -1,4 +1,4 @@
-// A job's G-code as the host takes it, and when each of its steps begins.
+// A job's G-code parsed by the host, and the start times of its steps.
 #include "printing/host/script.hpp"
 
 #include "input.hpp"

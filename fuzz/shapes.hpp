@@ -1,5 +1,5 @@
-// Bodies out of an input: boxes and tetrahedra on a coarse grid, so that they touch, overlap and lie in each other;
-// with corners that are moved, so that faces bend and cut through each other; now and then triangles without any order.
+// Decodes an input into bodies: boxes and tetrahedra on a coarse grid, so that they touch, overlap and nest; some
+// corners are moved, so that faces bend and intersect; sometimes just random triangles.
 #pragma once
 
 #include "bytes.hpp"
@@ -32,7 +32,7 @@ inline TriMesh tetrahedron(Bytes& bytes) {
     return mesh;
 }
 
-/// A closed surface; it may cut through itself or have no volume.
+/// A closed surface; it may intersect itself or have no volume.
 inline TriMesh closed(Bytes& bytes) {
     TriMesh mesh = bytes.chance() ? tetrahedron(bytes) : box(bytes);
     for (int moved = bytes.up_to(3); moved > 0; --moved) {

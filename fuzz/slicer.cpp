@@ -1,5 +1,5 @@
-// Bodies that touch, overlap, cut through themselves or are no bodies at all, sliced: no pixel has two owners, and what
-// a layer says of its images is so.
+// Slices bodies that touch, overlap, intersect themselves or are invalid: no pixel has two owners, and a layer's
+// figures match its images.
 #include "printing/slice/slicer.hpp"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ slice::Settings settings_of(Bytes& bytes) {
     return settings;
 }
 
-/// Pixels of all images that lie in the light of more than one.
+/// Traps if a pixel is lit in more than one image.
 void trap_on_two_owners(const slice::SlicedLayer& layer) {
     for (std::size_t i = 0; i < layer.images.size(); ++i) {
         const slice::MaterialImage& one = layer.images[i];

@@ -1,4 +1,4 @@
-// A state, and a step, of a small block as a file has them: what is accepted can be gone on from.
+// A state and a step of a small block, as read from a file: the simulation can continue from whatever is accepted.
 #include "input.hpp"
 #include "simulation/peers/reference_problems.hpp"
 #include "simulation/run/step_record.hpp"

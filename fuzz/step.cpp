@@ -1,5 +1,5 @@
-// STEP files. Open CASCADE, which takes them apart, is not built with sanitizers: what is looked for is what it does to
-// the program.
+// STEP files. Open CASCADE, which parses them, is built without sanitizers: this finds only crashes and hangs of the
+// program.
 #include "file.hpp"
 #include "geometry/mesher/step_file.hpp"
 #include "input.hpp"

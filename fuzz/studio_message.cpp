@@ -1,4 +1,4 @@
-// What a page says over the studio's WebSocket.
+// WebSocket messages from a page to the studio.
 #include "input.hpp"
 #include "presentation/studio/message.hpp"
 

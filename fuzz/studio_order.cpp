@@ -1,4 +1,4 @@
-// What a page asks of the slicer, and of searches.
+// Requests from a page for slicing and searches.
 #include "input.hpp"
 #include "presentation/studio/search_order.hpp"
 #include "presentation/studio/slice_order.hpp"

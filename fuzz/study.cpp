@@ -1,4 +1,4 @@
-// Study files: the plan of any text, and the same plan again from its JSON.
+// Study files: any text to a plan, and the same plan back from its JSON.
 #include <cstdlib>
 
 #include "input.hpp"

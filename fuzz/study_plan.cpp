@@ -1,4 +1,4 @@
-// Plans as they stand in a study's folder.
+// Plans as stored in a study's folder.
 #include "input.hpp"
 #include "loop/study/plan.hpp"
 

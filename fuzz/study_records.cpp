@@ -1,5 +1,5 @@
-// Records of rows: any bytes, and any lines with their checksums put right. What is read must be rows of the chunk,
-// each once.
+// Records of rows: arbitrary bytes, and arbitrary lines with correct checksums. What is read must be rows of the chunk,
+// each at most once.
 #include <cstdlib>
 #include <set>
 

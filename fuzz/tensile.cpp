@@ -1,4 +1,4 @@
-// Tables of tensile tests, and the fit of what they hold.
+// Tables of tensile tests, and the fit to their content.
 #include "input.hpp"
 #include "simulation/calibrate/fit.hpp"
 

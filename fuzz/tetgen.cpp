@@ -1,4 +1,4 @@
-// TetGen's two files, divided by the first byte 0.
+// TetGen's two files, separated by the first zero byte.
 #include <algorithm>
 
 #include "geometry/files/tet_file.hpp"

@@ -1,4 +1,4 @@
-// Whole 3MF files: what the zip file holds, relationships, and models that name each other.
+// Whole 3MF files: entries of the zip file, relationships, and models that reference each other.
 #include "file.hpp"
 #include "geometry/threemf/read_3mf.hpp"
 #include "input.hpp"

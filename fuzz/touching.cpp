@@ -1,5 +1,5 @@
-// Closed bodies that touch, overlap and cut through themselves: which hang together, and the mesh of all of them, in
-// which no tet is inside out and none is of a body that is not there.
+// Closed bodies that touch, overlap and intersect themselves: grouping, and the joint mesh, in which no tet is inverted
+// or has an invalid region.
 #include <string>
 
 #include "geometry/mesher/mesher.hpp"

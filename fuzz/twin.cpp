@@ -1,4 +1,4 @@
-// The virtual printer under arbitrary bytes on its wire, for an hour of its own time.
+// The virtual printer receiving arbitrary bytes, for an hour of its own time.
 #include "printing/twin/twin.hpp"
 
 #include <algorithm>

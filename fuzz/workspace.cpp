@@ -1,4 +1,4 @@
-// A piece of a workspace as a search keeps it: what is accepted is written and read again.
+// A part of a workspace as a search stores it: what is accepted is written and read back.
 #include <cstdlib>
 
 #include "input.hpp"

@@ -1,4 +1,4 @@
-// Big arrays for SIMD.
+// Large arrays for SIMD.
 #pragma once
 
 #include <sys/mman.h>
@@ -13,8 +13,8 @@
 
 namespace pliant {
 
-/// Aligned to cache lines, and not set to anything: the pages come when they are first written. Large arrays ask for
-/// huge pages, of which a machine hands out far fewer: small ones may cost more time than the work that fills them.
+/// Aligned to cache lines and uninitialised: the system maps each page at its first write. Large arrays request huge
+/// pages, because faulting in small pages may cost more time than the work that fills them.
 template <class T>
 class AlignedArray {
     static_assert(std::is_trivial_v<T>);
@@ -30,7 +30,7 @@ public:
         return *this;
     }
 
-    /// Content is lost where the size changes. Throws std::bad_alloc.
+    /// Contents are lost if the size changes. Throws std::bad_alloc.
     void resize(std::size_t size) {
         if (size == size_) return;
         values_.reset();

@@ -1,4 +1,4 @@
-// Work space that is used again.
+// Reusable work space.
 #pragma once
 
 #include <mutex>
@@ -9,13 +9,12 @@
 
 namespace pliant {
 
-/// Lends arrays and keeps them when they come back: fresh ones cost a page fault every 4 KB. May be used from several
-/// threads at once.
+/// Lends arrays and keeps them when they are returned: a fresh array costs a page fault every 4 KB. Thread-safe.
 template <class T>
 class ArrayPool {
 public:
     ArrayPool() = default;
-    /// A pool is no part of the value of what owns it: a moved one begins empty.
+    /// The pool is not part of its owner's value: after a move the new pool is empty.
     ArrayPool(ArrayPool&&) noexcept {}
     ArrayPool& operator=(ArrayPool&&) noexcept { return *this; }
 
@@ -32,7 +31,7 @@ public:
         AlignedArray<T> array_;
     };
 
-    /// Of at least this size; what is in it is anything.
+    /// An array of at least this size, with unspecified contents.
     [[nodiscard]] Loan lend(std::size_t size) {
         AlignedArray<T> array;
         {
@@ -49,7 +48,7 @@ public:
         return Loan(*this, std::move(array));
     }
 
-    /// Gives back to the system what is not on loan.
+    /// Frees all arrays that are not on loan.
     void clear() {
         const std::lock_guard lock(mutex_);
         kept_.clear();

@@ -14,7 +14,7 @@ constexpr int blank = -1;
 constexpr int padding = -2;
 constexpr int foreign = -3;
 
-/// What each character stands for.
+/// The value of each character.
 constexpr std::array<int, 256> values = [] {
     std::array<int, 256> table{};
     table.fill(foreign);
@@ -49,7 +49,7 @@ std::optional<std::string> base64_decoded(std::string_view text, std::size_t cou
     int bits = 0;
     const auto value_at = [&](std::size_t i) { return values[static_cast<unsigned char>(text[i])]; };
     for (std::size_t i = 0; i < text.size() && filled < count; ++i) {
-        // Whole groups of four characters, of which none is special: nearly all of any text.
+        // Fast path: whole groups of four ordinary characters, which is nearly all of any text.
         for (; bits == 0 && i + 4 <= text.size() && filled + 3 <= count; i += 4, filled += 3) {
             const int a = value_at(i), b = value_at(i + 1), c = value_at(i + 2), d = value_at(i + 3);
             if ((a | b | c | d) < 0) break;
@@ -62,7 +62,7 @@ std::optional<std::string> base64_decoded(std::string_view text, std::size_t cou
         const int value = value_at(i);
         if (value == blank) continue;
         if (value == foreign) return std::nullopt;
-        if (value == padding) {  // the group is over, what is left of it are filling bits
+        if (value == padding) {  // end of the padded group: the remaining bits are padding
             group = 0;
             bits = 0;
             continue;

@@ -10,8 +10,8 @@ namespace pliant {
 
 [[nodiscard]] std::string base64(std::string_view bytes);
 
-/// The first `count` bytes that the text stands for. White space is passed over, and padded pieces may follow each
-/// other. Nothing if the text ends before, or holds another sign first.
+/// Decodes the first `count` bytes of the text. White space is skipped, and several padded pieces may follow each
+/// other. Nothing if the text ends too early or contains an invalid character before that.
 [[nodiscard]] std::optional<std::string> base64_decoded(std::string_view text, std::size_t count);
 
 }  // namespace pliant

@@ -16,13 +16,13 @@ TEST_CASE("base64 takes bytes above 127 and zeros") {
     CHECK(base64(std::string_view("\xff\xfe\x00", 3)) == "//4A");
 }
 
-TEST_CASE("base64 is read back, piece after piece, and wrong signs are noticed") {
+TEST_CASE("base64 is decoded piece by piece, and invalid characters are detected") {
     std::string all;
     for (int c = 0; c < 256; ++c) all += static_cast<char>(c);
     CHECK(pliant::base64_decoded(base64(all), 256) == all);
     CHECK(pliant::base64_decoded("Zg==\n Zm9v", 4) == "ffoo");
     CHECK(pliant::base64_decoded("Zm9vYmFy", 2) == "fo");
-    // Long enough for groups at once, with line ends at any place and padding in the middle.
+    // Long enough for the fast path, with line ends in any place and padding in the middle.
     std::string lines;
     for (const char c : base64(all + all)) lines += lines.size() % 7 == 6 ? std::string("\n") + c : std::string(1, c);
     CHECK(pliant::base64_decoded(lines, 512) == all + all);

@@ -9,7 +9,7 @@ namespace pliant {
 
 namespace {
 
-/// The box in single precision, no smaller than it was.
+/// Stores the box in single precision, rounded outwards.
 void put(const Bounds& box, BoxTree::Leaf& leaf, std::size_t i) {
     constexpr float rounding = 1.2e-7F, least = 1e-37F;
     for (std::size_t k = 0; k < 3; ++k) {

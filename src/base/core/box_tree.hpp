@@ -1,4 +1,4 @@
-// Which boxes overlap: a tree whose shape is fixed once and whose boxes are fitted to every new state.
+// Finds overlapping boxes: the tree's structure is fixed once, its boxes are refitted to every new state.
 #pragma once
 
 #include <array>
@@ -38,12 +38,12 @@ struct Bounds {
     }
 };
 
-/// Boxes of something at the start and at the end of a straight motion of its points.
+/// Bounding boxes of an item at the start and at the end of a motion in which its points move in straight lines.
 struct MovingBounds {
     Bounds start, end;
 
-    /// False only if the two never overlap on the way: an axis along which one is beyond the other at both ends keeps
-    /// them apart at all times, however far both move.
+    /// False only if the two never overlap during the motion: if one is beyond the other along the same axis at both
+    /// ends, they stay apart at all times, however far both move.
     [[nodiscard]] bool may_meet(const MovingBounds& b) const {
         bool apart = false;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -54,16 +54,16 @@ struct MovingBounds {
     }
 };
 
-/// The shape of the tree: items in the order of leaves of eight, and the nodes over them. Immutable.
+/// The structure of the tree: the order of the items in leaves of eight, and the nodes above them. Immutable.
 class BoxTree {
 public:
     static constexpr std::size_t leaf_size = 8;
 
     BoxTree() = default;
-    /// Halves the items along the longest side of their centres' box until eight are left.
+    /// Splits the items in half along the longest side of the box of their centres until eight are left.
     explicit BoxTree(std::span<const Bounds> items);
 
-    /// The items' boxes of one leaf side by side, for vector instructions; rounded outwards, the unused ones empty.
+    /// The boxes of the items of one leaf in SoA layout for SIMD; rounded outwards, unused ones empty.
     struct Leaf {
         std::array<std::array<float, leaf_size>, 3> low, high;
     };
@@ -72,7 +72,7 @@ public:
         std::vector<Bounds> nodes;
         std::vector<Leaf> leaves;
     };
-    /// `items` in their own order, as many as the tree was made of.
+    /// `items` in their original order, as many as the tree was built from.
     [[nodiscard]] Fit fit(std::span<const Bounds> items) const;
 
     [[nodiscard]] std::size_t leaf_count() const { return (order_.size() + leaf_size - 1) / leaf_size; }
@@ -87,13 +87,13 @@ public:
         walk([&](std::size_t n) { return fit.nodes[n].overlaps(box); }, first, visit);
     }
 
-    /// Calls visit(i, j) for the items i of leaf `l` of this tree and j of `other` that overlap to single precision;
-    /// their order is fixed. A tree against itself gives each pair once.
+    /// Calls visit(i, j) for the items i of leaf `l` of this tree and j of `other` whose boxes overlap in single
+    /// precision, in a fixed order. A tree against itself gives each pair once.
     template <class Visit>
     void visit_overlaps(const Fit& fit, std::size_t l, const BoxTree& other, const Fit& other_fit,
                         Visit&& visit) const {
         const auto hits = [&](std::size_t i, std::size_t m) {
-            // Of most leaves that overlap, few items reach into the other.
+            // In most pairs of overlapping leaves, few items reach into the other leaf's box.
             if (!box_of(fit.leaves[l], i).overlaps(other_fit.nodes[other.node_of_leaf_[m]])) return 0U;
             return overlaps(fit.leaves[l], i, other_fit.leaves[m]);
         };
@@ -105,7 +105,7 @@ public:
     struct MovingFit {
         Fit start, end;
     };
-    /// As visit_overlaps, for those that may meet on the way.
+    /// As visit_overlaps, for pairs that may overlap during the motion.
     template <class Visit>
     void visit_meetings(const MovingFit& fit, std::size_t l, const BoxTree& other, const MovingFit& other_fit,
                         Visit&& visit) const {
@@ -126,7 +126,7 @@ public:
     }
 
 private:
-    /// Calls visit(l) for each leaf from `first` on below nodes all of which enters(n) lets in.
+    /// Calls visit(l) for each leaf from `first` on for which enters(n) is true at all of its ancestors.
     template <class Enters, class Visit>
     void walk(const Enters& enters, std::size_t first, Visit&& visit) const {
         for (std::size_t n = 0; n < nodes_.size();) {
@@ -152,7 +152,8 @@ private:
         for (std::size_t k = 0; k < 3; ++k) box.low[k] = leaf.low[k][i], box.high[k] = leaf.high[k][i];
         return box;
     }
-    /// Bit j: along some axis, item i of `a` is beyond item j of `b` at both ends, or item j beyond item i.
+    /// Bit j: along some axis, item i of `a` and item j of `b` are in the same order and apart at both ends of the
+    /// motion.
     static unsigned parted(const Leaf& a0, const Leaf& a1, std::size_t i, const Leaf& b0, const Leaf& b1) {
         std::array<unsigned, leaf_size> apart{};
         for (std::size_t k = 0; k < 3; ++k)

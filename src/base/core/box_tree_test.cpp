@@ -42,7 +42,7 @@ IndexPairs by_tree(const BoxTree& a, const std::vector<Bounds>& in_a, const BoxT
 
 }  // namespace
 
-TEST_CASE("a tree finds the overlaps that looking at all pairs finds, after its boxes have moved") {
+TEST_CASE("a tree finds the same overlaps as testing all pairs, after its boxes have moved") {
     for (const std::size_t count : {1u, 7u, 8u, 9u, 64u, 333u}) {
         CAPTURE(count);
         const BoxTree tree(random_boxes(count, 0.1, 1)), other(random_boxes(2 * count + 1, 0.1, 2));
@@ -59,7 +59,7 @@ TEST_CASE("a tree finds the overlaps that looking at all pairs finds, after its 
     }
 }
 
-TEST_CASE("boxes that only touch overlap, and a tree of nothing finds nothing") {
+TEST_CASE("boxes that only touch overlap, and an empty tree finds nothing") {
     Bounds a, b;
     a.add(Vec3{0, 0, 0});
     a.add(Vec3{1, 1, 1});

@@ -1,4 +1,4 @@
-// Axis-aligned boxes: which meet, and how what lies in one is halved.
+// Axis-aligned boxes: overlap tests, and splitting what a box contains.
 #pragma once
 
 #include <algorithm>
@@ -36,9 +36,9 @@ template <class Box>
     return axis;
 }
 
-/// How a tree of boxes divides what it holds: the `first` items of the lowest key(item) come to the front, items of
-/// equal keys by their numbers, so that which they are does not depend on the order in which they came. Precondition:
-/// first <= items.size(). Cost: about linear.
+/// How a tree of boxes splits its items: moves the `first` items with the smallest key(item) to the front. Equal keys
+/// are ordered by item number, so the result does not depend on the initial order.
+/// Precondition: first <= items.size(). Cost: about linear.
 template <class Key>
 void halve(std::span<int> items, std::size_t first, const Key& key) {
     std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(first), items.end(),

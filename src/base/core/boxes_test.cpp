@@ -39,7 +39,7 @@ TEST_CASE("the longest axis is the first of equal ones") {
     CHECK(axis_of(4, 2, 4) == 0);
 }
 
-TEST_CASE("halves hold the same items in whatever order they came") {
+TEST_CASE("halves do not depend on the initial order") {
     std::vector<int> items(101);
     std::iota(items.begin(), items.end(), 0);
     const auto key = [](int item) { return item * 37 % 10; };  // many are equal

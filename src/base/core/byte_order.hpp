@@ -1,4 +1,4 @@
-// Numbers whose bytes run the other way.
+// Reversing the byte order of numbers.
 #pragma once
 
 #include <cstdint>

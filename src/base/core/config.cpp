@@ -57,7 +57,7 @@ Status Problems::status() const {
     std::vector<Diagnostic> sorted = found_;
     std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.line < b.line; });
     sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-    // More than a screenful helps nobody: with so much wrong it is the wrong file, or one slip near the top.
+    // More than a screenful is no help: with so many problems it is the wrong file, or one error near the top.
     constexpr std::size_t most = 12;
     if (sorted.size() > most) {
         const std::size_t more = sorted.size() - most;
@@ -149,7 +149,7 @@ std::int64_t Reader::integer(std::string_view key, std::int64_t fallback) {
     const Value* value = find(key);
     if (value == nullptr) return fallback;
     if (const auto* whole = std::get_if<std::int64_t>(&value->data)) return *whole;
-    // A formula gives a real number even where it is whole.
+    // A formula gives a real number even if it is an integer.
     if (const auto real = as_number(*value); real && *real == std::floor(*real) && std::fabs(*real) < 1e15) {
         return static_cast<std::int64_t>(*real);
     }

@@ -1,5 +1,5 @@
-// Robot and printer files: a TOML document as a plain tree with line numbers, and a reader that notices every key that
-// nobody reads.
+// Robot and printer files: a TOML document as a plain tree with line numbers, and a reader that reports every unknown
+// key.
 //
 //     Problems problems("finger.toml");
 //     Reader root(document.root, problems);
@@ -36,25 +36,24 @@ struct Value {
 };
 
 struct Document {
-    std::filesystem::path file;  ///< what relative paths in the document are relative to
+    std::filesystem::path file;  ///< relative paths in the document are resolved against its folder
     Value root;                  ///< always a Table
 };
 
-/// Reads TOML; an error names file and line. Text over 16 MB or nested deeper than 32 levels is refused.
+/// Parses TOML; an error names file and line. Text over 16 MB or nested deeper than 32 levels is refused.
 [[nodiscard]] Result<Document> parse(std::string_view text, const std::filesystem::path& file);
 [[nodiscard]] Result<Document> load(const std::filesystem::path& file);
 
 /// `KEY=VALUE` of the command line: KEY is a dotted path (`cable.flexor.target.length_ratio`; entries of an array of
-/// tables are found by their `name` or by their index from 0), VALUE is TOML or, failing that, plain text. Tables
-/// and keys that are not there yet are added.
+/// tables are found by `name` or by index from 0), VALUE is TOML or, failing that, plain text. Missing tables and keys
+/// are added.
 [[nodiscard]] Status set(Document& document, std::string_view assignment);
 
 /// Evaluates `[parameters]` in order (numbers, or text "= formula" over earlier ones), removes that table, and replaces
 /// every text of the form "= formula" in the document by its value.
 [[nodiscard]] Status resolve_parameters(Document& document);
 
-/// Collects what is wrong with one file: `FILE:LINE: key: text`, one line each, in the order of the file, at most a
-/// dozen.
+/// Collects the problems of one file: `FILE:LINE: key: text`, one line each, in the order of the file, at most a dozen.
 class Problems {
 public:
     explicit Problems(std::string file) : file_(std::move(file)) {}
@@ -67,8 +66,9 @@ private:
     std::vector<Diagnostic> found_;
 };
 
-/// A table being read. Every accessor marks its key as read; a wrong type or a missing required key becomes a problem
-/// and the accessor returns a harmless value, so that reading code stays straight. Copies share what has been read.
+/// A table being read. Every accessor marks its key as read; a wrong type or a missing required key becomes a problem,
+/// and the accessor returns a harmless value, so that reading code needs no branches. Copies share the record of read
+/// keys.
 class Reader {
 public:
     Reader(const Value& table, Problems& problems, std::string path = "");
@@ -86,7 +86,7 @@ public:
     [[nodiscard]] std::int64_t integer(std::string_view key);
     [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t fallback);
     [[nodiscard]] bool boolean(std::string_view key, bool fallback);
-    /// A text with a unit, in SI; a bare number is a problem that names the units.
+    /// A text with a unit, converted to SI; a bare number is a problem, whose message names the units.
     [[nodiscard]] double quantity(std::string_view key, Dimension dimension);
     [[nodiscard]] double quantity(std::string_view key, Dimension dimension, double fallback);
     [[nodiscard]] std::vector<double> quantities(std::string_view key, Dimension dimension, std::size_t count);
@@ -106,11 +106,11 @@ public:
     [[nodiscard]] std::vector<Reader> tables(std::string_view key);
     /// The entries of a table of tables, `[material.soft]` and so on, by name.
     [[nodiscard]] std::vector<std::pair<std::string, Reader>> named_tables(std::string_view key);
-    /// The raw value, for structures that the reader does not know; marks the key as read.
+    /// The raw value, for structures that Reader has no accessor for; marks the key as read.
     [[nodiscard]] const Value* raw(std::string_view key);
 
     void problem(std::string_view key, std::string_view text);
-    /// Reports every key that was not read, with the nearest one that could have been.
+    /// Reports every key that was not read, with the nearest known key.
     void finish();
 
 private:
@@ -124,7 +124,7 @@ private:
     const Value* table_;
     Problems* problems_;
     std::string path_;
-    bool missing_ = false;  ///< stands for a required table that is not there: that is the one problem to report
+    bool missing_ = false;  ///< stands for a missing required table, which is reported once; its keys are not
     std::shared_ptr<Marks> marks_;
 };
 

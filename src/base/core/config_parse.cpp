@@ -1,4 +1,4 @@
-// The only file that includes muParser, and with toml_edit.cpp toml++.
+// The only file that includes muParser, and, with toml_edit.cpp, one of two that include toml++.
 #include <muParser.h>
 #include <toml++/toml.h>
 
@@ -44,11 +44,11 @@ Result<Value> convert(const toml::node& node, int depth) {
         for (const auto& [key, item] : *table) {
             Result<Value> converted = convert(item, depth + 1);
             if (!converted) return converted;
-            // The line of a scalar is that of its key, which is where a person looks.
+            // A scalar gets the line of its key, where a person would look.
             if (!item.is_table() && !item.is_array()) converted->line = static_cast<int>(key.source().begin.line);
             entries.emplace_back(std::string(key.str()), std::move(*converted));
         }
-        // toml++ sorts by name; a reader of messages and `[parameters]` expects the order of the file.
+        // toml++ sorts by name; messages and `[parameters]` need the order of the file.
         std::stable_sort(entries.begin(), entries.end(),
                          [](const Entry& a, const Entry& b) { return a.second.line < b.second.line; });
         value.data = std::move(entries);
@@ -59,13 +59,13 @@ Result<Value> convert(const toml::node& node, int depth) {
 }
 
 bool nested_too_deep(std::string_view text) {
-    // toml++ recurses while it parses: brackets are counted before it sees them.
+    // toml++ parses recursively, so nesting is limited by counting brackets first.
     int depth = 0;
     int deepest = 0;
     for (const char c : text) {
         if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
         if (c == ']' || c == '}') depth = std::max(0, depth - 1);
-        if (c == '\n' && depth <= 2) depth = 0;  // headings close on their line
+        if (c == '\n' && depth <= 2) depth = 0;  // headers close on their line
     }
     return deepest > 4 * max_depth;
 }
@@ -209,8 +209,8 @@ Status set(Document& document, std::string_view assignment) {
         const std::string_view part = key.substr(begin, end - begin);
         Value* child = find_child(*node, part);
         if (child == nullptr) {
-            // A table that the file leaves out may still be meant, as in program.steps; a slip shows when nobody reads
-            // it.
+            // A table missing from the file may still be valid, as in program.steps; if not, it is reported as an
+            // unknown key.
             auto* table = std::get_if<Table>(&node->data);
             if (table == nullptr || part.empty()) {
                 const auto names = child_names(*node);

@@ -30,7 +30,7 @@ std::string key_text(const std::string& key) {
     return bare ? key : toml_string(key);
 }
 
-/// With a point or an exponent, or it would be read as a whole number.
+/// With a point or an exponent, so that it is not read back as an integer.
 std::string real_text(double value) {
     if (std::isnan(value)) return "nan";
     if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
@@ -69,7 +69,7 @@ bool is_list_of_tables(const Value& value) {
            std::ranges::all_of(*list, [](const Value& v) { return std::holds_alternative<Table>(v.data); });
 }
 
-/// As the materials of a robot: each gets a heading of its own.
+/// Such as the materials of a robot: each gets its own header.
 bool is_table_of_tables(const Table& table) {
     return !table.empty() &&
            std::ranges::all_of(table, [](const Entry& e) { return std::holds_alternative<Table>(e.second.data); });

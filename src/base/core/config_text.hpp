@@ -1,4 +1,4 @@
-// A tree of values as TOML again: without comments and with tables inside tables in one line each.
+// Writes a tree of values as TOML: without comments, with nested tables inline.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace pliant::config {
 
-/// Reads back as the same tree. Precondition: the root is a Table.
+/// Parses back to the same tree. Precondition: the root is a Table.
 [[nodiscard]] std::string toml_text(const Value& root);
 
 }  // namespace pliant::config

@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// A number of things, whose plural is the word with an s.
+/// A count and its noun; the plural adds an s.
 [[nodiscard]] inline std::string counted(std::size_t count, std::string_view word) {
     return std::to_string(count) + " " + std::string(word) + (count == 1 ? "" : "s");
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t most_bytes = std::size_t{64} << 20;
 
-/// One cell, and what follows it: in quotes a separator is a letter as others are, and "" is a quote (RFC 4180).
+/// Takes one cell and its separator: in quotes a separator is an ordinary character, and "" is a quote (RFC 4180).
 std::string take_cell(std::string_view& line, char separator, bool& more) {
     std::string cell;
     bool quoted = false;
@@ -47,7 +47,7 @@ char separator_of(std::string_view line) {
     return ',';
 }
 
-/// Empty, or a comment, which a spreadsheet may have put in quotes.
+/// Empty, or a comment, which a spreadsheet may have quoted.
 bool is_passed_over(std::string_view line) {
     const std::size_t first = line.find_first_not_of(" \t\r\"");
     return first == std::string_view::npos || line[first] == '#';
@@ -81,7 +81,7 @@ Result<double> CsvTable::number(const CsvRow& row, std::size_t column, std::stri
 
 Result<CsvTable> parse_csv(std::string_view text, const std::string& file, std::string_view example) {
     if (text.size() > most_bytes) return input_error("{}: over 64 MB is more than a table of measurements has", file);
-    constexpr std::string_view mark = "\xEF\xBB\xBF";  // spreadsheets begin UTF-8 files with it
+    constexpr std::string_view mark = "\xEF\xBB\xBF";  // spreadsheets put it at the start of UTF-8 files
     if (text.substr(0, mark.size()) == mark) text.remove_prefix(mark.size());
     CsvTable table;
     table.file = file;

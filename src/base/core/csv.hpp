@@ -1,5 +1,4 @@
-// Tables of measurements as text: commas, semicolons or tabs, numbers with a decimal point, units in the columns'
-// names.
+// Tables of measurements as text: comma, semicolon or tab separated, decimal points, units in the column names.
 #pragma once
 
 #include <string>
@@ -19,22 +18,22 @@ struct CsvRow {
 struct CsvTable {
     std::string file;
     int header_line = 0;
-    std::vector<std::string> columns;  ///< as written, without quotes and blanks around them
+    std::vector<std::string> columns;  ///< as written, without surrounding quotes and blanks
     std::vector<CsvRow> rows;          ///< at least one
 
     /// "FILE:LINE", for messages.
     [[nodiscard]] std::string place(int line) const;
-    /// The cell of a column, by its index. Error: the row is too short.
+    /// The cell of a column, by index. Error: the row is too short.
     [[nodiscard]] Result<std::string_view> cell(const CsvRow& row, std::size_t column) const;
-    /// The finite number in it, which messages call `what`.
+    /// The finite number in that cell, called `what` in messages.
     [[nodiscard]] Result<double> number(const CsvRow& row, std::size_t column, std::string_view what) const;
 };
 
-/// Empty lines and those that begin with # are passed over; the first other line names the columns. `example` is what
-/// it could be, for the message of an empty file. Errors: over 64 MB, no names, no rows.
+/// Empty lines and lines that begin with # are skipped; the first other line names the columns. `example` is a valid
+/// header line, shown in the error for an empty file. Errors: over 64 MB, no names, no rows.
 [[nodiscard]] Result<CsvTable> parse_csv(std::string_view text, const std::string& file, std::string_view example);
 
-/// What stands in brackets at the end of a column's name: "MPa" of "stress (MPa)"; "" without.
+/// The text in brackets at the end of a column name: "MPa" for "stress (MPa)"; "" if there is none.
 [[nodiscard]] std::string_view csv_unit(std::string_view column);
 
 }  // namespace pliant

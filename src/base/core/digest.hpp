@@ -1,4 +1,4 @@
-// Names bytes: tells files apart, protects against nothing.
+// A checksum that tells files apart; not cryptographic.
 #pragma once
 
 #include <fmt/format.h>

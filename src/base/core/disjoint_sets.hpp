@@ -1,4 +1,4 @@
-// Which of many things hang together.
+// Union-find.
 #pragma once
 
 #include <algorithm>
@@ -8,12 +8,13 @@
 
 namespace pliant {
 
-/// The numbers 0 to `count` - 1, each in a set of its own until sets are joined. A set is known by its smallest number.
+/// The numbers 0 to `count` - 1, each in its own set until sets are joined. A set is represented by its smallest
+/// number.
 class DisjointSets {
 public:
     explicit DisjointSets(std::size_t count) : above_(count) { std::iota(above_.begin(), above_.end(), 0); }
 
-    /// The set that holds `i`. Halves the way there.
+    /// The representative of the set that holds `i`. Compresses the path by halving.
     [[nodiscard]] int find(int i) {
         while (above(i) != i) i = above(i) = above(above(i));
         return i;
@@ -26,7 +27,7 @@ public:
 private:
     int& above(int i) { return above_[static_cast<std::size_t>(i)]; }
 
-    std::vector<int> above_;  ///< a number of the same set that is not larger; itself for the smallest
+    std::vector<int> above_;  ///< parent: a member of the same set that is not larger; the smallest is its own parent
 };
 
 }  // namespace pliant

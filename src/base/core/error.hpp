@@ -17,28 +17,28 @@ enum class Cause {
     cancelled,  ///< the caller asked to stop: exit status 1
 };
 
-/// One thing that is wrong, and where: what a page marks and a script looks up. Empty, or 0, where it is not known.
+/// One problem and its place, for an editor to mark or a script to look up. Fields that are unknown are empty or 0.
 struct Diagnostic {
     std::string file;
     int line = 0;      ///< from 1
-    std::string key;   ///< of a file of keys, or the kind and name of what is meant: body "tip"
+    std::string key;   ///< the key in the file, or kind and name of the object concerned: body "tip"
     std::string text;  ///< what is wrong and what would be right
     bool operator==(const Diagnostic&) const = default;
 };
-/// "FILE:LINE: KEY: TEXT", without what is not known.
+/// "FILE:LINE: KEY: TEXT", without the parts that are unknown.
 [[nodiscard]] std::string shown(const Diagnostic& problem);
 
 struct Error {
     Cause cause = Cause::input;
     std::string message;                 ///< one line per problem, without a trailing newline
-    std::vector<Diagnostic> problems{};  ///< the same as data, where it is about places; else empty
+    std::vector<Diagnostic> problems{};  ///< the same as data, if the error is about places in a file; else empty
 };
 
 template <class T>
 using Result = tl::expected<T, Error>;
 using Status = Result<void>;
 
-/// Of problems, shown one a line.
+/// From problems, shown one per line.
 [[nodiscard]] Error error_of(Cause cause, std::vector<Diagnostic> problems);
 
 /// `return input_error("{}: ...", file);`

@@ -8,7 +8,7 @@ namespace pliant {
 
 void FileHandle::close() noexcept {
     if (!is_open()) return;
-    const int before = errno;  // an error that is being told
+    const int before = errno;  // may belong to an error being reported
     ::close(std::exchange(number_, -1));
     errno = before;
 }

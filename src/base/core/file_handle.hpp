@@ -1,15 +1,16 @@
-// An open file, pipe, socket or device of the system, which is closed with its owner.
+// An open file, pipe, socket or device of the system, closed by its owner's destructor.
 #pragma once
 
 #include <utility>
 
 namespace pliant {
 
-/// Owns a file descriptor; movable. Whatever was moved from owns none, or after an assignment that of the other.
+/// Owns a file descriptor; movable. A moved-from handle owns none; after a move assignment it owns the target's old
+/// one.
 class FileHandle {
 public:
     FileHandle() = default;
-    /// Below zero, as the system's calls say that they failed: none.
+    /// A negative number, the system's error result, means none.
     explicit FileHandle(int number) : number_(number) {}
     FileHandle(FileHandle&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
     FileHandle& operator=(FileHandle&& other) noexcept {
@@ -19,9 +20,9 @@ public:
     ~FileHandle() { close(); }
 
     [[nodiscard]] bool is_open() const { return number_ >= 0; }
-    /// For the system's calls; still owned here.
+    /// For system calls; ownership stays here.
     [[nodiscard]] int number() const { return number_; }
-    /// Does nothing where there is none. errno stays as it is.
+    /// Does nothing if no descriptor is owned. Preserves errno.
     void close() noexcept;
 
 private:

@@ -43,7 +43,7 @@ TEST_CASE("a file is closed with its owner, and once") {
     CHECK(is_open(first));
 }
 
-TEST_CASE("a file that moves stays open, and what an assignment replaces is closed in the end") {
+TEST_CASE("a moved file stays open, and one replaced by assignment is closed") {
     const int number = opened();
     FileHandle file(number);
     FileHandle moved(std::move(file));
@@ -63,7 +63,7 @@ TEST_CASE("a file that moves stays open, and what an assignment replaces is clos
     CHECK_FALSE(is_open(replaced));
 }
 
-TEST_CASE("closing leaves the error that is being told") {
+TEST_CASE("closing preserves errno") {
     errno = ENOENT;
     { const FileHandle none(-1); }
     { const FileHandle wrong(1 << 20); }  // no such descriptor: close() fails with EBADF

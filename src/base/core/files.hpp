@@ -1,4 +1,4 @@
-// Files in and out: read whole with a limit, written aside and renamed so that nothing half-made is ever seen.
+// Reading whole files with a size limit; writing to a temporary name and renaming, so no partial result is ever seen.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@
 
 namespace pliant {
 
-/// The bytes of a regular file of at most `limit_bytes`.
+/// The contents of a regular file of at most `limit_bytes`.
 [[nodiscard]] Result<std::string> read_file(const std::filesystem::path& path,
                                             std::uintmax_t limit_bytes = std::uintmax_t{4} << 30);
 
 /// Writes `PATH.partial`, then renames it to PATH.
 [[nodiscard]] Status write_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// True where `folder` is not there yet, is an empty folder, or one that holds a file `marker`: so that no foreign
-/// folder is ever deleted.
+/// True if `folder` does not exist, is empty, or contains a file named `marker`, so that no foreign folder is ever
+/// deleted.
 [[nodiscard]] bool may_replace_folder(const std::filesystem::path& folder, std::string_view marker);
 
-/// Calls `fill` on a fresh folder `DIR.partial` and, if it succeeds, puts that folder in the place of DIR. DIR is
-/// replaced as may_replace_folder() allows.
+/// Calls `fill` on a new folder `DIR.partial` and, if it succeeds, renames it to DIR. An existing DIR is replaced only
+/// if may_replace_folder() allows it.
 [[nodiscard]] Status write_folder(const std::filesystem::path& folder, std::string_view marker,
                                   const std::function<Status(const std::filesystem::path&)>& fill);
 

@@ -1,4 +1,4 @@
-// Letters as file formats count them: ASCII alone, whatever the locale.
+// Character classes of file formats: ASCII only, whatever the locale.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ namespace pliant {
     return out;
 }
 
-/// Without blanks, tabs and carriage returns around it.
+/// Without leading and trailing blanks, tabs and carriage returns.
 [[nodiscard]] constexpr std::string_view trimmed(std::string_view text) {
     constexpr std::string_view blanks = " \t\r\n";
     const std::size_t begin = text.find_first_not_of(blanks);

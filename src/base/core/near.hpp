@@ -3,8 +3,8 @@
 //   CHECK(measured == near(expected, {.relative = 1e-6}));
 //   CHECK(measured == near(0, {.absolute = 1e-9}));  // where the quantity's own scale is known: metres, newtons
 //
-// doctest::Approx is not used: it adds 1 to its scale, so that 0.0 equals Approx(1.9e-6), and it has a tolerance that
-// nobody wrote. tools/check_tests looks for it.
+// doctest::Approx is not used: it adds 1 to its scale, so that 0.0 equals Approx(1.9e-6), and its default tolerance is
+// invisible in the test. tools/check_tests reports any use of it.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -15,8 +15,8 @@
 
 namespace pliant {
 
-/// How far from the expected number is still right: `relative` is a share of it, `absolute` is in its own unit, and
-/// the larger of the two counts. Both 0: the same number, or it is wrong.
+/// The allowed deviation: `relative` as a fraction of the expected number, `absolute` in its unit; the larger of the
+/// two applies. If both are 0, the numbers must be equal.
 struct Tolerance {
     double relative = 0;
     double absolute = 0;
@@ -45,7 +45,7 @@ public:
 private:
     double expected_;
     double allowed_;
-    mutable double measured_ = std::nan("");  // for toString alone: the last number that this one was held against
+    mutable double measured_ = std::nan("");  // for toString only: the last number compared with this one
 };
 
 /// Requires a tolerance of at least 0; there is none by default.

@@ -9,7 +9,7 @@
 using namespace pliant;
 
 TEST_CASE("a small number is not near another one because both are small") {
-    CHECK_FALSE(0.0 == near(1.9e-6, {.relative = 1e-2}));  // what doctest::Approx lets through
+    CHECK_FALSE(0.0 == near(1.9e-6, {.relative = 1e-2}));  // accepted by doctest::Approx
     CHECK_FALSE(1.9e-6 == near(0, {.relative = 1e-2}));
     CHECK_FALSE(1.6e-5 == near(1.7e-5, {.relative = 1e-2}));
     CHECK(1.69e-5 == near(1.7e-5, {.relative = 1e-2}));
@@ -25,7 +25,7 @@ TEST_CASE("the larger tolerance counts, and its edge is inside") {
     CHECK_FALSE(0.02 == near(0.01, {.relative = 0.1, .absolute = 0.001}));
 }
 
-TEST_CASE("no tolerance is the same number, and there is none by default") {
+TEST_CASE("without a tolerance numbers must be equal, and there is no default") {
     CHECK(0.1 == near(0.1, {}));
     CHECK_FALSE(0.1 == near(0.1 + 1e-16 * 2, {}));
     CHECK_FALSE(std::is_invocable_v<decltype(near), double>);
@@ -50,7 +50,7 @@ TEST_CASE("whole numbers are measured as well") {
     CHECK(count != near(100, {.relative = 0.001}));
 }
 
-TEST_CASE("a check that fails says what was measured, expected, how far off it is and what was allowed") {
+TEST_CASE("a failed check shows measured, expected, deviation and tolerance") {
     const Near wanted = near(2.5e-3, {.relative = 1e-2});
     REQUIRE_FALSE(2.25e-3 == wanted);
     const std::string text = toString(wanted).c_str();

@@ -1,4 +1,4 @@
-// Work that keeps to one core, beside other work of its kind.
+// Running work on a single core, beside other work of the same kind.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-/// Calls `work`; the parallel loops in it (parallel.hpp) take place on this thread alone.
+/// Calls `work`; parallel loops inside it (parallel.hpp) run on this thread alone.
 void on_own_core(const std::function<void()>& work);
 
 /// Cores that this process may use, at least 1.

@@ -24,6 +24,6 @@ TEST_CASE("loops of work on its own core stay on its thread") {
 }
 #endif
 
-TEST_CASE("there is a core at least") {
+TEST_CASE("there is at least one core") {
     CHECK(core_count() >= 1);
 }

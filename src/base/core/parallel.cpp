@@ -15,8 +15,8 @@ namespace {
 
 /// Calls `work(p)` for every p below `pieces`, on all cores.
 #ifdef PLIANT_PLAIN_THREADS
-// For the thread sanitizer, which does not see how TBB, built without it, hands over work: it would call that a race,
-// and a suppression of TBB would hide the races inside `work` with it.
+// For the thread sanitizer: TBB is built without it, so it does not see TBB's synchronisation and would report false
+// races; suppressing TBB would also hide real races inside `work`.
 template <class Work>
 void on_all_cores(std::size_t pieces, const Work& work) {
     std::atomic<std::size_t> next = 0;

@@ -9,13 +9,13 @@
 namespace pliant {
 
 /// Calls `body(begin, end)` on disjoint pieces of [0, n), each of at most `grain` items, on all cores; returns when all
-/// are done. Piece boundaries depend on n and grain only. `body` must not throw.
+/// are done. Piece boundaries depend only on n and grain. `body` must not throw.
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 
-/// Sets all numbers to 0, on all cores: a large new array gets its pages by that.
+/// Sets all numbers to 0, on all cores; for a large new array this also maps its pages in parallel.
 void parallel_clear(std::span<double> numbers);
 
-/// Sum of `piece(begin, end)` over the same pieces, added in order: the same bits on any number of threads.
+/// Sum of `piece(begin, end)` over the same pieces, added in order: bit-identical on any number of threads.
 [[nodiscard]] double parallel_sum(std::size_t n, std::size_t grain,
                                   const std::function<double(std::size_t, std::size_t)>& piece);
 

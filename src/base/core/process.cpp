@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-/// What the new process does with its files before the program begins.
+/// Redirections of the new process' files before the program starts.
 class FileActions {
 public:
     explicit FileActions(const ProcessFiles& files) {

@@ -1,4 +1,4 @@
-// Other programs, started by this one.
+// Starting other programs.
 #pragma once
 
 #include <sys/types.h>
@@ -11,16 +11,16 @@
 
 namespace pliant {
 
-/// What becomes standard input, output and error of a new process; below zero: /dev/null.
+/// Standard input, output and error of a new process; a negative number means /dev/null.
 struct ProcessFiles {
     int input = -1;
     int output = -1;
     int error = -1;
 };
 
-/// Starts a program, without a search in PATH; `words` are its arguments without the program's name. It runs in a
-/// session of its own, so that a key such as Ctrl-C that ends this program does not end it, and blocks no signal. The
-/// caller waits for the process (waitpid). Errors: the program and what the system said.
+/// Starts a program without searching PATH; `words` are its arguments without the program's name. It runs in a session
+/// of its own, so a Ctrl-C that ends this program does not end it, and with no signal blocked. The caller must wait for
+/// the process (waitpid). Errors: names the program and the system's reason.
 [[nodiscard]] Result<pid_t> start_process(const std::filesystem::path& program, std::vector<std::string> words,
                                           const ProcessFiles& files);
 

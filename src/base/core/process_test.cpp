@@ -40,7 +40,7 @@ struct Ran {
     int status = 0;  ///< as of waitpid()
 };
 
-/// What /bin/sh says when it runs `script` with `input`; -1: without any.
+/// Output of /bin/sh running `script` with `input`; -1: no input.
 Ran run(const std::string& script, int input = -1) {
     Pipe pipe = make_pipe();
     const Result<pid_t> process =
@@ -54,13 +54,13 @@ Ran run(const std::string& script, int input = -1) {
 
 }  // namespace
 
-TEST_CASE("a process gets its words as they are and says what it says to whom it is told") {
+TEST_CASE("a process gets its arguments unchanged, and its output is redirected") {
     const Ran ran = run("printf '%s|' \"$#\" \"$@\"; echo unheard >&2; exit 3");
     CHECK(ran.said == "2|two words||");
     CHECK(WEXITSTATUS(ran.status) == 3);
 }
 
-TEST_CASE("a process reads what it is given, and nothing otherwise") {
+TEST_CASE("a process reads its input, or nothing if there is none") {
     Pipe pipe = make_pipe();
     REQUIRE(::write(pipe.in.number(), "given\n", 6) == 6);
     pipe.in.close();
@@ -83,7 +83,7 @@ TEST_CASE("a process leads a session of its own and blocks no signal") {
     CHECK((std::stoull(blocked, nullptr, 16) & ~(1ULL << 16)) == 0);
 }
 
-TEST_CASE("a program that is not there is told") {
+TEST_CASE("a missing program is reported") {
     const Result<pid_t> process = start_process("/no/such/program", {}, {});
     REQUIRE_FALSE(process);
     CHECK(process.error().message == "/no/such/program: cannot be started: No such file or directory");

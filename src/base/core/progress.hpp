@@ -1,11 +1,11 @@
-// How long work tells its caller where it is, and learns that it should stop. The library never prints.
+// Progress reports from long-running work to its caller, and cancellation. The library never prints.
 #pragma once
 
 #include <string_view>
 
 namespace pliant {
 
-/// The base class is silent and never cancels; the command line and the tests derive from it.
+/// The base class reports nothing and never cancels; the command line and the tests derive from it.
 class Progress {
 public:
     virtual ~Progress() = default;
@@ -15,7 +15,7 @@ public:
         (void)stage;
         (void)fraction;
     }
-    /// True once the caller wants the work to stop; asked between pieces of work. May be called from any thread.
+    /// True once the caller wants the work to stop; polled between pieces of work. May be called from any thread.
     [[nodiscard]] virtual bool cancelled() const { return false; }
 };
 

@@ -1,4 +1,4 @@
-// A share that changes along a way.
+// A fraction that varies along a line.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace pliant {
 
-/// `shares` stand evenly spaced from `from` to `to`, straight lines between them; planes across the way have one share,
-/// and before and beyond it goes on unchanged. Preconditions: two shares or more, `from` is not `to`.
+/// `shares` are evenly spaced samples from `from` to `to`, linear in between and constant on planes normal to the line;
+/// beyond the ends the end values hold. Preconditions: at least two shares, `from` is not `to`.
 inline double share_along(std::span<const double> shares, const Vec3& from, const Vec3& to, const Vec3& place) {
     const Vec3 way = to - from;
     const double along = std::clamp(dot(place - from, way) / dot(way, way), 0.0, 1.0);

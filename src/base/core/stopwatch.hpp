@@ -1,4 +1,4 @@
-// How long pieces of work take.
+// Timing of pieces of work.
 #pragma once
 
 #include <chrono>
@@ -8,7 +8,7 @@ namespace pliant {
 
 class Stopwatch {
 public:
-    /// Seconds of wall time since it was made or last read.
+    /// Seconds of wall time since construction or the last call.
     double read_s() {
         const auto now = std::chrono::steady_clock::now();
         return std::chrono::duration<double>(now - std::exchange(begin_, now)).count();

@@ -1,4 +1,4 @@
-// A fresh folder for one test, gone when the test ends.
+// A temporary folder for one test, deleted at its end.
 #pragma once
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// The processes that a program has started, for tests.
+// Child processes of a program, for tests.
 #pragma once
 
 #include <sys/types.h>
@@ -12,7 +12,7 @@
 
 namespace pliant::test {
 
-/// Those of the program `name` (of at most 15 letters) that `parent` has started and that have not ended.
+/// Running child processes of `parent` with the name `name` (at most 15 letters).
 inline std::vector<pid_t> children_of(pid_t parent, const std::string& name) {
     namespace fs = std::filesystem;
     std::vector<pid_t> found;
@@ -28,7 +28,7 @@ inline std::vector<pid_t> children_of(pid_t parent, const std::string& name) {
         pid_t of = 0;
         rest >> state >> of;
         if (of != parent) continue;
-        // Its first thread may have ended while others, and what they have open, are still there.
+        // The main thread may have ended while others, and their open files, still exist.
         std::error_code gone;
         const auto threads =
             std::distance(fs::directory_iterator(entry.path() / "task", gone), fs::directory_iterator());

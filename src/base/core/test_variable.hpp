@@ -1,4 +1,4 @@
-// An environment variable for as long as a test takes.
+// Sets an environment variable for the duration of a test.
 #pragma once
 
 #include <cstdlib>

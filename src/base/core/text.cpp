@@ -25,7 +25,7 @@ std::string nearest_name(std::string_view word, std::span<const std::string> can
     std::string best;
     int best_distance = static_cast<int>(std::min<std::size_t>(word.size(), 200)) / 2 + 1;
     for (const std::string& candidate : candidates) {
-        if (word.size() > 200) break;  // a word that long is not a slip of the finger
+        if (word.size() > 200) break;  // too long to be a typing error
         const int distance = edit_distance(word, candidate);
         if (distance < best_distance) {
             best_distance = distance;

@@ -21,13 +21,13 @@ TEST_CASE("the nearest name is offered only when it is near") {
     CHECK(nearest_name("xyzzyplugh", names).empty());
 }
 
-TEST_CASE("one thing has no plural") {
+TEST_CASE("a count of one is singular") {
     CHECK(counted(0, "swap") == "0 swaps");
     CHECK(counted(1, "swap") == "1 swap");
     CHECK(counted(2, "swap") == "2 swaps");
 }
 
-TEST_CASE("names are joined as a person would") {
+TEST_CASE("names are joined with commas and 'and'") {
     CHECK(join_names(std::vector<std::string>{}).empty());
     CHECK(join_names(std::vector<std::string>{"a"}) == "a");
     CHECK(join_names(std::vector<std::string>{"a", "b", "c"}) == "a, b and c");

@@ -19,14 +19,14 @@ Result<toml::table> parsed(std::string_view text) {
     }
 }
 
-/// Where a line begins, counted from 1; past the last one the end of the text.
+/// Start of a line, counted from 1; past the last line the end of the text.
 std::size_t start_of_line(std::string_view text, std::size_t line) {
     std::size_t at = 0;
     for (; line > 1 && at < text.size(); --line) at = std::min(text.find('\n', at), text.size() - 1) + 1;
     return at;
 }
 
-/// The byte at which a place is; columns count letters, however many bytes they take.
+/// The byte offset of a source position; columns count characters, which may have several bytes.
 std::size_t offset_of(std::string_view text, const toml::source_position& place) {
     std::size_t at = start_of_line(text, place.line);
     const auto continues = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0U) == 0x80U; };
@@ -37,7 +37,7 @@ std::size_t offset_of(std::string_view text, const toml::source_position& place)
     return at;
 }
 
-/// The last line that a node, or anything in it, stands on.
+/// The last line of a node, including its children.
 std::size_t last_line(const toml::node& node) {
     std::size_t last = std::max(node.source().begin.line, node.source().end.line);
     if (const auto* table = node.as_table()) {
@@ -48,7 +48,7 @@ std::size_t last_line(const toml::node& node) {
     return last;
 }
 
-/// The last line of a table's own keys: tables under headers of their own are not its lines.
+/// The last line of a table's own keys, without subtables under headers of their own.
 std::size_t last_own_line(const toml::table& table) {
     std::size_t last = table.source().begin.line;
     for (const auto& [key, value] : table) {
@@ -58,7 +58,7 @@ std::size_t last_own_line(const toml::table& table) {
     return last;
 }
 
-/// Every own line ends with a line break.
+/// Each of the given lines ends with a line break.
 std::string insert_line(std::string_view text, std::size_t after, std::string_view line) {
     std::string out(text);
     if (!out.empty() && out.back() != '\n') out += '\n';
@@ -66,7 +66,7 @@ std::string insert_line(std::string_view text, std::size_t after, std::string_vi
     return out;
 }
 
-/// Before the bracket that closes a list or an inline table.
+/// Inserts before the bracket that closes a list or an inline table.
 std::string insert_before_end(std::string_view text, const toml::node& node, bool empty, const std::string& more) {
     std::string out(text);
     std::size_t close = offset_of(text, node.source().end);
@@ -100,7 +100,7 @@ std::vector<std::string> parts_of(std::string_view path) {
     }
 }
 
-/// A header for a table that is not there yet, at the end.
+/// Appends a header for a table that does not exist yet.
 std::string with_new_table(std::string_view text, const std::vector<std::string>& parts, std::string_view value) {
     std::string header;
     for (std::size_t k = 0; k + 1 < parts.size(); ++k) {
@@ -118,7 +118,7 @@ Status is_value(std::string_view value) {
     return input_error("\"{}\" is not a TOML value", value);
 }
 
-/// A change must leave a text that can be read.
+/// An edit must leave valid TOML.
 Result<std::string> checked(std::string text) {
     if (auto again = parsed(text); !again) return tl::unexpected(again.error());
     return text;
@@ -162,7 +162,7 @@ Result<std::string> with_value(std::string_view text, std::string_view path, std
         }
         const std::string line = fmt::format("{} = {}", key_text(parts[k]), value);
         if (table->is_inline()) return checked(insert_before_end(text, *table, table->empty(), line));
-        // Of the top level no header tells where it begins.
+        // The top level has no header that tells where it begins.
         const std::size_t after = at == &*root && table->source().begin.line <= 1 ? 0 : table->source().begin.line;
         return checked(insert_line(text, std::max(after, at == &*root ? std::size_t{0} : last_own_line(*table)), line));
     }

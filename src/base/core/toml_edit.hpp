@@ -1,4 +1,4 @@
-// Changes one thing of a TOML text and leaves all else as a person wrote it: comments, order, spaces.
+// Changes one value of a TOML text and preserves everything else: comments, order, spaces.
 #pragma once
 
 #include <string>
@@ -10,19 +10,19 @@
 
 namespace pliant::config {
 
-/// `text` with the value at `path` replaced, or added where it is not there yet. `path` as that of `--set`: keys with
-/// dots between them, entries of a [[list]] by their `name` ("cable.flexor.friction") or their number. `value` is TOML.
-/// Errors: the text or the value is no TOML, the path leads through a value or to an entry that is not there.
+/// `text` with the value at `path` replaced, or added if missing. `path` is as in `--set`: keys separated by dots,
+/// entries of a [[list]] by their `name` ("cable.flexor.friction") or index. `value` is TOML.
+/// Errors: the text or the value is not TOML, the path leads through a value or to a missing entry.
 [[nodiscard]] Result<std::string> with_value(std::string_view text, std::string_view path, std::string_view value);
 
 /// Keys of an entry, and their values in TOML.
 using EntryText = std::vector<std::pair<std::string, std::string>>;
 
-/// `text` with one more entry at the end of a top-level list: as [[list]], or in brackets where the list is written so.
-/// Errors as above; `list` is something else.
+/// `text` with an entry appended to a top-level list, as [[list]], or as an inline table if the list is an inline
+/// array. Errors as above; also if `list` is not a list.
 [[nodiscard]] Result<std::string> with_entry(std::string_view text, std::string_view list, const EntryText& entry);
 
-/// A key as TOML has it: bare, or in quotes.
+/// A key in TOML syntax: bare, or quoted if necessary.
 [[nodiscard]] std::string key_text(std::string_view key);
 
 }  // namespace pliant::config

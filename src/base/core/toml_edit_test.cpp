@@ -63,7 +63,7 @@ TEST_CASE("a value is replaced, and nothing else") {
     }
 }
 
-TEST_CASE("a value that is not there yet comes to the others of its table, or gets one") {
+TEST_CASE("a missing value is added to its table, and the table if missing") {
     CHECK(with_value(robot, "parameters.width", "3").value() ==
           replaced(robot, "\"odd key\" = 1\n", "\"odd key\" = 1\nwidth = 3\n"));
     CHECK(with_value(robot, "material.stiff.density", "\"1 g/cm^3\"").value() ==
@@ -87,7 +87,7 @@ TEST_CASE("an entry comes after the last of its list, as the list is written") {
     CHECK(with_entry("m = []\n", "m", entry).value() == "m = [ { name = \"tip\", point = [1, 2, 3] }]\n");
 }
 
-TEST_CASE("what cannot be is refused with a reason") {
+TEST_CASE("invalid edits are refused with a reason") {
     const auto why = [](const Result<std::string>& text) {
         REQUIRE_FALSE(text);
         return text.error().message;

@@ -85,7 +85,7 @@ DimensionInfo info(Dimension dimension) {
     return {"", {}};
 }
 
-/// "N*mm" and "N * mm" are "N mm".
+/// Converts "N*mm" and "N * mm" to "N mm".
 std::string with_spaces(std::string_view unit) {
     std::string text;
     for (const char c : unit) {

@@ -32,7 +32,7 @@ enum class Dimension {
 [[nodiscard]] std::string_view describe(Dimension dimension);
 
 /// Value in SI units (angles in radians). The text is a finite number and a unit of that dimension, with or without a
-/// space between them; the error names the units that would be right.
+/// space between them; the error names the accepted units.
 [[nodiscard]] Result<double> parse_quantity(std::string_view text, Dimension dimension);
 
 /// The factor from a unit's name to SI, as in `length_unit = "mm"`. A product is written with a space or a star:

@@ -1,4 +1,4 @@
-// A point or direction in space, thin enough for every header.
+// A point or direction in space; light enough to include everywhere.
 #pragma once
 
 #include <array>
@@ -65,7 +65,7 @@ struct Box3 {
             if (p[i] > high[i]) high[i] = p[i];
         }
     }
-    /// Closed on all sides, widened by `margin`.
+    /// Boundary included, after widening by `margin`.
     [[nodiscard]] bool contains(const Vec3& p, double margin = 0) const {
         return p.x >= low.x - margin && p.y >= low.y - margin && p.z >= low.z - margin && p.x <= high.x + margin &&
                p.y <= high.y + margin && p.z <= high.z + margin;

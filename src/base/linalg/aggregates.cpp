@@ -13,7 +13,7 @@ std::span<const int> neighbours(const BlockRows& matrix, int node) {
     return {matrix.column.data() + matrix.start[node], matrix.column.data() + matrix.start[node + 1]};
 }
 
-/// Whole neighbourhoods that nobody has taken; what is left between them joins one that it touches.
+/// Groups are whole neighbourhoods of which no node is taken yet; remaining nodes join an adjacent group.
 Aggregates take_neighbourhoods(const BlockRows& matrix) {
     const int nodes = matrix.rows();
     Aggregates result{std::vector<int>(static_cast<std::size_t>(nodes), -1)};
@@ -42,7 +42,7 @@ Aggregates take_neighbourhoods(const BlockRows& matrix) {
     return result;
 }
 
-/// Each group with the one, of those still alone, that it is coupled to most.
+/// Merges each group with the unpaired group it is coupled to most strongly.
 Aggregates pair_up(const BlockRows& matrix, const Aggregates& groups) {
     const Lists nodes = members_of(groups.of_node, groups.count);
     std::vector<int> pair(static_cast<std::size_t>(groups.count), -1), couplings(pair.size(), 0), seen;
@@ -69,8 +69,8 @@ Aggregates pair_up(const BlockRows& matrix, const Aggregates& groups) {
     return result;
 }
 
-/// The factor of the coarse level takes time with the square of the number of groups, all else with that of nodes:
-/// balanced in what was measured from 23,000 nodes to 190,000.
+/// The time to factorise the coarse level grows with the square of the number of groups, everything else with the
+/// number of nodes: balanced by measurements from 23,000 nodes to 190,000.
 bool too_many(int groups, int nodes) {
     return static_cast<std::int64_t>(groups) * groups > std::int64_t{64} * nodes;
 }
@@ -81,7 +81,7 @@ Aggregates aggregate(const BlockRows& matrix) {
     Aggregates groups = take_neighbourhoods(matrix);
     while (too_many(groups.count, matrix.rows())) {
         Aggregates paired = pair_up(matrix, groups);
-        if (paired.count == groups.count) break;  // nothing is next to anything
+        if (paired.count == groups.count) break;  // no groups are adjacent
         groups = std::move(paired);
     }
     return groups;

@@ -1,4 +1,4 @@
-// Small groups of neighbouring nodes.
+// Aggregates of neighbouring nodes.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace pliant::linalg {
 
-/// Group of each node. Nodes of a group are next to one another; groups are about as large as a node and its
-/// neighbours, and larger where there would be more than 8 sqrt(nodes) of them.
+/// The group of each node. Nodes of a group are adjacent; a group is about as large as a node and its neighbours, and
+/// larger if there would otherwise be more than 8 sqrt(nodes) groups.
 struct Aggregates {
     std::vector<int> of_node;
     int count = 0;

@@ -1,4 +1,4 @@
-// Groups of the nodes of lattices.
+// Aggregates on lattices.
 #include "base/linalg/aggregates.hpp"
 
 #include <doctest/doctest.h>
@@ -28,7 +28,7 @@ BlockRows box(int along, int across) {
     return BlockRows(make_pattern((along + 1) * side * side, 3, cliques));
 }
 
-/// Nodes of a group that can be reached from its first one without leaving it.
+/// Number of nodes of a group reachable from its first one within the group.
 std::size_t reached(const BlockRows& matrix, const Aggregates& groups, const std::vector<int>& nodes) {
     std::vector<int> found{nodes.front()};
     for (std::size_t k = 0; k < found.size(); ++k) {
@@ -44,7 +44,7 @@ std::size_t reached(const BlockRows& matrix, const Aggregates& groups, const std
 
 }  // namespace
 
-TEST_CASE("every node is in one group, every group hangs together, and there are never too many of them") {
+TEST_CASE("every node is in one connected group, and the number of groups is limited") {
     for (const auto& [along, across] : {std::pair{1, 1}, {40, 2}, {30, 12}, {60, 30}}) {
         CAPTURE(along);
         const BlockRows matrix = box(along, across);
@@ -63,7 +63,7 @@ TEST_CASE("every node is in one group, every group hangs together, and there are
     }
 }
 
-TEST_CASE("nodes that touch nothing stay alone, however many they are") {
+TEST_CASE("isolated nodes stay alone, however many they are") {
     const BlockRows matrix(make_pattern(1000, 3, {}));
     CHECK(aggregate(matrix).count == 1000);
 }

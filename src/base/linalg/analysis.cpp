@@ -8,7 +8,7 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::size_t grain = 64;  // supernodes that one core takes at a time
+constexpr std::size_t grain = 64;  // supernodes per parallel piece
 
 void find_sources(Analysis& a) {
     const Elimination& e = a.e;
@@ -39,7 +39,7 @@ void find_sources(Analysis& a) {
     });
 }
 
-/// Where the rows below a child are in the front of its parent s.
+/// Positions of the rows below a child in the front of its parent s.
 std::vector<Stretch> stretches_of(const Analysis& a, int child, int s) {
     const Elimination& e = a.e;
     std::vector<Stretch> result;

@@ -1,4 +1,4 @@
-// What is known about a matrix before its numbers: the order of elimination and where each of its blocks goes.
+// Symbolic analysis of a matrix: the elimination order and the destination of each of its blocks.
 #pragma once
 
 #include <memory>
@@ -10,30 +10,30 @@
 
 namespace pliant::linalg {
 
-/// Where a block of the matrix goes.
+/// The destination of a block of the matrix.
 struct Source {
-    int pair;        ///< of the pattern
+    int pair;        ///< index in the pattern
     int row;         ///< node, counted from the top of the panel
     int column;      ///< node of the supernode
-    bool transpose;  ///< the order of elimination turned the pair round
+    bool transpose;  ///< the elimination order swapped row and column
 };
 
-/// Of one unknown a node: good for any number of them.
+/// For one unknown per node; serves any number of them.
 struct Analysis {
     SymmetricPattern pattern;
     Elimination e;
     std::vector<std::vector<int>> children;  ///< (supernodes)
     std::vector<Source> sources;             ///< in the order of the supernodes
     std::vector<int> source_start;           ///< (supernodes + 1)
-    /// (supernodes) where the rows below each are in the front of its parent; a stretch is within the parent's own
-    /// nodes or below them
+    /// (supernodes) positions of the rows below each in its parent's front; each stretch lies either within the
+    /// parent's own nodes or below them
     std::vector<std::vector<Stretch>> stretches;
 
     /// Row of a node in the front of s: its own nodes first, then those below.
     [[nodiscard]] int local_row(int s, int node) const;
 };
 
-/// Copies the pattern, whose block is of no account.
+/// Copies the pattern; its block size is ignored.
 [[nodiscard]] std::shared_ptr<const Analysis> analyse(const SymmetricPattern& pattern);
 
 }  // namespace pliant::linalg

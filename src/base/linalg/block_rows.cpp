@@ -9,15 +9,15 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::size_t grain = 1024;  // rows that one core takes at a time
+constexpr std::size_t grain = 1024;  // rows per parallel piece
 
 }  // namespace
 
 BlockRows::BlockRows(const SymmetricPattern& pattern) : start(static_cast<std::size_t>(pattern.nodes) + 1, 0) {
     assert(pattern.block == 3);
     const auto visit = [&](const auto& use) {
-        // Columns of the lower triangle in order: each row meets its entries left of the diagonal before those right of
-        // it, both ascending.
+        // Columns of the lower triangle in order: so each row gets its entries left of the diagonal before those right
+        // of it, both ascending.
         for (int j = 0; j < pattern.nodes; ++j) {
             for (int k = pattern.node_start[j]; k < pattern.node_start[j + 1]; ++k) use(pattern.node_row[k], j, k);
         }
@@ -41,7 +41,7 @@ BlockRows::BlockRows(const SymmetricPattern& pattern) : start(static_cast<std::s
         if (i != j) put(j, i, k, Source::transposed);
     });
     for (AlignedArray<float>* numbers : {&rounded_, &rest_}) {
-        numbers->resize(9 * column.size() + 1);  // columns are read four rows at a time
+        numbers->resize(9 * column.size() + 1);  // kernels read columns four rows at a time
         (*numbers)[9 * column.size()] = 0;
     }
 }

@@ -1,4 +1,5 @@
-// A stiffness matrix row by row, both triangles, for products in double and, where few digits do, in single precision.
+// A stiffness matrix by rows, both triangles, for products in double and, where low accuracy suffices, single
+// precision.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,15 +12,15 @@
 
 namespace pliant::linalg {
 
-/// Blocks of 3 by 3. Row i has entries start[i] .. start[i + 1], in ascending order of `column`. Each number is kept as
-/// the sum of two in single precision, the second what rounding left: some 14 digits, of which products in single
-/// precision read the first half only.
+/// Blocks of 3 by 3. Row i has entries start[i] .. start[i + 1], in ascending order of `column`. Each number is stored
+/// as the sum of two floats, the second being the rounding error of the first: about 14 digits. Products in single
+/// precision read the first float only.
 class BlockRows {
 public:
     /// Precondition: blocks of 3.
     explicit BlockRows(const SymmetricPattern& pattern);
 
-    /// Takes the values of the pattern.
+    /// Copies the values of the pattern.
     void set(std::span<const double> values);
 
     [[nodiscard]] int rows() const { return static_cast<int>(start.size()) - 1; }
@@ -29,8 +30,8 @@ public:
                Eigen::Map<const Eigen::Matrix3f>(rest_.data() + at).cast<double>();
     }
     [[nodiscard]] Eigen::Matrix3d diagonal(int row) const { return block(diagonal_[row]); }
-    /// y (3 rows, columns) <- A x, of one column or of two side by side (multiply_rows). On all cores; the same bits on
-    /// any number.
+    /// y (3 rows, columns) <- A x, for one column or two interleaved ones (multiply_rows). On all cores; bit-identical
+    /// on any number of them.
     void multiply(const double* x, double* y, int columns = 1) const;
     void multiply(const float* x, float* y, int columns = 1) const;
 
@@ -38,17 +39,17 @@ public:
     std::vector<int> column;  ///< (entries)
 
 private:
-    /// Of the pattern; the lower triangle of a block on the diagonal counts.
+    /// In the pattern; of a diagonal block the lower triangle is used.
     struct Source {
         int pair;
         enum Kind : char { as_it_is, transposed, diagonal } kind;
     };
     [[nodiscard]] RowBlocks blocks() const { return {start.data(), column.data(), rounded_.data(), rest_.data()}; }
 
-    std::vector<Source> source_;   ///< (entries) where the values come from
-    std::vector<int> diagonal_;    ///< (rows) entries
+    std::vector<Source> source_;   ///< (entries) source of each entry's values
+    std::vector<int> diagonal_;    ///< (rows) entry of the diagonal block
     AlignedArray<float> rounded_;  ///< (entries, 9) each block by columns
-    AlignedArray<float> rest_;     ///< alike, what rounding left
+    AlignedArray<float> rest_;     ///< (entries, 9) rounding errors of `rounded_`
 };
 
 }  // namespace pliant::linalg

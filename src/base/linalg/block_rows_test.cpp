@@ -30,7 +30,7 @@ struct Filled {
         for (int j = 0; j < nodes; ++j) {
             for (int i = j; i < nodes; ++i) {
                 if (!pattern.holds(i, j)) continue;
-                // Of many sizes, as materials are.
+                // Of very different magnitudes, as for different materials.
                 const double size = std::pow(10.0, 6 * number(random));
                 const Eigen::Matrix3d block = size * Eigen::Matrix3d::NullaryExpr([&] { return number(random); });
                 add(i, j, i == j ? Eigen::Matrix3d(block + block.transpose()) : block);
@@ -70,7 +70,7 @@ TEST_CASE("blocks and products are those of the matrix: 14 digits in double prec
             }
         }
         const Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(3 * nodes, [&] { return number(random); });
-        // What rounding may make of a sum follows the sizes of what is added.
+        // The rounding error of a sum scales with the magnitudes of its terms.
         const Eigen::VectorXd product = m.dense * x, sizes = m.dense.cwiseAbs() * x.cwiseAbs();
         Eigen::VectorXd y(3 * nodes);
         rows.multiply(x.data(), y.data());
@@ -80,7 +80,7 @@ TEST_CASE("blocks and products are those of the matrix: 14 digits in double prec
         rows.multiply(short_x.data(), short_y.data());
         CHECK(((short_y.cast<double>() - product).array().abs() <= 1e-6 * sizes.array()).all());
 
-        // Two side by side give what each gives alone; two numbers more are read.
+        // Two interleaved vectors give the same as each alone; two numbers past the end are read.
         Eigen::VectorXd both = Eigen::VectorXd::Zero(6 * nodes + 2), both_y(6 * nodes);
         const Eigen::VectorXd other = Eigen::VectorXd::NullaryExpr(3 * nodes, [&] { return number(random); });
         for (int i = 0; i < 3 * nodes; ++i) both.segment<2>(2 * i) << x[i], other[i];

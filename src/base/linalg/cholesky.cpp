@@ -32,7 +32,7 @@ void add(std::span<double> a, double factor, std::span<const double> b) {
 
 struct Cholesky::State {
     std::shared_ptr<const Analysis> analysis;
-    SymmetricPattern pattern;  ///< that of the analysis, with its block
+    SymmetricPattern pattern;  ///< of the analysis, with its block size
     AnyFactor factor;
 
     [[nodiscard]] const FrontLayout& layout() const {
@@ -102,7 +102,8 @@ std::optional<double> Cholesky::solve_and_refine(std::span<const double> values,
     std::vector<double> direction = residual;
     solve(direction, columns);
     std::vector<double> product(residual.size());
-    std::vector<double> left(static_cast<std::size_t>(columns));  // squared error of each, as the factor measures it
+    std::vector<double> left(static_cast<std::size_t>(columns));  // squared error of each column, in the norm of the
+                                                                  // factor
     for (int c = 0; c < columns; ++c) left[c] = dot(column(residual, c), column(direction, c));
     const std::vector<double> whole = left;
     std::fill(right_hand_sides.begin(), right_hand_sides.end(), 0.0);

@@ -10,21 +10,21 @@
 
 namespace pliant::linalg {
 
-/// Of the factor. In single precision it takes half the memory and about half the time.
+/// Precision of the factor. Single takes half the memory and about half the time.
 enum class Precision { single_, double_ };
 
-/// Supernodal and multifrontal (Duff and Reid 1983), on all cores; the same bits on any number of them.
+/// Supernodal and multifrontal (Duff and Reid 1983), on all cores; bit-identical on any number of them.
 class Cholesky {
 public:
     /// Orders and analyses the pattern, which is copied.
     explicit Cholesky(const SymmetricPattern& pattern, Precision precision = Precision::double_);
-    /// With an analysis that is at hand, for `block` unknowns a node, 1 or 3.
+    /// With an existing analysis, for `block` unknowns per node, 1 or 3.
     Cholesky(std::shared_ptr<const Analysis> analysis, int block, Precision precision = Precision::double_);
     Cholesky(Cholesky&&) noexcept;
     Cholesky& operator=(Cholesky&&) noexcept;
     ~Cholesky();
 
-    /// Forgets the factor; the analysis is kept.
+    /// Discards the factor; the analysis is kept.
     void use(Precision precision);
     [[nodiscard]] Precision precision() const;
 
@@ -32,19 +32,20 @@ public:
     /// factor; solve() must not be called then.
     [[nodiscard]] bool factorise(std::span<const double> values);
 
-    /// Gives back what only factorise() needs, about as much as the factor; the next call takes it again.
+    /// Frees the work space of factorise(), about as large as the factor; the next call allocates it again.
     void release_work_space();
 
     /// Solves in place for `columns` right-hand sides, stored one after the other, (columns, size).
     void solve(std::span<double> right_hand_sides, int columns) const;
 
-    /// Solves in place for `count` fields of three components a node, (count, nodes, 3): each component is a right-hand
-    /// side. Quicker than solve() with all of them. Precondition: block 1.
+    /// Solves in place for `count` fields of three components per node, (count, nodes, 3): each component is a
+    /// right-hand side. Faster than solve() with all of them. Precondition: block 1.
     void solve_fields(std::span<double> fields, int count) const;
 
-    /// As solve(), by conjugate gradients with the factor as preconditioner, until the error, in the norm of the
-    /// matrix, is about `tolerance` of the solution; `values` are those of the factor. Returns the error of the first
-    /// iteration, which is what solve() alone leaves at most, or nothing if `limit` more leave more than is wanted.
+    /// As solve(), followed by conjugate gradients with the factor as preconditioner until the error, in the energy
+    /// norm of the matrix, is about `tolerance` relative to the solution; `values` are those of the factor. Returns the
+    /// error of the first iteration, an upper bound of the error of solve() alone, or nothing if `limit` further
+    /// iterations do not reach the tolerance.
     [[nodiscard]] std::optional<double> solve_and_refine(std::span<const double> values,
                                                          std::span<double> right_hand_sides, int columns,
                                                          double tolerance, int limit) const;

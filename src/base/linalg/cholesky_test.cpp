@@ -33,7 +33,7 @@ Eigen::MatrixXd fill(const SymmetricPattern& pattern, std::vector<double>& value
     return dense;
 }
 
-/// Cells of a grid as cliques, as a mesh of hexahedra has them; big enough for branches, a trunk and wide panels.
+/// Grid cells as cliques, as in a hexahedral mesh; large enough for branches, a trunk and wide panels.
 SymmetricPattern grid(int nx, int ny, int nz, int block) {
     std::vector<std::vector<int>> cliques;
     const auto node = [&](int i, int j, int k) { return (i * ny + j) * nz + k; };
@@ -49,7 +49,7 @@ SymmetricPattern grid(int nx, int ny, int nz, int block) {
     return make_pattern(nx * ny * nz, block, cliques);
 }
 
-/// A stiffness-like matrix: positive definite, barely where `shift` is small; also as Eigen has it.
+/// A stiffness-like matrix: positive definite, only just if `shift` is small; also as an Eigen matrix.
 Eigen::SparseMatrix<double> springs(const SymmetricPattern& pattern, std::vector<double>& values, double shift) {
     std::mt19937 random(11);
     std::uniform_real_distribution<double> uniform(-1, 1);
@@ -137,7 +137,7 @@ TEST_CASE("fields of three components agree with Eigen's solver, in both precisi
     }
 }
 
-TEST_CASE("single precision: as near as it can be, and refined as near as asked") {
+TEST_CASE("single precision: accuracy, and refinement to a tolerance") {
     int count = 1;
     for (const int block : {1, 3}) {
         const auto pattern = grid(13, 12, 11, block);

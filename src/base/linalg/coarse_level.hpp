@@ -1,4 +1,4 @@
-// The coarse one of two levels (TwoLevel): fewer unknowns, and how fields go there and back.
+// The coarse level of a two-level solver (TwoLevel): fewer unknowns, with restriction and prolongation.
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@ namespace pliant::linalg {
 
 class CoarseLevel {
 public:
-    /// The fine level: the matrix A, as rows and as the `values` of its pattern, where its nodes are (nodes, 3), the
-    /// inverses of its diagonal blocks D (nodes, 9), and 4/3 of the inverse of the largest eigenvalue of D^-1 A.
+    /// The fine level: the matrix A, as rows and as the `values` of its pattern; the node positions (nodes, 3); the
+    /// inverses of its diagonal blocks D (nodes, 9); and 4/3 of the inverse of the largest eigenvalue of D^-1 A.
     struct Fine {
         const BlockRows& matrix;
         std::span<const double> values;
@@ -24,8 +24,8 @@ public:
     virtual ~CoarseLevel() = default;
 
     virtual void set(const Fine& fine) = 0;
-    /// Keeps all that was set, and turns it with the nodes, which are at `positions` now. False: it does not turn, but
-    /// is quickly set again. Precondition: set() was called.
+    /// Reuses everything from the last set(), rotated with the nodes, which are now at `positions`. False: this level
+    /// cannot be rotated, but set() is fast. Precondition: set() was called.
     [[nodiscard]] virtual bool turn(std::span<const double> positions) = 0;
 
     /// Pattern and values of P^T A P, as of the last set(). Blocks of 3.

@@ -22,11 +22,11 @@ Eigen::Map<Block36> block36(const AlignedArray<float>& values, std::size_t entry
     return Eigen::Map<Block36>(values.data() + 18 * entry);
 }
 
-/// A set of groups that forgets everything at once.
+/// A set of groups that is emptied in constant time.
 class Seen {
 public:
     explicit Seen(int groups) : mark_(static_cast<std::size_t>(groups), -1) {}
-    /// True the first time that `group` comes while `round` lasts.
+    /// True at the first call with `group` in a given `round`.
     bool is_new(int group, int round) { return std::exchange(mark_[group], round) != round; }
 
 private:
@@ -47,7 +47,7 @@ CoarseSpace::CoarseSpace(const BlockRows& matrix)
 }
 
 void CoarseSpace::find_groups(const BlockRows& matrix) {
-    // Row i: what visit(j, add) adds of each node j that i is coupled to, no group twice.
+    // Row i: the groups that visit(j, add) adds for each node j coupled to i, without duplicates.
     const auto rows = [&](const auto& visit) {
         return make_lists(matrix.rows(), [&] {
             return [&, seen = Seen(groups_.count)](int i, std::vector<int>& row) mutable {
@@ -73,7 +73,7 @@ void CoarseSpace::find_groups(const BlockRows& matrix) {
 }
 
 void CoarseSpace::find_pattern() {
-    // Of each group, the later ones that pull at a node that it moves.
+    // For each group, the later ones that exert a force on a node that it moves.
     const Lists later = make_lists(groups_.count, [&] {
         return [&, seen = Seen(groups_.count)](int g, std::vector<int>& row) mutable {
             const auto begin = static_cast<std::ptrdiff_t>(row.size());
@@ -109,7 +109,7 @@ void CoarseSpace::set(const Fine& fine) {
     multiply();
 }
 
-/// Translations, and rotations about the middle of each group, made orthonormal.
+/// Translations, and rotations about the centre of each group, orthonormalised.
 void CoarseSpace::set_rigid_motions(std::span<const double> positions) {
     parallel_for(static_cast<std::size_t>(groups_.count), grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end; ++g) {
@@ -176,7 +176,7 @@ void CoarseSpace::multiply() {
     constexpr std::size_t groups_at_once = 16;
     parallel_for(static_cast<std::size_t>(groups_.count), groups_at_once, [&](std::size_t begin, std::size_t end) {
         std::vector<int> slot(static_cast<std::size_t>(groups_.count));
-        std::vector<Matrix6> sums;  // of this group (columns) and every later one (rows)
+        std::vector<Matrix6> sums;  // with this group (columns) and every later one (rows)
         for (std::size_t g = begin; g < end; ++g) {
             const int first = pattern_.node_start[2 * g];
             const int groups = (pattern_.node_start[2 * g + 1] - first) / 2;
@@ -198,13 +198,13 @@ void CoarseSpace::multiply() {
     });
 }
 
-/// The columns of a group into the pattern, which has two nodes for each.
+/// Stores the columns of a group in the pattern, which has two nodes for each.
 void CoarseSpace::put(std::size_t group, std::span<const Matrix6> sums) {
     for (std::size_t p = 0; p < sums.size(); ++p) {
         for (const int half : {0, 1}) {
             for (const int row : {0, 1}) {
                 if (p == 0 && row < half) continue;
-                // The second node of a group begins with its own diagonal, one pair later than the first.
+                // The second node of a group begins with its own diagonal, so it has one pair less than the first.
                 const std::size_t pair =
                     static_cast<std::size_t>(pattern_.node_start[2 * group + half]) + 2 * p + row - half;
                 Eigen::Map<Eigen::Matrix3d>(coarse_.data() + 9 * pair) = sums[p].block<3, 3>(3 * row, 3 * half);
@@ -221,7 +221,7 @@ bool CoarseSpace::turn(std::span<const double> positions) {
     return true;
 }
 
-/// Node by node, as P lies in memory. Each piece of the nodes has sums of its own, which are added in order.
+/// Node by node, the order of P in memory. Each piece of the nodes has its own sums, which are then added in order.
 void CoarseSpace::restrict(const float* fine, double* coarse) {
     const std::size_t nodes = groups_.of_node.size(), size = modes * static_cast<std::size_t>(groups_.count);
     const std::size_t piece = (nodes + restricting_pieces - 1) / restricting_pieces;

@@ -1,5 +1,5 @@
-// What a body can do without much bending: its nodes in small groups, each of which moves as something rigid, smoothed
-// by one step with the matrix (smoothed aggregation: Vanek, Mandel and Brezina 1996).
+// Coarse space of low-energy motions: rigid motions of small groups of nodes, smoothed by one step with the matrix
+// (smoothed aggregation: Vanek, Mandel and Brezina 1996).
 #pragma once
 
 #include <Eigen/Core>
@@ -15,13 +15,13 @@
 
 namespace pliant::linalg {
 
-/// Six unknowns a group, as two nodes of three: its translations and its rotations.
+/// Six unknowns per group, stored as two nodes of three: its translations and its rotations.
 class CoarseSpace final : public CoarseLevel {
 public:
     explicit CoarseSpace(const BlockRows& matrix);
 
     void set(const Fine& fine) override;
-    /// What a turned body does is what it did before, turned.
+    /// Always true: the coarse space of a rotated body is the old one, rotated.
     [[nodiscard]] bool turn(std::span<const double> positions) override;
     [[nodiscard]] const SymmetricPattern& pattern() const override { return pattern_; }
     [[nodiscard]] std::span<const double> values() const override { return coarse_; }
@@ -38,8 +38,8 @@ private:
     void find_pulls(const BlockRows& matrix);
     void multiply();
     void put(std::size_t group, std::span<const Matrix6> sums);
-    /// What moving a group pulls at a node sums up to little where a body bends easily: single precision would see
-    /// nothing but noise.
+    /// Entry of A P. Where a body bends easily, the forces that a group's motion exerts on a node nearly cancel: in
+    /// single precision only noise would be left.
     [[nodiscard]] Eigen::Map<Pull> pull(int entry) const;
 
     struct Use {
@@ -48,18 +48,18 @@ private:
 
     Aggregates groups_;
     Lists members_;  ///< nodes of each group
-    // P and A P by rows of nodes, in blocks of 3 by 6, column by column.
-    Lists moving_;                        ///< groups of each row of P: they move the node once motions are smoothed
-    Lists pulling_;                       ///< groups of each row of A P: they pull at the node
+    // P and A P by rows of nodes, in blocks of 3 by 6, each column by column.
+    Lists moving_;                        ///< groups in each row of P: their smoothed motions move the node
+    Lists pulling_;                       ///< groups in each row of A P: their motions exert a force on the node
     std::vector<int> use_start_;          ///< (groups + 1)
     std::vector<Use> use_;                ///< where each group appears in P
-    AlignedArray<float> rigid_;           ///< (nodes, 18) motions of the node's own group
+    AlignedArray<float> rigid_;           ///< (nodes, 18) rigid motions of the node's own group
     AlignedArray<float> prolongation_;    ///< (entries of P, 18)
     AlignedArray<double> product_;        ///< (entries of A P, 18)
     std::vector<double> positions_;       ///< (nodes, 3) at the last set()
-    std::vector<Eigen::Matrix3f> turns_;  ///< (groups) since then
+    std::vector<Eigen::Matrix3f> turns_;  ///< (groups) rotations since then
     std::vector<float> sums_;             ///< work space
-    std::vector<char> dropped_;           ///< (groups, 6) a motion that its nodes cannot do
+    std::vector<char> dropped_;           ///< (groups, 6) motions that a group has too few nodes for
     SymmetricPattern pattern_;
     std::vector<double> coarse_;
 };

@@ -20,16 +20,16 @@ namespace {
 
 using Point = Eigen::Vector3f;
 
-constexpr int leaf = 64;                     // nodes that are not cut any more
-constexpr int worth_sharing = 4096;          // nodes whose two parts go to two cores
-constexpr double least_side = 0.1;           // of the nodes
-constexpr std::size_t nodes_at_once = 4096;  // by one core
+constexpr int leaf = 64;                     // pieces of at most this many nodes are not cut further
+constexpr int worth_sharing = 4096;          // smallest piece whose two parts go to two cores
+constexpr double least_side = 0.1;           // smallest part, as a fraction of the nodes
+constexpr std::size_t nodes_at_once = 4096;  // nodes per parallel piece
 constexpr int buckets = 256;
-constexpr std::size_t planes = 6;       // directions in which a piece is cut
-constexpr std::size_t levels = planes;  // the field after them: distances along edges
-constexpr std::size_t fields = 8;       // these seven, and one that is 0, to fill a register
+constexpr std::size_t planes = 6;       // number of directions in which a piece is cut
+constexpr std::size_t levels = planes;  // index of the last field: distances along edges
+constexpr std::size_t fields = 8;       // these seven and a 0, to fill a SIMD register
 
-/// Some of the nodes, ascending, and the graph that they form.
+/// Some of the nodes, ascending, and their subgraph.
 struct Piece {
     std::vector<int> node;
     Graph graph;
@@ -38,10 +38,10 @@ struct Piece {
     [[nodiscard]] int size() const { return static_cast<int>(node.size()); }
 };
 
-/// Heights of a node above several planes, and its level, in buckets; compared in one instruction.
+/// Heights of a node above several planes, and its level, as bucket numbers; compared in one instruction.
 using Heights [[gnu::vector_size(fields)]] = std::uint8_t;
 
-/// Nodes of one height or less on the left; the separator is taken from one side.
+/// Nodes up to this height are on the left; the separator is taken from one side.
 struct Cut {
     double cost = std::numeric_limits<double>::infinity();
     std::size_t field = 0;
@@ -49,7 +49,7 @@ struct Cut {
     Side from = Side::left;
 };
 
-/// Distance from a node, along edges; the last one that is reached comes last in `order`.
+/// Distances from a node, along edges; the farthest node comes last in `order`.
 std::vector<int> distances(const Graph& graph, int from, std::vector<int>& order) {
     std::vector<int> distance(static_cast<std::size_t>(graph.nodes()), -1);
     distance[from] = 0;
@@ -65,7 +65,7 @@ std::vector<int> distances(const Graph& graph, int from, std::vector<int>& order
     return distance;
 }
 
-/// How far each node is from three that are far apart; -1 where there is no way.
+/// Distances of each node from three nodes that are far apart; -1 if not connected.
 std::vector<Point> points_by_distance(const Graph& graph) {
     std::vector<Point> points(static_cast<std::size_t>(graph.nodes()));
     std::vector<int> order;
@@ -83,7 +83,7 @@ std::vector<Point> points_by_distance(const Graph& graph) {
     return points;
 }
 
-/// Within 1 of the first one.
+/// Translated and scaled to within 1 of the first point.
 std::vector<Point> scaled(std::span<const std::array<double, 3>> points) {
     const Eigen::Vector3d first(points[0].data());
     double reach = 0;
@@ -98,7 +98,7 @@ std::vector<Point> scaled(std::span<const std::array<double, 3>> points) {
     return result;
 }
 
-/// Numbers of nodes in buckets, where few of them lie far from the mean.
+/// Sorts numbers of nodes into buckets, given that few are far from the mean.
 class Buckets {
 public:
     Buckets(float mean, float deviation)
@@ -108,7 +108,7 @@ public:
     }
 
 private:
-    static constexpr float reach = 2;  // a bar of even thickness has 1.7
+    static constexpr float reach = 2;  // an evenly thick bar has 1.7
     float lowest_, scale_;
 };
 
@@ -127,7 +127,7 @@ public:
     }
 
 private:
-    /// Gives the nodes of a piece the positions from `first` on. Every call has positions of its own.
+    /// Assigns to the nodes of a piece the positions from `first` on. Calls have disjoint positions.
     void order(Piece piece, int first) {
         if (piece.size() <= leaf) return order_leaf(piece, first);
         std::vector<int> part;
@@ -156,7 +156,7 @@ private:
         for_parts(pieces.size(), nodes, [&](std::size_t k) { order(std::move(pieces[k]), firsts[k]); });
     }
 
-    /// Calls body(k) for each part of something of so many nodes, at once if that is worth it.
+    /// Calls body(k) for each part of something with this many nodes, in parallel if that pays.
     template <class Body>
     static void for_parts(std::size_t parts, int nodes, const Body& body) {
         parallel_for(parts, nodes >= worth_sharing ? 1 : std::max<std::size_t>(parts, 1),
@@ -182,12 +182,12 @@ private:
         for (const int i : by_minimum_degree(piece.graph, std::move(rim))) position_[piece.node[i]] = first++;
     }
 
-    /// True if a neighbour of the node is outside of the piece.
+    /// True if a neighbour of the node is outside the piece.
     [[nodiscard]] bool at_rim(const Piece& piece, int i) const {
         return piece.graph.degree(i) != graph_.degree(piece.node[i]);
     }
 
-    /// How many parts do not touch, and in which of them each node is.
+    /// Connected components: their number, and the one of each node.
     static int components(const Graph& graph, std::vector<int>& part) {
         part.assign(static_cast<std::size_t>(graph.nodes()), -1);
         std::vector<int> stack;
@@ -210,7 +210,7 @@ private:
         return count;
     }
 
-    /// The first `parts` parts of a piece; other nodes and edges between parts are left out.
+    /// The first `parts` parts of a piece as pieces; other nodes and edges between parts are left out.
     static std::vector<Piece> divide(const Piece& piece, const std::vector<int>& part, int parts) {
         std::vector<Piece> result(static_cast<std::size_t>(parts));
         std::vector<int> index(part.size());
@@ -235,7 +235,7 @@ private:
         return result;
     }
 
-    /// A separator, or none where there is no good one: then nearly all nodes are next to one another.
+    /// A separator, or none if there is no good one: then nearly all nodes are adjacent.
     [[nodiscard]] std::optional<std::vector<Side>> separate(const Piece& piece) const {
         std::vector<Heights> heights = heights_of(piece);
         if (!with_points_) set_levels(piece.graph, heights);
@@ -266,7 +266,7 @@ private:
 
     static int least_side_of(int nodes) { return std::max(1, static_cast<int>(least_side * nodes)); }
 
-    /// Along the axes of inertia and of space.
+    /// Heights along the axes of inertia and the coordinate axes.
     static std::vector<Heights> heights_of(const Piece& piece) {
         Point mean = Point::Zero();
         for (const Point& p : piece.point) mean += p;
@@ -300,8 +300,8 @@ private:
             heights[i][levels] = static_cast<std::uint8_t>(static_cast<float>(level[i]) * scale);
     }
 
-    /// How many nodes lie in each bucket of a field, how many of them at the rim of the piece, and for which cuts a
-    /// node is next to the other side (added up over buckets).
+    /// The number of nodes in each bucket of a field, how many of them are at the rim of the piece, and for which cuts
+    /// a node is adjacent to the other side (cumulative over buckets).
     struct Counts {
         std::array<int, buckets> nodes{}, rim{}, left{}, right{};
         void add(const Counts& other) {
@@ -325,7 +325,7 @@ private:
         return best;
     }
 
-    /// Nodes `begin` to `end` of a piece.
+    /// Counts nodes `begin` to `end` of a piece.
     void count(const Piece& piece, const std::vector<Heights>& heights, std::size_t begin, std::size_t end,
                std::array<Counts, fields>& counts) const {
         for (auto i = static_cast<int>(begin); i < static_cast<int>(end); ++i) {
@@ -371,13 +371,13 @@ private:
         }
     }
 
-    /// Multiply-adds that eliminate a separator whose columns reach `rim` nodes.
+    /// Multiply-adds to eliminate a separator whose columns reach `rim` nodes.
     static double work_of_separator(double nodes, double rim) {
         return nodes * (nodes * nodes / 3 + nodes * rim + rim * rim);
     }
 
-    /// A guess: columns of a part are as long as its own separators, which grow with its face, and its rim. Halves of
-    /// unlike size or rim are paid for by it.
+    /// An estimate: columns of a part are as long as its own separators, which grow with its cross-section, and its
+    /// rim. It penalises parts of unequal size or rim.
     [[nodiscard]] double work_of_part(int nodes, double rim) const {
         const double column = 0.3 * static_cast<double>(reach_[nodes]) + rim;
         return 0.5 * nodes * column * column;

@@ -30,7 +30,7 @@ struct Grid {
     Points points;
 };
 
-/// Nodes next to one another along the axes and the diagonals.
+/// Nodes adjacent along axes and diagonals.
 Grid grid(int nx, int ny, int nz) {
     Grid result;
     Edges edges;
@@ -59,7 +59,7 @@ bool is_permutation(std::vector<int> position) {
     return true;
 }
 
-/// Entries of the factor with its diagonal, by eliminating one node after the other.
+/// Entries of the factor including its diagonal, by naive elimination.
 double fill(const Graph& graph, const std::vector<int>& position) {
     std::vector<std::set<int>> later(position.size());
     for (int i = 0; i < graph.nodes(); ++i) {
@@ -86,10 +86,10 @@ TEST_CASE("every node of every graph gets a position of its own, with points and
     };
     check(graph_of_edges(0, {}), {});
     check(graph_of_edges(1, {}), {{0, 0, 0}});
-    check(graph_of_edges(300, {}), Points(300));  // nothing is next to anything
+    check(graph_of_edges(300, {}), Points(300));  // no edges
     const Grid cube = grid(9, 9, 9);
     check(cube.graph, cube.points);
-    check(cube.graph, Points(cube.points.size(), {1, 2, 3}));  // all at one place
+    check(cube.graph, Points(cube.points.size(), {1, 2, 3}));  // all points coincide
     Points far = cube.points;
     far[3] = {1e300, -1e300, 1e-300};
     check(cube.graph, far);
@@ -114,7 +114,7 @@ TEST_CASE("every node of every graph gets a position of its own, with points and
     check(graph_of_edges(202, two), line);
 }
 
-TEST_CASE("a square fills as George 1973 has it, a chain and a star hardly at all") {
+TEST_CASE("the fill of a square is that of George 1973, that of a chain or star minimal") {
     for (const int n : {15, 31, 63}) {
         const Grid square = grid(n, n, 1);
         const double bound = 7.75 * n * n * std::log2(n);
@@ -130,7 +130,7 @@ TEST_CASE("a square fills as George 1973 has it, a chain and a star hardly at al
     CHECK(fill(graph_of_edges(1001, star), dissect(graph_of_edges(1001, star))) == 2 * 1001 - 1);
 }
 
-TEST_CASE("a cube fills no more than by planes through its middle, and less than by rows") {
+TEST_CASE("a cube has no more fill than with mid-planes, and less than with rows") {
     const Grid cube = grid(15, 15, 15);
     std::vector<int> rows(cube.points.size());
     for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = static_cast<int>(k);

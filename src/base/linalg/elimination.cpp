@@ -11,7 +11,7 @@
 namespace pliant::linalg {
 namespace {
 
-/// Both triangles without the diagonal.
+/// Neighbours of each node, without itself.
 Graph neighbours(const SymmetricPattern& pattern) {
     return graph_of(pattern.nodes, [&](const auto& use) {
         for (int j = 0; j < pattern.nodes; ++j) {
@@ -23,7 +23,7 @@ Graph neighbours(const SymmetricPattern& pattern) {
     });
 }
 
-/// The rows i < j of each column j in another order; `position` says where each node goes.
+/// The rows i < j of each column j in a new order; `position` gives the new place of each node.
 Graph upper_part(const SymmetricPattern& pattern, const std::vector<int>& position) {
     return graph_of(pattern.nodes, [&](const auto& use) {
         for (int j = 0; j < pattern.nodes; ++j) {
@@ -35,7 +35,7 @@ Graph upper_part(const SymmetricPattern& pattern, const std::vector<int>& positi
     });
 }
 
-/// Liu's elimination tree, with the paths compressed.
+/// Liu's elimination tree, with path compression.
 std::vector<int> elimination_tree(const Graph& upper) {
     const int n = static_cast<int>(upper.start.size()) - 1;
     std::vector<int> parent(n, -1);
@@ -50,7 +50,7 @@ std::vector<int> elimination_tree(const Graph& upper) {
     return parent;
 }
 
-/// Nodes so that each one follows all of its descendants, and they directly precede it.
+/// A postorder: each node directly follows its descendants.
 std::vector<int> post_order(const std::vector<int>& parent) {
     const int n = static_cast<int>(parent.size());
     std::vector<int> child(n, -1);
@@ -86,7 +86,7 @@ Graph transposed(const Graph& upper) {
     });
 }
 
-/// The smallest descendant of each column, itself if it has none. Precondition: children come before parents.
+/// The smallest descendant of each column, or itself. Precondition: children come before parents.
 std::vector<int> first_descendants(const std::vector<int>& parent) {
     std::vector<int> first(parent.size());
     std::iota(first.begin(), first.end(), 0);
@@ -96,12 +96,13 @@ std::vector<int> first_descendants(const std::vector<int>& parent) {
     return first;
 }
 
-/// Of each column, the lowest one above it that is not closed yet: where the way up meets that of the column at hand.
+/// For each column, its lowest ancestor that is not closed yet: where its path to the root meets that of the current
+/// column.
 class OpenAncestors {
 public:
     explicit OpenAncestors(std::size_t columns) : up_(columns) { std::iota(up_.begin(), up_.end(), 0); }
     void close(int column, int parent) { up_[column] = parent; }
-    /// Later asking is shortened.
+    /// Compresses the path.
     [[nodiscard]] int lowest(int column) {
         int top = column;
         while (up_[top] != top) top = up_[top];
@@ -113,19 +114,19 @@ private:
     std::vector<int> up_;
 };
 
-/// Entries of each column of the factor, without the diagonal (Gilbert, Ng and Peyton 1994). Row i fills the part of
-/// the tree that leads up to i from the columns in which it has an entry: 1 more from each of its leaves on, 1 less
-/// where two ways meet, and nothing from i on. Precondition: descendants directly precede each column.
+/// Entries of each column of the factor, without the diagonal (Gilbert, Ng and Peyton 1994). Row i fills the subtree of
+/// the columns in which it has an entry, up to i: 1 more from each leaf on, 1 less where two paths meet, and none from
+/// i on. Precondition: descendants directly precede each column.
 std::vector<int> column_counts(const Graph& upper, const std::vector<int>& parent) {
     const Graph lower = transposed(upper);
     const std::vector<int> first = first_descendants(parent);
-    std::vector<int> count(parent.size(), 0);  // at first, what each column has more than its children together
+    std::vector<int> count(parent.size(), 0);  // at first, the excess of each column over the sum of its children
     std::vector<int> last_leaf(parent.size(), -1);
     OpenAncestors ancestors(parent.size());
     for (int j = 0; j < lower.nodes(); ++j) {
         for (int k = lower.start[j]; k < lower.start[j + 1]; ++k) {
             int& leaf = last_leaf[lower.other[k]];
-            if (leaf >= first[j]) continue;  // that one leads up to j
+            if (leaf >= first[j]) continue;  // the path of that leaf includes j
             const int before = std::exchange(leaf, j);
             ++count[j];
             if (before >= 0) --count[ancestors.lowest(before)];
@@ -139,14 +140,15 @@ std::vector<int> column_counts(const Graph& upper, const std::vector<int>& paren
     return count;
 }
 
-/// A run of columns that are stored together.
+/// A range of columns stored together.
 struct Run {
     int first, last;   ///< columns first .. last
     int below;         ///< rows below
-    double zeros = 0;  ///< stored for nothing, in entries of the nodes' matrix
+    double zeros = 0;  ///< explicit zeros, in entries of the nodes' matrix
 };
 
-/// Merged if the share of zeros is below what its width allows; narrow ones cost more by their number than by zeros.
+/// True if the fraction of zeros is below what its width allows; the overhead of narrow supernodes exceeds the cost of
+/// zeros.
 bool worth_merging(const Run& run, int block) {
     const double columns = run.last - run.first;
     const double stored = columns * (columns + 1) / 2 + columns * run.below;
@@ -155,7 +157,7 @@ bool worth_merging(const Run& run, int block) {
     return run.zeros <= allowed * stored;
 }
 
-/// Columns that are directly below one another in the tree, merged from the leaves up.
+/// Chains of columns in the tree, merged from the leaves up.
 std::vector<Run> supernodes(const std::vector<int>& parent, const std::vector<int>& count, int block) {
     std::vector<Run> runs;
     for (int j = 0; j < static_cast<int>(parent.size()); ++j) {
@@ -190,7 +192,7 @@ void fill_rows(const Graph& upper, const std::vector<int>& tree, Elimination& e)
     e.row_start.assign(1, 0);
     std::vector<int> together;
     for (int s = 0; s < count; ++s) {
-        // Complete by now: all children came before.
+        // Complete at this point, because all children came before.
         e.row.insert(e.row.end(), rows[s].begin(), rows[s].end());
         e.row_start.push_back(static_cast<int>(e.row.size()));
         if (rows[s].empty()) continue;

@@ -10,7 +10,7 @@ using namespace pliant::linalg;
 
 namespace {
 
-/// Rows of each column that elimination fills, by eliminating node after node.
+/// Fill of each column, by naive elimination.
 std::vector<std::set<int>> fill(const SymmetricPattern& pattern, const std::vector<int>& position) {
     std::vector<std::set<int>> rows(position.size());
     for (int j = 0; j < pattern.nodes; ++j) {
@@ -25,7 +25,7 @@ std::vector<std::set<int>> fill(const SymmetricPattern& pattern, const std::vect
     return rows;
 }
 
-/// Of what is stored for so many unknowns, what may be zeros (see `eliminate`).
+/// Number of stored zeros allowed for this many unknowns (see `eliminate`).
 double allowed_zeros(int unknowns) {
     return unknowns <= 24 ? 0.4 : unknowns <= 48 ? 0.2 : unknowns <= 96 ? 0.08 : 0.02;
 }
@@ -54,14 +54,14 @@ void check(const SymmetricPattern& pattern) {
 
 }  // namespace
 
-TEST_CASE("rows below each supernode are those that elimination fills, and few of them are zeros") {
+TEST_CASE("supernodes have the rows of naive elimination, with few zeros") {
     std::mt19937 random(11);
     for (const int nodes : {1, 2, 30, 400}) {
         for (const double cliques_per_node : {0.3, 1.0, 2.5}) {
             std::uniform_int_distribution<int> node(0, nodes - 1), reach(0, 12);
             Lists cliques;
             for (int c = 0; c < cliques_per_node * nodes; ++c) {
-                const int first = node(random);  // mostly next to one another, as in a mesh
+                const int first = node(random);  // mostly close in number, as in a mesh
                 cliques.push_back(std::vector<int>{first, std::min(nodes - 1, first + reach(random)),
                                                    std::min(nodes - 1, first + reach(random)),
                                                    c % 9 == 0 ? node(random) : first});

@@ -10,15 +10,16 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::size_t numbers_to_share = 250000;  // of a panel that is cleared
+constexpr std::size_t numbers_to_share = 250000;  // entries of a panel from which clearing is parallel
 
-/// Unknowns of the panel: its own fill whole packets, so those below begin with the next one.
+/// Positions of a supernode's rows in the panel: its own are padded to whole packets, so those below begin with the
+/// next packet.
 template <class Real>
 int panel_row(const Panel<Real>& panel, int unknown) {
     return unknown < panel.columns ? unknown : unknown - panel.columns + panel.first_below();
 }
 
-/// All numbers to 0.
+/// Sets all numbers to 0.
 template <class Real>
 void clear(const Panel<Real>& panel) {
     parallel_for(panel.size(), numbers_to_share, [&](std::size_t begin, std::size_t end) {
@@ -90,8 +91,8 @@ bool Factor<Real>::eliminate_branch(const FrontLayout::Branch& branch, std::span
     return true;
 }
 
-/// The right-hand sides on their way through the tree: down all branches at once, down the trunk, and back. What a
-/// branch has for the trunk is summed up beside it, and taken in when all have come, in order.
+/// Passes the right-hand sides through the tree: down all branches in parallel, down the trunk, and back. Contributions
+/// of a branch to the trunk are summed separately and added in order when all branches are done.
 template <class Real>
 class Factor<Real>::Sweep {
 public:
@@ -122,7 +123,7 @@ public:
     }
 
 private:
-    /// What belongs to one supernode.
+    /// Working data of one supernode.
     struct Front {
         std::vector<Real> own, below;
     };
@@ -150,14 +151,14 @@ private:
         }
         for_handed(k, sums.data(), [](Real& handed, Real sum) { handed = sum; });
     }
-    /// What branch k hands over, beside the same rows of `full`.
+    /// Calls `use` on the contributions of branch k and the same rows of `full`.
     template <class Use>
     void for_handed(std::size_t k, Real* full, const Use& use) {
         const int root = branches_[k].last - 1;
         for_rows(e_.row_start[root], e_.row_start[root + 1], handed_[k].data(),
                  static_cast<std::size_t>(e_.rows_below(root) * block_), full, use);
     }
-    /// Rows from `beyond` on are outside of the branch and go to `sums`.
+    /// Rows from `beyond` on are outside the branch and go to `sums`.
     void go_down(int s, Front& front, int beyond, Real* sums) {
         const Panel<Real> p = factor_.panel(s);
         gather(s, p, front);
@@ -177,7 +178,7 @@ private:
         solve_upper(p, count_, front.own.data(), front.below.data());
         put_back(s, p, front);
     }
-    /// What belongs to the columns of s; makes room for what belongs to the rows below.
+    /// Gathers the entries for the columns of s; makes room for those of the rows below.
     void gather(int s, const Panel<Real>& p, Front& front) {
         front.own.resize(static_cast<std::size_t>(p.columns * count_));
         front.below.resize(factor_.leading(s) * static_cast<std::size_t>(count_));
@@ -188,7 +189,7 @@ private:
         for (int c = 0; c < count_; ++c)
             std::copy_n(front.own.data() + c * p.columns, p.columns, all_.data() + c * size_ + e_.first[s] * block_);
     }
-    /// Rows `from` .. `to` of the elimination: those of `part`, one after the other, beside their places in `full`.
+    /// Rows `from` .. `to` in elimination order: those of `part`, one after the other, with their places in `full`.
     /// Right-hand sides are `stride` apart in `part`.
     template <class Use>
     void for_rows(int from, int to, Real* part, std::size_t stride, Real* full, const Use& use) {
@@ -206,8 +207,9 @@ private:
     const std::vector<FrontLayout::Branch>& branches_;
     const int block_, count_;
     const std::size_t size_;
-    typename ArrayPool<Real>::Loan all_;     ///< (count, size) in the order of elimination
-    std::vector<std::vector<Real>> handed_;  ///< by each branch to the trunk: (count, rows below its last supernode)
+    typename ArrayPool<Real>::Loan all_;     ///< (count, size) in elimination order
+    std::vector<std::vector<Real>> handed_;  ///< contribution of each branch to the trunk: (count, rows below its last
+                                             ///< supernode)
 };
 
 template <class Real>

@@ -1,4 +1,4 @@
-// The numbers of a multifrontal factorisation (Duff and Reid 1983), in single or double precision.
+// The numeric part of a multifrontal factorisation (Duff and Reid 1983), in single or double precision.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace pliant::linalg {
 
-/// Real: float or double. The same bits on any number of cores.
+/// Real: float or double. Bit-identical on any number of cores.
 template <class Real>
 class Factor {
 public:
@@ -24,13 +24,13 @@ public:
 
     /// False if the matrix is not positive definite in this precision.
     [[nodiscard]] bool factorise(std::span<const double> values);
-    /// In place, for at most four right-hand sides of nodes * block each, one after the other.
+    /// Solves in place for at most four right-hand sides of nodes * block each, one after the other.
     void solve(double* right_side, int count) const;
-    /// In place, for at most two fields of three components a node, (count, nodes, 3): each component is a right-hand
-    /// side. Precondition: block 1.
+    /// Solves in place for at most two fields of three components per node, (count, nodes, 3): each component is a
+    /// right-hand side. Precondition: block 1.
     void solve_fields(double* fields, int count) const;
 
-    /// For one that will not factorise again: the work space goes, the factor stays.
+    /// Frees the work space of factorise() and keeps the factor.
     void release_work_space();
 
     [[nodiscard]] const FrontLayout& layout() const { return layout_; }
@@ -39,13 +39,13 @@ private:
     [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(analysis_->pattern.nodes) * block_; }
     [[nodiscard]] Panel<Real> panel(int s) const;
     [[nodiscard]] std::size_t leading(int s) const;
-    /// Updates of the children begin at `below`; its own goes to `above`.
+    /// The updates of the children begin at `below`; its own is written to `above`.
     [[nodiscard]] bool eliminate_supernode(int s, std::span<const double> values, const Real* below, Real* above) const;
     [[nodiscard]] bool eliminate_branch(const FrontLayout::Branch& branch, std::span<const double> values) const;
     template <int b>
     void add_sources(int s, std::span<const double> values) const;
 
-    /// Calls work(k) for all branches, at once.
+    /// Calls work(k) for all branches in parallel.
     template <class Work>
     void for_branches(const Work& work) const {
         parallel_for(layout_.branches.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -53,7 +53,7 @@ private:
         });
     }
 
-    class Sweep;       ///< right-hand sides on their way through the tree
+    class Sweep;       ///< passes right-hand sides through the tree
     class FieldSweep;  ///< the same for fields
 
     std::shared_ptr<const Analysis> analysis_;
@@ -61,8 +61,8 @@ private:
     FrontLayout layout_;
     AlignedArray<Real> factor_;
     AlignedArray<Real> work_;
-    mutable ArrayPool<Real> branches_;  ///< space of each that is worked on
-    mutable ArrayPool<Real> scratch_;   ///< of solve()
+    mutable ArrayPool<Real> branches_;  ///< work space of each branch in progress
+    mutable ArrayPool<Real> scratch_;   ///< work space of solve()
 };
 
 extern template class Factor<float>;

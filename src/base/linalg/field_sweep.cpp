@@ -5,9 +5,9 @@
 
 namespace pliant::linalg {
 
-/// As Sweep, but right-hand sides lie next to one another, `lanes` of them unknown by unknown: the columns of a
-/// supernode are then one piece of memory, and each number of the factor is read once for all. For one unknown a node
-/// panels are narrow, and what Sweep does around them would take longer than the arithmetic.
+/// As Sweep, but right-hand sides are interleaved, `lanes` of them per unknown: the columns of a supernode are then
+/// contiguous, and each number of the factor is read once for all. With one unknown per node panels are narrow, and the
+/// overhead of Sweep would exceed the arithmetic.
 template <class Real>
 class Factor<Real>::FieldSweep {
 public:
@@ -76,7 +76,7 @@ private:
         for (std::size_t r = 0; r < rows.size(); ++r)
             std::copy_n(row(sums.data(), rows[r]), lanes, handed_[k].data() + r * lanes);
     }
-    /// Rows from `limit` on are outside of the branch and go to `beyond`.
+    /// Rows from `limit` on are outside the branch and go to `beyond`.
     void go_down(int s, Real* beyond, int limit) {
         solve_lower_lanes(factor_.panel(s), row(all_.data(), e_.first[s]),
                           LaneRows<Real>{rows_below(s).data(), all_.data(), beyond, limit});
@@ -89,8 +89,9 @@ private:
     const Factor& factor_;
     const Elimination& e_;
     const std::vector<FrontLayout::Branch>& branches_;
-    typename ArrayPool<Real>::Loan all_;     ///< (size, lanes) in the order of elimination
-    std::vector<std::vector<Real>> handed_;  ///< by each branch to the trunk: (rows below its last supernode, lanes)
+    typename ArrayPool<Real>::Loan all_;     ///< (size, lanes) in elimination order
+    std::vector<std::vector<Real>> handed_;  ///< contribution of each branch to the trunk: (rows below its last
+                                             ///< supernode, lanes)
 };
 
 template <class Real>

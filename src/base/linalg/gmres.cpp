@@ -11,7 +11,7 @@ Eigen::VectorXd gmres(const std::function<Eigen::VectorXd(const Eigen::VectorXd&
     if (!(size > 0)) return Eigen::VectorXd::Zero(b.size());
     std::vector<Eigen::VectorXd> basis = {b / size};  // of the Krylov space, orthonormal
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(limit + 1, limit);
-    Eigen::VectorXd rest = Eigen::VectorXd::Zero(limit + 1);  // b in the basis, rotated as H is
+    Eigen::VectorXd rest = Eigen::VectorXd::Zero(limit + 1);  // b in the basis, rotated like H
     rest[0] = size;
     std::vector<Eigen::JacobiRotation<double>> rotations;
     Eigen::Index k = 0;

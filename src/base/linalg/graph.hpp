@@ -1,4 +1,4 @@
-// Who is next to whom.
+// Adjacency of the nodes of a graph.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,8 @@ struct Graph {
     [[nodiscard]] int degree(int i) const { return start[i + 1] - start[i]; }
 };
 
-/// The graph of the pairs (node, other) that `visit` gives to a function; it is called twice and must give the same.
+/// The graph of the pairs (node, other) that `visit` passes to a function; `visit` is called twice and must pass the
+/// same pairs both times.
 template <class Visit>
 [[nodiscard]] Graph graph_of(int nodes, const Visit& visit) {
     Graph graph;

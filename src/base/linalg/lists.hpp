@@ -1,4 +1,4 @@
-// Lists of indices, one after another.
+// Lists of indices, stored one after another.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ struct Lists {
     std::vector<int> item;
 
     Lists() = default;
-    // Not explicit: where there are few, they are written down as such.
+    // Not explicit, so that short lists can be written as braces.
     Lists(std::initializer_list<std::vector<int>> lists) : Lists(std::vector(lists)) {}
     Lists(const std::vector<std::vector<int>>& lists) {
         for (const std::vector<int>& list : lists) push_back(list);
@@ -34,14 +34,14 @@ struct Lists {
     }
 };
 
-/// What belongs to each group, in ascending order.
+/// The items of each group, in ascending order.
 [[nodiscard]] Lists members_of(const std::vector<int>& group_of_item, int groups);
 
-/// The lists of all pieces in one.
+/// The lists of all pieces, concatenated.
 [[nodiscard]] Lists joined(const std::vector<Lists>& pieces);
 
-/// As many lists, made at once on all cores: `writer()` gives a function with space of its own that is called with i in
-/// ascending order and appends list i to the items.
+/// Makes `count` lists in parallel on all cores: `writer()` returns a function with work space of its own, which is
+/// called with ascending i and appends list i to the items.
 template <class Writer>
 [[nodiscard]] Lists make_lists(int count, const Writer& writer) {
     constexpr std::size_t most_pieces = 16;

@@ -9,7 +9,7 @@
 namespace pliant::linalg {
 namespace {
 
-/// A row of bits for each node: itself and its neighbours, the nodes first, then those outside that they touch.
+/// A bit row for each node: itself and its neighbours, the nodes first, then adjacent nodes outside.
 class Neighbourhoods {
 public:
     /// Precondition: `rim` is sorted.
@@ -33,7 +33,7 @@ public:
         return sum;
     }
 
-    /// Couples the neighbours of v, takes v from each and calls `changed` with those that are among the nodes.
+    /// Connects the neighbours of v, removes v from each and calls `changed` for those that are among the nodes.
     template <class Changed>
     void eliminate(int v, const Changed& changed) {
         row(v)[v / 64] &= ~mask(v);

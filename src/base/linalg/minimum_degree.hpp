@@ -1,4 +1,4 @@
-// The order of elimination of a few nodes.
+// Minimum-degree ordering of a few nodes.
 #pragma once
 
 #include <vector>
@@ -7,13 +7,13 @@
 
 namespace pliant::linalg {
 
-/// Two neighbours of which one stays.
+/// Two adjacent nodes, one of which is not eliminated.
 struct Rim {
     int outside, node;
 };
 
-/// The nodes of a graph in the order in which each has the fewest neighbours that are left (Tinney and Walker 1967);
-/// those outside of it count and stay. Degrees are exact, in bits: for up to a few hundred nodes.
+/// The nodes of a graph ordered by minimum degree (Tinney and Walker 1967); nodes outside of it count as neighbours and
+/// are not eliminated. Degrees are exact, held in bit sets: for up to a few hundred nodes.
 [[nodiscard]] std::vector<int> by_minimum_degree(const Graph& graph, std::vector<Rim> rim);
 
 }  // namespace pliant::linalg

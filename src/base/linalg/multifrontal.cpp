@@ -6,10 +6,10 @@
 namespace pliant::linalg {
 namespace {
 
-/// Subtrees are cut so that none holds more than this share of the work.
+/// Subtrees are split until none exceeds this fraction of the work.
 constexpr double branch_share = 1.0 / 24;
 
-/// A work space in which pieces are taken and given back; first fit.
+/// Allocates pieces of a work space; first fit.
 class Shelf {
 public:
     [[nodiscard]] std::size_t take(std::size_t size) {
@@ -20,7 +20,7 @@ public:
             if (room > size) free_[at + size] = room - size;
             return at;
         }
-        // The last free piece may reach the end: it grows.
+        // The last free piece may reach the end: then it can grow.
         if (!free_.empty()) {
             const auto last = std::prev(free_.end());
             if (last->first + last->second == end_) {
@@ -44,7 +44,7 @@ public:
             free_.erase(it);
         }
     }
-    /// One past the last entry that was ever taken.
+    /// One past the last entry ever allocated.
     [[nodiscard]] std::size_t top() const { return top_; }
 
 private:
@@ -98,7 +98,7 @@ private:
         }
     }
 
-    /// first_child_[s] is the first supernode of the subtree of s, which ends with s.
+    /// first_child_[s] is the first supernode of the subtree of s, whose last one is s.
     void cut() {
         for (int s = e_.supernodes() - 1; s >= 0; --s) {
             if (work_[s] > branch_share * layout_.work) {
@@ -112,7 +112,7 @@ private:
         std::reverse(layout_.branches.begin(), layout_.branches.end());
     }
 
-    /// What its parent has taken in is free again.
+    /// An update is freed once its parent has used it.
     void place_updates() {
         layout_.update.assign(e_.supernodes(), 0);
         std::vector<std::vector<int>> children(e_.supernodes());

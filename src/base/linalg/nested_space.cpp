@@ -11,10 +11,9 @@ namespace pliant::linalg {
 namespace {
 
 constexpr std::size_t grain = 1024;
-constexpr std::size_t pieces = 4;  // of the fine pairs, with sums of their own
+constexpr std::size_t pieces = 4;  // of the fine pairs, with separate sums
 
-/// Calls visit(pair, column, a, b) for each pair of fine nodes and each end a of its row and b of its column that
-/// moves.
+/// Calls visit(pair, column, a, b) for each pair of fine nodes, each moving end a of its row and b of its column.
 template <class Visit>
 void for_pairs(const SymmetricPattern& fine, const Nesting& nesting, const Visit& visit) {
     for (int j = 0; j < fine.nodes; ++j) {
@@ -71,7 +70,7 @@ void NestedSpace::find_uses(const SymmetricPattern& fine) {
     std::vector<int> count(fine.node_row.size() + 1, 0);
     for_pairs(fine, nesting_, [&](int pair, int row, int a, int b) {
         const bool diagonal = pair == fine.node_start[row];
-        if (diagonal && a < b) return;  // the upper triangle of a block on the diagonal
+        if (diagonal && a < b) return;  // the upper triangle of a diagonal block
         const Use use{pattern_.find(std::max(a, b), std::min(a, b)), 0.25F,
                       diagonal ? Use::symmetric
                       : a == b ? Use::both

@@ -1,5 +1,5 @@
-// Of quadratic tets, the motions that linear tets on the same corners can do: a node on an edge moves as the mean of
-// its ends. The nodes of the coarse level are the corners (p-multigrid: Ronquist and Patera 1987).
+// Coarse space for quadratic tets: the linear tets on the same corners. A mid-edge node moves as the mean of the edge's
+// ends. The nodes of the coarse level are the corners (p-multigrid: Ronquist and Patera 1987).
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace pliant::linalg {
 
-/// (fine nodes) the coarse nodes of which each is the mean: one of them twice, where it is on the coarse level itself;
-/// -1: an end that does not move.
+/// (fine nodes) the two coarse nodes whose mean each one is; the same twice for a node of the coarse level itself; -1:
+/// an end that does not move.
 struct Nesting {
     int coarse_nodes = 0;
     std::vector<std::array<int, 2>> ends;
@@ -20,8 +20,8 @@ struct Nesting {
 
 class NestedSpace final : public CoarseLevel {
 public:
-    /// `fine`: of the matrix; its points, if it has any, say where the coarse nodes are. Precondition: blocks of
-    /// 3, and each coarse node is one of the fine ones.
+    /// `fine`: pattern of the matrix; its points, if present, give the positions of the coarse nodes. Preconditions:
+    /// blocks of 3, and each coarse node is one of the fine ones.
     NestedSpace(const SymmetricPattern& fine, Nesting nesting);
 
     void set(const Fine& fine) override;
@@ -32,8 +32,8 @@ public:
     void add_prolonged(const double* coarse, float* fine) const override;
 
 private:
-    /// What a block of the fine level adds to one of the coarse level: `share` times itself, its transpose, or both;
-    /// of one on the diagonal the lower triangle counts.
+    /// What a fine block adds to a coarse one: `share` times itself, its transpose, or both; of a diagonal block the
+    /// lower triangle is used.
     struct Use {
         int target;
         float share;
@@ -44,7 +44,7 @@ private:
 
     Nesting nesting_;
     SymmetricPattern pattern_;
-    Lists on_;                    ///< (coarse nodes) fine nodes that each moves
+    Lists on_;                    ///< (coarse nodes) fine nodes that depend on each
     std::vector<int> use_start_;  ///< (fine pairs + 1)
     std::vector<Use> use_;
     std::vector<double> coarse_;

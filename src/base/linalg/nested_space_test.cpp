@@ -11,10 +11,10 @@ using namespace pliant::linalg;
 
 namespace {
 
-/// Corners 0, 3, 5 and a held one; nodes between them: 1 (0, 3), 2 (3, 0 again), 4 (5, held), 6 (held, held).
+/// Corners 0, 3, 5 and a fixed one; mid-edge nodes: 1 (0, 3), 2 (3, 0 again), 4 (5, fixed), 6 (fixed, fixed).
 const Nesting nesting{3, {{0, 0}, {0, 1}, {1, 0}, {1, 1}, {2, -1}, {2, 2}, {-1, -1}}};
 
-/// All are coupled with all but 0 with 5, which only the nodes between others couple.
+/// All pairs are coupled except 0 with 5, which are coupled only through mid-edge nodes.
 SymmetricPattern pattern() {
     return make_pattern(7, 3, {{0, 1, 2, 3, 4, 6}, {1, 2, 3, 4, 5, 6}});
 }
@@ -35,7 +35,7 @@ struct Matrix {
     Eigen::MatrixXd dense;
 };
 
-/// Numbers without a pattern; what stands above the diagonal in its blocks does not count.
+/// Pseudo-random values; the upper triangle of diagonal blocks is ignored.
 Matrix numbers(const SymmetricPattern& p) {
     Matrix m{std::vector<double>(p.entries()), Eigen::MatrixXd::Zero(3 * p.nodes, 3 * p.nodes)};
     for (std::size_t k = 0; k < m.values.size(); ++k) m.values[k] = std::sin(12.9898 * static_cast<double>(k) + 1);
@@ -62,7 +62,7 @@ void set(NestedSpace& space, const BlockRows& rows, const Matrix& m) {
 
 }  // namespace
 
-TEST_CASE("the matrix of the corners is that of the nodes for motions that corners can do") {
+TEST_CASE("the coarse matrix is exact for motions of the corners") {
     const SymmetricPattern fine = pattern();
     const Matrix m = numbers(fine);
     NestedSpace space(fine, nesting);
@@ -72,7 +72,7 @@ TEST_CASE("the matrix of the corners is that of the nodes for motions that corne
     CHECK((dense(space.pattern(), space.values()) - expected).cwiseAbs().maxCoeff() < 1e-14 * m.dense.norm());
 }
 
-TEST_CASE("fields go to the corners and back by the same weights") {
+TEST_CASE("restriction is the transpose of prolongation") {
     NestedSpace space(pattern(), nesting);
     const Eigen::MatrixXd P = prolongation();
     const Eigen::VectorXf fine = Eigen::VectorXf::LinSpaced(21, -1, 2);
@@ -85,7 +85,7 @@ TEST_CASE("fields go to the corners and back by the same weights") {
 }
 
 TEST_CASE("long sums are the same bits on any number of threads") {
-    // A chain of corners with a node between each two.
+    // A chain of corners with a mid-edge node between each two.
     constexpr int corners = 3000;
     Nesting chain{corners, {}};
     std::vector<std::vector<int>> cliques;

@@ -1,10 +1,10 @@
-// Compiled once for each instruction set; the one that the machine has is chosen when the program runs.
+// Compiled once for each instruction set; the best one available is chosen at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "base/linalg/panel.cpp"
 #include "base/linalg/panel.hpp"
 
 #include <hwy/foreach_target.h>
-// After foreach_target, as it asks.
+// Must follow foreach_target.
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -20,18 +20,18 @@ namespace pliant::linalg::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Columns that are made together: what is to their left is subtracted in one go.
+/// Number of columns factorised together: the columns to their left are subtracted in one go.
 constexpr int slab = 16;
-/// Tiles that are kept in registers: this many packets by this many columns.
+/// Size of tiles kept in registers: this many packets by this many columns.
 constexpr int tile_packets = HWY_TARGET <= HWY_AVX3 ? 2 : 1;
 constexpr int tile_columns = HWY_TARGET <= HWY_AVX3 ? 8 : 4;
-/// Products are cut here, so that what they read stays in the cache.
+/// Products are split at this depth, so that their operands stay in the cache.
 constexpr int product_depth = 256;
-/// Work for which another core is called, in multiply-adds.
+/// Minimum work for using another core, in multiply-adds.
 constexpr double work_to_share = 3e5;
-/// Numbers of a factor, read once, for which another core is called.
+/// Minimum numbers of a factor, each read once, for using another core.
 constexpr int reading_to_share = 50000;
-/// Numbers of an update that are added.
+/// Minimum numbers of an update to add for using another core.
 constexpr std::size_t additions_to_share = 50000;
 
 enum class To { store, subtract };
@@ -68,7 +68,7 @@ HWY_INLINE void subtract_tile(const Real* a, std::size_t a_stride, const Real* b
     }
 }
 
-/// The tiles of `columns` columns and of all packets from `begin` to `end`.
+/// The tiles of `columns` columns and all packets from `begin` to `end`.
 template <To to, class Real>
 HWY_INLINE void subtract_strip(const Real* a, std::size_t a_stride, const Real* b, int depth, Real* c,
                                std::size_t c_packet, std::size_t c_column, int columns, int begin, int end) {
@@ -80,7 +80,7 @@ HWY_INLINE void subtract_strip(const Real* a, std::size_t a_stride, const Real* 
         subtract_tile<1, to>(a + p * a_stride, a_stride, b, depth, c + p * c_packet, c_packet, c_column, columns);
 }
 
-/// Columns first .. first + width of the packets begin .. end, less what the columns before them say.
+/// Subtracts the contributions of earlier columns from columns first .. first + width of the packets begin .. end.
 template <class Real>
 void subtract_left(const Panel<Real>& panel, int first, int width, int begin, int end) {
     constexpr int P = packet<Real>;
@@ -93,7 +93,7 @@ void subtract_left(const Panel<Real>& panel, int first, int width, int begin, in
     }
 }
 
-/// Cholesky of the block on the diagonal at `first`; its inverse diagonal goes to `inverse`.
+/// Cholesky factor of the diagonal block at `first`; its inverse diagonal goes to `inverse`.
 template <class Real>
 bool factorise_block(const Panel<Real>& panel, int first, int width, Real (*L)[slab], Real* inverse) {
     for (int r = 0; r < width; ++r) {
@@ -138,7 +138,7 @@ void divide_packets(const Panel<Real>& panel, int first, int width, const Real (
     }
 }
 
-/// Calls work(begin, end) on packets, on all cores if they have enough to do.
+/// Calls work(begin, end) on ranges of packets, in parallel if there is enough work.
 template <class Work>
 void share(int begin, int end, double work_of_each, const Work& work) {
     if (end <= begin) return;
@@ -147,7 +147,7 @@ void share(int begin, int end, double work_of_each, const Work& work) {
                  [&](std::size_t b, std::size_t e) { work(begin + static_cast<int>(b), begin + static_cast<int>(e)); });
 }
 
-/// The same for items that are read once, `entries` numbers each.
+/// The same for items that are read once, of `entries` numbers each.
 template <class Work>
 void share_reading(int begin, int end, int entries, const Work& work) {
     if (end <= begin) return;
@@ -208,7 +208,7 @@ void negative_panel_product(const Panel<Real>& panel, Real* update) {
     });
 }
 
-/// y (packets of rows from `begin` to `end`, count vectors) = L x over the first `depth` columns; handed to `use`.
+/// y (packets of rows from `begin` to `end`, count vectors) = L x over the first `depth` columns; passed to `use`.
 template <int count, class Real, class Use>
 HWY_INLINE void multiply_packets(const Panel<Real>& panel, int depth, const Real* x, std::size_t x_stride, int begin,
                                  int end, const Use& use) {
@@ -216,7 +216,7 @@ HWY_INLINE void multiply_packets(const Panel<Real>& panel, int depth, const Real
     using V = hn::Vec<decltype(d)>;
     constexpr int P = packet<Real>;
     constexpr int N = static_cast<int>(hn::MaxLanes(d));
-    constexpr int together = 4;  // chains of sums, so that none waits for itself
+    constexpr int together = 4;  // independent sums, to hide the latency of additions
     const std::size_t stride = static_cast<std::size_t>(panel.columns) * P;
     const auto run = [&](auto chains, int p, int part) {
         constexpr int many = decltype(chains)::value;
@@ -368,8 +368,8 @@ struct Lanes {
     static HWY_INLINE V load(const Real* x, int row, int part) { return hn::Load(D(), x + row * lanes + part); }
     static HWY_INLINE void store(V v, Real* x, int row, int part) { hn::Store(v, D(), x + row * lanes + part); }
 
-    /// sums (rows) += or -= rows of the panel times x, over the first `depth` columns; `a` is the first of them in
-    /// column 0.
+    /// sums (rows) += or -= rows of the panel times x, over the first `depth` columns; `a` points to the first of them
+    /// in column 0.
     template <bool subtract>
     static HWY_INLINE void multiply(const Real* a, int depth, const Real* x, int part, V* sums) {
         for (int k = 0; k < depth; ++k) {
@@ -484,8 +484,8 @@ HWY_INLINE void add_numbers(const Real* source, int count, Real* target) {
     }
 }
 
-/// The lower triangle of `from`, column by column: add(source, column, row, count) gets numbers that belong to unknowns
-/// `row` .. `row + count` and `column` of the front. Only columns of the stretches begin .. end.
+/// The lower triangle of `from`, column by column: add(source, column, row, count) gets the numbers of unknowns `row`
+/// .. `row + count` and `column` of the front. Only columns of the stretches begin .. end.
 template <class Real, class Add>
 void add_columns(const Real* from, std::size_t leading, std::span<const Stretch> stretches, std::size_t begin,
                  std::size_t end, int block, const Add& add) {
@@ -516,7 +516,7 @@ void add_columns(const Real* from, std::size_t leading, std::span<const Stretch>
     });
 }
 
-/// The first stretch that is not of the panel's own nodes.
+/// The first stretch that does not belong to the panel's own nodes.
 template <class Real>
 std::size_t first_passed_on(std::span<const Stretch> stretches, int block, const Panel<Real>& panel) {
     const auto own = [&](const Stretch& part) { return part.to * block < panel.columns; };
@@ -553,7 +553,7 @@ void add_to_update_any(const Real* from, std::size_t leading, std::span<const St
     add_columns(from, leading, stretches, first_passed_on(stretches, block, panel), stretches.size(), block, add);
 }
 
-// What the table below can name.
+// Non-template names for the dispatch table below.
 bool factorise_double(const Panel<double>& p) {
     return factorise_panel(p);
 }

@@ -1,4 +1,4 @@
-// The dense work of a sparse factorisation, in SIMD: panels of a supernode and what they subtract from the rest.
+// Dense kernels of a sparse factorisation, in SIMD: panels of a supernode and their updates of the remaining matrix.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace pliant::linalg {
 
-/// Rows that are stored next to one another: one cache line.
+/// Number of rows that are stored together: one cache line.
 template <class Real>
 inline constexpr int packet = static_cast<int>(64 / sizeof(Real));
 
@@ -16,8 +16,8 @@ template <class Real>
 }
 
 /// The columns of one supernode, in packets of rows: entry (r, c) is values[(r / P * columns + c) * P + r % P] with
-/// P = packet<Real>. First come the rows of the columns themselves, then zeros up to a whole packet, then the rows
-/// below. `values` is aligned to 64 bytes.
+/// P = packet<Real>. First come the supernode's own rows, padded with zeros to a whole packet, then the rows below.
+/// `values` is aligned to 64 bytes.
 template <class Real>
 struct Panel {
     Real* values;
@@ -34,23 +34,23 @@ struct Panel {
 };
 
 /// Replaces A = L L^T (its lower triangle) and the rows B below by L and B L^-T. False if A is not positive definite.
-/// Wide panels use all cores; the bits do not depend on how many.
+/// Wide panels use all cores; the result is bit-identical on any number of them.
 template <class Real>
 [[nodiscard]] bool factorise(const Panel<Real>& panel);
 
-/// What the panel adds to the matrix of its rows below: update = -L L^T, (below, below) by columns with leading
-/// dimension whole_packets(below). Only the lower triangle counts; a little more is written.
+/// The panel's contribution to the matrix of its rows below: update = -L L^T, (below, below) by columns with leading
+/// dimension whole_packets(below). Only the lower triangle is valid; a little more is written.
 template <class Real>
 void negative_product(const Panel<Real>& panel, Real* update);
 
-/// Nodes of a child's update that are next to one another in its parent, too.
+/// Nodes of a child's update that are contiguous in its parent, too.
 struct Stretch {
     int from, to, length;
 };
 
-/// Adds the lower triangle of `from`, at the nodes of the stretches, to the panel and, at those that follow its own
-/// nodes, to `update`, which is as negative_product() makes it; `from` is such an update, too. `block` rows and columns
-/// a node. On all cores where there is much to add.
+/// Adds the lower triangle of the child update `from`, at the nodes of the stretches, to the panel and, at the nodes
+/// after the panel's own, to `update`. Both updates are as negative_product() makes them. `block` rows and columns per
+/// node. Large updates use all cores.
 template <class Real>
 void add_to_panel(const Real* from, std::size_t leading, std::span<const Stretch> stretches, int block,
                   const Panel<Real>& panel);
@@ -65,9 +65,9 @@ void solve_lower(const Panel<Real>& panel, int count, Real* x, Real* y);
 template <class Real>
 void solve_upper(const Panel<Real>& panel, int count, Real* x, const Real* y);
 
-/// Right-hand sides that lie next to one another, unknown by unknown.
+/// Number of right-hand sides that are interleaved, unknown by unknown.
 inline constexpr int lanes = 8;
-/// The rows below a panel in arrays of all unknowns, (unknowns, lanes), aligned to whole unknowns.
+/// The rows below a panel, as indices into arrays of all unknowns, (unknowns, lanes), aligned to whole unknowns.
 template <class Real>
 struct LaneRows {
     const int* position;  ///< (rows below)
@@ -79,8 +79,8 @@ struct LaneRows {
         return (position[row] < limit ? all : beyond) + static_cast<std::size_t>(position[row]) * lanes;
     }
 };
-/// x (columns, lanes) <- L^-1 x; rows -= L_below x, right where they are: each number of the panel is read once for all
-/// lanes, and narrow panels cost little.
+/// x (columns, lanes) <- L^-1 x; rows -= L_below x, in place: each number of the panel is read once for all lanes, and
+/// narrow panels cost little.
 template <class Real>
 void solve_lower_lanes(const Panel<Real>& panel, Real* x, const LaneRows<Real>& rows);
 /// x <- L^-T (x - L_below^T rows).

@@ -33,7 +33,7 @@ RigidMotions::OfNode RigidMotions::at(std::span<const double> positions, int nod
     return plain(view(positions, node)) * combined_;
 }
 
-/// Translations, and rotations about the middle.
+/// Translations, and rotations about the centre.
 RigidMotions::OfNode RigidMotions::plain(const Vector3& position) const {
     const Vector3 arm = scale_ * (position - middle_);
     OfNode m;
@@ -43,7 +43,7 @@ RigidMotions::OfNode RigidMotions::plain(const Vector3& position) const {
     return m;
 }
 
-/// Gram and Schmidt, by the inner products of the plain motions.
+/// Gram-Schmidt, using the inner products of the plain motions.
 void RigidMotions::orthonormalise(const Square& products, double nodes) {
     constexpr double dependent = 1e-4;
     for (int c = 0; c < count; ++c) {

@@ -1,4 +1,4 @@
-// What a group of nodes does when it moves without changing its shape.
+// Rigid motions of a group of nodes.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,12 +12,12 @@ namespace pliant::linalg {
 class RigidMotions {
 public:
     static constexpr int count = 6;
-    using OfNode = Eigen::Matrix<double, 3, count>;  ///< one motion a column
+    using OfNode = Eigen::Matrix<double, 3, count>;  ///< one motion per column
 
     RigidMotions(std::span<const int> nodes, std::span<const double> positions);
 
     [[nodiscard]] OfNode at(std::span<const double> positions, int node) const;
-    /// The nodes are too few to tell this motion from those before it; it is zero.
+    /// True if the nodes are too few to tell this motion from those before it; it is then zero.
     [[nodiscard]] bool dropped(int motion) const { return combined_.col(motion).isZero(0); }
 
 private:
@@ -30,7 +30,7 @@ private:
     Square combined_ = Square::Identity();
 };
 
-/// The rotation that brings the nodes from `before` nearest to where they are `now`.
+/// The rotation that best maps the nodes from their positions `before` to those `now`.
 [[nodiscard]] Matrix3 rotation_between(std::span<const int> nodes, std::span<const double> before,
                                        std::span<const double> now);
 

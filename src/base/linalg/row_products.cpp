@@ -1,10 +1,10 @@
-// Compiled once for each instruction set; the one that the machine has is chosen when the program runs.
+// Compiled once for each instruction set; the best one available is chosen at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "base/linalg/row_products.cpp"
 #include "base/linalg/row_products.hpp"
 
 #include <hwy/foreach_target.h>
-// After foreach_target, as it asks.
+// Must follow foreach_target.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
@@ -15,11 +15,10 @@ namespace pliant::linalg::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Entries ahead of the one in question whose numbers are called from memory. They lie in a row, but processors look no
-/// further than a page.
+/// Prefetch distance in entries. They are contiguous, but hardware prefetchers stop at page boundaries.
 constexpr std::size_t ahead = 80;
 
-/// Four rows of a column, of which the last is of no use, in as many vectors as it takes.
+/// Four rows of a column, the last one unused, in as many vectors as needed.
 template <class Real>
 struct Column {
     using D = hn::CappedTag<Real, 4>;
@@ -58,7 +57,7 @@ private:
 template <class Real>
 void multiply_any(const RowBlocks& matrix, std::size_t begin, std::size_t end, const Real* x, Real* y) {
     for (std::size_t i = begin; i < end; ++i) {
-        Column<Real> first, second, third;  // sums that need not wait for one another
+        Column<Real> first, second, third;  // independent sums, to hide latency
         for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
             const std::size_t at = 9 * static_cast<std::size_t>(k);
             const Real* v = x + 3 * static_cast<std::size_t>(matrix.column[k]);
@@ -74,7 +73,7 @@ void multiply_any(const RowBlocks& matrix, std::size_t begin, std::size_t end, c
     }
 }
 
-/// Four rows of a column for two vectors side by side.
+/// Four rows of a column for two interleaved vectors.
 template <class Real>
 using Both = hn::CappedTag<Real, 8>;
 
@@ -90,7 +89,7 @@ HWY_INLINE hn::Vec<Both<Real>> load_for_both(const RowBlocks& matrix, std::size_
     }
 }
 
-/// Two vectors whose numbers stand in pairs: each block is read once for both.
+/// Two interleaved vectors: each block is read once for both.
 template <class Real>
 void multiply_two(const RowBlocks& matrix, std::size_t begin, std::size_t end, const Real* x, Real* y) {
     const Both<Real> d;
@@ -119,7 +118,7 @@ void multiply_two(const RowBlocks& matrix, std::size_t begin, std::size_t end, c
     }
 }
 
-/// The same where vectors are too short for two.
+/// The same for SIMD registers that are too short for two.
 template <class Real>
 void multiply_each(const RowBlocks& matrix, std::size_t begin, std::size_t end, const Real* x, Real* y) {
     for (std::size_t i = begin; i < end; ++i) {

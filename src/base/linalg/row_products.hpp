@@ -1,4 +1,4 @@
-// Products of a matrix of 3 by 3 blocks that lies row by row, in SIMD.
+// Products with a matrix of 3 by 3 blocks stored by rows, in SIMD.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,13 @@ namespace pliant::linalg {
 struct RowBlocks {
     const int* start;    ///< (rows + 1)
     const int* column;   ///< (entries)
-    const float* value;  ///< (entries, 9), and one more that is read but does not count
-    const float* rest;   ///< what `value` leaves out, alike
+    const float* value;  ///< (entries, 9), plus one readable number at the end that is not used
+    const float* rest;   ///< the rounding error of `value`, in the same layout
 };
 
-/// y (3 rows, columns) <- the rows from `begin` to `end` of the matrix times x (3 nodes, columns): of value + rest in
-/// double precision, of value alone in single. One column or two, whose numbers lie side by side: two take little
-/// longer than one. Precondition: two numbers after the end of x may be read.
+/// y (3 rows, columns) <- rows `begin` to `end` of the matrix times x (3 nodes, columns): with value + rest in double
+/// precision, with value alone in single. One column, or two interleaved ones, which take little longer than one.
+/// Precondition: two numbers past the end of x are readable.
 void multiply_rows(const RowBlocks& matrix, std::size_t begin, std::size_t end, int columns, const double* x,
                    double* y);
 void multiply_rows(const RowBlocks& matrix, std::size_t begin, std::size_t end, int columns, const float* x, float* y);

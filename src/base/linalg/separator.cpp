@@ -7,9 +7,9 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr int most_rounds = 20;  // each makes the separator smaller; hardly any take more than six
+constexpr int most_rounds = 20;  // each makes the separator smaller; more than six are rarely needed
 
-/// Pairs every node of the separator, if possible, with a neighbour of its own on one side.
+/// Matches nodes of the separator, as many as possible, with distinct neighbours on one side.
 class Matching {
 public:
     Matching(const Graph& graph, const std::vector<Side>& sides, Side side, const std::vector<int>& separator)
@@ -25,7 +25,7 @@ public:
 
 private:
     struct Step {
-        int node, next;  ///< of the separator, and which of its neighbours comes next
+        int node, next;  ///< node of the separator, and the index of its next neighbour to try
     };
 
     void take_a_free_one(int s) {
@@ -35,8 +35,8 @@ private:
         }
     }
 
-    /// A path that alternates between pairs and others and ends at a free node, which frees a partner for s. What a
-    /// search without success has seen no later one needs to see.
+    /// An alternating path that ends at a free node, which gives s a partner. Nodes visited by a failed search need not
+    /// be visited by later ones.
     void find_path(int s) {
         seen_.clear();
         path_.assign(1, {s, graph_.start[s]});
@@ -79,13 +79,13 @@ private:
     std::vector<Step> path_;
 };
 
-/// Nodes of the separator and of one side.
+/// Nodes of the separator and of one side, to be exchanged.
 struct Exchange {
     std::vector<int> leaving, coming;
 };
 
-/// Nodes of the separator that have fewer neighbours on `side` than they are, as many fewer as there can be (Dulmage
-/// and Mendelsohn 1958): those that an alternating path leads to from one without a partner.
+/// The nodes of the separator whose number most exceeds that of their neighbours on `side` (Dulmage and Mendelsohn
+/// 1958): those reachable by an alternating path from one without a partner.
 Exchange best_exchange(const Graph& graph, const std::vector<Side>& sides, Side side) {
     std::vector<int> separator;
     for (int i = 0; i < graph.nodes(); ++i) {

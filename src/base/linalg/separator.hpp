@@ -1,4 +1,4 @@
-// Separators: nodes of a graph without which two sides of it do not touch.
+// Vertex separators: nodes of a graph whose removal disconnects its two sides.
 #pragma once
 
 #include <vector>
@@ -9,9 +9,9 @@ namespace pliant::linalg {
 
 enum class Side : char { left, right, separator };
 
-/// Makes a separator smaller where nodes of it can be exchanged for fewer neighbours on one side, until none can; no
-/// side gets smaller than `least` nodes by it. Precondition: no left node is next to a right one, which stays so.
-/// Ashcraft and Liu 1998, "Applications of the Dulmage-Mendelsohn decomposition and network flow to graph bisection
+/// Shrinks a separator by exchanging some of its nodes for fewer neighbours on one side, until no exchange helps; no
+/// side drops below `least` nodes. Precondition: no left node is adjacent to a right one; this is maintained. Ashcraft
+/// and Liu 1998, "Applications of the Dulmage-Mendelsohn decomposition and network flow to graph bisection
 /// improvement".
 void shrink_separator(const Graph& graph, std::vector<Side>& sides, int least);
 

@@ -16,8 +16,8 @@ struct Sides {
     std::vector<Side> sides;
 };
 
-/// Two rows of nodes with random edges between them, each next to a node of its own on its other side; all of the first
-/// row separates left from right.
+/// Two rows of nodes with random edges between them, each node with a neighbour of its own on its outer side; the whole
+/// first row separates left from right.
 Sides two_rows(int left, int right, std::mt19937& random) {
     std::vector<std::pair<int, int>> edges;
     for (int a = 0; a < left; ++a) {
@@ -50,7 +50,7 @@ bool separates(const Graph& graph, const std::vector<Side>& sides) {
     return true;
 }
 
-/// The fewest nodes that touch all edges between the rows, by trying every subset of the first.
+/// Size of the smallest vertex cover of the edges between the rows, by trying every subset of the first.
 int smallest_cover(const Graph& graph, int left, int right) {
     int best = graph.nodes();
     for (unsigned chosen = 0; chosen < 1U << left; ++chosen) {
@@ -67,7 +67,7 @@ int smallest_cover(const Graph& graph, int left, int right) {
 
 }  // namespace
 
-TEST_CASE("between two rows the smallest separator is found") {
+TEST_CASE("the separator between two rows is minimal") {
     std::mt19937 random(5);
     for (int trial = 0; trial < 200; ++trial) {
         const int left = 1 + static_cast<int>(random() % 10);
@@ -80,7 +80,7 @@ TEST_CASE("between two rows the smallest separator is found") {
     }
 }
 
-TEST_CASE("a side keeps the nodes that it must have") {
+TEST_CASE("no side drops below its minimum size") {
     std::mt19937 random(6);
     for (int trial = 0; trial < 50; ++trial) {
         Sides rows = two_rows(10, 3, random);

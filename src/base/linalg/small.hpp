@@ -1,4 +1,4 @@
-// Fixed-size matrices of one material point.
+// Small fixed-size matrices.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,11 +21,11 @@ struct Svd3 {
 /// The rotation nearest to F in the Frobenius norm, U V^T of signed_svd.
 [[nodiscard]] Matrix3 nearest_rotation(const Matrix3& F);
 
-/// Change of the nearest rotation with F. Unbounded where two signed singular values sum to zero; the sum is kept away
-/// from zero there, so the result stays finite.
+/// Derivative of the nearest rotation with respect to F. Unbounded where two signed singular values sum to zero; the
+/// sum is kept away from zero, so the result stays finite.
 [[nodiscard]] Matrix9 nearest_rotation_gradient(const Svd3& svd);
 
-/// The symmetric matrix nearest to the symmetric part of H that has no eigenvalue below zero.
+/// The nearest positive semi-definite matrix to the symmetric part of H.
 [[nodiscard]] Matrix9 project_to_positive(const Matrix9& H);
 
 }  // namespace pliant::linalg

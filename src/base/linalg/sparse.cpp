@@ -10,7 +10,8 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::ptrdiff_t most_counted = 32;  // rows of a column: to count the smaller ones takes no branches
+constexpr std::ptrdiff_t most_counted = 32;  // rows of a column up to which counting the smaller ones, without
+                                             // branches, is used
 
 /// Adds factor * B v_j to r_i and, off the diagonal, factor * B^T v_i to r_j.
 template <int block>

@@ -1,4 +1,4 @@
-// Symmetric sparse matrices that are assembled block by block on the graph of a mesh.
+// Symmetric sparse matrices, assembled block by block on the graph of a mesh.
 #pragma once
 
 #include <array>
@@ -10,19 +10,19 @@
 
 namespace pliant::linalg {
 
-/// Lower triangle of blocks, compressed by columns of nodes. Unknown u of node i has index i * block + u. Of a matrix,
-/// every block is stored whole, column by column, in the order of `node_row`: those on the diagonal hold both their
-/// triangles, of which the lower one counts.
+/// Lower triangle of blocks, compressed by columns of nodes. Unknown u of node i has index i * block + u. Values: every
+/// block is stored in full, column by column, in the order of `node_row`; diagonal blocks hold both triangles, of which
+/// the lower one is used.
 struct SymmetricPattern {
     int block = 1;                ///< unknowns per node
-    int nodes = 0;                ///< size of the matrix is nodes * block
+    int nodes = 0;                ///< the matrix has nodes * block rows
     std::vector<int> node_start;  ///< (nodes + 1)
     std::vector<int> node_row;    ///< (node pairs), ascending in each column, the diagonal first
-    /// (nodes, or none) where the nodes are, in any unit: knowing it, a good order of elimination is found sooner
+    /// (nodes, or none) where the nodes are, in any unit: speeds up the search for a good elimination order
     std::vector<std::array<double, 3>> points{};
 
     [[nodiscard]] int size() const { return nodes * block; }
-    /// Length of the array of values.
+    /// Length of the values array.
     [[nodiscard]] std::size_t entries() const { return node_row.size() * block_entries(); }
     [[nodiscard]] std::size_t block_entries() const { return static_cast<std::size_t>(block) * block; }
 
@@ -40,8 +40,8 @@ struct SymmetricPattern {
     }
 };
 
-/// The pattern that couples the nodes of each clique (an element, the guide points of a cable). Clique entries below 0
-/// are left out; every diagonal is present.
+/// The pattern that couples the nodes of each clique (an element, the guide points of a cable). Negative entries are
+/// skipped; every diagonal is present.
 [[nodiscard]] SymmetricPattern make_pattern(int nodes, int block, const Lists& cliques);
 
 /// result (size) += factor * matrix * v (size).

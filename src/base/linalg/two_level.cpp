@@ -16,20 +16,20 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::size_t grain = 4096;  // numbers that one core takes at a time
-constexpr int degree = 2;            // of the polynomial that smooths
-// Of the spectrum, from the top, where the coarse level is that of groups, and that of corners.
+constexpr std::size_t grain = 4096;  // numbers per parallel piece
+constexpr int degree = 2;            // of the smoothing polynomial
+// The upper part of the spectrum that is smoothed, with a coarse level of groups and with one of corners.
 constexpr float smoothed_of_groups = 0.06F, smoothed_of_corners = 0.06F;
 constexpr int first_powers = 12, later_powers = 1;
-constexpr int powers_of_corners = 6;  // every time: what was solved before must not change a bit
-/// Iterations that a coarse level costs to make (measured), and after how many it shows how good one is.
+constexpr int powers_of_corners = 6;  // always the same number: results of earlier solves must not change them
+/// Cost of making a coarse level, in iterations (measured), and the number of iterations after which its quality shows.
 constexpr double price_of_coarse = 7;
 constexpr int iterations_to_judge = 4;
-constexpr float safety_of_groups = 1.15F, safety_of_corners = 1.25F;  // powers come from below
+constexpr float safety_of_groups = 1.15F, safety_of_corners = 1.25F;  // power iteration approaches from below
 
-constexpr std::size_t most_columns = 2;  // that are solved for at once: each number of the matrix is read for both
+constexpr std::size_t most_columns = 2;  // solved for together: each number of the matrix is read for both
 
-/// Numbers of all nodes, those of several columns side by side, with two more that are read but do not count.
+/// Numbers of all nodes, those of several columns interleaved, followed by two that are read but not used.
 template <class Real>
 class Numbers {
 public:
@@ -74,7 +74,7 @@ struct TwoLevel::State {
         set_columns(1);
     }
 
-    /// Room for so many; their numbers are set by whoever uses them.
+    /// Room for `count` columns; the contents are set by their users.
     void set_columns(std::size_t count) {
         columns = count;
         for (Vector* v : {&residual, &direction, &product, &solution}) v->resize(count * size);
@@ -111,24 +111,24 @@ struct TwoLevel::State {
     std::size_t columns = 1;
     BlockRows matrix;
     std::unique_ptr<CoarseLevel> space;
-    float smoothed_part;  ///< of the spectrum, from the top; the rest is for the coarse level
+    float smoothed_part;  ///< of the spectrum; the rest is left to the coarse level
     float safety;
     Cholesky coarse;
     AlignedArray<float> inverse_diagonal;
     std::size_t coarse_size;
     std::vector<double> coarse_side;  ///< (columns, coarse unknowns)
-    Rough top;                        ///< eigenvector of D^-1 A with the largest eigenvalue, roughly
+    Rough top;                        ///< approximate eigenvector of D^-1 A for the largest eigenvalue
     float largest = 0;
     bool powered = false;
     Vector residual, direction, product, solution;
     Rough side, correction, step, rest;
-    Rough one;                       ///< a column by itself
-    std::span<const double> values;  ///< of the matrix, while it is set
-    std::vector<double> positions;   ///< of the nodes, now
-    bool built = false;              ///< the coarse level is there,
-    bool turned = false;             ///< but of an earlier state
-    /// Of the squared error, by an iteration with one of the present state, as a logarithm: four to five a digit, until
-    /// one has shown.
+    Rough one;                       ///< work space for a single column
+    std::span<const double> values;  ///< of the matrix, during set()
+    std::vector<double> positions;   ///< current node positions
+    bool built = false;              ///< the coarse level exists,
+    bool turned = false;             ///< but was made for an earlier state
+    /// Reduction of the squared error per iteration with an up-to-date coarse level, as a logarithm: four to five
+    /// iterations per digit, until measured.
     double usual_gain = 1;
     int iterations = 0;
 };
@@ -146,14 +146,14 @@ bool TwoLevel::State::invert_diagonal() {
     return std::all_of(definite.begin(), definite.end(), [](char d) { return d != 0; });
 }
 
-/// Powers of D^-1 A, in the inner product of D.
+/// Power iteration with D^-1 A, in the inner product of D.
 void TwoLevel::State::find_largest() {
     set_columns(1);
     const bool goes_on = powered && kind == Kind::groups;
     const int powers = goes_on ? later_powers : kind == Kind::groups ? first_powers : powers_of_corners;
     if (!goes_on) {
         largest = 0;
-        // Anything that has a share of every eigenvector: numbers without a pattern.
+        // A start vector with a component of every eigenvector: pseudo-random numbers.
         unsigned seed = 1;
         for (std::size_t i = 0; i < size; ++i) {
             seed = seed * 1664525U + 1013904223U;
@@ -172,7 +172,7 @@ void TwoLevel::State::find_largest() {
     powered = true;
 }
 
-/// x <- x + p(D^-1 A) D^-1 (side - A x), p the Chebyshev polynomial of the upper part of the spectrum
+/// x <- x + p(D^-1 A) D^-1 (side - A x), p the Chebyshev polynomial for the upper part of the spectrum
 /// (Adams, Brezina, Hu and Tuminaro 2003).
 void TwoLevel::State::smoothe(Rough& x, Start start) {
     const float upper = safety * largest, lower = smoothed_part * upper;
@@ -189,8 +189,9 @@ void TwoLevel::State::smoothe(Rough& x, Start start) {
     }
 }
 
-/// step <- keep step + share D^-1 (side - A x); x <- x + step. In one pass for each node, its numbers read before any
-/// is written: arrays on big pages lie so that a processor takes the one for the other, and waits.
+/// step <- keep step + share D^-1 (side - A x); x <- x + step. In one pass per node, whose numbers are all read before
+/// any is written: arrays on huge pages may have addresses that are equal in their lower bits, so that the processor
+/// mistakes a load for one that depends on a store, and stalls.
 void TwoLevel::State::advance(Rough& x, Start start, float keep, float share) {
     if (columns == 1)
         advance_columns<1>(x, start, keep, share);
@@ -200,7 +201,7 @@ void TwoLevel::State::advance(Rough& x, Start start, float keep, float share) {
 
 template <std::size_t count>
 void TwoLevel::State::advance_columns(Rough& x, Start start, float keep, float share) {
-    using Block = Eigen::Matrix<float, count, 3>;  // by columns: those of a component side by side
+    using Block = Eigen::Matrix<float, count, 3>;  // one per column: numbers of a component are contiguous
     using At = Eigen::Map<Block>;
     const bool from_zero = start == Start::zero;
     if (!from_zero) matrix.multiply(x.data(), rest.data(), static_cast<int>(count));
@@ -213,7 +214,7 @@ void TwoLevel::State::advance_columns(Rough& x, Start start, float keep, float s
                 now = At(x.data() + at);
             }
             if (keep != 0) go = keep * At(step.data() + at);
-            // The inverse of a block on the diagonal is symmetric.
+            // The inverse of a diagonal block is symmetric.
             const Eigen::Map<const Eigen::Matrix3f> inverse(inverse_diagonal.data() + 9 * i);
             for (int c = 0; c < 3; ++c) {
                 const Eigen::Matrix<float, count, 1> sum =
@@ -227,7 +228,7 @@ void TwoLevel::State::advance_columns(Rough& x, Start start, float keep, float s
     });
 }
 
-/// On the coarse level, by what is left of `side`, in `rest`.
+/// Correction on the coarse level for the remainder of `side`, in `rest`.
 void TwoLevel::State::correct() {
     for (std::size_t c = 0; c < columns; ++c) {
         Rough& fine = columns == 1 ? rest : one;
@@ -247,7 +248,7 @@ void TwoLevel::State::correct() {
     }
 }
 
-/// correction <- about A^-1 residual: smooth, correct on the coarse level, smooth; symmetric.
+/// correction <- approximately A^-1 residual: smooth, correct on the coarse level, smooth; symmetric.
 void TwoLevel::State::precondition() {
     const std::size_t all = columns * size;
     for_numbers(all, [&](std::size_t i) { side[i] = static_cast<float>(residual[i]); });
@@ -258,12 +259,13 @@ void TwoLevel::State::precondition() {
     smoothe(correction, Start::where_it_is);
 }
 
-/// Coarse level of the matrix and the positions at hand.
+/// Builds the coarse level for the present matrix and positions.
 bool TwoLevel::State::build() {
     space->set({matrix, values, positions, inverse_diagonal.data(), 4.0F / 3 / (safety * largest)});
     turned = false;
     if (kind == Kind::corners && coarse.precision() == Precision::double_) coarse.use(Precision::single_);
-    // What bends easily may be too much for single precision; once is enough to know, of groups.
+    // A body that bends easily may be too ill-conditioned for single precision; once it is, it stays in double, with
+    // groups.
     built = coarse.factorise(space->values());
     if (!built && coarse.precision() == Precision::single_) {
         coarse.use(Precision::double_);
@@ -273,16 +275,16 @@ bool TwoLevel::State::build() {
     return built;
 }
 
-/// True if a coarse level of the present state would pay: the one at hand brought the squared error from `begun` to
-/// `now` and is to bring it to `enough`.
+/// True if a new coarse level would pay: the present one reduced the squared error from `begun` to `now`, and is to
+/// reduce it to `enough`.
 bool TwoLevel::State::is_outdated(int spent, double begun, double now, double enough) const {
     if (!turned || spent < iterations_to_judge) return false;
     const double gain = std::log(begun / now) / spent, to_go = std::log(now / enough);
     return gain <= 0 || to_go / gain > to_go / usual_gain + price_of_coarse;
 }
 
-/// From where `solution` and `residual` are; `enough` of the squared error of each column, as the preconditioner
-/// measures it, is left at the end. 0: the first one shall set it. A column that has what it wants stays as it is.
+/// Iterates from `solution` and `residual` until the squared error of each column, in the norm of the preconditioner,
+/// is at most `enough`; 0: to be set from the first one. A converged column is not changed any more.
 TwoLevel::Outcome TwoLevel::State::iterate(double tolerance, PerColumn& enough, int limit) {
     const std::size_t all = columns * size;
     precondition();
@@ -296,7 +298,7 @@ TwoLevel::Outcome TwoLevel::State::iterate(double tolerance, PerColumn& enough, 
             enough[c] = tolerance * tolerance * left[c];
         else
             done[c] = left[c] <= enough[c];
-        done[c] = done[c] || left[c] == 0;  // of nothing
+        done[c] = done[c] || left[c] == 0;  // converged from the start
     }
     const auto all_done = [&] { return std::all_of(done.begin(), done.begin() + columns, [](bool d) { return d; }); };
     for (int k = 1; k <= limit && !all_done(); ++k) {
@@ -340,7 +342,7 @@ TwoLevel::Outcome TwoLevel::State::iterate(double tolerance, PerColumn& enough, 
 
 TwoLevel::Outcome TwoLevel::State::solve(double* b, std::size_t count, double tolerance, int limit) {
     set_columns(count);
-    PerColumn scale{}, enough{};  // forces may be of any size; single precision is not
+    PerColumn scale{}, enough{};  // forces may be of any magnitude; single precision is not
     for (std::size_t c = 0; c < count; ++c) {
         const double* column = b + c * size;
         for (std::size_t i = 0; i < size; ++i) scale[c] = std::max(scale[c], std::fabs(column[i]));

@@ -9,31 +9,30 @@
 
 namespace pliant::linalg {
 
-/// The fine level smooths (Chebyshev polynomials of D^-1 A), the coarse one (CoarseSpace or, of quadratic tets,
-/// NestedSpace) is factorised. Time and
-/// memory grow with the number of nodes, where those of a factorisation grow with its square in bulky bodies. The same
-/// bits on any number of cores.
+/// The fine level smooths (Chebyshev polynomials of D^-1 A), the coarse one (CoarseSpace or, for quadratic tets,
+/// NestedSpace) is factorised. Time and memory grow with the number of nodes, whereas those of a factorisation grow
+/// with its square in bulky bodies. Bit-identical on any number of cores.
 class TwoLevel {
 public:
     /// Analyses the pattern. Precondition: blocks of 3.
     explicit TwoLevel(const SymmetricPattern& pattern);
-    /// On the corners of quadratic tets.
+    /// With the linear tets on the corners of quadratic tets as the coarse level.
     TwoLevel(const SymmetricPattern& pattern, Nesting corners);
     TwoLevel(TwoLevel&&) noexcept;
     TwoLevel& operator=(TwoLevel&&) noexcept;
     ~TwoLevel();
 
-    /// `values` belong to the pattern; `positions` (nodes, 3) say where the nodes are now. False if the matrix is seen
-    /// not to be positive definite; solve() must not be called then.
+    /// `values` belong to the pattern; `positions` (nodes, 3) are the current node positions. False if the matrix is
+    /// found not to be positive definite; solve() must not be called then.
     [[nodiscard]] bool set(std::span<const double> values, std::span<const double> positions);
 
     enum class Outcome { solved, indefinite, slow };
-    /// Solves in place for `columns` right-hand sides, stored one after the other, until the error, in the norm of the
-    /// matrix, is about `tolerance` of the solution. Not a digit beyond single precision. Slow: `limit` iterations left
-    /// more, and the right-hand sides hold what was reached.
+    /// Solves in place for `columns` right-hand sides, stored one after the other, until the error, in the energy norm,
+    /// is about `tolerance` relative to the solution. Accuracy is limited to single precision. Slow: `limit` iterations
+    /// did not suffice, and the right-hand sides hold the solution so far.
     [[nodiscard]] Outcome solve(std::span<double> right_hand_sides, int columns, double tolerance, int limit);
 
-    [[nodiscard]] int iterations() const;  ///< of all columns of the last solve
+    [[nodiscard]] int iterations() const;  ///< total of the last solve over all columns
 
 private:
     struct State;

@@ -1,4 +1,4 @@
-// Two levels against the factor, on lattices of springs that are stiff in some directions and soft in others.
+// TwoLevel against Cholesky, on lattices of springs that are stiff in some directions and soft in others.
 #include "base/linalg/two_level.hpp"
 
 #include <doctest/doctest.h>
@@ -26,7 +26,7 @@ struct Problem {
 };
 
 /// A beam of unit cells with springs along edges and both diagonals of each face, thirty times stiffer in its second
-/// half, on a soft bed at one end; `turn` has it lie somewhere else.
+/// half, on a soft foundation at one end; rotated by `turn`.
 Problem beam(int along, int across, const Eigen::Matrix3d& turn = Eigen::Matrix3d::Identity()) {
     Problem p;
     const int side = across + 1, nodes = (along + 1) * side * side;
@@ -85,7 +85,7 @@ Eigen::VectorXd factored(const Problem& p) {
     return x;
 }
 
-/// Of x, in the norm of the matrix, relative to `exact`.
+/// Error of x in the norm of the matrix, relative to `exact`.
 double error(const Problem& p, const Eigen::VectorXd& x, const Eigen::VectorXd& exact) {
     const auto energy = [&](Eigen::VectorXd v) {
         Eigen::VectorXd product = Eigen::VectorXd::Zero(v.size());
@@ -100,7 +100,7 @@ constexpr int limit = 100;
 
 }  // namespace
 
-TEST_CASE("a slender beam is solved as the factor solves it, in few iterations whatever its size") {
+TEST_CASE("a slender beam is solved as by Cholesky, in few iterations at any size") {
     for (const int along : {12, 48, 96}) {
         const Problem p = beam(along, 4);
         TwoLevel levels(p.pattern);
@@ -113,7 +113,7 @@ TEST_CASE("a slender beam is solved as the factor solves it, in few iterations w
     }
 }
 
-TEST_CASE("a body that turned is solved with the coarse level of before, another one gets one of its own") {
+TEST_CASE("a rotated body reuses its coarse level, a different one gets a new one") {
     const Problem before = beam(48, 4);
     TwoLevel levels(before.pattern);
     REQUIRE(levels.set(before.values, before.positions));
@@ -129,7 +129,7 @@ TEST_CASE("a body that turned is solved with the coarse level of before, another
     const Eigen::VectorXd exact = factored(after);
     CHECK(error(after, x, exact) < 3e-4);
 
-    // Stiff where it was soft and soft where it was stiff: far from what it was.
+    // Soft and stiff parts swapped: far from the previous state.
     std::vector<double> scaled = after.values;
     for (std::size_t k = 0; k < scaled.size(); ++k) scaled[k] *= 1e4;
     for (int n = 0; n < 25; ++n) after.pattern.add_block(scaled, n, n, -0.9999 * 1e4 * Eigen::Matrix3d::Identity());
@@ -139,7 +139,7 @@ TEST_CASE("a body that turned is solved with the coarse level of before, another
     REQUIRE(levels.solve(after.whole(x), 1, 1e-4, limit) == Outcome::solved);
     const Eigen::VectorXd other = factored(after);
     CHECK(error(after, x, other) < 3e-4);
-    // The coarse level of before is soon given up.
+    // The old coarse level is soon replaced.
     TwoLevel fresh(after.pattern);
     REQUIRE(fresh.set(after.values, after.positions));
     Eigen::VectorXd y = after.force;
@@ -147,7 +147,7 @@ TEST_CASE("a body that turned is solved with the coarse level of before, another
     CHECK(levels.iterations() <= fresh.iterations() + 12);
 }
 
-TEST_CASE("what is not positive definite is noticed, at once or while solving") {
+TEST_CASE("an indefinite matrix is detected, at once or while solving") {
     for (const double shift : {-0.05, -3.0, -1e3}) {
         Problem p = beam(24, 3);
         for (int n = 0; n < p.pattern.nodes; ++n)
@@ -161,7 +161,7 @@ TEST_CASE("what is not positive definite is noticed, at once or while solving") 
     }
 }
 
-TEST_CASE("bodies of any few nodes, lonely ones among them") {
+TEST_CASE("bodies of very few nodes, isolated ones included") {
     for (const auto& [nodes, cliques] :
          {std::pair{1, std::vector<std::vector<int>>{}}, {2, {{0, 1}}}, {5, {{0, 1}, {1, 2}}}}) {
         Problem p;

@@ -1,4 +1,4 @@
-// Points and arrays of points as Eigen takes them.
+// Points and arrays of points as Eigen types.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,12 +13,12 @@ namespace pliant::linalg {
     return {v.x, v.y, v.z};
 }
 
-/// Three numbers of an array of points (3n), without a copy: the array must outlive the view.
+/// A point of an array (3n), without a copy: the array must outlive the view.
 [[nodiscard]] inline Eigen::Map<const Eigen::Vector3d> view(std::span<const double> points, int point) {
     return Eigen::Map<const Eigen::Vector3d>(points.data() + 3 * static_cast<std::size_t>(point));
 }
 
-/// All numbers of a vector, without a copy: it must outlive the view.
+/// All numbers of a vector, without a copy: the vector must outlive the view.
 [[nodiscard]] inline std::span<const double> view(const Eigen::VectorXd& v) {
     return {v.data(), static_cast<std::size_t>(v.size())};
 }

@@ -60,7 +60,7 @@ bool ZipReader::has(const std::string& name) const {
     return zip_name_locate(state_->archive.get(), name.c_str(), 0) >= 0;
 }
 
-/// What an entry claims to hold, once it is known that its packed bytes could.
+/// The stated size of an entry, after checking that its compressed bytes could hold it.
 Result<std::uint64_t> ZipReader::checked_size(const std::string& name) const {
     zip_stat_t stat;
     zip_stat_init(&stat);
@@ -90,7 +90,7 @@ Result<std::string> ZipReader::read_bytes(const std::string& name, std::uint64_t
                                got < 0 ? zip_file_strerror(file.get()) : "is cut short");
         done += static_cast<std::uint64_t>(got);
     }
-    // Reading past the end makes libzip compare the checksum.
+    // Reading past the end makes libzip verify the checksum.
     char beyond = 0;
     if (whole && zip_fread(file.get(), &beyond, 1) != 0)
         return input_error("{}: {}: damaged (wrong checksum or length)", state_->path, name);

@@ -1,4 +1,4 @@
-// Zip files: written whole and reproducibly, read with limits. Read by libzip.
+// Zip files: written reproducibly and atomically, read with limits. Reading uses libzip.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-/// Writes entries as they come; what stays in memory is a line per entry. Zip64 where there are many.
+/// Writes entries as they come; memory holds one record per entry. Zip64 if there are many.
 class ZipWriter {
 public:
     [[nodiscard]] static Result<ZipWriter> create(const std::filesystem::path& path);
@@ -20,8 +20,8 @@ public:
     ~ZipWriter();  ///< without close() the file is removed
 
     enum class Method { store, deflate };
-    /// Every entry gets the same date, so that equal calls give equal bytes. Errors: a name that was used before or has
-    /// more than 65535 bytes, an entry of 4 GB or more, the disk.
+    /// Every entry gets the same date, so that equal calls give equal bytes. Errors: a duplicate name or one of more
+    /// than 65535 bytes, an entry of 4 GB or more, the disk.
     [[nodiscard]] Status add(const std::string& name, std::string_view bytes, Method method);
     [[nodiscard]] Status close();
 
@@ -41,10 +41,10 @@ public:
     [[nodiscard]] std::uint64_t entry_count() const;
     [[nodiscard]] std::string name(std::uint64_t index) const;
     [[nodiscard]] bool has(const std::string& name) const;
-    /// The whole entry. Errors: missing; larger than `limit_bytes`; a size that its packed bytes cannot hold; a method
-    /// other than stored and deflated; encrypted; a wrong checksum.
+    /// The whole entry. Errors: missing; larger than `limit_bytes`; a size that its compressed bytes cannot have; a
+    /// method other than stored and deflated; encrypted; a wrong checksum.
     [[nodiscard]] Result<std::string> read(const std::string& name, std::uint64_t limit_bytes) const;
-    /// The first `count` bytes, or fewer where the entry is shorter. Errors as above, but for the checksum.
+    /// The first `count` bytes, or fewer if the entry is shorter. Errors as above, except the checksum.
     [[nodiscard]] Result<std::string> read_head(const std::string& name, std::uint64_t count) const;
 
 private:

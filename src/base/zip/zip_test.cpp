@@ -27,7 +27,7 @@ std::string number(std::uint64_t value, int bytes) {
     return text;
 }
 
-/// An archive of one stored entry by hand, each field as a liar may set it.
+/// A hand-made archive of one stored entry, in which each field can be falsified.
 struct ByHand {
     std::string name = "a";
     std::string data = "hello";
@@ -74,7 +74,7 @@ struct File {
         REQUIRE(write_file(path, bytes).has_value());
         return ZipReader::open(path);
     }
-    /// What is said of an archive that cannot be opened, or else of its entry "a".
+    /// The error for an archive that cannot be opened, or else for its entry "a".
     std::string refused(const std::string& bytes) const {
         const auto zip = open(bytes);
         const auto read = zip ? zip->read("a", 1000) : Result<std::string>(tl::unexpected(zip.error()));
@@ -86,7 +86,7 @@ struct File {
     }
 };
 
-/// Writes beyond `bytes` fail, as on a full disk, until this goes.
+/// Writes beyond `bytes` fail, as on a full disk, for the lifetime of this object.
 class FullDisk {
 public:
     explicit FullDisk(rlim_t bytes) {
@@ -108,7 +108,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("entries come back as they went, stored and deflated, empty ones and binary ones") {
+TEST_CASE("entries are read back as written, stored and deflated, empty and binary") {
     const File file;
     const std::string binary("\0\xFF\r\n\x1A", 5), repeated(100000, 'x'), name = "b\xC3\xA9/\xE6\x9F\x94.txt";
     {
@@ -135,7 +135,7 @@ TEST_CASE("entries come back as they went, stored and deflated, empty ones and b
     CHECK(zip->read("none", any_size).error().message == file.path.string() + ": has no entry 'none'");
 }
 
-TEST_CASE("an entry may be as large as the limit and no larger; its head may be had all the same") {
+TEST_CASE("an entry may be as large as the limit and no larger; its head is readable anyway") {
     const File file;
     {
         auto zip = ZipWriter::create(file.path);
@@ -153,7 +153,7 @@ TEST_CASE("an entry may be as large as the limit and no larger; its head may be 
     CHECK(zip->read_head("a", any_size).value().size() == 1 << 26);
 }
 
-TEST_CASE("a name comes once, and fits its field; a size fits too") {
+TEST_CASE("duplicate or overlong names and oversized entries are refused") {
     const File file;
     auto zip = ZipWriter::create(file.path);
     REQUIRE(zip->add("a", "1", Method::store).has_value());
@@ -161,7 +161,7 @@ TEST_CASE("a name comes once, and fits its field; a size fits too") {
     const std::string longest(65535, 'n');
     REQUIRE(zip->add(longest, "3", Method::store).has_value());
     CHECK(holds(zip->add(longest + "n", "4", Method::store).error().message, "too large for a zip file"));
-    const std::string_view huge(longest.data(), std::size_t{0xFFFFFFFF});  // refused before a byte of it is read
+    const std::string_view huge(longest.data(), std::size_t{0xFFFFFFFF});  // refused without reading any of it
     CHECK(holds(zip->add("huge", huge, Method::store).error().message, "huge: is too large for a zip file"));
     REQUIRE(zip->close().has_value());
     const auto read = ZipReader::open(file.path);
@@ -170,7 +170,7 @@ TEST_CASE("a name comes once, and fits its field; a size fits too") {
     CHECK(read->read(longest, 9).value() == "3");
 }
 
-TEST_CASE("without close, or where the disk is full, nothing is left") {
+TEST_CASE("nothing is left without close(), or when the disk is full") {
     const File file;
     { CHECK(ZipWriter::create(file.path)->add("a", "1", Method::store).has_value()); }
     CHECK_FALSE(fs::exists(file.path));
@@ -191,12 +191,12 @@ TEST_CASE("without close, or where the disk is full, nothing is left") {
     CHECK(holds(ZipWriter::create(file.folder / "none/a.zip").error().message, "cannot be written: "));
 }
 
-TEST_CASE("what is no file, and what is no archive, is refused") {
+TEST_CASE("what is not a file or not an archive is refused") {
     const File file;
     CHECK(ZipReader::open(file.path).error().message == file.path.string() + ": no such file");
     CHECK(holds(ZipReader::open(file.folder.path()).error().message, ": is not a regular file"));
     REQUIRE(::mkfifo((file.folder / "fifo").c_str(), 0600) == 0);
-    CHECK(holds(ZipReader::open(file.folder / "fifo").error().message, ": is not a regular file"));  // nor waited for
+    CHECK(holds(ZipReader::open(file.folder / "fifo").error().message, ": is not a regular file"));  // must not block
     file.refused("");
     file.refused("PK");
     file.refused(std::string(70000, '\0'));
@@ -209,28 +209,28 @@ TEST_CASE("an archive that ends early anywhere is refused") {
     for (std::size_t length = 0; length < whole.size(); ++length) file.refused(whole.substr(0, length));
 }
 
-TEST_CASE("sizes that cannot be are refused before memory is taken") {
+TEST_CASE("impossible sizes are refused before memory is allocated") {
     const File file;
     CHECK(holds(file.refused(ByHand{.size = 6}.zip()), "a: claims 6 bytes, more than the archive can hold"));
     CHECK(holds(file.refused(ByHand{.size = 0xFFFFFFF0}.zip()), "claims 4294967280 bytes"));
     CHECK(holds(file.refused(ByHand{.size = 5 * 1032 + 1, .method = 8}.zip()), "claims 5161 bytes"));
     file.refused(ByHand{.size = 5, .packed = 0xFFFFFFF0}.zip());
-    CHECK(holds(file.refused(ByHand{.size = 4, .packed = 4}.zip()), "a: "));  // the checksum is of five
+    CHECK(holds(file.refused(ByHand{.size = 4, .packed = 4}.zip()), "a: "));  // the checksum is for five bytes
     file.refused(ByHand{.offset = 40}.zip());
     file.refused(ByHand{.offset = 0xFFFFFFF0}.zip());
     file.refused(ByHand{.count = 2}.zip());
     file.refused(ByHand{.count = 0xFFFE}.zip());
 }
 
-TEST_CASE("a wrong checksum, a secret and a method of its own are refused") {
+TEST_CASE("a wrong checksum, encryption and unknown methods are refused") {
     const File file;
     file.refused(ByHand{.checksum = 1}.zip());
     CHECK(holds(file.refused(ByHand{.flags = 1}.zip()), "a: must be stored or deflated, and not encrypted"));
     CHECK(holds(file.refused(ByHand{.method = 12}.zip()), "a: must be stored or deflated, and not encrypted"));
-    file.refused(ByHand{.method = 8}.zip());  // "hello" is nothing that was deflated
+    file.refused(ByHand{.method = 8}.zip());  // "hello" is not a deflate stream
 }
 
-TEST_CASE("sizes of eight bytes are read, and believed no more than those of four") {
+TEST_CASE("64-bit sizes are read and checked like 32-bit ones") {
     const File file;
     const auto with_sizes = [](std::uint64_t size, std::uint64_t packed) {
         const std::string extra = number(1, 2) + number(16, 2) + number(size, 8) + number(packed, 8);
@@ -282,7 +282,7 @@ TEST_CASE("of two entries with one name the first is read") {
     CHECK(zip->read("a", 5).value() == "hello");
 }
 
-TEST_CASE("a name is never a path: those that lead elsewhere are entries like others") {
+TEST_CASE("names that look like other paths are ordinary entries") {
     const File file;
     for (const std::string name : {"../evil", "/tmp/pliant_evil", "..", "a\\..\\b", "c:evil"}) {
         ByHand hand;
@@ -298,7 +298,7 @@ TEST_CASE("a name is never a path: those that lead elsewhere are entries like ot
     CHECK(std::distance(fs::directory_iterator(file.folder.path()), fs::directory_iterator()) == 1);
 }
 
-TEST_CASE("an archive in which any byte is another one is refused or read, and nothing else happens") {
+TEST_CASE("an archive with any changed byte is refused or read, without harm") {
     const File file;
     const std::string whole = ByHand{}.zip();
     for (std::size_t i = 0; i < whole.size(); ++i) {

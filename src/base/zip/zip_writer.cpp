@@ -1,4 +1,4 @@
-// Zip files as PKWARE's APPNOTE 6.3.10 describes them: entries one after the other, then the directory.
+// Zip files according to PKWARE's APPNOTE 6.3.10: entries one after the other, then the directory.
 #include <libdeflate.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ struct Entry {
     std::uint16_t method = 0;
 };
 
-/// What local header and directory share, from the flags to the lengths of name and extra field.
+/// The part shared by local header and directory, from the flags to the lengths of name and extra field.
 void describe(Bytes& out, const Entry& e, std::size_t extra) {
     out.two(utf8_names).two(e.method).two(0).two(first_of_january_1980);
     out.four(e.checksum).four(e.packed).four(e.size).two(e.name.size()).two(extra);
@@ -118,7 +118,7 @@ struct ZipWriter::State {
         offset += bytes.size();
         return {};
     }
-    /// Empty where deflating does not make it smaller.
+    /// Empty if deflating does not make it smaller.
     [[nodiscard]] std::string deflated(std::string_view bytes) const {
         std::string packed(bytes.size(), '\0');
         packed.resize(

@@ -4,7 +4,7 @@
 //     Coordinates / number x y z ... / end coordinates
 //     Elements / number n1 n2 n3 n4 [material] ... / end elements
 //
-// Coordinates of all blocks are one list. The material of an element is its region; without one the block is.
+// Coordinates of all blocks form one list. The region of an element is its material or, without one, its block.
 #include <algorithm>
 
 #include "base/core/letters.hpp"
@@ -41,7 +41,7 @@ private:
         if (keyword == "mesh") return read_head(scan_.rest_of_line());
         if (keyword == "coordinates") return read_coordinates();
         if (keyword == "elements") return read_elements();
-        if (keyword == "unit") {  // a remark that newer programs leave: Unit "mm"
+        if (keyword == "unit") {  // written by newer programs: Unit "mm"
             scan_.rest_of_line();
             return {};
         }
@@ -71,7 +71,7 @@ private:
         return {};
     }
 
-    /// True at "end ..."; the line is left behind then.
+    /// True at "end ..."; moves past that line.
     bool at_end_of(TextScanner& ahead) {
         ahead = scan_;
         if (lower_case(scan_.word()) != "end") {
@@ -109,7 +109,8 @@ private:
         return {};
     }
 
-    /// What follows the nodes is the number of a material. Blocks count as regions apart from materials, below zero.
+    /// The material number, which follows the nodes. Elements without one get their block as region, with negative
+    /// numbers to tell blocks from materials.
     std::int64_t region_of(std::string_view rest) {
         TextScanner words(rest, name_);
         if (const Result<std::int64_t> material = words.integer(); material && *material >= 0) return *material;

@@ -1,9 +1,10 @@
-// Abaqus and CalculiX input decks: *NODE, *ELEMENT with C3D4 and C3D10 of every variety, and element sets. All else in
-// a deck (other elements, materials, steps) is passed over. Format: Abaqus keywords reference guide, *NODE, *ELEMENT,
-// *ELSET, *SOLID SECTION; CalculiX CrunchiX user's manual 2.20, chapter 7. Keywords and set names know no case.
+// Abaqus and CalculiX input decks: *NODE, *ELEMENT with all variants of C3D4 and C3D10, and element sets. All else in a
+// deck (other elements, materials, steps) is ignored. Format: Abaqus keywords reference guide, *NODE, *ELEMENT, *ELSET,
+// *SOLID SECTION; CalculiX CrunchiX user's manual 2.20, chapter 7. Keywords and set names are case-insensitive.
 //
 // The region of a tet is the element set that a *SOLID SECTION names for it; else the set of its *ELEMENT card; else
-// the smallest *ELSET that holds it. A comment of our own keeps names that are no labels: ** region R1 "left half".
+// the smallest *ELSET that contains it. A comment of our own keeps names that are not valid labels: ** region R1 "left
+// half".
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -72,7 +73,7 @@ std::optional<Number> parsed(std::string_view text) {
     return value;
 }
 
-/// "1.5D-3" is how Fortran writes it.
+/// "1.5D-3" is Fortran notation.
 std::optional<double> parsed_real(std::string_view text) {
     if (text.empty()) return 0.0;
     std::string plain(text.substr(0, 64));
@@ -81,7 +82,7 @@ std::optional<double> parsed_real(std::string_view text) {
     return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-/// Nodes of a tetrahedral element type; 0 for all others.
+/// Nodes of a tetrahedral element type; 0 for any other type.
 std::size_t tet_width(const std::string& type) {
     const std::string lower = lower_case(type);
     if (lower.starts_with("c3d10") || lower.starts_with("dc3d10")) return 10;
@@ -147,7 +148,7 @@ private:
         return {};
     }
 
-    /// Parts keep their coordinates; an assembly of several, or one that is moved, would need more than this reader.
+    /// Parts keep their coordinates; assemblies of several parts, or of a moved one, are not supported.
     Status begin_instance() {
         if (++instances_ > 1) return error("an assembly of several instances is not read; write it as one part");
         return {};
@@ -188,7 +189,7 @@ private:
         return {};
     }
 
-    /// Number and nodes; a line that ends with a comma goes on in the next.
+    /// Number and nodes; a line that ends with a comma continues on the next.
     Status read_element(std::string_view line) {
         for (const std::string_view word : fields(line)) {
             const auto number = parsed<std::int64_t>(word);
@@ -219,7 +220,7 @@ private:
         std::string name;
         std::vector<std::int64_t> elements;
         std::vector<std::array<std::int64_t, 3>> ranges;  ///< first, last, step of GENERATE
-        std::vector<int> sets;                            ///< sets that it holds
+        std::vector<int> sets;                            ///< sets that it contains
         std::vector<std::size_t> tets;                    ///< of its *ELEMENT cards
         bool section = false;
     };
@@ -259,7 +260,7 @@ private:
         return {};
     }
 
-    /// Calls `use` with every tet of a set; sets inside sets are followed once each.
+    /// Calls `use` with every tet of a set; nested sets are followed once each.
     template <class Use>
     void each_tet(std::size_t set, const Use& use) const {
         std::vector<bool> seen(sets_.size());
@@ -284,7 +285,7 @@ private:
         }
     }
 
-    /// Gives the tets of a set that have no region yet to it.
+    /// Assigns the set to its tets that have no region yet.
     void claim(std::size_t set) {
         each_tet(set, [&](std::size_t t) {
             if (found_.regions[t] == no_set) found_.regions[t] = static_cast<std::int64_t>(set);
@@ -322,7 +323,7 @@ private:
         for (const auto& [size, set] : by_size) claim(set);
     }
 
-    /// Sets beyond these do not become regions by their size alone: every one may hold every tet.
+    /// Maximum number of sets that can become regions by size alone: every one may contain every tet.
     static constexpr std::size_t most_sets = 1000;
 
     TextScanner scan_;
@@ -333,7 +334,7 @@ private:
     std::size_t width_ = 0;
     int set_ = no_set;
     int instances_ = 0;
-    std::vector<std::int64_t> wanted_;  ///< number and nodes of the element that is being read
+    std::vector<std::int64_t> wanted_;  ///< number and nodes of the element being read
     TextTets found_;
     std::vector<std::pair<std::int64_t, std::size_t>> by_number_;  ///< (number of the element, tet)
     std::vector<Set> sets_;

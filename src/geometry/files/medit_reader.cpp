@@ -1,5 +1,5 @@
 // Medit mesh files as text. Format: P. Frey, "MEDIT: An interactive mesh visualization software", INRIA technical
-// report 0253, 2001. Names of regions, which the format lacks, stand in comments of our own: # region 1 "root".
+// report 0253, 2001. Region names, which the format lacks, are in comments of our own: # region 1 "root".
 #include <utility>
 
 #include "base/core/letters.hpp"
@@ -35,7 +35,7 @@ private:
         return scan_.error(fmt::format("\"{}\" is neither a keyword nor a number", keyword.substr(0, 40)));
     }
 
-    /// `# region 1 "root"`, or any other.
+    /// `# region 1 "root"`, or any other comment.
     Status read_comment(const std::string& mark) {
         if (mark != "#" || scan_.word_of_line() != "region") {
             scan_.rest_of_line();
@@ -74,7 +74,7 @@ private:
     Status read_tets(std::size_t width) {
         const Result<std::size_t> count = scan_.count(2 * width + 2);
         if (!count) return tl::unexpected(count.error());
-        if (width == 4 && words_ahead() == 11) width = 10;  // so Gmsh 4.8 writes quadratic tets
+        if (width == 4 && words_ahead() == 11) width = 10;  // Gmsh 4.8 writes quadratic tets this way
         for (std::size_t i = 0; i < *count; ++i) {
             const Result<TenNodes> nodes = read_tet_nodes(scan_, found_.points, width);
             if (!nodes) return tl::unexpected(nodes.error());
@@ -87,7 +87,7 @@ private:
         return {};
     }
 
-    /// How many words the next line that is not blank has; 12 for more.
+    /// Number of words on the next non-blank line; 12 if there are more.
     int words_ahead() const {
         TextScanner ahead = scan_;
         if (ahead.word().empty()) return 0;
@@ -99,7 +99,7 @@ private:
     TextScanner scan_;
     std::string name_;
     TextTets found_;
-    bool complete_ = false;  ///< a list that is used has just ended: no number may follow
+    bool complete_ = false;  ///< a list that is read has just ended: no number may follow
 };
 
 }  // namespace

@@ -87,7 +87,7 @@ TEST_CASE("broken STL files are meshed from their winding number, or refused wit
     struct Row {
         const char* file;
         double volume;     ///< 0: refused
-        const char* told;  ///< part of the note or of the error; none: a clean mesh
+        const char* told;  ///< expected part of the note or error; null: none expected
     };
     for (const Row& row :
          {Row{"cube_good_binary", 1000, ""}, Row{"hole_one_triangle", 1000, "3 open edges"},

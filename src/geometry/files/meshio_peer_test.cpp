@@ -1,4 +1,4 @@
-// Holds our readers and writers against meshio, an independent program: the same nodes, tets and volumes both ways.
+// Compares our readers and writers with meshio, an independent program: the same nodes, tets and volumes both ways.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A block of 3 x 2 x 2 cubes of five tets each, in two regions, stretched so that no two edges are alike.
+/// A block of 3 x 2 x 2 cubes of five tets each, in two regions, stretched so that no two edges are equal.
 TetMesh block() {
     TetMesh mesh;
     const auto node = [](int i, int j, int k) { return (i * 3 + j) * 3 + k; };
@@ -123,7 +123,7 @@ TEST_CASE("Pliant reads what meshio writes: same nodes, tets, regions and volume
             CHECK(back->tet_count() == mesh.tet_count());
             CHECK(back->points.size() == mesh.points.size());
             CHECK(volume(*back) == near(volume(mesh), {.relative = 1e-12}));
-            // meshio's Abaqus, TetGen and Gmsh 4 files lose data that it calls anything else than they do.
+            // meshio's Abaqus, TetGen and Gmsh 4 writers lose data whose names they do not know.
             if (name == "deck.inp" || name.starts_with("pair") || name.ends_with("4.msh")) continue;
             CHECK(back->region == mesh.region);
         }

@@ -1,4 +1,4 @@
-// The words and numbers of a .msh file, whether it is text or binary.
+// Tokens and numbers of a .msh file, text or binary.
 #pragma once
 
 #include <array>
@@ -11,12 +11,13 @@
 
 namespace pliant::mesh {
 
-/// Heads of sections, counts of version 2 and names are text in both kinds of file; numbers are as the file is.
+/// Section headers, the counts of version 2 and names are text in both kinds of file; numbers follow the kind of file.
 class MshInput {
 public:
     MshInput(std::string_view bytes, std::string name) : bytes_(bytes), name_(name), scan_(bytes, std::move(name)) {}
 
-    /// From here on numbers are bytes. Stands in the line of $MeshFormat; reads the 1 that tells the byte order.
+    /// From here on numbers are binary. Call inside the $MeshFormat section; reads the integer 1 that tells the byte
+    /// order.
     [[nodiscard]] Status begin_binary(bool wide_sizes);
     [[nodiscard]] bool binary() const { return binary_; }
     [[nodiscard]] std::size_t size_width() const { return wide_ ? 8 : 4; }
@@ -25,9 +26,9 @@ public:
     [[nodiscard]] std::string section() { return std::string(scan_.word()); }
     [[nodiscard]] std::string word() { return std::string(scan_.word()); }
     std::string_view rest_of_line() { return scan_.rest_of_line(); }
-    /// Before the bytes of a binary file; text has its numbers in any line.
+    /// Call before binary data; does nothing in text, where line ends do not matter.
     void skip_line_end();
-    /// Past the end of the section that began with `head`.
+    /// Moves past the end of the section that began with `head`.
     [[nodiscard]] Status skip_section(std::string_view head);
     [[nodiscard]] Status expect_end();
 
@@ -35,18 +36,18 @@ public:
     [[nodiscard]] Result<std::size_t> text_count(std::size_t least_bytes) { return scan_.count(least_bytes); }
 
     [[nodiscard]] Result<std::int64_t> integer();  ///< 4 bytes
-    [[nodiscard]] Result<std::int64_t> size();     ///< 8 bytes, or what the head of the file says
+    [[nodiscard]] Result<std::int64_t> size();     ///< 8 bytes, or as the header of the file says
     [[nodiscard]] Result<double> number();         ///< 8 bytes; finite
-    /// A size() of things that take at least `least_bytes` each.
+    /// Reads a size() for items of at least `least_bytes` each.
     [[nodiscard]] Result<std::size_t> count(std::size_t least_bytes);
     template <std::size_t Count>
     [[nodiscard]] Result<std::array<std::int64_t, Count>> integers();
     template <std::size_t Count>
     [[nodiscard]] Result<std::array<std::uint64_t, Count>> sizes();
-    /// `rows` times `width` bytes.
+    /// Skips `rows` times `width` bytes.
     [[nodiscard]] Status skip_bytes(std::size_t rows, std::size_t width);
 
-    /// "NAME:LINE: TEXT", or the byte of a binary file.
+    /// "NAME:LINE: TEXT", or the byte offset in a binary file.
     [[nodiscard]] tl::unexpected<Error> error(std::string_view text) const;
 
 private:

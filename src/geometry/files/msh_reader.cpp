@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t gmsh_tetra = 4;
 constexpr std::int64_t gmsh_quadratic_tetra = 11;
 
-/// Order of Gmsh's 10-node tet in ours: its last two mid-edge nodes are swapped.
+/// Maps Gmsh's 10-node tet to ours: its last two mid-edge nodes are swapped.
 constexpr std::array<std::size_t, 10> gmsh_order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 
 bool is_tet(std::int64_t type) {
@@ -96,7 +96,7 @@ private:
         return in_.expect_end();
     }
 
-    /// Version 4: which physical group a volume belongs to.
+    /// Version 4: the physical group of each volume.
     Status read_entities() {
         in_.skip_line_end();
         std::array<std::size_t, 4> counts{};
@@ -113,7 +113,7 @@ private:
         return in_.expect_end();
     }
 
-    /// Tag, point or box, physical groups, and but for points the entities that bound it.
+    /// Tag, point or box, physical groups and, except for points, the bounding entities.
     Status read_entity(std::size_t dimension) {
         const Result<std::int64_t> tag = in_.integer();
         if (!tag) return tl::unexpected(tag.error());
@@ -163,7 +163,7 @@ private:
         return in_.expect_end();
     }
 
-    /// Sections of version 4: a head whose first number counts the blocks that follow.
+    /// Sections of version 4: a header whose first number is the count of the following blocks.
     Status read_blocks(Status (MshReader::*read_block)()) {
         in_.skip_line_end();
         const auto head = in_.sizes<4>();
@@ -216,14 +216,14 @@ private:
         in_.skip_line_end();
         if (!in_.binary()) {
             for (std::size_t i = 0; i < *count; ++i) {
-                const auto head = in_.integers<3>();  // number, type, how many tags
+                const auto head = in_.integers<3>();  // number, type, number of tags
                 if (!head) return tl::unexpected(head.error());
                 if (Status status = read_element_2((*head)[1], (*head)[2], (*head)[0]); !status) return status;
             }
             return in_.expect_end();
         }
         for (std::size_t i = 0; i < *count;) {
-            const auto head = in_.integers<3>();  // type, elements that follow, how many tags
+            const auto head = in_.integers<3>();  // type, number of elements that follow, number of tags
             if (!head) return tl::unexpected(head.error());
             if ((*head)[1] < 1) return in_.error("a group of elements is empty");
             for (std::int64_t e = 0; e < (*head)[1]; ++e, ++i) {
@@ -255,7 +255,8 @@ private:
         return status;
     }
 
-    /// Binary elements of no interest: `rows` rows of nodes (and of a number in version 4) of `width` bytes each.
+    /// Skips binary elements that are not needed: `rows` rows of nodes (plus a number in version 4) of `width` bytes
+    /// each.
     Status skip_nodes(std::int64_t type, std::size_t per_row, std::size_t width, std::size_t rows = 1) {
         const std::size_t nodes = nodes_of(type);
         if (nodes == 0) return in_.error(fmt::format("elements of type {} are not known", type));

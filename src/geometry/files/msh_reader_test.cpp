@@ -87,16 +87,16 @@ $EndElements
 
 }  // namespace
 
-TEST_CASE("version 2: physical volumes are regions with their names; all else is passed over") {
+TEST_CASE("version 2: physical volumes are regions with their names; all else is ignored") {
     const Result<TetMesh> mesh = parse_tet_mesh(version_2, "a.msh");
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(mesh->points.size() == 5);
     CHECK(mesh->region_names == std::vector<std::string>{"grip", "soft foam"});
     CHECK(volume(*mesh, 0) == near(1.0 / 6, {.relative = 1e-12}));
-    CHECK(volume(*mesh, 1) == near(1.0 / 3, {.relative = 1e-12}));  // it was inside out
+    CHECK(volume(*mesh, 1) == near(1.0 / 3, {.relative = 1e-12}));  // it was inverted in the file
 }
 
-TEST_CASE("version 4: groups come by the volume they belong to") {
+TEST_CASE("version 4: groups follow from the volumes that belong to them") {
     const Result<TetMesh> mesh = parse_tet_mesh(version_4, "a.msh");
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(mesh->region_names == std::vector<std::string>{"body", "0"});  // the second volume is in no group
@@ -120,7 +120,7 @@ TEST_CASE("quadratic tets: the last two mid-edge nodes change places") {
               0.5 * (mesh->points[n[edge_corners[e][0]]] + mesh->points[n[edge_corners[e][1]]]));
 }
 
-TEST_CASE("broken files give a reason with the line, and claims are not believed") {
+TEST_CASE("damaged files give a reason with the line, and stated sizes are not trusted") {
     CHECK(problem("$MeshFormat\n4.1 1 8\n$EndMeshFormat\n").find("a.msh: byte 24: the whole number 1 is needed") == 0);
     CHECK(problem("$MeshFormat\n1.0 0 8\n$EndMeshFormat\n").find("version \"1.0\"") != std::string::npos);
     CHECK(problem("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n").find("holds no tetrahedra") != std::string::npos);

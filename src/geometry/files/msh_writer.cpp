@@ -10,7 +10,7 @@
 namespace pliant::mesh {
 namespace {
 
-/// Order of our 10-node tet in Gmsh's: the last two mid-edge nodes are swapped.
+/// Maps our 10-node tet to Gmsh's: the last two mid-edge nodes are swapped.
 constexpr std::array<std::size_t, 10> gmsh_order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 
 class MshWriter {
@@ -104,7 +104,7 @@ private:
         end_section("Entities");
     }
 
-    /// All nodes belong to the first volume, as far as the file says: regions share them.
+    /// All nodes are assigned to the first volume, because regions share nodes.
     void add_nodes() {
         const std::size_t count = mesh_.points.size();
         out_ += "$Nodes\n";

@@ -1,4 +1,4 @@
-// The points of a file that numbers them as it likes: by number to their place in a list.
+// The points of a file with arbitrary point numbers: maps each number to an index in a list.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ class NumberedPoints {
 public:
     void reserve(std::size_t count) { points_.reserve(count); }
 
-    /// False if a point has that number already.
+    /// False if the number is already taken.
     [[nodiscard]] bool add(std::int64_t number, const Vec3& point) {
         const auto place = static_cast<std::int64_t>(points_.size());
         if (points_.empty()) first_ = number;
@@ -25,7 +25,7 @@ public:
         return true;
     }
 
-    /// Its place in the list, or -1.
+    /// Index in the list, or -1.
     [[nodiscard]] std::int64_t find(std::int64_t number) const {
         if (scattered_.empty()) {
             const bool held = number >= first_ && static_cast<std::uint64_t>(number - first_) < points_.size();
@@ -36,11 +36,11 @@ public:
     }
 
     [[nodiscard]] std::size_t size() const { return points_.size(); }
-    /// The list, in the order of the file; this object is empty then.
+    /// The points in file order; leaves this object empty.
     [[nodiscard]] std::vector<Vec3> take() { return std::exchange(points_, {}); }
 
 private:
-    /// Numbers in a row need no table; the first that breaks the row makes one.
+    /// Consecutive numbers need no table; the first gap creates one.
     void scatter() {
         for (std::size_t i = 0; i < points_.size(); ++i)
             scattered_[first_ + static_cast<std::int64_t>(i)] = static_cast<std::int64_t>(i);
@@ -48,7 +48,7 @@ private:
 
     std::vector<Vec3> points_;
     std::int64_t first_ = 0;
-    std::unordered_map<std::int64_t, std::int64_t> scattered_;  ///< empty while the numbers run in a row
+    std::unordered_map<std::int64_t, std::int64_t> scattered_;  ///< empty while the numbers are consecutive
 };
 
 }  // namespace pliant::mesh

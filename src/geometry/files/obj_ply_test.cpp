@@ -104,7 +104,7 @@ TEST_CASE("OBJ: a backslash continues a line, but not a comment or a name") {
     REQUIRE_MESSAGE(file, (file ? "" : file.error().message));
     CHECK(file->mesh.triangles.size() == 12);
     CHECK(signed_volume(file->mesh) == near(8, {.relative = 1e-12}));
-    // Lines are still counted.
+    // Lines are counted correctly after a continuation.
     CHECK(problem(replaced(text, "f 3 4 8 7", "f 3 4 8 9")) == "a:21: a face names vertex 9, there are 8 so far");
     std::string old_mac;
     for (const char c : obj) old_mac += c == '\n' ? '\r' : c;
@@ -133,7 +133,7 @@ TEST_CASE("PLY: text and bytes of both orders give the same surface") {
     }
 }
 
-TEST_CASE("PLY: broken files give a reason, and claims are not believed") {
+TEST_CASE("PLY: damaged files give a reason, and stated sizes are not trusted") {
     CHECK(problem(replaced(ply, "face 4", "face 4000000000000")).find("more than the file can hold") !=
           std::string::npos);
     CHECK(problem(replaced(ply, "face 4", "face 5")).find("the file ends") != std::string::npos);

@@ -29,8 +29,8 @@ public:
     }
 
 private:
-    /// The number of a vertex, from 0. Numbers of the file count from 1, or back from the last vertex so far if
-    /// negative.
+    /// The number of a vertex, from 0. Numbers in the file count from 1 or, if negative, back from the last vertex so
+    /// far.
     Result<std::size_t> corner(std::string_view word) const {
         const std::string_view digits = word.substr(0, word.find('/'));
         std::int64_t number = 0;

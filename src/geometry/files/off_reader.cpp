@@ -1,6 +1,6 @@
-// OFF, Geomview's object file format, as text: a keyword, the counts of vertices, faces and edges, then a line for each
-// vertex and each face. The keyword's prefixes say what follows a vertex's coordinates on its line: ST a texture, C a
-// colour, N a normal. All that is passed over, and so is a face's colour.
+// OFF, Geomview's object file format, as text: a keyword, the counts of vertices, faces and edges, then one line per
+// vertex and face. The keyword's prefixes say what follows a vertex's coordinates on its line: ST a texture, C a
+// colour, N a normal. These are ignored, and so is a face's colour.
 #include <optional>
 
 #include "geometry/files/surface_collector.hpp"
@@ -8,10 +8,10 @@
 namespace pliant::mesh {
 namespace {
 
-/// Of the keyword, or nothing where it is none.
+/// Prefixes of the keyword, or nothing if it is not the keyword.
 struct Prefixes {
     bool four = false;  ///< four coordinates each
-    bool any = false;   ///< so many coordinates as the file says
+    bool any = false;   ///< the file gives the number of coordinates
 };
 
 std::optional<Prefixes> prefixes_of(std::string_view keyword) {
@@ -59,12 +59,12 @@ private:
             return scan_.error("its points are not in three dimensions; OFF, COFF, NOFF and STOFF can be read");
         scan_.skip_comments('#');
         for (std::size_t* count : {&vertices_, &faces_}) {
-            const Result<std::size_t> read = scan_.count(2);  // a figure and what ends it
+            const Result<std::size_t> read = scan_.count(2);  // at least a digit and a separator
             if (scan_.last_word() == "BINARY") return scan_.error("is a binary OFF file; write it as text");
             if (!read) return tl::unexpected(read.error());
             *count = *read;
         }
-        scan_.rest_of_line();  // edges, which nobody counts
+        scan_.rest_of_line();  // the number of edges, which is not used
         return {};
     }
 

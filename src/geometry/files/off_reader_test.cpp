@@ -22,7 +22,7 @@ SurfaceFile read(std::string_view text) {
     return *file;
 }
 
-/// A cube of edge 2: a face of four corners, one cut into triangles, comments and colours.
+/// A cube of edge 2: one face with four corners, the others split into triangles, comments and colours.
 const std::string off = R"(# made by hand
 OFF
 # counts
@@ -54,7 +54,7 @@ TEST_CASE("OFF: polygons, colours and comments") {
     CHECK(file.warnings.empty());
     CHECK(check_closed(file.mesh));
     CHECK(signed_volume(file.mesh) == near(8, {.relative = 1e-12}));
-    // Counts on the keyword's line, without that of edges; other line ends; a mark in front.
+    // Counts on the keyword's line, without the number of edges; other line ends; a byte order mark.
     CHECK(signed_volume(read(replaced(off, "OFF\n# counts\n8 7 18", "OFF 8 7")).mesh) == near(8, {.relative = 1e-12}));
     for (const char* end : {"\r\n", "\r"}) {
         std::string text = "\xEF\xBB\xBF";
@@ -63,7 +63,7 @@ TEST_CASE("OFF: polygons, colours and comments") {
     }
 }
 
-TEST_CASE("OFF: what vertices carry beside their place is passed over") {
+TEST_CASE("OFF: additional data of vertices are ignored") {
     const std::string tet = "4 4 6\n0 0 0 {}\n1 0 0 {}\n0 1 0 {}\n0 0 1 {}\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
     for (const auto& [keyword, more] : {std::pair{"OFF", ""},
                                         {"COFF", "255 0 0 255"},

@@ -30,7 +30,7 @@ std::optional<NumberType> number_type(std::string_view name) {
 struct Property {
     std::string name;
     NumberType type;
-    std::optional<NumberType> count;  ///< of a list: the type of its length
+    std::optional<NumberType> count;  ///< for a list: the type of its length
 };
 
 struct Element {
@@ -39,7 +39,7 @@ struct Element {
     std::vector<Property> properties;
 };
 
-/// Values one after the other, from text or bytes.
+/// Reads values one after the other, from text or bytes.
 class Values {
 public:
     enum class Encoding { text, little, big };
@@ -62,9 +62,9 @@ public:
         const std::uint64_t sign = std::uint64_t{1} << (8 * type.width - 1);
         return static_cast<double>(static_cast<std::int64_t>((bits ^ sign) - sign));
     }
-    /// For text with the line; the values of binary files have none.
+    /// With the line for text; binary values have none.
     tl::unexpected<Error> error(std::string_view text) const { return scan_.error(text); }
-    /// The word of the last value; "" for bytes.
+    /// The word of the last value; "" for binary values.
     std::string_view printed() const { return encoding_ == Encoding::text ? scan_.last_word() : std::string_view(); }
 
 private:
@@ -82,7 +82,7 @@ public:
         if (Status status = read_header(); !status) return tl::unexpected(status.error());
         Values values(bytes_, scan_.position(), scan_, encoding_);
         for (const Element& element : elements_) {
-            // Rows without values cost nothing to claim.
+            // A header may claim any number of rows without values: skip them.
             if (element.properties.empty()) continue;
             for (std::size_t row = 0; row < element.count; ++row) {
                 if (Status status = read_row(element, row, values); !status) return tl::unexpected(status.error());

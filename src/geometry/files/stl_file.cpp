@@ -35,7 +35,7 @@ Result<SurfaceFile> parse_binary(std::string_view bytes, const std::string& name
                            present);
     }
     SurfaceFile file;
-    // The bytes are what is there; the count is only a claim.
+    // The actual bytes decide; the count is only a claim.
     if (claimed != present) {
         file.warnings.push_back(fmt::format("{}: the header counts {} facets, the file holds {}; all of them were read",
                                             name, claimed, present));
@@ -61,7 +61,7 @@ Result<SurfaceFile> parse_binary(std::string_view bytes, const std::string& name
     return file;
 }
 
-/// Words of a text with their line; words end at blanks, lines at "\n", "\r\n" or "\r".
+/// Words of a text, with their line; words end at blanks, lines at "\n", "\r\n" or "\r".
 class Words {
 public:
     explicit Words(std::string_view text) : text_(text) {}
@@ -78,7 +78,7 @@ public:
 
 private:
     static bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t' || c == '\f' || c == '\v'; }
-    /// The second half of "\r\n" does, the first does not.
+    /// In "\r\n" the second character ends the line, the first does not.
     [[nodiscard]] bool ends_line() const {
         return text_[at_] == '\n' || (text_[at_] == '\r' && text_.substr(at_ + 1, 1) != "\n");
     }
@@ -104,7 +104,7 @@ public:
         int facet_end = 0;  // the line of the last "endfacet"
         for (std::string word = words_.next(); !word.empty(); word = words_.next()) {
             if (word == (in_solid ? "endsolid" : "solid")) {
-                words_.skip_line();  // the rest of the line is the name, whatever it says
+                words_.skip_line();  // the rest of the line is the name
                 in_solid = !in_solid;
             } else if (in_solid && word == "facet") {
                 if (Status status = read_facet(); !status) return tl::unexpected(status.error());
@@ -135,7 +135,8 @@ private:
         return input_error_at(name_, words_.line(), "\"{}\" is needed here; found \"{}\"", wanted, word);
     }
 
-    /// What follows "facet", up to and with "endfacet". The normal follows from the vertices, and may be nonsense.
+    /// What follows "facet", up to and including "endfacet". The normal is ignored: it follows from the vertices, and
+    /// may be wrong.
     Status read_facet() {
         constexpr int normal_words = 4;
         std::string word = words_.next();
@@ -177,7 +178,7 @@ private:
     std::size_t strays_ = 0;
 };
 
-/// Binary files may begin with "solid" too: a text file has no zero bytes, and its second word line is "facet" or
+/// Binary files may begin with "solid", too: a text file has no zero bytes, and its second line begins with "facet" or
 /// "endsolid".
 bool looks_ascii(std::string_view bytes) {
     std::size_t begin = bytes.find_first_not_of(" \t\r\n");
@@ -193,7 +194,7 @@ bool looks_like_stl(std::string_view bytes) {
     if (bytes.size() < header_bytes + 4) return false;
     const std::uint32_t claimed = read_u32(bytes, header_bytes);
     const std::size_t present = (bytes.size() - header_bytes - 4) / facet_bytes;
-    // Text of another kind read as binary claims billions of facets, and its size does not fit.
+    // Other text read as binary STL announces billions of facets, and its size does not match.
     const bool text = std::all_of(bytes.begin(), bytes.begin() + header_bytes,
                                   [](char c) { return c != '\0' && static_cast<unsigned char>(c) < 128; });
     return !text || claimed <= 10 * (present + 1);

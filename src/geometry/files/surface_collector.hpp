@@ -1,4 +1,4 @@
-// What the readers of surface files share: points and faces in the order of a file.
+// Shared by the readers of surface files: collects points and faces in the order of the file.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,18 @@
 
 namespace pliant::mesh {
 
-/// Vertices by their numbers, of which those at one place become one point; faces of any number of corners, which are
-/// cut into triangles from their first corner.
+/// Vertices by number; vertices at the same place become one point. Faces of any number of corners, which are split
+/// into triangles from their first corner.
 class SurfaceCollector {
 public:
-    /// The next three words of a text.
+    /// Reads the next three words as a vertex.
     [[nodiscard]] Status read_vertex(TextScanner& scan);
     /// Precondition: finite.
     void add_vertex(const Vec3& p) { place_.push_back(welder_.add(p)); }
     [[nodiscard]] std::size_t vertex_count() const { return place_.size(); }
 
     void begin_face() { corners_ = 0; }
-    /// The next corner of the face: the vertex of this number, from 0. Precondition: it is there.
+    /// Adds the next corner of the face: vertex number `vertex`, from 0. Precondition: the vertex exists.
     void add_corner(std::size_t vertex) {
         const int point = place_[vertex];
         if (corners_ == 0) first_ = point;
@@ -29,12 +29,12 @@ public:
         before_ = point;
         ++corners_;
     }
-    /// Of the face that was begun last.
+    /// Of the current face.
     [[nodiscard]] std::size_t corner_count() const { return corners_; }
 
-    /// With what was collected; its points come with take().
+    /// Holds what was collected except the points, which take() adds.
     [[nodiscard]] SurfaceFile& file() { return file_; }
-    /// Leaves the collector empty.
+    /// The result; leaves the collector empty.
     [[nodiscard]] SurfaceFile take();
 
 private:

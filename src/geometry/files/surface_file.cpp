@@ -9,7 +9,8 @@
 namespace pliant::mesh {
 namespace {
 
-/// OBJ has no mark: a text whose first line that is neither blank nor a comment begins with one of its keywords.
+/// OBJ has no signature: recognised by a text whose first line that is neither blank nor a comment begins with one of
+/// its keywords.
 bool looks_like_obj(std::string_view bytes) {
     const std::string_view head = bytes.substr(0, 65536);
     if (head.find('\0') != std::string_view::npos) return false;
@@ -30,7 +31,7 @@ bool looks_like_ply(std::string_view bytes) {
     return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
 }
 
-/// Without the mark that some editors put in front of a text.
+/// Without the byte order mark that some editors put in front of a text.
 std::string_view without_mark(std::string_view bytes) {
     constexpr std::string_view mark = "\xEF\xBB\xBF";
     const bool text = bytes.substr(0, 4096).find('\0') == std::string_view::npos;

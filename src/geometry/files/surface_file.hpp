@@ -13,27 +13,27 @@
 namespace pliant::mesh {
 
 struct SurfaceFile {
-    TriMesh mesh;                       ///< exactly equal points are one; the unit is the file's
-    std::vector<std::string> warnings;  ///< what was odd but could be read
-    PrintedDigits printed;              ///< of a text file
+    TriMesh mesh;                       ///< duplicate points are merged; in the unit of the file
+    std::vector<std::string> warnings;  ///< oddities that did not prevent reading
+    PrintedDigits printed;              ///< precision of a text file's numbers
 };
 
-/// STL, OBJ, PLY or OFF, mended by mend_surface(). Errors name the file and the line, or the facet. Memory follows what
-/// the file holds, not what it claims.
+/// STL, OBJ, PLY or OFF, repaired by mend_surface(). Errors name the file and the line, or the facet. Memory is bounded
+/// by the actual size of the file, whatever its header says.
 [[nodiscard]] Result<SurfaceFile> read_surface(const std::filesystem::path& path);
 [[nodiscard]] Result<SurfaceFile> parse_surface(std::string_view bytes, const std::string& name);
 
-/// True if the content begins like a format of read_surface(). Binary STL has no mark: bytes that are no text pass.
+/// True if the content begins like a format of read_surface(). Binary STL has no signature: any non-text bytes pass.
 [[nodiscard]] bool looks_like_surface(std::string_view bytes);
 [[nodiscard]] bool looks_like_stl(std::string_view bytes);
 [[nodiscard]] bool looks_like_off(std::string_view bytes);
 
-// The readers give what the file says and mend nothing.
+// These readers return the content of the file without repairs.
 
 /// ASCII or binary.
 [[nodiscard]] Result<SurfaceFile> parse_stl(std::string_view bytes, const std::string& name);
 
-/// Vertices and faces of a Wavefront OBJ file; all else in it is passed over. Faces of more than three corners are cut
+/// Vertices and faces of a Wavefront OBJ file; everything else is ignored. Faces of more than three corners are split
 /// into triangles from their first corner and so should be convex.
 [[nodiscard]] Result<SurfaceFile> parse_obj(std::string_view bytes, const std::string& name);
 
@@ -41,8 +41,8 @@ struct SurfaceFile {
 /// vertex_index). Faces as for parse_obj().
 [[nodiscard]] Result<SurfaceFile> parse_ply(std::string_view bytes, const std::string& name);
 
-/// OFF as text, also with colours, normals or textures (COFF, NOFF, STOFF), which are passed over. A vertex or a face
-/// ends with its line. Faces as for parse_obj().
+/// OFF as text, also with colours, normals or textures (COFF, NOFF, STOFF), which are ignored. Each vertex or face ends
+/// with its line. Faces as for parse_obj().
 [[nodiscard]] Result<SurfaceFile> parse_off(std::string_view bytes, const std::string& name);
 
 /// Binary STL; coordinates are stored as 32-bit floats.

@@ -121,7 +121,7 @@ TEST_CASE("text with other line ends, in one line, or with words after endfacet 
     CHECK(problem(stray) == "a.stl:9: \"attributes\" has no place here; this is not a complete STL file");
 }
 
-TEST_CASE("surfaces that enclose nothing are told apart") {
+TEST_CASE("surfaces that enclose nothing are reported as such") {
     TriMesh open = tetrahedron();
     open.triangles.pop_back();
     CHECK(check_closed(open).error().message.find("3 edges have no neighbour") != std::string::npos);

@@ -9,10 +9,10 @@
 namespace pliant::mesh {
 namespace {
 
-/// Two copies of a point, each off by some steps along every axis.
+/// Maximum distance of two copies of a point, each off by some steps along every axis.
 constexpr double float_steps = 16;
 constexpr double printed_steps = 4;
-/// Few digits may mean that the numbers are round: what is farther apart than this part of an edge is not joined.
+/// Few printed digits may mean round numbers: points farther apart than this fraction of an edge are not merged.
 constexpr double share_of_edge = 0.1;
 
 double largest_coordinate(const TriMesh& surface) {

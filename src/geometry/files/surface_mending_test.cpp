@@ -54,7 +54,8 @@ TriMesh in_floats(TriMesh mesh) {
     return mesh;
 }
 
-/// Every triangle with points of its own; a `share` of them moved by up to `steps` 32-bit numbers along each axis.
+/// A triangle soup without shared points; a fraction `share` of the points is moved by up to `steps` float steps along
+/// each axis.
 TriMesh jittered(const TriMesh& mesh, double share, int steps, unsigned seed) {
     std::mt19937 random(seed);
     const auto chance = [&] { return static_cast<double>(random()) / 4294967296.0; };
@@ -83,7 +84,7 @@ std::string binary_stl(const TriMesh& soup) {
     return read_file(folder / "a.stl").value();
 }
 
-/// Text whose numbers `print` writes.
+/// Text whose numbers are formatted by `print`.
 std::string text_stl(const TriMesh& soup, const std::function<std::string(double)>& print) {
     std::string text = "solid\n";
     for (const auto& t : soup.triangles) {
@@ -176,14 +177,14 @@ TEST_CASE("mending: round numbers are no imprecision, and a hole stays a hole") 
     CHECK(file.mesh.points.size() == 8);
     CHECK(file.mesh.triangles.size() == 11);
     CHECK(file.warnings.empty());
-    // A slit far wider than a float step stays open.
+    // A slit much wider than a float step stays open.
     TriMesh slit = jittered(cube({0, 0, 0}, 10), 0, 1, 1);
     for (std::size_t i = 30; i < 36; ++i) slit.points[i].x += 1e-3;
     CHECK_FALSE(check_closed(read(binary_stl(slit)).mesh));
 }
 
-TEST_CASE("mending: points in a row are not drawn together, step by step") {
-    // An open strip whose border has points nearer to each other than the reach.
+TEST_CASE("mending: chains of points are not drawn together") {
+    // An open strip with border points closer together than the reach.
     TriMesh strip;
     constexpr int count = 200;
     for (int i = 0; i < count; ++i) {

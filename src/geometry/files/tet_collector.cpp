@@ -13,7 +13,7 @@ class MidEdgeNodes {
 public:
     void set(int a, int b, int node) { nodes_.try_emplace(std::minmax(a, b), node); }
 
-    /// The node between two corners; a new one in the middle where there is none.
+    /// The node between two corners; a new one at the midpoint if there is none.
     int at(int a, int b, std::vector<Vec3>& points) {
         const auto [entry, fresh] = nodes_.try_emplace(std::minmax(a, b), static_cast<int>(points.size()));
         if (fresh) points.push_back(0.5 * (points[static_cast<std::size_t>(a)] + points[static_cast<std::size_t>(b)]));
@@ -24,7 +24,7 @@ private:
     std::map<std::pair<int, int>, int> nodes_;
 };
 
-/// Makes one quadratic mesh of tets of 4 nodes (`linear`) and of 10, whose nodes stand one tet after the other.
+/// Makes one quadratic mesh from tets of 4 nodes (`linear`) and of 10, whose nodes are listed tet by tet.
 void raise_linear_tets(TetMesh& mesh, const std::vector<bool>& linear) {
     MidEdgeNodes between;
     std::size_t next = 0;
@@ -96,7 +96,7 @@ Status TetCollector::add(std::span<const std::int64_t> nodes, std::int64_t regio
     }
     linear_.push_back(nodes.size() == 4);
     if (nodes.size() == 10) mesh_.order = 2;
-    // Neighbours in a file mostly are of one region.
+    // Consecutive tets are mostly in the same region.
     const bool as_before = !mesh_.region.empty() && region == last_region_;
     mesh_.region.push_back(as_before
                                ? mesh_.region.back()

@@ -1,4 +1,4 @@
-// Picks the tets out of what a mesh file holds; every reader of tet meshes ends here.
+// Collects the tets of a mesh file; every reader of tet meshes ends here.
 #pragma once
 
 #include <cstdint>
@@ -17,24 +17,24 @@ public:
     /// All points of the file.
     explicit TetCollector(std::vector<Vec3> points) : points_(std::move(points)), index_(points_.size(), -1) {}
 
-    /// Room for as many tets with as many nodes in all.
+    /// Reserves space for this many tets and this many nodes in total.
     void reserve(std::size_t tets, std::size_t nodes);
 
-    /// One tet of 4 or 10 nodes (indices into the file's points, order of VTK) in the region with this number.
+    /// Adds a tet of 4 or 10 nodes (indices into the file's points, VTK order) to the region with this number.
     [[nodiscard]] Status add(std::span<const std::int64_t> nodes, std::int64_t region);
 
-    /// Where tets of 4 and of 10 nodes meet in one file all get 10: new mid-edge nodes are straight, but where a tet of
-    /// 10 nodes has the same edge its node is shared; a note counts them. Points that no tet uses are dropped,
-    /// inside-out tets are turned (a note counts them), regions come in the order of their first tet with the name of
-    /// their number, or the number itself. An error if there are no tets.
+    /// If tets of 4 and of 10 nodes are mixed, all get 10: new mid-edge nodes are at midpoints unless a 10-node tet
+    /// already has a node on the edge; a note counts them. Unused points are dropped, inverted tets are reversed (a
+    /// note counts them), regions come in the order of their first tet, named by `names` or else by their number.
+    /// Error: no tets.
     [[nodiscard]] Result<TetMesh> finish(const std::map<std::int64_t, std::string>& names);
 
 private:
     std::vector<Vec3> points_;
     std::vector<int> index_;
-    std::vector<bool> linear_;  ///< (tets) of 4 nodes
+    std::vector<bool> linear_;  ///< (tets) true for 4-node tets
     std::map<std::int64_t, int> region_of_;
-    std::int64_t last_region_ = 0;  ///< of the tet that was added last
+    std::int64_t last_region_ = 0;  ///< region of the tet added last
     TetMesh mesh_;
 };
 

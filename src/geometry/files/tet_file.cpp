@@ -10,7 +10,7 @@ tl::unexpected<Error> unknown_format(const std::string& name) {
     return input_error("{}: is not a tet mesh that Pliant reads ({}, by content)", name, tet_format_list);
 }
 
-/// TetGen writes two files; this is the other one.
+/// TetGen writes two files; this finds the other one.
 Result<TetMesh> read_tetgen_pair(const std::filesystem::path& path, const std::string& bytes, TetFormat format) {
     const bool has_nodes = format == TetFormat::tetgen_nodes;
     std::filesystem::path other = path;

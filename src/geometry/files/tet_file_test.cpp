@@ -33,7 +33,7 @@ const std::string head = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNST
 
 }  // namespace
 
-TEST_CASE("linear and quadratic meshes come back as they were written") {
+TEST_CASE("linear and quadratic meshes are read back as written") {
     for (const TetMesh& mesh : {two_tets(), to_quadratic(two_tets())}) {
         const Result<TetMesh> back = parse_vtk(vtk_bytes(mesh, Encoding::text), "a.vtk");
         REQUIRE_MESSAGE(back, (back ? "" : back.error().message));
@@ -50,7 +50,7 @@ TEST_CASE("linear and quadratic meshes come back as they were written") {
     }
 }
 
-TEST_CASE("names of regions come back whatever they hold, and however long they are") {
+TEST_CASE("names of regions are read back, whatever their characters and length") {
     TetMesh mesh = two_tets();
     for (const std::string& name : {std::string("a, b"), std::string("100%,\n\xc3\xa9"), std::string(400, 'n')}) {
         mesh.region_names[1] = name;
@@ -92,7 +92,7 @@ TEST_CASE("version 5 files keep offsets and connectivity apart") {
 
 TEST_CASE("an inside-out quadratic tet keeps its mid-edge nodes at their edges") {
     TetMesh mesh = to_quadratic(two_tets());
-    // Mirror the order of one tet: corners 1 and 2, and the edges that follow them.
+    // Mirror the node order of a tet: corners 1 and 2, and the edges at them.
     std::swap(mesh.nodes[1], mesh.nodes[2]);
     std::swap(mesh.nodes[4], mesh.nodes[6]);
     std::swap(mesh.nodes[8], mesh.nodes[9]);
@@ -108,7 +108,7 @@ TEST_CASE("an inside-out quadratic tet keeps its mid-edge nodes at their edges")
     }
 }
 
-TEST_CASE("broken files give a reason with the line, and claims are not believed") {
+TEST_CASE("damaged files give a reason with the line, and stated sizes are not trusted") {
     CHECK(problem("hello").find("not a legacy VTK file") != std::string::npos);
     CHECK(problem(head).find("holds no tetrahedra") != std::string::npos);
     CHECK(problem(head + "POINTS 4000000000000 double\n1 2 3\n").find("a.vtk:") == 0);
@@ -123,12 +123,12 @@ TEST_CASE("broken files give a reason with the line, and claims are not believed
     CHECK(problem(points + "GARBAGE\n").find("\"GARBAGE\" is not understood") != std::string::npos);
 }
 
-TEST_CASE("an unknown kind of file to write is refused") {
+TEST_CASE("an unknown file extension is refused when writing") {
     CHECK(write_tet_mesh("/tmp/a.xyz", two_tets()).error().message.find(".vtk, .vtu, .msh, .mesh or .inp") !=
           std::string::npos);
 }
 
-TEST_CASE("attributes that are not read are passed over: colours, tables, texts, coordinates of pictures") {
+TEST_CASE("unused attributes are ignored: colours, tables, texts, texture coordinates") {
     const std::string text = head +
                              "FIELD FieldData 2\nnotes 1 2 string\nfirst one\nsecond%20one\nTIME 1 1 double\n0.5\n"
                              "POINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n"

@@ -15,7 +15,7 @@ namespace {
 /// Enough for any title, comment or preface.
 constexpr std::size_t head_bytes = 65536;
 
-/// Words of the first line that is neither blank nor a comment. `comment` begins a comment.
+/// Words of the first line that is neither blank nor a comment. `comment`: what begins a comment.
 std::vector<std::string_view> first_words(std::string_view head, std::string_view comment) {
     TextScanner scan(head, "");
     while (!scan.at_end()) {

@@ -1,4 +1,4 @@
-// Which format of a tet mesh a file has, by its content.
+// Recognises the format of a tet mesh file by its content.
 #pragma once
 
 #include <optional>
@@ -8,10 +8,10 @@ namespace pliant::mesh {
 
 enum class TetFormat { vtk, vtu, msh, medit, tetgen_nodes, tetgen_tets, inp, gid };
 
-/// By the first bytes alone; nothing else is checked. No format: none of those that Pliant reads.
+/// Looks at the first bytes only. Nothing: not a tet format that Pliant reads.
 [[nodiscard]] std::optional<TetFormat> tet_format(std::string_view bytes);
 
-/// What messages list.
+/// For messages.
 inline constexpr std::string_view tet_format_list =
     ".vtk, .vtu, .msh, Medit .mesh, TetGen .node with .ele, Abaqus .inp or GiD";
 

@@ -1,4 +1,4 @@
-// The formats beside VTK: each written and read again, each read from what other programs write, and damaged.
+// The formats other than VTK: written and read back, read as other programs write them, and damaged.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -18,14 +18,14 @@ using pliant::test::replaced;
 
 namespace {
 
-/// Regions whose names no format likes, and a number that takes all digits.
+/// Region names that are difficult in every format, and a coordinate that needs all digits.
 TetMesh two_tets() {
     TetMesh mesh = mesh::test::two_tets("soft foam, 50%", "grip");
     mesh.points[3].z = 0.1;
     return mesh;
 }
 
-/// Mid-edge nodes off the middle, so that a wrong order of them shows.
+/// Mid-edge nodes off the midpoints, so that a wrong order is detected.
 TetMesh curved_tets() {
     TetMesh mesh = to_quadratic(two_tets());
     for (std::size_t i = 5; i < mesh.points.size(); ++i) mesh.points[i].x += 0.003 * static_cast<double>(i);
@@ -99,7 +99,7 @@ TEST_CASE("a file of tets of 4 and 10 nodes becomes one quadratic mesh that shar
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(mesh->order == 2);
     CHECK(mesh->tet_count() == 2);
-    CHECK(mesh->points.size() == 5 + 9);  // of 12 edges the two tets have three in common
+    CHECK(mesh->points.size() == 5 + 9);  // the two tets share three of their 12 edges
     REQUIRE(mesh->notes.size() == 1);
     CHECK(mesh->notes.front() == "1 of 2 tets have 4 nodes and the others 10: all were given 10");
     for (std::size_t t = 0; t < 2; ++t) {
@@ -133,7 +133,7 @@ TEST_CASE("files are written by their extension and read by their content") {
     }
 }
 
-TEST_CASE("formats are told by their first words") {
+TEST_CASE("formats are recognised by their first words") {
     CHECK(tet_format(tetgen_nodes) == TetFormat::tetgen_nodes);
     CHECK(tet_format(tetgen_tets) == TetFormat::tetgen_tets);
     CHECK(tet_format(deck) == TetFormat::inp);
@@ -151,7 +151,7 @@ TEST_CASE("TetGen: points count from 0 or 1, the attribute is the region, mid-ed
     const Result<TetMesh> mesh = parse_tetgen(tetgen_nodes, "a.node", tetgen_tets, "a.ele");
     REQUIRE(mesh);
     CHECK(volume(*mesh) == near(1.0 / 6, {.relative = 1e-12}));
-    // Corners (0,0,0) (1,0,0) (0,1,0) (0,0,1); mid-edge nodes in an order that is nobody's.
+    // Corners (0,0,0) (1,0,0) (0,1,0) (0,0,1); mid-edge nodes in an order that no format uses.
     const std::string nodes =
         "10 3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0 .5 .5\n6 .5 0 .5\n7 .5 .5 0\n8 0 0 .5\n9 0 .5 0\n10 .5 0 0\n";
     const Result<TetMesh> ten = parse_tetgen(nodes, "a.node", "1 10 0\n1 1 2 3 4 5 6 7 8 9 10\n", "a.ele");
@@ -186,7 +186,7 @@ TEST_CASE("Abaqus: sections, then sets of element cards, then the smallest set g
     CHECK(nested->region_names == std::vector<std::string>{"outer"});
 }
 
-TEST_CASE("Abaqus: what is wrong is told with its line") {
+TEST_CASE("Abaqus: errors name the line") {
     CHECK(problem(replaced(deck, "20, 2, 3, 4, 9", "20, 2, 3, 4, 5")).find("a:16: element 20 names node 5") == 0);
     CHECK(problem(replaced(deck, "20, 2, 3, 4, 9", "20, 2, 3, 4")).find("a:16: an element of 4 nodes has 3") == 0);
     CHECK(problem(replaced(deck, "3, 4\n*ELEMENT", "*ELEMENT")).find("a:14: the nodes of an element are missing") == 0);
@@ -198,7 +198,7 @@ TEST_CASE("Abaqus: what is wrong is told with its line") {
     CHECK(problem(deck.substr(0, deck.find("3, 4\n*ELEM"))).find("ends in the middle") != std::string::npos);
 }
 
-TEST_CASE("Medit: keywords that are not asked for are passed over; P2 and references are read") {
+TEST_CASE("Medit: unknown keywords are ignored; P2 and references are read") {
     const std::string text =
         "MeshVersionFormatted 2\n# a remark\nDimension\n3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"
         "Triangles 1\n1 2 3 9\nTetrahedra\n1\n1 2 3 4 12\nCorners 1\n1\nEnd\n";

@@ -1,5 +1,5 @@
-// TetGen's .node and .ele files. Format: H. Si, TetGen manual, "File formats". Points count from 0 or from 1, as the
-// first of them says. The first attribute of a tet is its region.
+// TetGen's .node and .ele files. Format: H. Si, TetGen manual, "File formats". Points are numbered from 0 or from 1,
+// whichever the first one has. The first attribute of a tet is its region.
 #include <cmath>
 
 #include "geometry/files/tet_file.hpp"
@@ -8,13 +8,13 @@
 namespace pliant::mesh {
 namespace {
 
-/// The numbers of the first line, at most four; those that are missing are 0.
+/// The numbers of the first line, at most four; missing ones are 0.
 struct Head {
     std::size_t count = 0;
     std::int64_t second = 0, third = 0, fourth = 0;
 };
 
-/// Stands at the next line that is neither blank nor a comment.
+/// Moves to the next line that is neither blank nor a comment.
 void skip_comments(TextScanner& scan) {
     for (TextScanner ahead = scan; ahead.word().starts_with('#'); ahead = scan) {
         ahead.rest_of_line();
@@ -46,7 +46,7 @@ Status read_nodes(TextScanner& scan, NumberedPoints& points) {
         if (!number) return tl::unexpected(number.error());
         const Result<Vec3> p = read_point(scan);
         if (!p) return tl::unexpected(p.error());
-        scan.rest_of_line();  // attributes and the mark of the boundary
+        scan.rest_of_line();  // attributes and boundary marker
         if (!points.add(*number, *p)) return scan.error(fmt::format("point {} comes twice", *number));
     }
     return {};

@@ -17,7 +17,7 @@ std::string_view shortened(std::string_view word) {
 
 }  // namespace
 
-/// The second half of "\r\n" ends the line, the first is a blank.
+/// In "\r\n" the second character ends the line; the first counts as a blank.
 bool TextScanner::at_line_end() const {
     return text_[at_] == '\n' || (text_[at_] == '\r' && text_.substr(at_ + 1, 1) != "\n");
 }

@@ -1,5 +1,5 @@
 // Legacy VTK files: text lines, and arrays as text or big-endian bytes.
-// Format: VTK User's Guide, "Simple legacy formats"; version 5 keeps offsets and connectivity apart.
+// Format: VTK User's Guide, "Simple legacy formats"; version 5 has separate arrays of offsets and connectivity.
 
 #include <fmt/format.h>
 
@@ -22,7 +22,7 @@ namespace {
 constexpr int vtk_tetra = 10;
 constexpr int vtk_quadratic_tetra = 24;
 
-/// Reads the sections of a legacy VTK file front to back.
+/// Reads the sections of a legacy VTK file in order.
 class VtkReader {
 public:
     VtkReader(std::string_view bytes, std::string name) : file_(bytes, std::move(name)) {}
@@ -107,7 +107,7 @@ private:
         return {};
     }
 
-    /// Up to version 4: "CELLS n size", each cell its node count and nodes. From 5: offsets and connectivity apart.
+    /// Up to version 4: "CELLS n size", each cell its node count and nodes. From 5: separate offsets and connectivity.
     Status read_cells() {
         std::size_t count = 0;
         std::size_t size = 0;
@@ -221,7 +221,7 @@ private:
         return {};
     }
 
-    /// Text arrays: one line each, or in binary files a length and the bytes.
+    /// String arrays: one line each or, in binary files, a length and the bytes.
     Status read_strings(const std::string& name, std::size_t count) {
         file_.next_line();
         for (std::size_t i = 0; i < count; ++i) {
@@ -308,7 +308,7 @@ private:
     bool data_of_cells_ = false;
     std::size_t data_count_ = 0;
     std::vector<Vec3> points_;
-    std::vector<std::size_t> cells_ = {0};  ///< where each cell ends in connectivity_
+    std::vector<std::size_t> cells_ = {0};  ///< end of each cell in connectivity_
     std::vector<std::int64_t> connectivity_;
     std::vector<double> types_;
     std::vector<double> region_values_;

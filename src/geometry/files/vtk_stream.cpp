@@ -14,7 +14,7 @@
 namespace pliant::mesh {
 namespace {
 
-/// A type of number, by its name in a file. Width 0: unknown.
+/// A number type, by its name in a file. Width 0: unknown.
 struct NumberType {
     std::size_t width = 0;
     bool floating = false;
@@ -41,7 +41,7 @@ NumberType number_type(const std::string& name) {
     return found == types.end() ? NumberType{} : found->second;
 }
 
-/// The first bytes, big-endian.
+/// The first `width` bytes, big-endian.
 std::uint64_t bits(std::string_view bytes, std::size_t width) {
     if (width == 8) {
         std::uint64_t value = 0;
@@ -127,7 +127,7 @@ Result<std::vector<double>> VtkStream::read_numbers(std::size_t count, const std
     return numbers;
 }
 
-/// The top two bits of the first byte tell how many bytes hold the length: 3: one, 2: two, 1: four, 0: eight.
+/// The top two bits of the first byte give the number of bytes of the length: 3: one, 2: two, 1: four, 0: eight.
 std::string_view VtkStream::next_binary_string() {
     const unsigned first = static_cast<unsigned char>(bytes_[at_]);
     const std::size_t width = std::size_t{1} << (3 - (first >> 6U));

@@ -1,4 +1,4 @@
-// The words, counts and numbers of a legacy VTK file, front to back: text, or arrays as big-endian bytes.
+// Sequential reader of a legacy VTK file: words, counts and numbers, as text or as big-endian binary arrays.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace pliant::mesh {
 
-/// Errors name the file and the line. Memory follows what the file holds, not what it claims.
+/// Errors name the file and the line. Memory is bounded by the actual size of the file, whatever its header says.
 class VtkStream {
 public:
     VtkStream(std::string_view bytes, std::string name) : bytes_(bytes), name_(std::move(name)) {}
@@ -19,13 +19,13 @@ public:
     [[nodiscard]] std::size_t size() const { return bytes_.size(); }
     [[nodiscard]] bool at_end() const { return at_ >= bytes_.size(); }
     [[nodiscard]] bool binary() const { return binary_; }
-    /// From here on arrays are bytes.
+    /// From here on arrays are binary.
     void set_binary() { binary_ = true; }
 
-    /// Where next_word() begins, to go back to.
+    /// Position of the next word, to return to.
     [[nodiscard]] std::size_t mark() const { return at_; }
     void go_back(std::size_t mark) { at_ = mark; }
-    /// Before the end of the line that was read last, where the bytes of an array begin after it.
+    /// Steps back before the end of the line just read, where the bytes of a binary array begin after it.
     void before_line_end() { --at_; }
 
     [[nodiscard]] static bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
@@ -33,9 +33,9 @@ public:
     /// Empty at the end of the file.
     std::string next_word();
     Status read_count(std::size_t& count);
-    /// Numbers of a type, by its name in the file.
+    /// Reads `count` numbers of the named VTK type.
     Result<std::vector<double>> read_numbers(std::size_t count, const std::string& type_name);
-    /// Of a text array: the rest of a line, or in a binary file a length and the bytes.
+    /// Next string of a string array: the rest of a line or, in a binary file, a length and the bytes.
     std::string_view next_text() { return binary_ ? next_binary_string() : next_line(); }
 
 private:

@@ -10,7 +10,7 @@
 namespace pliant::mesh {
 namespace {
 
-/// Names in legacy VTK files are words without commas: blanks and a few signs become %XX.
+/// Names in legacy VTK files are words without commas: blanks and some other characters become %XX.
 std::string percent_encoded(std::string_view text) {
     std::string out;
     for (const char c : text) {
@@ -20,8 +20,8 @@ std::string percent_encoded(std::string_view text) {
     return out;
 }
 
-/// Title and data type. The names of the regions stand in the title, because Gmsh and others stumble over a field
-/// before the points; only names too long for a title (256 characters) are written as a field.
+/// Title and data type. The region names are in the title, because Gmsh and others fail on a field before the points;
+/// only names too long for a title (256 characters) are written as a field.
 std::string head(const TetMesh& mesh, Encoding encoding) {
     constexpr std::size_t longest_title = 255;
     std::vector<std::string> names;
@@ -38,7 +38,7 @@ std::string head(const TetMesh& mesh, Encoding encoding) {
             text += name + '\n';
             continue;
         }
-        // The top two bits of the first byte say in how many bytes the length stands: 2: in two of them.
+        // The top two bits of the first byte give the number of bytes of the length: 2 means two bytes.
         const auto length = static_cast<unsigned>(std::min<std::size_t>(name.size(), 16383));
         text += static_cast<char>(static_cast<unsigned char>(0x80U | length >> 8U));
         text += static_cast<char>(static_cast<unsigned char>(length & 0xffU));
@@ -48,7 +48,7 @@ std::string head(const TetMesh& mesh, Encoding encoding) {
     return text;
 }
 
-/// Appends numbers as text, `per_line` in a line, or as big-endian bytes.
+/// Appends numbers as text, `per_line` on a line, or as big-endian bytes.
 class Numbers {
 public:
     Numbers(std::string& out, Encoding encoding) : out_(out), encoding_(encoding) {}

@@ -18,7 +18,7 @@
 namespace pliant::mesh {
 namespace {
 
-/// Deflate shrinks by no more than this: a block that claims more is not believed.
+/// Maximum expansion ratio of deflate: a block that claims more is rejected.
 constexpr std::size_t most_expansion = 1032;
 
 constexpr std::size_t blocks_at_once = 16;
@@ -37,7 +37,7 @@ std::uint64_t bits(std::string_view bytes, bool big_endian) {
     return value;
 }
 
-/// A count of bytes, then the bytes.
+/// A byte count followed by the bytes.
 std::optional<std::string> plain(const VtuSource& source, const VtuEncoding& encoding) {
     const auto header = first_bytes(source, encoding.header_width);
     if (!header) return std::nullopt;
@@ -50,7 +50,7 @@ std::optional<std::string> plain(const VtuSource& source, const VtuEncoding& enc
 
 struct Block {
     std::string_view packed;
-    std::size_t size;  ///< unpacked
+    std::size_t size;  ///< uncompressed
 };
 
 bool inflate(std::string_view packed, std::span<char> out) {
@@ -60,7 +60,7 @@ bool inflate(std::string_view packed, std::span<char> out) {
            LIBDEFLATE_SUCCESS;
 }
 
-/// Appends some blocks, on all cores: no more than what a few of them claim is taken on trust.
+/// Appends some blocks, on all cores: memory is allocated for only a few unverified block sizes at a time.
 bool inflate(const std::vector<Block>& blocks, std::string& out) {
     std::vector<std::size_t> begin = {out.size()};
     for (const Block& block : blocks) begin.push_back(begin.back() + block.size);
@@ -74,7 +74,7 @@ bool inflate(const std::vector<Block>& blocks, std::string& out) {
     return sound;
 }
 
-/// What precedes compressed data: number of blocks, their size, the size of a short last block or 0, compressed sizes.
+/// Header of compressed data: number of blocks, their size, the size of a short last block or 0, compressed sizes.
 class BlockHeader {
 public:
     static std::optional<BlockHeader> read(const VtuSource& source, const VtuEncoding& encoding) {
@@ -140,7 +140,7 @@ double decode(std::string_view bytes, const VtuNumberType& type, bool big_endian
     return static_cast<double>(static_cast<std::int64_t>((value ^ sign) - sign));
 }
 
-/// Numbers [begin, end) of a type that this machine has.
+/// Numbers [begin, end) of a native type.
 template <class T>
 void copy_numbers(std::string_view bytes, std::size_t begin, std::size_t end, std::vector<double>& numbers) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -150,7 +150,7 @@ void copy_numbers(std::string_view bytes, std::size_t begin, std::size_t end, st
     }
 }
 
-/// The types of nearly all files are copied, any other is put together from its bytes.
+/// Common types are copied, any other is assembled from its bytes.
 void decode(std::string_view bytes, const VtuNumberType& type, bool big_endian, std::size_t begin, std::size_t end,
             std::vector<double>& numbers) {
     if (!big_endian && type.floating && type.width == 8) return copy_numbers<double>(bytes, begin, end, numbers);

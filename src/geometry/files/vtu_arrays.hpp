@@ -1,4 +1,4 @@
-// The data arrays of a .vtu file: numbers as plain or zlib-compressed bytes, in base64 or as they are.
+// The data arrays of a .vtu file: numbers as plain or zlib-compressed bytes, in base64 or raw.
 // Format: VTK User's Guide, "XML file formats".
 #pragma once
 
@@ -15,14 +15,14 @@ struct VtuNumberType {
     bool is_signed = false;
 };
 
-/// By the name that the attribute "type" gives, such as "Float64"; nothing if there is no such type.
+/// From the value of the attribute "type", such as "Float64"; nothing if unknown.
 [[nodiscard]] std::optional<VtuNumberType> vtu_number_type(std::string_view name);
 
-/// What holds for all arrays of a file.
+/// Settings shared by all arrays of a file.
 struct VtuEncoding {
     bool big_endian = false;
     bool compressed = false;       ///< by zlib, in blocks
-    std::size_t header_width = 4;  ///< bytes of each number of an array's header
+    std::size_t header_width = 4;  ///< bytes per number of an array's header
 };
 
 /// Where the bytes of an array begin; they may end before the text does.
@@ -31,8 +31,8 @@ struct VtuSource {
     bool base64 = true;
 };
 
-/// All numbers of an array, decoded on all cores. Nothing if the data are damaged or cut off. No more memory is taken
-/// than the bytes that are there can hold.
+/// All numbers of an array, decoded on all cores. Nothing if the data are damaged or truncated. Memory is bounded by
+/// what the actual bytes can hold.
 [[nodiscard]] std::optional<std::vector<double>> vtu_numbers(const VtuSource& source, const VtuNumberType& type,
                                                              const VtuEncoding& encoding);
 

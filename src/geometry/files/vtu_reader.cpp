@@ -95,7 +95,7 @@ private:
         return input_error_at(name_, line_of(where.offset_debug()), "{}", text);
     }
 
-    /// Of a place in the skeleton.
+    /// The line of an offset in the skeleton.
     std::ptrdiff_t line_of(std::ptrdiff_t place) const {
         const std::size_t in_file =
             skeleton_.place_in_file(static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, place)));
@@ -107,7 +107,7 @@ private:
         return skeleton_.original(array.child_value());
     }
 
-    /// Appended data may hold any bytes: the XML ends where they begin.
+    /// Appended data may contain any bytes: the XML ends where they begin.
     Status load() {
         skeleton_ = VtuSkeleton(bytes_.substr(0, bytes_.find("<AppendedData")));
         if (const std::size_t tag = bytes_.find("<AppendedData"); tag != std::string_view::npos) {
@@ -217,8 +217,7 @@ private:
         return {};
     }
 
-    /// Field data "region_names": character codes, each text ended by 0. Names are a courtesy: damaged ones are left
-    /// out.
+    /// Field data "region_names": character codes, each name ended by 0. Names are optional: damaged ones are left out.
     [[nodiscard]] std::map<std::int64_t, std::string> read_names(const pugi::xml_node& grid) const {
         std::map<std::int64_t, std::string> names;
         const auto array = grid.child("FieldData").find_child_by_attribute("DataArray", "Name", "region_names");

@@ -39,7 +39,7 @@ std::string bytes_of(const std::vector<Number>& values, bool big_endian) {
     return bytes;
 }
 
-/// A count of bytes of 32 bits, then the bytes.
+/// A 32-bit byte count, then the bytes.
 template <class Number>
 std::string block(const std::vector<Number>& values, bool big_endian) {
     const std::string bytes = bytes_of(values, big_endian);
@@ -51,7 +51,7 @@ const std::vector<std::int64_t> connectivity = {1, 2, 3, 1, 3, 2, 4};  // a tria
 const std::vector<std::int64_t> offsets = {3, 7};
 const std::vector<std::uint8_t> types = {5, 10};
 
-/// A file whose arrays are what `array` says for each of them.
+/// A file whose arrays are encoded by `array`.
 template <class Array>
 std::string file(bool big_endian, const Array& array, const std::string& appended = "") {
     return std::string("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" byte_order=\"") +
@@ -111,7 +111,7 @@ TEST_CASE("arrays in the file and appended, base64 and raw, of both byte orders"
             encoded += base64(bytes);
             return tag;
         };
-        file(big_endian, to_raw);  // once for the data, once more for the file that ends with them
+        file(big_endian, to_raw);  // once for the data, once for the file that ends with them
         file(big_endian, to_encoded);
         const std::string raw_part =
             "<AppendedData encoding=\"raw\">\n_" + std::exchange(raw, "") + "\n</AppendedData>\n";
@@ -142,7 +142,7 @@ TEST_CASE("text arrays, and pieces that follow each other") {
     CHECK(two->region == std::vector<int>{0, 1});
 }
 
-TEST_CASE("broken files give a reason, and claims are not believed") {
+TEST_CASE("damaged files give a reason, and stated sizes are not trusted") {
     CHECK(problem("<VTKFile type=\"UnstructuredGrid\">\n<oops></VTKFile>").find("a.vtu:2: is not well-formed") == 0);
     CHECK(problem("<VTKFile type=\"PolyData\"><PolyData/></VTKFile>").find("only VTKFile type=\"UnstructuredGrid\"") !=
           std::string::npos);
@@ -197,7 +197,7 @@ TEST_CASE("arrays of many blocks, and errors after them name their line") {
     CHECK(problem(damaged).find("damaged or cut off") != std::string::npos);
 }
 
-TEST_CASE("no beginning of a file makes the reader fall over") {
+TEST_CASE("no truncated file crashes the reader") {
     const TetMesh mesh = two_tets();
     const std::string whole = *vtu_text(mesh, mesh.points, {});
     for (std::size_t length = 0; length < whole.size() - 12; ++length)

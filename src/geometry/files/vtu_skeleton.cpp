@@ -9,10 +9,10 @@
 namespace pliant::mesh {
 namespace {
 
-/// Begins a mark, before the number of its array: no XML file may hold this character.
+/// Begins a placeholder, before the number of its array: this character is not allowed in XML.
 constexpr char begin_of_mark = '\x01';
 
-/// The end of a tag, past its '>': one in the value of an attribute does not count.
+/// The position after a tag's '>'; one inside an attribute value does not count.
 std::size_t end_of_tag(std::string_view text, std::size_t at) {
     char quote = 0;
     for (; at < text.size(); ++at) {
@@ -31,7 +31,7 @@ std::size_t end_of_tag(std::string_view text, std::size_t at) {
 
 VtuSkeleton::VtuSkeleton(std::string_view text) {
     constexpr std::string_view begin_of_array = "<DataArray";
-    constexpr std::size_t small = 256;  // bytes, which are left where they are
+    constexpr std::size_t small = 256;  // bytes; smaller arrays are kept in place
     std::size_t copied = 0;
     for (std::size_t tag = text.find(begin_of_array); tag != std::string_view::npos;
          tag = text.find(begin_of_array, tag)) {

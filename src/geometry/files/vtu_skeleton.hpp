@@ -1,4 +1,4 @@
-// The XML of a .vtu file without the text of its large arrays, so that a tree of the document need not hold them.
+// The XML of a .vtu file without the text of its large arrays, which keeps the parsed document small.
 #pragma once
 
 #include <cstddef>
@@ -9,25 +9,25 @@
 
 namespace pliant::mesh {
 
-/// Views of the text that it was made from, which must outlive it.
+/// Views into the text it was made from, which must outlive it.
 class VtuSkeleton {
 public:
     VtuSkeleton() = default;
-    /// `text`: the XML, as far as it is text.
+    /// `text`: the XML part of the file.
     explicit VtuSkeleton(std::string_view text);
 
-    /// In place of each large array stands a mark.
+    /// A placeholder stands for each large array.
     [[nodiscard]] const std::string& xml() const { return xml_; }
     void append(std::string_view text) { xml_ += text; }
 
-    /// The text that a mark stands for; any other text is its own.
+    /// The text that a placeholder stands for; any other text is returned unchanged.
     [[nodiscard]] std::string_view original(std::string_view text) const;
-    /// Where in the file a place in xml() is.
+    /// Converts an offset in xml() to one in the file.
     [[nodiscard]] std::size_t place_in_file(std::size_t at) const;
 
 private:
     struct Cut {
-        std::size_t at, left_out;  ///< where in xml(), and how many bytes up to there are missing
+        std::size_t at, left_out;  ///< offset in xml(), and number of bytes omitted up to there
     };
     std::string xml_;
     std::vector<std::string_view> arrays_;

@@ -56,7 +56,7 @@ public:
     Compressor() : state_(libdeflate_alloc_compressor(compression_level), &libdeflate_free_compressor) {}
 
     /// vtkZLibDataCompressor: the header (number of blocks, block size, size of a short last block or 0, compressed
-    /// sizes) and the blocks, each part base64 of its own.
+    /// sizes) and the blocks, each encoded separately as base64.
     [[nodiscard]] std::string encode(std::string_view bytes) const {
         std::vector<std::uint64_t> header = {(bytes.size() + block_bytes - 1) / block_bytes, block_bytes,
                                              bytes.size() % block_bytes};
@@ -111,7 +111,7 @@ std::string cells_text(const Compressor& compressor, const TetMesh& mesh) {
            data_array(compressor, "types", 1, types);
 }
 
-/// Character codes, each name ended by 0. Numbers, because other readers stumble over arrays of type String.
+/// Character codes, each name ended by 0. As numbers, because other readers fail on arrays of type String.
 std::string names_text(const std::vector<std::string>& names) {
     if (names.empty()) return "";
     std::string codes;

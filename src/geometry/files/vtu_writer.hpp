@@ -1,4 +1,4 @@
-// VTK XML unstructured grids (.vtu): a tet mesh in some position with data on its points and cells. ParaView and every
+// VTK XML unstructured grids (.vtu): a tet mesh in a given configuration with point and cell data. ParaView and every
 // reader of the format open them. Arrays are zlib-compressed and inlined as base64.
 // Format: VTK User's Guide, "XML file formats"; linear tets are cell type 10, quadratic ones 24.
 #pragma once
@@ -24,11 +24,12 @@ struct VtuArray {
 struct VtuData {
     std::vector<VtuArray> points;           ///< one item per point of the mesh
     std::vector<VtuArray> cells;            ///< one item per tet
-    std::vector<std::string> region_names;  ///< field data for readers of the cell array "region"; none: not written
+    std::vector<std::string> region_names;  ///< names for the cell array "region", written as field data; empty: not
+                                            ///< written
 };
 
-/// The whole file. `points` (n, 3) takes the place of the mesh's own points, in the unit the reader should see. An
-/// array whose length does not fit the mesh is an error that names it.
+/// The whole file. `points` (n, 3) replaces the points of the mesh, in the unit wanted in the file. Error: an array
+/// whose length does not fit the mesh, named.
 [[nodiscard]] Result<std::string> vtu_text(const TetMesh& mesh, std::span<const Vec3> points, const VtuData& data);
 
 [[nodiscard]] Status write_vtu(const std::filesystem::path& path, const TetMesh& mesh, std::span<const Vec3> points,

@@ -10,14 +10,14 @@ using Barycentric = std::array<double, 4>;
 constexpr int most_steps = 40;
 constexpr int most_halvings = 30;
 
-/// Between two points of the simplex.
+/// Interpolates between two points of the simplex.
 Barycentric between(const Barycentric& from, const Barycentric& to, double share) {
     Barycentric b{};
     for (std::size_t k = 0; k < 4; ++k) b[k] = from[k] + share * (to[k] - from[k]);
     return b;
 }
 
-/// The corners of the straight tet that touches the map at `b`.
+/// The corners of the straight tet tangent to the map at `b`.
 std::array<Vec3, 4> tangent_tet(const TetNodes& nodes, const Barycentric& b) {
     const auto column = curved_derivative(nodes, b);
     Vec3 origin = curved_position(nodes, b);
@@ -27,7 +27,7 @@ std::array<Vec3, 4> tangent_tet(const TetNodes& nodes, const Barycentric& b) {
     return corner;
 }
 
-/// Steps from `b` as long as each brings the point nearer.
+/// Steps from `b` as long as each reduces the distance.
 CurvedPoint descend(const TetNodes& nodes, const Vec3& p, const Barycentric& b) {
     CurvedPoint at{b, norm(curved_position(nodes, b) - p)};
     for (int step = 0; step < most_steps && at.distance > 0; ++step) {
@@ -95,7 +95,7 @@ CurvedPoint nearest_in_curved_tet(const TetNodes& nodes, const Vec3& p) {
     CurvedPoint best = descend(nodes, p, nearest_weights(corner, p));
     const double inside = 1e-13 * curved_bounds(nodes).diagonal();
     if (best.distance <= inside) return best;
-    // On a face that bulges inwards the way may end beside the nearest point: other starts are tried too.
+    // On a face that bulges inwards descent may end in a local minimum: try other starts, too.
     std::array<Barycentric, 5> starts{};
     starts[0] = {0.25, 0.25, 0.25, 0.25};
     for (std::size_t f = 0; f < 4; ++f) {

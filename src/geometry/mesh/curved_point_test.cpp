@@ -129,10 +129,10 @@ TEST_CASE("a locator finds points of a curved mesh where they are") {
         const Vec3 back = curved_position(nodes_of(mesh, static_cast<std::size_t>(found.tet)), found.barycentric);
         CHECK(norm(back - p) < 1e-11);
     }
-    // Just inside the bulge, off every straight tet.
+    // Just inside the bulge, outside every straight tet.
     const Vec3 p = 9.99 * Vec3{std::cos(0.26) * std::cos(0.2), std::sin(0.26) * std::cos(0.2), std::sin(0.2)};
     CHECK(locator.locate(p).distance < 1e-3);
-    // Outside, the distance is that to the sphere as far as the mesh is one.
+    // Outside, the distance is that to the sphere, up to the error of the mesh.
     const Vec3 q = 1.1 * p;
     CHECK(locator.locate(q).distance == near(norm(q) - 10, {.relative = 5e-3}));
 }

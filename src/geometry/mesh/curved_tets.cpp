@@ -11,8 +11,8 @@ namespace {
 
 using Barycentric = std::array<double, 4>;
 
-/// Corners, mid-edge points, face centres, centroid. The determinant is cubic over the tet; its extremes lie near
-/// these.
+/// Corners, mid-edge points, face centres, centroid. The determinant is cubic over the tet; its extrema are near these
+/// points.
 constexpr std::array<Barycentric, 15> samples = [] {
     std::array<Barycentric, 15> points{};
     for (std::size_t k = 0; k < 4; ++k) points[k][k] = 1;
@@ -44,14 +44,14 @@ double worst_scaled_jacobian(const TetMesh& mesh, std::size_t t) {
 
 std::size_t straighten_folded_tets(TetMesh& mesh, double least) {
     std::size_t moved = 0;
-    // A node moved for one tet can fold its neighbour; every round moves a node for good, so this ends.
+    // Moving a node for one tet can fold its neighbour; every round moves a node permanently, so this terminates.
     for (bool again = true; again;) {
         again = false;
         for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
             if (worst_scaled_jacobian(mesh, t) >= least) continue;
             const auto n = mesh.tet(t);
             for (std::size_t e = 0; e < 6; ++e) {
-                // Each tet on the edge must compute the same bits for its middle: take the corners in one order.
+                // All tets on the edge must compute identical midpoints: sort the corners.
                 const auto [low, high] = std::minmax(n[edge_corners[e][0]], n[edge_corners[e][1]]);
                 const Vec3 middle = 0.5 * (mesh.points[low] + mesh.points[high]);
                 if (mesh.points[n[4 + e]] == middle) continue;

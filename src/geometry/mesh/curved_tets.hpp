@@ -1,4 +1,4 @@
-// Quadratic tets with curved edges: are they usable, and how to make them so.
+// Validity of quadratic tets with curved edges, and repair of invalid ones.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,13 @@
 namespace pliant::mesh {
 
 /// Smallest det dX/db of tet `t` over its corners, mid-edge points, face centres and centroid, divided by that of the
-/// straight tet with the same corners: 1 for a straight tet, not above 0 for one that is folded there. Precondition:
-/// order 2, and the straight tet has a positive volume.
+/// straight tet with the same corners: 1 for a straight tet, 0 or negative if it is folded there. Precondition: order
+/// 2, and the straight tet has a positive volume.
 [[nodiscard]] double worst_scaled_jacobian(const TetMesh& mesh, std::size_t t);
 
-/// Puts the mid-edge nodes of every tet whose worst_scaled_jacobian() is below `least` back on the middle of their
-/// edges, and again until no such tet is left; all other nodes stay on their curve. Returns how many nodes were moved.
-/// Precondition: order 2, all straight tets have positive volumes, least < 1.
+/// Moves the mid-edge nodes of every tet whose worst_scaled_jacobian() is below `least` to the midpoints of their
+/// edges, and repeats until no such tet is left; other nodes stay on their curve. Returns the number of nodes moved.
+/// Preconditions: order 2, all straight tets have positive volumes, least < 1.
 std::size_t straighten_folded_tets(TetMesh& mesh, double least);
 
 }  // namespace pliant::mesh

@@ -7,7 +7,7 @@
 namespace pliant::mesh {
 
 MassProperties mass_properties(const TriMesh& surface) {
-    // Tetrahedra from a point in the middle, which keeps rounding small.
+    // Tetrahedra from a central point, to keep rounding errors small.
     const Vec3 apex = bounds(surface).center();
     MassProperties body;
     Eigen::Vector3d first = Eigen::Vector3d::Zero();

@@ -42,7 +42,7 @@ std::array<double, 6> dihedral_angles(const TetMesh& mesh, std::size_t t) {
     return angles;
 }
 
-/// The bin of `value` among `bins` from 0 to `end`.
+/// The bin of `value` among `bins` bins from 0 to `end`.
 std::size_t bin(double value, double end, std::size_t bins) {
     const double at = value / end * static_cast<double>(bins);
     return at > 0 ? std::min(static_cast<std::size_t>(at), bins - 1) : 0;

@@ -1,4 +1,4 @@
-// What a person wants to know about a tet mesh.
+// Quality report on a tet mesh.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ struct RegionReport {
 };
 
 struct MeshReport {
-    static constexpr std::size_t quality_bins = 20;   ///< of 0.05 each
-    static constexpr std::size_t dihedral_bins = 36;  ///< of 5 degrees each
+    static constexpr std::size_t quality_bins = 20;   ///< bins of 0.05
+    static constexpr std::size_t dihedral_bins = 36;  ///< bins of 5 degrees
 
     int order = 1;
     std::size_t points = 0;
@@ -29,20 +29,21 @@ struct MeshReport {
     Vec3 worst_at;                ///< centroid of the tet with the worst quality
     double min_dihedral_deg = 0;  ///< smallest angle between two faces of a tet: 70.5 for a regular tet
     double max_dihedral_deg = 0;
-    double worst_jacobian = 1;                                 ///< least worst_scaled_jacobian(); 1 for linear tets
-    std::array<std::size_t, quality_bins> quality_counts{};    ///< tets
-    std::array<std::size_t, dihedral_bins> dihedral_counts{};  ///< angles, six to a tet
-    std::vector<std::string> notes;                            ///< the mesh's own
+    double worst_jacobian = 1;                                 ///< minimum of worst_scaled_jacobian(); 1 for linear
+                                                               ///< tets
+    std::array<std::size_t, quality_bins> quality_counts{};    ///< number of tets
+    std::array<std::size_t, dihedral_bins> dihedral_counts{};  ///< number of angles, six per tet
+    std::vector<std::string> notes;                            ///< the notes of the mesh
 };
 
 [[nodiscard]] MeshReport report_on(const TetMesh& mesh);
-/// The smallest angle between two faces of a tet, of all tets; 180 where there are none.
+/// The smallest angle between two faces of a tet, over all tets; 180 if there are none.
 [[nodiscard]] double smallest_dihedral_deg(const TetMesh& mesh);
 
-/// Tets with a dihedral angle below so many degrees.
+/// Number of tets with a dihedral angle below this many degrees.
 [[nodiscard]] std::size_t sliver_count(const TetMesh& mesh, double below_deg);
 [[nodiscard]] std::string report_text(const MeshReport& report);
-/// The same as a JSON object; docs/reference/geometry.md names its keys.
+/// The report as a JSON object; docs/reference/geometry.md lists its keys.
 [[nodiscard]] std::string report_json(const MeshReport& report);
 
 }  // namespace pliant::mesh

@@ -1,4 +1,4 @@
-// The point of a segment, triangle or tet that is nearest to another.
+// The point of a segment, triangle or tet nearest to a given point.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@ Vec3 weighted(const std::array<Vec3, N>& corner, const std::array<double, N>& we
     return sum;
 }
 
-/// As weights of the corners, none negative: the foot on the plane of a triangle if it lies inside, `p` itself in a
-/// tet, else the best of the faces. A degenerate simplex is as good as its faces.
+/// As non-negative weights of the corners: the foot of the perpendicular on a triangle's plane if inside, `p` itself if
+/// inside a tet, else the nearest over the faces. A degenerate simplex is treated as its faces.
 template <std::size_t N>
 std::array<double, N> nearest_weights(const std::array<Vec3, N>& corner, const Vec3& p);
 
@@ -29,7 +29,7 @@ inline std::array<double, 2> nearest_weights(const std::array<Vec3, 2>& c, const
     return {1 - t, t};
 }
 
-/// Best of the N faces that leave out one corner each.
+/// The nearest over the N faces that leave out one corner each.
 template <std::size_t N>
 std::array<double, N> nearest_on_faces(const std::array<Vec3, N>& corner, const Vec3& p) {
     std::array<double, N> best{};

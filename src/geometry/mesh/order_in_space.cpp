@@ -8,7 +8,7 @@
 namespace pliant::mesh {
 namespace {
 
-constexpr int bits = 21;  // of a layer's number: three of them make a key
+constexpr int bits = 21;  // of a layer number: three of these make a key
 constexpr double most_layers = (1 << bits) - 1;
 
 struct Keyed {
@@ -49,7 +49,7 @@ void order_in_space(std::span<int> items, const std::vector<Vec3>& place, double
         std::uint64_t key = 0;
         for (const std::size_t i : axes) {
             const double number = (place[item][i] - box.low[i]) / layer;
-            // Not a number where nothing has a size: then all are in one layer.
+            // NaN if the box has no extent: then everything is in one layer.
             key = key << bits | static_cast<std::uint64_t>(number > 0 ? std::min(number, most_layers) : 0);
         }
         keyed.push_back({key, item});

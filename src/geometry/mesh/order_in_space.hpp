@@ -1,4 +1,4 @@
-// An order in which what is near in space is near in memory.
+// A spatial order: items near in space become near in memory.
 #pragma once
 
 #include <span>
@@ -9,13 +9,14 @@
 
 namespace pliant::mesh {
 
-/// Puts `items` in order: layer by layer along the longest side of their box, in a layer row by row along the next one,
-/// and in a row cell by cell; in a cell by their numbers. So the nodes of a regular grid are numbered, and it is good
-/// for products of sparse matrices: a row reads from a few places, which move on with it. `place` says where each item
-/// is (finite); `layer` is how thick layers, rows and cells are, a few items. The order they came in does not matter.
+/// Sorts `items` by position: layer by layer along the longest side of their box, within a layer row by row along the
+/// next longest, within a row cell by cell, and within a cell by number. This is how nodes of a regular grid are
+/// numbered; it suits sparse matrix products, because a row reads from a few places that advance with it. `place`:
+/// position of each item (finite); `layer`: thickness of layers, rows and cells, a few items. The initial order does
+/// not matter.
 void order_in_space(std::span<int> items, const std::vector<Vec3>& place, double layer);
 
-/// Good for the nodes of a mesh and for its tets: the side of a cube of six mean tets, m.
+/// A layer thickness for the nodes and tets of a mesh: the side of a cube of six mean tets, m.
 [[nodiscard]] double layer_of(const TetMesh& mesh);
 
 }  // namespace pliant::mesh

@@ -12,7 +12,7 @@
 using namespace pliant;
 using namespace pliant::mesh;
 
-TEST_CASE("things near one another in space come near one another, whatever order they came in") {
+TEST_CASE("items near in space become near in order, whatever the initial order") {
     std::mt19937 random(2);
     std::uniform_real_distribution<double> in_box(0, 1);
     for (const std::size_t count : {0U, 1U, 64U, 65U, 30000U}) {
@@ -31,11 +31,11 @@ TEST_CASE("things near one another in space come near one another, whatever orde
         if (count < 1000) continue;
         double apart = 0;
         for (std::size_t k = 1; k < count; ++k) apart += norm(place[items[k]] - place[items[k - 1]]);
-        CHECK(apart / static_cast<double>(count) < 1.5 * layer);  // by chance they would be 1.3 apart, 15 layers
+        CHECK(apart / static_cast<double>(count) < 1.5 * layer);  // in random order they would be 1.3 apart, 15 layers
     }
 }
 
-TEST_CASE("the nodes of a grid come as such grids are numbered") {
+TEST_CASE("the nodes of a grid are numbered row by row") {
     std::vector<Vec3> place;
     for (int k = 0; k < 3; ++k) {
         for (int j = 0; j < 40; ++j) {
@@ -51,7 +51,7 @@ TEST_CASE("the nodes of a grid come as such grids are numbered") {
     }
 }
 
-TEST_CASE("things in one place, and layers of no thickness or of any, leave the order of the numbers") {
+TEST_CASE("coincident items, and extreme layer thicknesses, keep the order of numbers") {
     const double none = std::numeric_limits<double>::quiet_NaN(), all = std::numeric_limits<double>::infinity();
     for (const double layer : {0.0, 1.0, none, all}) {
         std::vector<Vec3> place(500, Vec3{1, 2, 3});

@@ -1,4 +1,4 @@
-// Puts a mesh from a file where it belongs: scaled, mirrored, rotated, moved, and repeated.
+// Places a mesh from a file: scaled, mirrored, rotated, translated and repeated.
 #pragma once
 
 #include <vector>
@@ -10,32 +10,31 @@
 
 namespace pliant::mesh {
 
-/// A rotation, right-handed about an axis through a point, and then a shift. Lengths are in the mesh's unit.
+/// A rotation, right-handed about an axis through a point, followed by a translation. Lengths are in the mesh's unit.
 struct RigidMotion {
     double angle_rad = 0;
-    Vec3 axis{0, 0, 1};  ///< of any length but zero
+    Vec3 axis{0, 0, 1};  ///< of any non-zero length
     Vec3 center;
     Vec3 shift;
 };
 
-/// First the scale, about the origin, then the mirror, then the motion; then copies, each moved by `step` from the one
-/// before it.
+/// Scaling about the origin, then mirroring, then the motion; then copies, each moved by `step` from the previous one.
 struct Placement {
-    double scale = 1;    ///< above zero
-    Vec3 mirror_normal;  ///< of the mirror's plane; zero: none
-    Vec3 mirror_point;   ///< of the mirror's plane
+    double scale = 1;    ///< positive
+    Vec3 mirror_normal;  ///< normal of the mirror plane; zero: no mirror
+    Vec3 mirror_point;   ///< a point of the mirror plane
     RigidMotion motion;
-    int count = 1;  ///< how many there are in the end
+    int count = 1;  ///< total number of copies
     RigidMotion step;
 };
 
-/// Where the first copy of a point is.
+/// The position of a point in the first copy.
 [[nodiscard]] Vec3 place(const Vec3& point, const Placement& placement);
-/// Where a copy is put that lay at `point` in the copy before it.
+/// The position in a copy of what is at `point` in the previous copy.
 [[nodiscard]] Vec3 moved(const Vec3& point, const RigidMotion& motion);
 
-/// Triangles and tets keep their orientation, outward and positive, where they are mirrored. Copies share no nodes; a
-/// tet of a copy has the region of the tet that it was made from.
+/// Mirrored triangles and tets keep their orientation, outward and positive. Copies share no nodes; a copied tet has
+/// the region of its original.
 [[nodiscard]] TriMesh placed(TriMesh mesh, const Placement& placement);
 [[nodiscard]] TetMesh placed(TetMesh mesh, const Placement& placement);
 

@@ -1,26 +1,26 @@
-// How finely the coordinates of a file are known.
+// The precision of the coordinates in a file.
 #pragma once
 
 #include <string_view>
 
 namespace pliant::mesh {
 
-/// Looks at the numbers of a text to see to how many digits they were printed: either all to so many decimals, or all
-/// to so many digits that count.
+/// Infers from the numbers of a text to how many digits they were printed: a fixed number of decimals, or of
+/// significant digits.
 class PrintedDigits {
 public:
-    /// A number as it stands in the text; "" is passed over.
+    /// A number as written in the text; "" is ignored.
     void see(std::string_view number);
-    /// Between neighbouring numbers about as large as `size` (above 0), as printed; 0 if none was seen.
+    /// Spacing of printed numbers near `size` (above 0); 0 if no number was seen.
     [[nodiscard]] double step(double size) const;
 
 private:
-    int most_digits_ = 0;  ///< that count: without zeros in front
+    int most_digits_ = 0;  ///< significant ones, without leading zeros
     int least_decimals_ = -1, most_decimals_ = -1;
     bool exponents_ = false;
 };
 
-/// Between neighbouring 32-bit numbers about as large as `size`, which is not negative.
+/// Spacing of 32-bit floats near `size`, which is not negative.
 [[nodiscard]] double float_step(double size);
 
 }  // namespace pliant::mesh

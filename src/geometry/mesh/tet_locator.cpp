@@ -10,7 +10,7 @@ namespace pliant::mesh {
 
 namespace {
 
-/// True if a mid-edge node lies off the middle of its edge by more than rounding.
+/// True if a mid-edge node is off the midpoint of its edge by more than rounding.
 bool is_curved(const TetMesh& mesh, std::size_t t, double rounding) {
     const auto n = mesh.tet(t);
     for (std::size_t e = 0; e + 4 < n.size(); ++e) {
@@ -32,7 +32,7 @@ TetLocator::TetLocator(const TetMesh& mesh) : mesh_(&mesh), curved_(mesh.tet_cou
     for (const Vec3& p : mesh.points) box_.add(p);
     for (std::size_t t = 0; t < curved_.size(); ++t) curved_[t] = is_curved(mesh, t, 1e-12 * box_.diagonal());
     const Vec3 size = box_.size();
-    // About two tets a cell keeps lists short and the grid no larger than the mesh.
+    // About two tets per cell: short lists, and a grid no larger than the mesh.
     const double volume = std::max(size.x * size.y * size.z, 1e-300);
     cell_size_ = std::max(std::cbrt(2 * volume / static_cast<double>(std::max<std::size_t>(mesh.tet_count(), 1))),
                           1e-9 * box_.diagonal());
@@ -92,7 +92,8 @@ void TetLocator::try_tet(int tet, const Vec3& point, Location& best) const {
         weights = nearest_weights(corner, point);
         distance = norm(weighted(corner, weights) - point);
     }
-    // Inside, rounding leaves a distance of some 1e-16: both then count as inside and the lower index wins.
+    // For points inside, rounding leaves a distance of about 1e-16: both tets then count as containing it and the lower
+    // index wins.
     const double exact = 1e-12 * box_.diagonal();
     const double counted = distance <= exact ? 0 : distance;
     if (best.tet < 0 || counted < best.distance || (counted == best.distance && tet < best.tet))

@@ -1,4 +1,4 @@
-// Finds the tet that holds a point.
+// Finds the tet that contains a point.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace pliant::mesh {
 
-/// A uniform grid of boxes over the tets, curved as they are. The mesh must outlive it.
+/// A uniform grid over the boxes of the tets, curved edges included. The mesh must outlive it.
 class TetLocator {
 public:
     explicit TetLocator(const TetMesh& mesh);
@@ -19,8 +19,8 @@ public:
             barycentric{};    ///< of the nearest point of that tet, for its shape functions; sum 1, none negative
         double distance = 0;  ///< from the query to that point; 0 inside
     };
-    /// The tet that holds the point or, outside, the nearest one; ties go to the lowest index. Precondition: the mesh
-    /// has tets.
+    /// The tet that contains the point or, outside the mesh, the nearest one; ties go to the lowest index.
+    /// Precondition: the mesh has tets.
     [[nodiscard]] Location locate(const Vec3& point) const;
 
 private:

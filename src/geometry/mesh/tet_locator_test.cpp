@@ -42,7 +42,7 @@ TetMesh grid(int n) {
 
 }  // namespace
 
-TEST_CASE("points inside are found with weights that give them back") {
+TEST_CASE("points inside are found, and their weights reproduce them") {
     const TetMesh mesh = grid(5);
     const TetLocator locator(mesh);
     std::mt19937 random(2);

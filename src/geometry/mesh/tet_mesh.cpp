@@ -38,7 +38,7 @@ Face face_of(const TetMesh& mesh, std::size_t t, int f) {
     return face;
 }
 
-/// A face in the list of its smallest corner: the other two, ascending, and 4 times its tet plus its slot.
+/// A face in the list of its smallest corner: the other two corners, ascending, and 4 times its tet plus its slot.
 struct Listed {
     int middle, largest;
     std::uint32_t face;
@@ -47,8 +47,8 @@ struct Listed {
     }
 };
 
-/// Faces of the tets for which `member` holds, those with the same smallest corner one after the other: `start`
-/// (points + 1) says where each list begins.
+/// Faces of the tets for which `member` holds, grouped by smallest corner: `start` (points + 1) says where each group
+/// begins.
 template <class Member>
 std::vector<Listed> by_smallest_corner(const TetMesh& mesh, const Member& member, std::vector<std::size_t>& start) {
     const auto visit = [&](const auto& use) {
@@ -71,7 +71,7 @@ std::vector<Listed> by_smallest_corner(const TetMesh& mesh, const Member& member
     return faces;
 }
 
-/// Faces that one tet has alone among the tets for which `member` holds.
+/// Faces that belong to only one of the tets for which `member` holds.
 template <class Member>
 std::vector<Face> single_faces(const TetMesh& mesh, const Member& member) {
     constexpr std::size_t corners_at_once = 1024;
@@ -114,7 +114,7 @@ double volume_where(const TetMesh& mesh, const Member& member) {
 void reverse_tet(std::span<int> nodes) {
     std::swap(nodes[1], nodes[2]);
     if (nodes.size() < 10) return;
-    std::swap(nodes[4], nodes[6]);  // edges 01-02 and 13-23 change places with corners 1 and 2
+    std::swap(nodes[4], nodes[6]);  // edges 01-02 and 13-23 swap with corners 1 and 2
     std::swap(nodes[8], nodes[9]);
 }
 

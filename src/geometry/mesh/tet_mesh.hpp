@@ -23,8 +23,8 @@ struct TetMesh {
     std::vector<Vec3> points;               ///< (n, 3)
     std::vector<int> nodes;                 ///< (m * nodes_per_tet), corners first, positively oriented
     std::vector<int> region;                ///< (m), index into region_names
-    std::vector<std::string> region_names;  ///< at least one where there are tets
-    std::vector<std::string> notes;         ///< what a reader or mesher had to put up with; a line each, for people
+    std::vector<std::string> region_names;  ///< at least one if there are tets
+    std::vector<std::string> notes;         ///< oddities met by a reader or mesher; one line each, for people
 
     [[nodiscard]] int nodes_per_tet() const { return order == 2 ? 10 : 4; }
     [[nodiscard]] std::size_t tet_count() const { return nodes.size() / static_cast<std::size_t>(nodes_per_tet()); }
@@ -34,25 +34,25 @@ struct TetMesh {
     }
 };
 
-/// A face that belongs to one tet only (or separates two regions, where a function says so).
+/// A face that belongs to only one tet (or separates two regions, where a function says so).
 struct Face {
     std::array<int, 6> nodes;  ///< 3 corners, then for order 2 the mid-edge nodes between 0-1, 1-2, 2-0; else -1
     int tet;                   ///< the tet it belongs to; its normal points out of that tet
 };
 
-/// Turns one tet of 4 or 10 nodes inside out, or back.
+/// Inverts a tet of 4 or 10 nodes, or inverts it back.
 void reverse_tet(std::span<int> nodes);
 
 [[nodiscard]] double signed_tet_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// Sum of the corner tets' volumes, of all regions or of one.
+/// Sum of the volumes of the straight tets, over all regions or one.
 [[nodiscard]] double volume(const TetMesh& mesh);
 [[nodiscard]] double volume(const TetMesh& mesh, int region);
 
-/// The faces of the outer surface (those that one tet has alone), in the order of the tets.
+/// The faces of the outer surface (of one tet only), in the order of the tets.
 [[nodiscard]] std::vector<Face> boundary_faces(const TetMesh& mesh);
 
-/// The faces that bound one region, whatever lies behind them.
+/// The faces that bound one region, towards other regions or the outside.
 [[nodiscard]] std::vector<Face> region_faces(const TetMesh& mesh, int region);
 
 /// Some regions of a mesh, with the nodes that they use.
@@ -69,7 +69,7 @@ struct Extract {
 /// The same mesh with straight mid-edge nodes appended after the corner nodes. A quadratic mesh comes back unchanged.
 [[nodiscard]] TetMesh to_quadratic(const TetMesh& mesh);
 
-/// Every point multiplied by `factor` (a change of unit).
+/// Multiplies every point by `factor` (a change of unit).
 [[nodiscard]] TetMesh scaled(TetMesh mesh, double factor);
 
 /// Shape functions at barycentric coordinates `b` (4 values, sum 1): 4 or 10 weights that sum to 1.

@@ -3,8 +3,8 @@
 namespace pliant::mesh {
 
 double signed_volume(const TriMesh& mesh) {
-    const Vec3 origin =
-        mesh.points.empty() ? Vec3{} : mesh.points.front();  // near the surface: no cancellation far out
+    const Vec3 origin = mesh.points.empty() ? Vec3{} : mesh.points.front();  // a point of the surface: avoids
+                                                                             // cancellation far from the origin
     double sum = 0;
     for (const auto& [a, b, c] : mesh.triangles) {
         sum += dot(mesh.points[a] - origin, cross(mesh.points[b] - origin, mesh.points[c] - origin));

@@ -12,11 +12,11 @@ namespace pliant::mesh {
 namespace {
 
 constexpr int leaf_size = 8;
-/// A node counts as a dipole from this many times its reach on.
+/// A node is treated as a dipole from this multiple of its reach on.
 constexpr double far_enough = 3;
 
-/// Adds up angles that are given as complex numbers. Those of less than a quarter turn are multiplied as long as their
-/// sum stays below one too, so that few arc tangents are needed: they took more than half of the time.
+/// Sums angles given as complex numbers. Angles below a quarter turn are multiplied while their sum stays below one, so
+/// that few arc tangents are needed: these took over half of the time.
 class AngleSum {
 public:
     void add(double re, double im) {
@@ -73,7 +73,7 @@ bool ray_meets_box(const Vec3& origin, const Vec3& direction, const Box3& box, d
     return low <= high * (1 + 1e-12) + 1e-300;
 }
 
-/// Moeller and Trumbore 1997; edges count.
+/// Moeller and Trumbore 1997; hits on edges count.
 std::optional<double> ray_meets_triangle(const Vec3& origin, const Vec3& direction, const std::array<Vec3, 3>& t) {
     const Vec3 e1 = t[1] - t[0];
     const Vec3 e2 = t[2] - t[0];

@@ -1,4 +1,4 @@
-// Triangles in a tree of boxes, for questions that a list of them answers too slowly.
+// Triangles in a bounding volume hierarchy, for fast queries.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@ public:
     /// Keeps a copy of the surface. Cost: n log n.
     explicit TriangleTree(TriMesh surface);
 
-    /// How often the surface winds around a point: 1 inside a closed surface, 0 outside, and in between where it has
-    /// holes (generalised winding number: Jacobson, Kavan, Sorkine-Hornung 2013). Far triangles count as one dipole
-    /// (Barill, Dickson, Schmidt, Levin, Jacobson 2018), which changes it by some hundredths at most. Cost: about log
-    /// n.
+    /// How many times the surface winds around a point: 1 inside a closed surface, 0 outside, and in between if it has
+    /// holes (generalised winding number: Jacobson, Kavan, Sorkine-Hornung 2013). Distant triangles are merged into one
+    /// dipole (Barill, Dickson, Schmidt, Levin, Jacobson 2018), with an error of a few hundredths at most. Cost: about
+    /// log n.
     [[nodiscard]] double winding_number(const Vec3& point) const;
 
-    /// Distance along the ray to the first triangle beyond `from` times the length of `direction`, and which one.
+    /// The first triangle hit by the ray beyond `from`, and its distance in units of the length of `direction`.
     struct Hit {
         double distance;
         int triangle;
@@ -33,7 +33,7 @@ private:
     struct Node {
         Box3 box;
         Vec3 dipole;   ///< sum of area times normal
-        Vec3 centre;   ///< of area
+        Vec3 centre;   ///< area-weighted
         double reach;  ///< from the centre to the farthest corner
         int begin, end;
         int left = -1, right = -1;
@@ -42,7 +42,7 @@ private:
     [[nodiscard]] std::array<Vec3, 3> corners(int triangle) const;
 
     TriMesh surface_;
-    std::vector<int> order_;  ///< triangles, so that every node's are in a row
+    std::vector<int> order_;  ///< triangles; those of each node are contiguous
     std::vector<Node> nodes_;
 };
 

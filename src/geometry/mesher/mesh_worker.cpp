@@ -27,8 +27,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int look_every_ms = 50;  // whether somebody has cancelled
-constexpr double start_s = 60;     // loading Open CASCADE from a slow disk
+constexpr int look_every_ms = 50;  // interval of checks for cancellation
+constexpr double start_s = 60;     // allows for loading Open CASCADE from a slow disk
 
 double environment_number(const char* name, double otherwise) {
     const char* const text = std::getenv(name);
@@ -38,7 +38,7 @@ double environment_number(const char* name, double otherwise) {
     return read.ec == std::errc{} && *read.ptr == '\0' && value > 0 ? value : otherwise;
 }
 
-/// A process of pliant-mesh, between two requests or at work on one.
+/// A process of pliant-mesh, idle or working on a request.
 class Worker {
 public:
     Worker(pid_t process, MessagePipe pipe) : process_(process), pipe_(std::move(pipe)) {}
@@ -47,7 +47,7 @@ public:
     ~Worker() { (void)end(); }
 
     [[nodiscard]] MessagePipe& pipe() { return pipe_; }
-    /// Ends the process, if it has not ended; its status as of waitpid().
+    /// Kills the process if it still runs; returns its status as of waitpid().
     int end() {
         if (process_ < 0) return status_;
         ::kill(process_, SIGKILL);
@@ -56,7 +56,7 @@ public:
         process_ = -1;
         return status_;
     }
-    /// The status of a process that has closed its end: waits for it instead of killing it.
+    /// The status of a process that has closed its end: waits for its exit instead of killing it.
     int ended() {
         for (int k = 0; process_ >= 0 && k < 100; ++k) {
             if (::waitpid(process_, &status_, WNOHANG) == process_) {
@@ -92,14 +92,14 @@ Result<std::unique_ptr<Worker>> start_worker(const MesherLimits& limits) {
         return failure("no pipe to the mesher can be made: {}", std::strerror(errno));
     MessagePipe ours(ends[0]);
     const MessagePipe theirs(ends[1]);
-    // It ends with this program, or when this program ends it; Ctrl-C is for this program alone.
+    // It ends with this program, or when killed by it; Ctrl-C affects this program only.
     const Result<pid_t> process =
         start_process(*program, {fmt::format("{}", limits.gigabytes)}, {.input = theirs.file()});
     if (!process) return tl::unexpected(process.error());
     return std::make_unique<Worker>(*process, std::move(ours));
 }
 
-/// Processes that wait for a request. They end with the program.
+/// Processes that wait for a request, until the program ends.
 class IdleWorkers {
 public:
     std::unique_ptr<Worker> take() {
@@ -119,13 +119,13 @@ private:
     std::vector<std::unique_ptr<Worker>> idle_;
 };
 
-/// Of the whole program, because starting one takes as long as a small mesh.
+/// Shared by the whole program, because starting a process takes as long as meshing a small body.
 IdleWorkers& idle_workers() {
     static IdleWorkers workers;
     return workers;
 }
 
-/// Answers to requests that may come again. The oldest go first where there is no room.
+/// A cache of answers. The oldest are dropped when it is full.
 class RememberedAnswers {
 public:
     void set_room(std::size_t bytes) {
@@ -142,7 +142,7 @@ public:
     }
     void keep(MessageKind kind, const std::string& request, const std::string& bytes) {
         const std::lock_guard lock(mutex_);
-        // What is read from a file may be another the next time.
+        // Files may have changed by the next request.
         if (kind == MessageKind::read_step || request.size() + bytes.size() > room_) return;
         make_room(request.size() + bytes.size());
         answers_.push_back({kind, request, bytes});
@@ -166,13 +166,13 @@ private:
     std::deque<Answer> answers_;
 };
 
-/// Of the whole program, as the processes are.
+/// Shared by the whole program, like the processes.
 RememberedAnswers& remembered_answers() {
     static RememberedAnswers answers;
     return answers;
 }
 
-/// Waits for the next message, and looks after cancellation and the limit meanwhile.
+/// Waits for the next message, and checks for cancellation and timeout meanwhile.
 Result<Message> next_message(Worker& worker, Clock::time_point until, const MesherLimits& limits,
                              const std::string& crash, const Progress& progress) {
     Message message;
@@ -189,7 +189,7 @@ Result<Message> next_message(Worker& worker, Clock::time_point until, const Mesh
     }
 }
 
-/// A new process says who it is before anything else.
+/// A new process identifies itself first.
 Status greet(Worker& worker) {
     Progress silent;
     const MesherLimits limits{start_s, 0};
@@ -217,14 +217,14 @@ void pass_on(const std::string& bytes, Progress& progress) {
     if (in.finished()) progress.advance(stage, fraction);
 }
 
-/// Of the program, or of the shared library that this is part of.
+/// The folder of the program, or of the shared library that contains this code.
 std::filesystem::path folder_of_this_code() {
     Dl_info found{};
     if (::dladdr(reinterpret_cast<const void*>(&mesher_limits), &found) == 0 || found.dli_fname == nullptr) return {};
     return std::filesystem::path(found.dli_fname).parent_path();
 }
 
-/// Where the program may be, seen from a folder of programs or of libraries (which may be two levels below lib).
+/// Possible paths of the program relative to a folder of programs or libraries (which may be two levels below lib).
 std::vector<std::filesystem::path> mesher_near(const std::filesystem::path& folder) {
     std::vector<std::filesystem::path> paths{folder / "pliant-mesh"};
     for (const char* up : {"..", "../.."}) {
@@ -249,7 +249,7 @@ std::filesystem::path mesher_on(std::string_view search_path) {
         const std::size_t end = std::min(search_path.find(':'), search_path.size());
         const std::filesystem::path folder = search_path.substr(0, end);
         search_path.remove_prefix(std::min(end + 1, search_path.size()));
-        if (!folder.is_absolute()) continue;  // what is found must not depend on the current folder
+        if (!folder.is_absolute()) continue;  // the result must not depend on the current folder
         if (std::filesystem::path path = mesher_of(folder); !path.empty()) return path;
     }
     return {};
@@ -290,12 +290,12 @@ Result<std::string> ask_mesher(MessageKind kind, const std::string& request, con
     if (auto known = remembered_answers().find(kind, request)) return std::move(*known);
     const MesherLimits limits = mesher_limits();
     std::unique_ptr<Worker> worker = idle_workers().take();
-    if (worker == nullptr || !worker->pipe().send(kind, request)) {  // an idle one may have been killed
+    if (worker == nullptr || !worker->pipe().send(kind, request)) {  // an idle process may have been killed
         Result<std::unique_ptr<Worker>> fresh = start_worker(limits);
         if (!fresh) return tl::unexpected(fresh.error());
         worker = std::move(*fresh);
         if (Status status = greet(*worker); !status) return tl::unexpected(status.error());
-        (void)worker->pipe().send(kind, request);  // where it dies now, the next message tells
+        (void)worker->pipe().send(kind, request);  // if it dies now, the next message will tell
     }
     const auto until =
         Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.seconds));

@@ -21,7 +21,7 @@ using pliant::test::Variable;
 
 namespace {
 
-/// Processes of pliant-mesh that this program has started.
+/// Running pliant-mesh child processes.
 std::vector<pid_t> meshers() {
     return pliant::test::children_of(::getpid(), "pliant-mesh");
 }
@@ -37,7 +37,7 @@ Result<TetMesh> mesh_cube(double size, Progress& progress) {
     return mesh_bodies(cube, {.size = size, .order = 1}, progress);
 }
 
-/// Wants the work to stop after a while.
+/// Cancels the work after a while.
 class Impatient : public Progress {
 public:
     [[nodiscard]] bool cancelled() const override { return std::chrono::steady_clock::now() > until_; }
@@ -111,7 +111,7 @@ TEST_CASE("cancelling ends the mesher at once") {
     CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(5));
 }
 
-TEST_CASE("time and memory have limits that are told") {
+TEST_CASE("time and memory limits are reported") {
     Progress silent;
     {
         kill_all();
@@ -134,7 +134,7 @@ TEST_CASE("time and memory have limits that are told") {
 #endif
 }
 
-TEST_CASE("a program that is no mesher, or none, is told by name") {
+TEST_CASE("a missing or wrong mesher is reported by name") {
     kill_all();
     Progress silent;
     {
@@ -152,7 +152,7 @@ TEST_CASE("a mesher is found with an installation that PATH names") {
     const pliant::test::Folder folder("path");
     std::filesystem::create_directories(folder / "empty/bin");
     std::filesystem::create_directories(folder / "usr/bin");
-    std::filesystem::create_directories(folder / "usr/libexec/pliant/pliant-mesh");  // a folder is no program
+    std::filesystem::create_directories(folder / "usr/libexec/pliant/pliant-mesh");  // a folder is not a program
     const std::string path = (folder / "empty/bin").string() + ":relative::" + (folder / "usr/bin").string();
     CHECK(mesher_on(path).empty());
     CHECK(mesher_on("").empty());
@@ -164,7 +164,7 @@ TEST_CASE("a mesher is found with an installation that PATH names") {
     CHECK(mesher_on((folder / "empty/bin").string()).empty());
 }
 
-TEST_CASE("answers that are remembered need no mesher, are the same, and go when there is no room") {
+TEST_CASE("cached answers need no mesher, are identical, and are dropped when the cache is full") {
     Progress silent;
     const Result<TetMesh> first = mesh_cube(5, silent);
     REQUIRE(first);
@@ -177,11 +177,11 @@ TEST_CASE("answers that are remembered need no mesher, are the same, and go when
         REQUIRE_MESSAGE(known, (known ? "" : known.error().message));
         CHECK(known->points == first->points);
         CHECK(known->nodes == first->nodes);
-        CHECK_FALSE(mesh_cube(4, silent));  // another request
+        CHECK_FALSE(mesh_cube(4, silent));  // a different request
         remember_answers(0);
         CHECK_FALSE(mesh_cube(5, silent));
     }
-    remember_answers(1000);  // too little for any mesh
+    remember_answers(1000);  // too small for any mesh
     REQUIRE(mesh_cube(5, silent));
     const Variable nowhere("PLIANT_MESH", "/nowhere");
     kill_all();

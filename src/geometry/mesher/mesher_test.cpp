@@ -65,7 +65,7 @@ TEST_CASE("bodies that touch share the nodes of their common face") {
         area += 0.5 * norm(cross(p[face.nodes[1]] - p[face.nodes[0]], p[face.nodes[2]] - p[face.nodes[0]]));
     }
     CHECK(check_closed(outer));
-    CHECK(area == near(2 * 100 + 4 * 200, {.relative = 1e-12}));  // nothing of the common face is left outside
+    CHECK(area == near(2 * 100 + 4 * 200, {.relative = 1e-12}));  // the common face is not part of the outside
 }
 
 TEST_CASE("round bodies approach their volume, faster with curved quadratic tets") {
@@ -242,7 +242,7 @@ TEST_CASE("enclosed space is a region of its own, with a cap where it has a mout
     CHECK(volume(capped, 1) == near(7 * 16, {.relative = 1e-12}));
 }
 
-TEST_CASE("a narrow gap between bodies is closed and told, a wider one stays") {
+TEST_CASE("a narrow gap between bodies is closed and reported, a wider one stays") {
     const std::vector<BodyGeometry> bars = {{"left", box({0, 0, 0}, {10, 10, 10})},
                                             {"right", box({10.004, 2, 2}, {20, 8, 8})}};
     const Solid hole = solid(CylinderSolid{{5, 5, 0}, {5, 5, 4}, 2});
@@ -256,7 +256,7 @@ TEST_CASE("a narrow gap between bodies is closed and told, a wider one stays") {
     };
     struct Row {
         const std::vector<BodyGeometry>* bodies;
-        double whole, between;  ///< areas of the surface: of both bodies, of the face between them
+        double whole, between;  ///< surface areas: of both bodies, and of the face between them
     };
     const double pi = std::numbers::pi;
     for (const Row& row :
@@ -283,7 +283,7 @@ TEST_CASE("a narrow gap between bodies is closed and told, a wider one stays") {
     }
 }
 
-TEST_CASE("what cannot be meshed is refused with a reason") {
+TEST_CASE("invalid bodies are refused with a reason") {
     CHECK(problem({{"a", box({1, 1, 1}, {2, 2, 2})}, {"b", box({0, 0, 0}, {5, 5, 5})}}, 3)
               .find("body \"a\" is empty: all of it belongs to later ones") != std::string::npos);
     CHECK(problem({{"a", without(box({0, 0, 0}, {1, 1, 1}), box({-1, -1, -1}, {2, 2, 2}))}}, 1).find("is empty") !=
@@ -299,8 +299,8 @@ TEST_CASE("what cannot be meshed is refused with a reason") {
     CHECK_FALSE(tessellate(box({0, 0, 0}, {1, 1, 1}), 0));
 }
 
-TEST_CASE("drawn solids get no sliver") {
-    // As Gmsh gives them these have angles of 0.3 to 3 degrees.
+TEST_CASE("meshes of drawn solids have no slivers") {
+    // As meshed by Gmsh these have angles of 0.3 to 3 degrees.
     struct Box {
         Vec3 sides;
         double size;

@@ -1,4 +1,4 @@
-// Messages over the pipe between a program and its mesher: a kind, a length, bytes.
+// Messages between a program and its mesher process: a kind, a length, bytes.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace pliant::mesh {
 
-/// Of both ends; another version is refused. Changes with everything that packing.hpp writes.
+/// Sent by both ends; a different version is refused. Must change with every format change in packing.hpp.
 inline constexpr std::string_view mesher_greeting = "pliant-mesh 1";
 
 enum class MessageKind : std::uint8_t {
-    greeting,     ///< the mesher's first: mesher_greeting
+    greeting,     ///< first message of the mesher: mesher_greeting
     mesh_bodies,  ///< bodies, settings; answered by a TetMesh
     tessellate,   ///< solid, tolerance; by a TriMesh
     volume,       ///< solid; by a number
     read_step,    ///< file, scale; by a StepContent
     notches,      ///< surface, path; by a list of notches
     progress,     ///< from the mesher, at any time: stage, fraction
-    answer,       ///< what was asked for
+    answer,       ///< the result of the request
     error,        ///< cause, text
 };
 
@@ -29,19 +29,19 @@ struct Message {
     std::string bytes;
 };
 
-/// How receive() ended.
+/// The outcome of receive().
 enum class Received { message, closed, waiting };
 
-/// One end of a connected pair of sockets; closed with it. Movable.
+/// One end of a connected socket pair, closed by the destructor. Movable.
 class MessagePipe {
 public:
     explicit MessagePipe(int file) : file_(file) {}
 
     [[nodiscard]] int file() const { return file_.number(); }
-    /// False where the other end is gone.
+    /// False if the other end is closed.
     [[nodiscard]] bool send(MessageKind kind, std::string_view bytes) const;
-    /// Waits so long at most, or for ever where it is negative. What has come of a message is kept for the next call;
-    /// memory follows the bytes that have come, not the length that is claimed.
+    /// Waits this long at most; forever if negative. A partly received message is kept for the next call; memory
+    /// follows the bytes received, not the length announced.
     [[nodiscard]] Received receive(Message& message, int wait_ms);
 
 private:

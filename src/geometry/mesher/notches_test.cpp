@@ -16,7 +16,7 @@ using namespace pliant::mesh::test;
 
 namespace {
 
-/// What a cable finds in a body, and how large that is.
+/// Volumes of the notches that a cable crosses in a body.
 std::vector<double> volumes(const Solid& body, const std::vector<Vec3>& path) {
     const Result<TriMesh> surface = tessellate(body, 2e-3 * bounds(body).diagonal());
     REQUIRE(surface);
@@ -59,7 +59,7 @@ TEST_CASE("a bore for the cable through the flanks stays empty; every notch coun
     const auto plain = volumes(without(bar, notches), path);
     REQUIRE(plain.size() == 3);
     for (const double volume : plain) CHECK(volume == near(0.5 * 2 * (2.0 * 10 / 10.1) * 10 * 20, {.relative = 1e-12}));
-    // In its bore the cable leaves no material: the flanks are not found, and neither is a notch.
+    // Inside its bore the cable does not leave material: the flanks, and so the notches, are not found.
     CHECK(volumes(without(without(bar, notches), bore), path).empty());
     const std::vector<Vec3> beside = {{-5, 4, 13}, {45, 4, 13}};
     const auto bored = volumes(without(without(bar, notches), bore), beside);

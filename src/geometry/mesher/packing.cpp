@@ -9,7 +9,7 @@
 namespace pliant::mesh {
 namespace {
 
-constexpr int deepest = 200;  ///< solids within solids; robot files nest to far less
+constexpr int deepest = 200;  ///< nesting of solids; robot files have far less
 
 void pack_solid(Packer& out, const Solid& solid);
 Solid unpack_solid(Unpacker& in, int depth);
@@ -74,7 +74,7 @@ std::shared_ptr<const FacetedSurface> unpack_faces(Unpacker& in) {
     return faces;
 }
 
-/// Writes a shape; what comes first, its place in the variant, is written before.
+/// Writes a shape; its index in the variant has been written before.
 struct ShapePacker {
     Packer& out;
 
@@ -137,7 +137,7 @@ private:
     }
 };
 
-/// Reads what a ShapePacker wrote into a shape of the same kind.
+/// Reads what a ShapePacker wrote into a shape of the same type.
 struct ShapeUnpacker {
     Unpacker& in;
     int depth;
@@ -217,7 +217,7 @@ void pack_solid(Packer& out, const Solid& solid) {
 
 using Shape = decltype(SolidNode::shape);
 
-/// The shape at place `index` of the variant, read.
+/// Reads the shape with index `index` of the variant.
 template <std::size_t Index = 0>
 Shape unpack_shape(std::size_t index, const ShapeUnpacker& reader) {
     if constexpr (Index < std::variant_size_v<Shape>) {

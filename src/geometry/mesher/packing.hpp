@@ -1,6 +1,6 @@
-// Values as bytes, for the pipe between a program and its mesher (mesh_worker.hpp). Both ends run on one machine and
-// are of one build: numbers stand as the processor has them. The reader trusts nothing all the same: memory follows the
-// bytes that are there, indices are checked, and expressions nest to a limit.
+// Serialises values for the pipe between a program and its mesher (mesh_worker.hpp). Both ends run on one machine and
+// come from one build, so numbers are in native byte order. The reader still trusts nothing: memory follows the actual
+// bytes, indices are checked, and the nesting of expressions is limited.
 #pragma once
 
 #include <cstring>
@@ -29,7 +29,7 @@ public:
         number<std::uint64_t>(value.size());
         bytes_.append(value);
     }
-    /// Elements without pointers or gaps, one after the other.
+    /// An array of trivially copyable elements without pointers or padding.
     template <class T>
     requires std::is_trivially_copyable_v<T>
     void list(const std::vector<T>& values) {
@@ -42,8 +42,8 @@ private:
     std::string bytes_;
 };
 
-/// Reads what a Packer wrote. After the first thing that cannot be, everything reads as zero or empty and good() is
-/// false; so a reader asks once, at the end.
+/// Reads what a Packer wrote. After the first invalid item everything reads as zero or empty and good() is false, so
+/// the caller checks once, at the end.
 class Unpacker {
 public:
     explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
@@ -77,13 +77,14 @@ public:
         if (value > 1) fail();
         return value == 1;
     }
-    /// The number of things that follow, each of at least so many bytes; 0 where there cannot be that many.
+    /// The number of items that follow, each of at least this many bytes; 0 if the remaining bytes cannot hold that
+    /// many.
     std::size_t count(std::size_t least_bytes);
     void fail() {
         good_ = false;
         rest_ = {};
     }
-    /// Whether everything could be read and nothing is left over.
+    /// Whether everything was read without error and no bytes are left.
     [[nodiscard]] bool finished() const { return good_ && rest_.empty(); }
     [[nodiscard]] bool good() const { return good_; }
 
@@ -123,7 +124,7 @@ void pack(Packer& out, std::span<const T> values) {
     out.number<std::uint64_t>(values.size());
     for (const T& value : values) pack(out, value);
 }
-/// What unpack() reads back from either.
+/// The inverse of pack().
 template <class T>
 void pack(Packer& out, const std::vector<T>& values) {
     pack(out, std::span<const T>(values));
@@ -135,7 +136,7 @@ void unpack(Unpacker& in, std::vector<T>& values) {
     for (std::size_t left = in.count(1); left > 0 && in.good(); --left) unpack(in, values.emplace_back());
 }
 
-/// What an answer holds. Errors: its own, and an answer that cannot be read.
+/// The value in an answer. Errors: that of the answer, or an unreadable answer.
 template <class T>
 Result<T> unpacked(const Result<std::string>& answer) {
     if (!answer) return tl::unexpected(answer.error());

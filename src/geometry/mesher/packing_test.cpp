@@ -19,7 +19,7 @@ std::string bytes_of(const T& value) {
     return out.take();
 }
 
-/// What a value is once it has been written and read, as bytes.
+/// The bytes of a value that was written, read and written again.
 template <class T>
 std::string bytes_after(const T& value) {
     const std::string bytes = bytes_of(value);
@@ -30,7 +30,7 @@ std::string bytes_after(const T& value) {
     return bytes_of(read);
 }
 
-/// A solid of every kind, one inside the other where a kind holds others.
+/// A solid of every type, nested where a type contains others.
 Solid every_kind() {
     const Solid ball = solid(SphereSolid{{1, 2, 3}, 4});
     const Solid rod = solid(CylinderSolid{{0, 0, 0}, {0, 0, 1. / 3}, 2});

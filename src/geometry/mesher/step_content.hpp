@@ -1,4 +1,4 @@
-// What a STEP file holds.
+// The content of a STEP file.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 namespace pliant::mesh {
 
 struct StepContent {
-    std::vector<std::string> names;  ///< of the solids, as the program that drew them called them; "" where it did not
-    std::vector<TriMesh> surfaces;   ///< of each, normals outwards, chords of 1/32 of a turn
+    std::vector<std::string> names;  ///< of the solids, as given by the CAD program; "" if not named
+    std::vector<TriMesh> surfaces;   ///< one per solid, normals outwards, chords of 1/32 of a turn
 };
 
 }  // namespace pliant::mesh

@@ -14,7 +14,7 @@
 namespace pliant::mesh {
 namespace {
 
-/// All solids of a file. Open CASCADE follows pointers that a damaged file has left empty: its process ends then.
+/// All solids of a file. Open CASCADE dereferences null pointers left by a damaged file: only its process crashes then.
 Result<StepContent> solids_of(const std::string& file, double scale) {
     Packer request;
     request.text(std::filesystem::absolute(file).string());

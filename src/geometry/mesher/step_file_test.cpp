@@ -49,7 +49,7 @@ TEST_CASE("solids of a STEP file: exact volumes, in the caller's unit, one or al
     CHECK(volume_of(*all) == near(2000 + ball, {.relative = 1e-9}));
     const Result<Solid> metres = read_step(path, "", 1e-3);
     REQUIRE(metres);
-    // A ball that is scaled is a spline, whose volume Open CASCADE integrates to 1e-4.
+    // A scaled ball becomes a spline, whose volume Open CASCADE integrates to 1e-4.
     CHECK(volume_of(*metres) == near((2000 + ball) * 1e-9, {.relative = 1e-4}));
     CHECK(bounds(*metres).high.x == near(0.043, {.relative = 1e-12}));
     CHECK(contains(*all, {1, 1, 1}));
@@ -100,7 +100,7 @@ TEST_CASE("a STEP file that is cut off, of another kind, or without a solid is r
     };
     CHECK(refused(whole->substr(0, whole->size() / 2)).find("cut off") != std::string::npos);
     CHECK(refused("solid cube").find("no STEP file") != std::string::npos);
-    std::string strange = *whole;  // entities that Open CASCADE does not know, where it follows their pointers
+    std::string strange = *whole;  // entities unknown to Open CASCADE, in a place where it follows pointers
     for (std::size_t at = 0; (at = strange.find("= DIRECTION", at)) != std::string::npos;) strange[at + 2] = 'X';
     CHECK(refused(strange).find("is damaged") != std::string::npos);
     (void)refused("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n");

@@ -11,7 +11,7 @@
 namespace pliant::mesh {
 namespace {
 
-/// Faces that are turned against each other by less are one plane.
+/// Faces at a smaller angle to each other count as one plane.
 constexpr double flat_deg = 0.5;
 
 using Place = std::tuple<double, double, double>;
@@ -25,7 +25,7 @@ Edge edge(const Vec3& a, const Vec3& b) {
     return std::minmax(place(a), place(b));
 }
 
-/// Where the mid-edge nodes are that lie off the middle of their edge.
+/// Positions of the mid-edge nodes that are off the midpoint of their edge.
 std::map<Edge, Vec3> curved_middles(const TetMesh& mesh) {
     std::map<Edge, Vec3> middles;
     for (std::size_t t = 0; mesh.order == 2 && t < mesh.tet_count(); ++t) {
@@ -40,7 +40,7 @@ std::map<Edge, Vec3> curved_middles(const TetMesh& mesh) {
     return middles;
 }
 
-/// The corners alone, numbered in the order of the tets.
+/// The mesh of the corner nodes only, numbered in the order of the tets.
 TetMesh corners_of(const TetMesh& mesh) {
     TetMesh linear{1, {}, {}, mesh.region, mesh.region_names, mesh.notes};
     std::vector<int> index(mesh.points.size(), -1);

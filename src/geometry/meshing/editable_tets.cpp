@@ -5,7 +5,7 @@
 namespace pliant::mesh {
 namespace {
 
-/// The corners between which the edge of faces i and j (opposite to corners i and j) runs.
+/// The corners of the edge shared by faces i and j (opposite to corners i and j).
 std::pair<std::size_t, std::size_t> common_edge(std::size_t i, std::size_t j) {
     std::size_t k = 0;
     while (k == i || k == j) ++k;

@@ -1,5 +1,5 @@
-// What this folder asks of Gmsh, with results instead of arguments to fill in. The names are those of gmsh.h. Entities
-// are pairs of dimension and tag. A call that fails throws std::runtime_error with Gmsh's own words.
+// Wrappers for the Gmsh functions that this folder uses; they return results instead of filling arguments. Names follow
+// gmsh.h. Entities are pairs of dimension and tag. A failing call throws std::runtime_error with Gmsh's message.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ void set_number(const char* name, double value);
 namespace model {
 void add(const char* name);
 Entities get_entities(int dimension);
-/// The name of an entity that a file of shapes gave; "" where it gave none.
+/// The name of an entity from its CAD file; "" if unnamed.
 std::string get_entity_name(int dimension, int tag);
 Entities get_boundary(const Entities& of, bool combined);
 int add_discrete_entity(int dimension);
@@ -41,7 +41,7 @@ struct Nodes {
 struct Elements {
     std::vector<std::size_t> tags, nodes;
 };
-/// Edge length by dimension, tag and place.
+/// Edge length by dimension, tag and position.
 using SizeCallback = std::function<double(int, int, double, double, double)>;
 
 void add_nodes(int dimension, int tag, std::vector<std::size_t> tags, std::vector<double> coordinates);
@@ -50,7 +50,7 @@ void classify_surfaces(double angle_rad, bool boundary, bool for_reparametrizati
 void create_geometry();
 void generate(int dimension);
 void set_order(int order);
-/// Holds until the library is finalized.
+/// Stays set until the library is finalised.
 void set_size_callback(SizeCallback callback);
 Elements get_elements_by_type(int type, int tag);
 std::vector<double> get_node(std::size_t tag);
@@ -75,7 +75,7 @@ int add_surface_loop(std::vector<int> surfaces);
 int add_volume(std::vector<int> shells);
 Entities extrude(const Entities& what, double dx, double dy, double dz);
 
-/// What a Boolean operation leaves, and what became of each entity that went in. Objects and tools are used up.
+/// Result of a Boolean operation: the remaining entities, and what each input became. Objects and tools are deleted.
 struct Outcome {
     Entities entities;
     std::vector<Entities> became;
@@ -88,12 +88,12 @@ Outcome fragment(const Entities& objects, const Entities& tools);
 Entities copy(const Entities& what);
 void translate(const Entities& what, double dx, double dy, double dz);
 void rotate(const Entities& what, double x, double y, double z, double ax, double ay, double az, double angle_rad);
-/// By the same factor everywhere, about the origin.
+/// Uniform scaling about the origin.
 void dilate(const Entities& what, double factor);
 void remove(const Entities& what, bool recursive);
-/// Solids, or else the shapes of highest dimension, of a STEP file.
+/// Solids of a STEP file or, if it has none, its shapes of highest dimension.
 Entities import_shapes(const std::string& file);
-/// Low and high corner.
+/// Minimum and maximum corner.
 std::pair<std::vector<double>, std::vector<double>> get_bounding_box(int dimension, int tag);
 double get_mass(int dimension, int tag);
 void synchronize();

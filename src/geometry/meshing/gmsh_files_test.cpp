@@ -1,4 +1,4 @@
-// Holds our readers and writers against Gmsh's own: the same nodes, tets and volumes both ways.
+// Compares our readers and writers with Gmsh's own: the same nodes, tets and volumes both ways.
 #include <doctest/doctest.h>
 #include <gmsh.h>
 
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Gmsh running silently, and a folder of its own.
+/// A silent Gmsh session with a folder of its own.
 class Bench {
 public:
     Bench() {

@@ -25,13 +25,13 @@ namespace {
 namespace occ = gmsh::model::occ;
 using gmsh::Entities;
 
-/// A Gmsh model of its own, silent and reproducible.
+/// A separate Gmsh model, silent and reproducible.
 class Session {
 public:
     Session() {
         gmsh::initialize();
         gmsh::option::set_number("General.Terminal", 0);
-        gmsh::option::set_number("General.AbortOnError", 2);  // throw
+        gmsh::option::set_number("General.AbortOnError", 2);  // throw exceptions
         gmsh::option::set_number("General.NumThreads", 1);
         gmsh::option::set_number("Mesh.RandomSeed", 1);
         gmsh::option::set_number("Mesh.Algorithm", 6);    // frontal Delaunay on surfaces
@@ -42,21 +42,21 @@ public:
     ~Session() {
         try {
             gmsh::finalize();
-        } catch (...) {  // nothing is left to be done about it, and a destructor must not throw
+        } catch (...) {  // nothing can be done about it, and a destructor must not throw
         }
     }
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 };
 
-/// Runs `work` in a session; what Gmsh throws becomes an error.
+/// Runs `work` in a session; exceptions from Gmsh become errors.
 template <class Work>
 auto in_session(std::string_view task, const Work& work) -> decltype(work()) {
     try {
         const Session session;
         return work();
     } catch (const std::bad_alloc&) {
-        throw;  // the caller knows the limit
+        throw;  // the caller handles the limit
     } catch (const std::exception& error) {
         return failure("{}: Gmsh says: {}", task, error.what());
     } catch (...) {
@@ -64,7 +64,7 @@ auto in_session(std::string_view task, const Work& work) -> decltype(work()) {
     }
 }
 
-/// The solids of a STEP file, in its order. Open CASCADE turns the file's unit into millimetres.
+/// The solids of a STEP file, in file order. Open CASCADE converts the file's unit to millimetres.
 Entities import_solids(const std::string& file, double scale) {
     Entities solids = occ::import_shapes(file);
     std::erase_if(solids, [](const auto& entity) { return entity.first != 3; });
@@ -72,7 +72,7 @@ Entities import_solids(const std::string& file, double scale) {
     return solids;
 }
 
-/// Turns an expression into Open CASCADE volumes.
+/// Converts an expression to Open CASCADE volumes.
 struct BuildSolid {
     Entities operator()(const BoxSolid& s) const {
         const Vec3 d = s.high - s.low;
@@ -146,14 +146,15 @@ struct BuildSolid {
         return occ::fuse(first, copies).entities;
     }
 
-    /// True if the copies surely do not meet: joining many of them takes long, minutes for 1000.
+    /// True if the copies certainly do not touch: uniting many takes minutes for 1000.
     static bool stands_apart(const RepeatedSolid& s) {
         const Box3 box = bounds(s.of);
         const double gap = 1e-6 * box.diagonal();
         return !boxes_meet(box, {box.low + s.step, box.high + s.step}, gap);
     }
 
-    /// The empty space between the walls falls into pieces; the one that holds the point, unless it is the outermost.
+    /// The empty space between the walls consists of pieces; takes the one that contains the point, unless it is the
+    /// outermost.
     Entities operator()(const EnclosedSolid& s) const {
         const Entities walls = build_all(s.walls);
         Box3 box;
@@ -287,7 +288,7 @@ double common_volume(const Entities& one, const Entities& other) {
     return volume;
 }
 
-/// A line for every two solids that overlap; join_volumes() gives what they share to the later one.
+/// A note for every two solids that overlap; join_volumes() gives the overlap to the later one.
 std::vector<std::string> overlaps(std::span<const NamedSolid> solids, const std::vector<Entities>& volumes) {
     std::vector<std::string> notes;
     for (std::size_t i = 0; i < solids.size(); ++i) {
@@ -304,7 +305,7 @@ std::vector<std::string> overlaps(std::span<const NamedSolid> solids, const std:
     return notes;
 }
 
-/// Order of Gmsh's 10-node tet in ours: its last two mid-edge nodes are swapped.
+/// Maps Gmsh's 10-node tet to ours: its last two mid-edge nodes are swapped.
 constexpr std::array<int, 10> gmsh_order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 
 /// The tets of the current Gmsh model; `body_of_volume` gives regions.
@@ -341,16 +342,17 @@ void set_size(double size) {
     gmsh::option::set_number("Mesh.MeshSizeExtendFromBoundary", 1);
 }
 
-/// Below, a tet is a sliver: it makes a simulation stiff and slow.
+/// A tet with a smaller dihedral angle is a sliver, which makes a simulation stiff and slow.
 constexpr double sliver_deg = 5;
 constexpr double wanted_deg = 1.4 * sliver_deg;
 
-/// Slivers come by chance: a slightly smaller size gives other points, and as a rule none. `attempt(factor)` meshes
-/// with sizes times `factor`; `best` is what it gave for 1.
+/// Slivers are due to chance: a slightly smaller size gives other points, and usually no slivers. `attempt(factor)`
+/// meshes with sizes times `factor`; `best` is its result for 1.
 template <class Attempt>
 Result<TetMesh> without_slivers(Result<TetMesh> best, const Attempt& attempt) {
     double angle = smallest_dihedral_deg(*best);
-    constexpr std::size_t many = 20;  // one tet in so many: not by chance, walls are thinner than edges are long
+    constexpr std::size_t many = 20;  // if one tet in this many is a sliver, the cause is not chance but walls thinner
+                                      // than the edges are long
     if (angle >= sliver_deg || many * sliver_count(*best, sliver_deg) > best->tet_count()) return best;
     for (double factor = 0.97; factor > 0.8 && angle < sliver_deg; factor -= 0.03) {
         Result<TetMesh> other = attempt(factor);
@@ -363,13 +365,13 @@ Result<TetMesh> without_slivers(Result<TetMesh> best, const Attempt& attempt) {
     return best;
 }
 
-/// `size_at` times `factor`, if there is any.
+/// `size_at` times `factor`, if it is not empty.
 SizeAt times(const SizeAt& size_at, double factor) {
     if (!size_at || factor == 1) return size_at;
     return [&size_at, factor](std::size_t solid, const Vec3& p) { return factor * size_at(solid, p); };
 }
 
-/// Curved quadratic tets must keep this part of their straight Jacobian everywhere.
+/// Curved quadratic tets must keep this fraction of their straight Jacobian everywhere.
 constexpr double least_jacobian = 0.1;
 
 Result<TetMesh> generate(const std::map<int, int>& body_of_volume, int order) {
@@ -393,8 +395,8 @@ double surface_area(const Entities& volumes) {
     return sum;
 }
 
-/// Joins the solids where they touch or stand at most `within` apart, so that the pieces share their common faces;
-/// gives the solid of every volume.
+/// Joins the solids where they touch or are at most `within` apart, so that the pieces share their common faces;
+/// returns the solid of every volume.
 std::map<int, int> join_volumes(const std::vector<Entities>& volumes, double within) {
     Entities all;
     std::vector<int> owner;
@@ -414,7 +416,7 @@ std::map<int, int> join_volumes(const std::vector<Entities>& volumes, double wit
     return solid_of_volume;
 }
 
-/// Which solids an entity of the model belongs to or bounds.
+/// The solids that an entity of the model belongs to or bounds.
 using SolidsOf = std::map<std::pair<int, int>, std::vector<std::size_t>>;
 
 SolidsOf solids_of_entities(const std::map<int, int>& solid_of_volume) {
@@ -430,7 +432,7 @@ SolidsOf solids_of_entities(const std::map<int, int>& solid_of_volume) {
     return solids;
 }
 
-/// Lets `size_at` decide; entities between solids take the smallest of theirs.
+/// Sets sizes from `size_at`; entities between solids take the smallest of theirs.
 void follow_size(const SizeAt& size_at, const SolidsOf& solids, double size) {
     if (!size_at) return;
     gmsh::model::mesh::set_size_callback(
@@ -462,7 +464,7 @@ int add_triangles(const TriMesh& surface) {
     return entity;
 }
 
-/// Meshes what the model's surfaces enclose.
+/// Meshes the region enclosed by the model's surfaces.
 Result<TetMesh> mesh_enclosed(double size, const SizeAt& size_at) {
     std::vector<int> loop;
     for (const auto& [dimension, tag] : gmsh::model::get_entities(2)) loop.push_back(tag);
@@ -473,7 +475,7 @@ Result<TetMesh> mesh_enclosed(double size, const SizeAt& size_at) {
     return generate({{volume, 0}}, 1);
 }
 
-/// The triangles of one face of the model, appended to `surface`; `index` maps Gmsh's nodes to points.
+/// Appends the triangles of one face of the model to `surface`; `index` maps Gmsh's nodes to points.
 void append_face(int face, TriMesh& surface, std::map<std::size_t, int>& index) {
     const auto [elements, nodes] = gmsh::model::mesh::get_elements_by_type(2, face);
     for (std::size_t t = 0; t < elements.size(); ++t) {
@@ -497,7 +499,7 @@ TriMesh collect_surface(const Entities& volumes) {
         std::map<std::size_t, int> index;
         for (const auto& [dimension, tag] : gmsh::model::get_boundary({volume}, true))
             append_face(std::abs(tag), one, index);
-        orient_solid(one);  // Open CASCADE's faces look either way
+        orient_solid(one);  // Open CASCADE's faces may have either orientation
         append(surface, one);
     }
     return surface;
@@ -558,9 +560,9 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
 }  // namespace
 
 Status check_tet_count(double volume, double area, double size) {
-    constexpr double per_cube = 8.5;  // regular tets of edge 1 in a cube of edge 1
+    constexpr double per_cube = 8.5;  // number of regular tets of edge 1 in a cube of edge 1
     constexpr double per_square =
-        2.3;  // regular triangles of edge 1 in a square of edge 1: thin bodies are all surface
+        2.3;  // number of regular triangles of edge 1 in a square of edge 1: thin bodies are all surface
     constexpr double most = 20e6;
     const auto estimate = [&](double edge) {
         return per_cube * volume / (edge * edge * edge) + per_square * area / (edge * edge);
@@ -576,7 +578,7 @@ Status check_tet_count(double volume, double area, double size) {
 Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at,
                             double join_within) {
     Result<TetMesh> mesh = try_mesh_solids(solids, size, order, size_at, join_within, 1);
-    // On a thin round wall the chords of one side cut through the other: follow the curves more closely.
+    // On a thin round wall the chords of one side may cut through the other: follow the curves more closely.
     int refinement = 1;
     while (refinement < 8 && !mesh && mesh.error().cause == Cause::failed) {
         refinement *= 2;
@@ -590,9 +592,9 @@ Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int
 
 namespace {
 
-/// One attempt of mesh_surface().
+/// One attempt at mesh_surface().
 Result<TetMesh> try_mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
-    // Of a shell of few triangles Gmsh may try to cut a part in two for ever.
+    // With few triangles in a shell Gmsh may loop forever, splitting a part in two.
     constexpr std::size_t enough = 64;
     const auto anew = [&]() -> Result<TetMesh> {
         add_triangles(with_enough_triangles(surface, enough));
@@ -604,7 +606,7 @@ Result<TetMesh> try_mesh_surface(const TriMesh& surface, double size, double ang
         add_triangles(surface);
         return mesh_enclosed(size, size_at);
     };
-    // Gmsh's parametrisation never comes to an end, or worse, on triangles without area.
+    // Gmsh's parametrisation hangs or crashes on triangles without area.
     Result<TetMesh> mesh = has_flat_triangles(surface) ? failure("meshing: the surface has triangles without area")
                                                        : in_session("meshing", anew);
     if (!mesh) {
@@ -624,7 +626,7 @@ Result<TetMesh> try_mesh_surface(const TriMesh& surface, double size, double ang
 
 Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg, const SizeAt& size_at) {
     Result<TetMesh> best = try_mesh_surface(surface, size, angle_deg, size_at);
-    if (!best || !best->notes.empty()) return best;  // triangles that stay as drawn give the same slivers again
+    if (!best || !best->notes.empty()) return best;  // a surface that keeps its triangles gives the same slivers again
     return without_slivers(std::move(best), [&](double factor) -> Result<TetMesh> {
         Result<TetMesh> other = try_mesh_surface(surface, factor * size, angle_deg, times(size_at, factor));
         if (other && !other->notes.empty()) return failure("it keeps the triangles that were drawn");
@@ -637,8 +639,9 @@ Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
         const Entities volumes = BuildSolid::build(solid);
         if (volumes.empty()) return input_error("is empty: nothing is left of it");
         occ::synchronize();
-        // Flat faces need no inner points; chords of an arc of radius r leave it by tolerance / 2 at 2 pi / sqrt(4
-        // tolerance / r) a turn. The other half is for triangles, which leave a ball farther than their edges do.
+        // Flat faces need no inner points; chords of an arc of radius r deviate by tolerance / 2 at 2 pi / sqrt(4
+        // tolerance / r) chords per turn. The other half is for triangles, which deviate more from a ball than their
+        // edges do.
         const double reach = std::max(bounds(solid).diagonal() / 2, tolerance);
         const double segments = std::clamp(2 * std::numbers::pi / std::sqrt(4 * tolerance / reach), 24.0, 2000.0);
         set_size(4 * reach);
@@ -655,7 +658,7 @@ Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
 
 namespace {
 
-/// The solids of a STEP file, their surfaces meshed.
+/// The solids of a STEP file, with meshed surfaces.
 Entities import_surfaces(const std::string& file, double scale) {
     Entities solids = import_solids(file, scale);
     occ::synchronize();

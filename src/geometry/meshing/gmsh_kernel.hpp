@@ -1,5 +1,5 @@
-// What this folder asks of Gmsh and Open CASCADE; use mesher.hpp from outside. Gmsh keeps one global state, so no two
-// calls may run at the same time: pliant-mesh serves one request after the other. Each call begins with an empty model.
+// The interface to Gmsh and Open CASCADE inside this folder; others use mesher.hpp. Gmsh has global state, so calls
+// must not run concurrently: pliant-mesh serves one request after the other. Each call begins with an empty model.
 #pragma once
 
 #include <functional>
@@ -20,24 +20,24 @@ struct NamedSolid {
     Solid solid;
 };
 
-/// An error that is about one body: its only problem has the body's name as key.
+/// An error about one body: its only problem has the body's name as key.
 [[nodiscard]] inline tl::unexpected<Error> about(const std::string& body, Error error) {
     error.problems = {{"", 0, body, error.message}};
     return tl::unexpected(std::move(error));
 }
 
-/// Wanted edge length in solid i at a point; empty: the size of the mesh everywhere.
+/// Target edge length in solid i at a point; empty: the mesh size everywhere.
 using SizeAt = std::function<double(std::size_t, const Vec3&)>;
 
-/// One conforming mesh; region i is solid i, without region names. Where solids overlap the later one has what they
-/// share, and a note tells the volume; where they stand at most `join_within` apart they are joined. An empty solid and
-/// a size that gives too many tets are errors.
+/// One conforming mesh; region i is solid i, without region names. Where solids overlap, the later one gets the shared
+/// volume, which a note states; solids at most `join_within` apart are joined. Errors: an empty solid; a size that
+/// gives too many tets.
 [[nodiscard]] Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order,
                                           const SizeAt& size_at = {}, double join_within = 0);
 
-/// Meshes the inside of a closed surface (one outer shell and its cavities) anew, linear, in one region. Edges sharper
-/// than `angle_deg` stay. Where a dihedral angle is under 5 degrees edges get up to a fifth shorter. A surface that
-/// cannot be parametrised keeps its own triangles, and a note says so.
+/// Remeshes the inside of a closed surface (one outer shell and its cavities), linear, in one region. Edges sharper
+/// than `angle_deg` are preserved. If a dihedral angle is under 5 degrees, edges get up to a fifth shorter. A surface
+/// that cannot be parametrised keeps its triangles, and a note says so.
 [[nodiscard]] Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_deg,
                                            const SizeAt& size_at = {});
 
@@ -48,7 +48,7 @@ using SizeAt = std::function<double(std::size_t, const Vec3&)>;
 /// All solids of a STEP file, millimetres times `scale`. Errors do not name the file.
 [[nodiscard]] Result<StepContent> read_step(const std::string& file, double scale);
 
-/// Refuses a mesh of more than 20 million tets, by a body's volume and its surface's area.
+/// Error if the mesh would have more than 20 million tets, estimated from a body's volume and surface area.
 [[nodiscard]] Status check_tet_count(double volume, double area, double size);
 
 }  // namespace pliant::mesh::kernel

@@ -12,7 +12,7 @@ LabelledSpace::LabelledSpace(std::vector<TriMesh> surfaces) {
 int LabelledSpace::label(const Vec3& point) const {
     constexpr double inside = 0.5;
     for (std::size_t i = surfaces_.size(); i-- > 0;) {
-        // From outside of its box no surface is seen to fill more than half of what is around.
+        // The winding number outside a surface's box is at most one half.
         const WindingGrid& surface = surfaces_[i];
         if (surface.box().contains(point) && surface.winding_number(point) > inside) return static_cast<int>(i) + 1;
     }

@@ -1,4 +1,4 @@
-// Which of several surfaces has a point.
+// Decides which of several surfaces a point belongs to.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace pliant::mesh {
 
-/// Space by the surfaces that wind around it more than half a time; where several do, the last of them has it.
+/// A point belongs to a surface whose winding number there is above one half; if several qualify, to the last of them.
 class LabelledSpace {
 public:
     explicit LabelledSpace(std::vector<TriMesh> surfaces);

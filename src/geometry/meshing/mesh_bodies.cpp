@@ -22,12 +22,12 @@
 namespace pliant::mesh::kernel {
 namespace {
 
-/// What is meshed in one go: all solids together, bodies that touch surfaces, or one piece of a surface.
+/// What is meshed at once: all solids together, a group of touching bodies, or one piece of a surface.
 struct Part {
     TetMesh mesh;  ///< regions are bodies
 };
 
-/// True if a node of `one` lies in `other` or within `margin` of it; then `body` is the region there.
+/// True if a node of `one` is in `other` or within `margin` of it; `body` is then the region there.
 bool reaches_into(const TetMesh& one, const TetMesh& other, double margin, int& body) {
     const TetLocator locator(other);
     Box3 box;
@@ -42,7 +42,7 @@ bool reaches_into(const TetMesh& one, const TetMesh& other, double margin, int& 
     return false;
 }
 
-/// What was not seen to touch must not: a mesh there would fall apart unnoticed.
+/// Bodies not detected as touching must be apart: otherwise their meshes would overlap unnoticed.
 Status check_apart(const Part& fresh, const Part& before, std::span<const BodyGeometry> bodies, double margin) {
     const int own = fresh.mesh.region.front();
     int other = own;
@@ -61,7 +61,7 @@ Status check_apart(const Part& fresh, const Part& before, std::span<const BodyGe
                                                        name, neighbour)});
 }
 
-/// Sizes for the kernel, whose solids are some of the bodies; empty where one size holds everywhere.
+/// Sizes for the kernel, whose solids are some of the bodies; empty if one size holds everywhere.
 SizeAt sizes_of(const SizeField& field, std::vector<std::size_t> body_of_solid) {
     if (field.uniform()) return {};
     return [&field, bodies = std::move(body_of_solid)](std::size_t solid, const Vec3& p) {
@@ -69,16 +69,17 @@ SizeAt sizes_of(const SizeField& field, std::vector<std::size_t> body_of_solid) 
     };
 }
 
-/// True if coordinates of 32 bits say where the solid is.
+/// True if the solid comes from 32-bit coordinates.
 bool is_rounded(const Solid& solid) {
     if (std::holds_alternative<PolyhedronSolid>(solid->shape)) return true;
     const auto* combined = std::get_if<CombinedSolid>(&solid->shape);
     return combined != nullptr && std::any_of(combined->parts.begin(), combined->parts.end(), is_rounded);
 }
 
-/// Faces of surfaces that were drawn to touch are this far apart at most.
+/// Maximum distance of faces that were drawn to touch.
 double rounding(std::span<const BodyGeometry> bodies) {
-    constexpr double share = 2e-6;  // of the size of all: 32 bits hold 6e-8 of a coordinate, some of them add up
+    constexpr double share = 2e-6;  // of the size of all bodies: 32-bit floats have an error of 6e-8, and several
+                                    // errors add up
     Box3 box;
     bool rounded = false;
     for (const BodyGeometry& body : bodies) {
@@ -123,7 +124,7 @@ double surface_area(const TriMesh& surface) {
 /// A body whose surface is closed and simple: one mesh per solid piece.
 Result<std::vector<TetMesh>> mesh_pieces(const TriMesh& surface, const MeshSettings& settings, const SizeAt& size_at) {
     if (Status status = check_closed(surface); !status) return tl::unexpected(status.error());
-    // Gmsh's recovery of the boundary may crash on what follows, rather than fail.
+    // On finer detail than this, Gmsh's boundary recovery may crash instead of failing.
     constexpr double finest = 5e-6;
     if (cuts_itself(surface)) return input_error("the surface cuts through itself or touches itself");
     if (finest_detail(surface) < finest)
@@ -145,10 +146,10 @@ Result<std::vector<TetMesh>> mesh_pieces(const TriMesh& surface, const MeshSetti
     return meshes;
 }
 
-/// Below, a tet is a sliver: it makes a simulation stiff and slow.
+/// A tet with a smaller dihedral angle is a sliver, which makes a simulation stiff and slow.
 constexpr double sliver_deg = 5;
 
-/// Where Gmsh had to keep the triangles that were drawn, and they are too slender: a mesh from the winding number, if
+/// If Gmsh had to keep the drawn triangles, and they are too slender: uses a mesh from the winding number instead, if
 /// that is better.
 void replace_slivers(std::vector<TetMesh>& meshes, const TriMesh& surface, const MeshSettings& settings,
                      Progress& progress) {
@@ -168,12 +169,12 @@ void replace_slivers(std::vector<TetMesh>& meshes, const TriMesh& surface, const
     meshes = {std::move(*mesh)};
 }
 
-/// The walls of a body in a mesh.
+/// Wall samples of a body in a mesh.
 std::vector<WallSample> walls_of(const TetMesh& mesh, std::size_t body) {
     return wall_samples(region_surface(mesh, static_cast<int>(body)));
 }
 
-/// Tets between faces that are much closer than edges are long are flat: with shorter edges there, they are better.
+/// Tets between faces much closer than the edge length are flat; shorter edges there improve them.
 void follow_thin_walls(std::vector<TetMesh>& meshes, const TriMesh& surface, std::size_t b,
                        const MeshSettings& settings, SizeField field) {
     constexpr double elements = 0.2;  // through the thinnest wall
@@ -197,7 +198,7 @@ void follow_thin_walls(std::vector<TetMesh>& meshes, const TriMesh& surface, std
         "edges are shorter than the mesh size beside walls that are much thinner than it");
 }
 
-/// The meshes of the surface of body `b`. One that is damaged is meshed from its winding number, as it was read.
+/// The meshes of the surface of body `b`. A damaged one is meshed from its winding number, as it was read.
 Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies, std::size_t b,
                                             const MeshSettings& settings, const SizeField& field, Progress& progress) {
     const auto& drawn = std::get<TriMesh>(bodies[b].shape);
@@ -212,7 +213,7 @@ Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies
     const bool damaged = !meshes;
     if (damaged) {
         if (progress.cancelled()) return cancelled();
-        // Without its slivers it may still be closed, and then its winding numbers are known at once.
+        // Without its slivers the surface may still be closed, which makes winding numbers fast.
         const TriMesh& known = border_edges(surface).empty() ? surface : drawn;
         Result<TetMesh> mesh = mesh_by_winding(known, settings.size, settings.angle_deg, progress);
         if (!mesh && mesh.error().cause == Cause::cancelled) return tl::unexpected(mesh.error());
@@ -293,7 +294,7 @@ Status check_settings(std::span<const BodyGeometry> bodies, const MeshSettings& 
     return {};
 }
 
-/// Bodies as they are meshed: those of a group in one go, surfaces one by one, all other solids together.
+/// How the bodies are meshed: those of a group at once, surfaces one by one, all other solids together.
 struct Drawing {
     std::span<const BodyGeometry> bodies;
     std::vector<TouchingGroup> groups;
@@ -310,7 +311,7 @@ Result<Drawing> group_bodies(std::span<const BodyGeometry> bodies, double size) 
     return drawing;
 }
 
-/// Solids that stand at most `join_within` apart are joined.
+/// Solids at most `join_within` apart are joined.
 Result<TetMesh> mesh_once(const Drawing& drawing, const MeshSettings& settings, const SizeField& field,
                           Progress& progress, double join_within = 0) {
     const std::span<const BodyGeometry> bodies = drawing.bodies;
@@ -353,7 +354,7 @@ std::string told(const NarrowGap& gap, std::span<const BodyGeometry> bodies) {
                        bodies[static_cast<std::size_t>(gap.second)].name, gap.at.x, gap.at.y, gap.at.z);
 }
 
-/// A line for each gap that was there: closed, or else still open.
+/// A note for each original gap: closed, or still open.
 std::vector<std::string> gap_notes(std::span<const BodyGeometry> bodies, const std::vector<NarrowGap>& before,
                                    const std::vector<NarrowGap>& after) {
     std::vector<std::string> notes;
@@ -368,13 +369,13 @@ std::vector<std::string> gap_notes(std::span<const BodyGeometry> bodies, const s
     return notes;
 }
 
-/// The mesh, made anew with bodies joined where a narrow gap keeps them apart.
+/// The mesh, made again with bodies joined across narrow gaps.
 Result<TetMesh> close_gaps(const Drawing& drawing, const MeshSettings& settings, const SizeField& field, TetMesh mesh,
                            Progress& progress) {
     if (!(settings.close_gaps > 0)) return mesh;
     const std::vector<NarrowGap> gaps = narrow_gaps(mesh, settings.close_gaps);
     if (gaps.empty()) return mesh;
-    constexpr double room = 1.05;  // for rounding
+    constexpr double room = 1.05;  // margin for rounding
     double widest = 0;
     for (const NarrowGap& gap : gaps) widest = std::max(widest, gap.width);
     Result<TetMesh> closed = mesh_once(drawing, settings, field, progress, room * widest);
@@ -386,7 +387,7 @@ Result<TetMesh> close_gaps(const Drawing& drawing, const MeshSettings& settings,
     return mesh;
 }
 
-/// About as many tets as the sizes will give, by a first mesh.
+/// Estimates the number of tets for the given sizes from a first mesh.
 double expected_tets(const TetMesh& mesh, const SizeField& field) {
     double sum = 0;
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
@@ -398,7 +399,7 @@ double expected_tets(const TetMesh& mesh, const SizeField& field) {
     return sum;
 }
 
-/// Meshes once to see how thick the walls are, and lets the sizes follow.
+/// Meshes once to measure wall thickness, and adapts the sizes.
 Status follow_walls(const Drawing& drawing, const MeshSettings& settings, SizeField& field, Progress& progress) {
     if (settings.through_wall < 1) return {};
     MeshSettings coarse = settings;
@@ -417,7 +418,7 @@ Status follow_walls(const Drawing& drawing, const MeshSettings& settings, SizeFi
         settings.through_wall, tets, most);
 }
 
-/// A note for each body with a wall of fewer than three elements: the thinnest, by the edges of the mesh there.
+/// A note for each body with a wall of fewer than three elements: its thinnest wall, by the edge length there.
 void judge_walls(std::span<const BodyGeometry> bodies, TetMesh& mesh) {
     constexpr double enough = 2.5;  // about three
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -437,7 +438,7 @@ void judge_walls(std::span<const BodyGeometry> bodies, TetMesh& mesh) {
     }
 }
 
-/// Surfaces that may touch another body, as solids where they have few flat faces.
+/// Converts surfaces that may touch another body to solids if they have few flat faces.
 std::vector<BodyGeometry> with_solids(std::span<const BodyGeometry> bodies, double margin) {
     std::vector<BodyGeometry> result(bodies.begin(), bodies.end());
     const auto near = [&](const BodyGeometry& a, const BodyGeometry& b) {
@@ -454,7 +455,7 @@ std::vector<BodyGeometry> with_solids(std::span<const BodyGeometry> bodies, doub
     return result;
 }
 
-/// Surfaces without the seams that rounding has left open, and a note for each that had some.
+/// Surfaces with seams from rounding closed, and a note for each that had some.
 std::vector<BodyGeometry> without_seams(std::span<const BodyGeometry> bodies, std::vector<std::string>& notes) {
     std::vector<BodyGeometry> result(bodies.begin(), bodies.end());
     for (BodyGeometry& body : result) {

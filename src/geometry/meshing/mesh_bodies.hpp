@@ -1,4 +1,4 @@
-// What mesh_bodies() of mesher.hpp does, in the process that does it.
+// Implements mesh_bodies() of mesher.hpp inside the worker process.
 #pragma once
 
 #include <span>

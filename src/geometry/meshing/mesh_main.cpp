@@ -1,6 +1,6 @@
-// pliant-mesh: meshes for pliant, which starts it and talks to it over a socket that is its standard input.
+// pliant-mesh: the mesher process of pliant, which starts it and talks to it over a socket as its standard input.
 //
-//     pliant-mesh GIGABYTES      of memory that it may take at most
+//     pliant-mesh GIGABYTES      limit of its memory
 //     pliant-mesh --version
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -18,7 +18,7 @@
 
 namespace {
 
-/// Sanitizers map far more than they use.
+/// Sanitizers map far more memory than they use.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool can_limit_memory = false;
 #else
@@ -30,11 +30,11 @@ void limit_memory(double gigabytes) {
     const auto bytes = static_cast<rlim_t>(gigabytes * 1e9);
     const rlimit limit{bytes, bytes};
     (void)::setrlimit(RLIMIT_AS, &limit);
-    const rlimit no_core{0, 0};  // a crash is told to who asked; a file of gigabytes helps nobody
+    const rlimit no_core{0, 0};  // the client reports a crash; a core file of gigabytes is of no use
     (void)::setrlimit(RLIMIT_CORE, &no_core);
 }
 
-/// Whoever asked may be killed while Gmsh is at work for an hour: this process then ends too.
+/// The client may be killed while Gmsh works for an hour: this process then ends, too.
 void end_with(int socket) {
     std::thread([socket] {
         pollfd other{socket, POLLRDHUP, 0};

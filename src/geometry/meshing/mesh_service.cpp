@@ -12,7 +12,7 @@
 namespace pliant::mesh {
 namespace {
 
-/// Tells the other end how far the work is, a few times a second. Cancelling is its business: it ends this process.
+/// Reports progress to the client a few times a second. To cancel, the client kills this process.
 class ToldProgress : public Progress {
 public:
     explicit ToldProgress(const MessagePipe& pipe) : pipe_(&pipe) {}

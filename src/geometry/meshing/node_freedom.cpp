@@ -5,7 +5,7 @@
 namespace pliant::mesh {
 namespace {
 
-/// Directions of the sharp edges that leave a node.
+/// Directions of the sharp edges at a node.
 std::vector<Vec3> ridges_at(const EditableTets& tets, int v, const std::vector<Border>& all, double smooth) {
     std::vector<Vec3> ridges;
     std::vector<int> seen;
@@ -57,7 +57,7 @@ std::optional<Vec3> allowed_place(const EditableTets& tets, int v, const Freedom
     for (const Border& b : surface) {
         const double along = dot(b.normal, f.axis);
         if (!(along > 0.1)) continue;
-        // Onto the plane of the triangle, along the axis.
+        // Projects onto the plane of the triangle, along the axis.
         const Vec3 p = tets.at(v) + level_step - (dot(level_step, b.normal) / along) * f.axis;
         if (inside(tets, p, b)) return p;
     }

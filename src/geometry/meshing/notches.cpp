@@ -21,9 +21,9 @@ struct Crossing {
     Vec3 from, to;
 };
 
-/// Where the path goes through empty space from material to material.
+/// Where the path crosses empty space from material to material.
 std::vector<Crossing> crossings(const TriangleTree& tree, const std::vector<Vec3>& path) {
-    constexpr double step = 1e-9;  // past a hit, as a share of the segment
+    constexpr double step = 1e-9;  // past a hit, as a fraction of the segment
     std::vector<Vec3> marks;
     for (std::size_t i = 1; i < path.size(); ++i) {
         const Vec3 along = path[i] - path[i - 1];
@@ -62,7 +62,7 @@ Vec3 area_normal(const Corners& t) {
     return 0.5 * cross(t[1] - t[0], t[2] - t[0]);
 }
 
-/// Roughly how far a point is from a triangle: exact in its plane's normal, and zero over the triangle.
+/// Approximate distance of a point from a triangle: exact along its plane's normal, and zero over the triangle.
 double distance_to(const Corners& t, const Vec3& p) {
     const Vec3 n = area_normal(t);
     const Vec3 unit = n / norm(n);
@@ -86,15 +86,15 @@ EdgeTriangles triangles_of_edges(const TriMesh& surface) {
     return triangles;
 }
 
-/// A face of the surface: where it is, and how large it looks from afar along the path.
+/// A face of the surface: its position, and its projected size along the path.
 struct Face {
     std::vector<Vec3> points;
     double seen_area = 0;
 };
 
-/// What hangs together with the triangle at `p` and looks along `direction`.
+/// The face connected to the triangle at `p` whose triangles look along `direction`.
 Face face_at(const TriMesh& surface, const EdgeTriangles& edges, const Vec3& p, const Vec3& direction) {
-    constexpr double looks_along = 0.1;  // cosine; a face that the path only grazes is no flank
+    constexpr double looks_along = 0.1;  // cosine; a face that the path only grazes is not a flank
     const auto facing = [&](std::size_t t) {
         const Vec3 n = area_normal(corners(surface, t));
         return norm(n) > 0 && dot(n, direction) > looks_along * norm(n);
@@ -133,10 +133,10 @@ Face face_at(const TriMesh& surface, const EdgeTriangles& edges, const Vec3& p, 
 }
 
 struct Plane {
-    Vec3 normal;  ///< of length 1, outwards
+    Vec3 normal;  ///< outward unit normal
     double offset;
     std::vector<Corners> triangles;
-    bool material = false;  ///< just outside of it
+    bool material = false;  ///< directly outside of it
 };
 
 /// The planes of the convex hull, with the triangles on each; empty where all points lie in one plane.
@@ -173,7 +173,7 @@ std::vector<Plane> hull_planes(const std::vector<Vec3>& points, double size) {
     return planes;
 }
 
-/// Whether most of what lies `away` outside of a plane's triangles is material.
+/// Whether most of what is `away` outside a plane's triangles is material.
 bool material_behind(const TriangleTree& tree, const Plane& plane, double away) {
     double material = 0;
     double all = 0;
@@ -189,8 +189,7 @@ bool material_behind(const TriangleTree& tree, const Plane& plane, double away) 
     return 2 * material > all;
 }
 
-/// Planes on a round wall are chords of it: the true wall is a little farther out, and the solid itself bounds the
-/// notch there.
+/// Planes on a round wall are chords of it: the true wall is a little farther out, and bounds the notch by itself.
 std::vector<Plane> without_chords(std::vector<Plane> planes) {
     constexpr double smooth_deg = 30;
     const double smooth = std::cos(smooth_deg * std::numbers::pi / 180);
@@ -217,7 +216,7 @@ Solid solid(decltype(SolidNode::shape) shape) {
     return std::make_shared<const SolidNode>(SolidNode{std::move(shape)});
 }
 
-/// All that lies on the inner side of a plane, within `reach` of the foot of `near` on it.
+/// Everything on the inner side of a plane, within `reach` of the projection of `near` onto it.
 Solid half_space(const Plane& plane, const Vec3& near, double reach) {
     const Solid below = solid(BoxSolid{{-reach, -reach, -2 * reach}, {reach, reach, 0}});
     const Vec3 up{0, 0, 1};
@@ -240,7 +239,7 @@ std::optional<Notch> notch_at(const TriangleTree& tree, const EdgeTriangles& edg
     Box3 box;
     for (const Vec3& p : points) box.add(p);
     const double size = box.diagonal();
-    const double away = 0.05 * width;  // farther than a round wall is from its chords
+    const double away = 0.05 * width;  // more than the distance of a round wall from its chords
     std::vector<Plane> planes = hull_planes(points, size);
     if (planes.empty()) return std::nullopt;
     for (Plane& plane : planes) plane.material = material_behind(tree, plane, away);

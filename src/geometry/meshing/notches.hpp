@@ -1,4 +1,4 @@
-// What crossed_notches() of mesher/notches.hpp does, in the process that does it: its convex hulls are CGAL's.
+// Implements crossed_notches() of mesher/notches.hpp inside the worker process; convex hulls by CGAL.
 #pragma once
 
 #include <vector>

@@ -14,22 +14,23 @@
 namespace pliant::mesh {
 namespace {
 
-/// Points, in order, and the first surface that has them.
+/// Points, in order, and the first surface that contains them.
 struct Chain {
     std::vector<int> points;
     int surface;
 };
 
-/// Between edges that do not meet, as a share of the mesh size.
+/// Minimum distance of edges that do not meet, as a fraction of the mesh size.
 constexpr double least_room = 0.1;
 
-/// Chains shorter than this share of the mesh size become points: the mesh would have to be as fine around them.
+/// Chains shorter than this fraction of the mesh size become points: otherwise the mesh would have to be as fine around
+/// them.
 constexpr double least_length = 0.1;
 
-/// One number for each point in space, whatever surface it is of.
+/// Gives each point in space one number, whatever surface it belongs to.
 class Welder {
 public:
-    /// Points of a drawing that are the same differ by the last digits of 32 bits at most.
+    /// Identical points of a drawing differ at most in the last digits of 32-bit floats.
     explicit Welder(double width) : width_(width) {}
 
     int number(const Vec3& p) {
@@ -55,7 +56,7 @@ public:
           least_cosine_(std::cos(angle_deg * std::numbers::pi / 180)),
           welder_(weld_share * whole(space).diagonal() + std::numeric_limits<double>::min()) {}
 
-    /// Chains of sharp edges that bound material, broken where three or more meet and at sharp bends.
+    /// Chains of sharp edges that bound material, split where three or more meet and at sharp bends.
     std::vector<Chain> find() {
         for (std::size_t s = 0; s < space_.surfaces().size(); ++s) collect(static_cast<int>(s));
         std::vector<Chain> lines;
@@ -64,7 +65,7 @@ public:
             if (through) continue;
             for (const int end : ends) walk(node, end, lines);
         }
-        for (const auto& [node, ends] : next_) {  // what is left are closed loops
+        for (const auto& [node, ends] : next_) {  // only closed loops are left
             for (const int end : ends) walk(node, end, lines);
         }
         return lines;
@@ -73,7 +74,7 @@ public:
     [[nodiscard]] const std::vector<Vec3>& points() const { return welder_.points(); }
 
 private:
-    static constexpr double weld_share = 1e-7;  // of the size of all
+    static constexpr double weld_share = 1e-7;  // of the total size
 
     static Box3 whole(const LabelledSpace& space) {
         Box3 box;
@@ -117,7 +118,7 @@ private:
     }
     [[nodiscard]] const Vec3& at(int node) const { return points()[static_cast<std::size_t>(node)]; }
 
-    /// More than one label close to the middle of the edge.
+    /// Whether there is more than one label near the middle of the edge.
     [[nodiscard]] bool labels_meet(const Vec3& a, const Vec3& b) const {
         const Vec3 along = b - a;
         const Vec3 middle = 0.5 * (a + b);
@@ -136,7 +137,7 @@ private:
         return false;
     }
 
-    /// Goes from `from` over `to` to the end of the chain, unless that was done from the other end.
+    /// Follows the chain from `from` over `to` to its end, unless it was already followed from the other end.
     void walk(int from, int to, std::vector<Chain>& lines) {
         if (!done_.insert(std::minmax(from, to)).second) return;
         const int start = from;
@@ -161,11 +162,11 @@ private:
     double least_cosine_;
     Welder welder_;
     std::map<int, std::vector<int>> next_;
-    std::map<std::pair<int, int>, int> surface_of_;  ///< of each edge the first that has it
+    std::map<std::pair<int, int>, int> surface_of_;  ///< of each edge, the first that contains it
     std::set<std::pair<int, int>> done_;
 };
 
-/// Joins ends of chains that short chains lie between.
+/// Merges the ends of chains that are connected by short chains.
 class Contraction {
 public:
     Contraction(const std::vector<Vec3>& points, double width)
@@ -173,7 +174,7 @@ public:
         for (std::size_t i = 0; i < points.size(); ++i) boxes_[i].add(points[i]);
     }
 
-    /// Shortest first; no more ends than fit into the width become one.
+    /// Shortest first; ends are merged only while all of them fit into the width.
     std::vector<Chain> contract(std::vector<Chain> chains) {
         std::vector<std::pair<double, std::size_t>> order;
         for (std::size_t c = 0; c < chains.size(); ++c) {
@@ -183,7 +184,7 @@ public:
         std::sort(order.begin(), order.end());
         for (const auto& [its, c] : order) join(chains[c].points.front(), chains[c].points.back());
         for (Chain& chain : chains) move_ends(chain);
-        std::set<std::pair<int, int>> seen;  // edges that have become the same
+        std::set<std::pair<int, int>> seen;  // edges that have become identical
         std::erase_if(chains, [&](const Chain& c) {
             if (length(c) < width_) return true;
             return c.points.size() == 2 && !seen.insert(std::minmax(c.points[0], c.points[1])).second;
@@ -210,7 +211,8 @@ private:
         box(a) = both;
     }
 
-    /// Points that are no farther from the new ends than these may have moved would lead the chain back and forth.
+    /// Removes points within the distance by which the ends may have moved: they would make the chain go back and
+    /// forth.
     void move_ends(Chain& chain) {
         std::vector<int> moved = {sets_.find(chain.points.front())};
         const int last = sets_.find(chain.points.back());
@@ -227,7 +229,7 @@ private:
     const std::vector<Vec3>& points_;
     double width_;
     DisjointSets sets_;
-    std::vector<Box3> boxes_;  ///< (points) of the set that the point stands for
+    std::vector<Box3> boxes_;  ///< (points) bounds of the merged set of each
 };
 
 /// Distance between two segments (Ericson, Real-Time Collision Detection, 5.1.9).
@@ -251,14 +253,15 @@ double distance_between(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Ve
 }
 
 struct Segment {
-    int chain, index;  ///< from this point of the chain to the next
+    int chain, index;  ///< from point `index` of the chain to the next
     Vec3 from, to;
-    double start, end;  ///< along the chain
-    double low, high;   ///< in x, with room
+    double start, end;  ///< arc length along the chain
+    double low, high;   ///< in x, with margin
     bool dropped = false;
 };
 
-/// Between edges that meet, in radians; and as a share of the way from one to the other by where they meet.
+/// For edges that meet: the angle in radians, and the distance as a fraction of the path from one to the other through
+/// their common point.
 constexpr double small_angle = 0.25;
 
 class CollisionFinder {
@@ -280,7 +283,7 @@ public:
         }
     }
 
-    /// Marks every segment that comes too near to one that it does not meet.
+    /// Marks every segment that is too near to one that it does not meet.
     const std::vector<Segment>& find() {
         std::vector<std::size_t> order(segments_.size());
         for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -321,7 +324,7 @@ private:
         return dot(one, other) > 0 && norm(cross(one, other)) < small_angle * norm(one) * norm(other);
     }
 
-    /// How far it is from one to the other along the chains, by way of at most one common end.
+    /// Distance along the chains from one to the other, through at most one common end.
     [[nodiscard]] double path_between(const Segment& a, const Segment& b) const {
         const std::vector<int>& one = chains_[static_cast<std::size_t>(a.chain)].points;
         const std::vector<int>& other = chains_[static_cast<std::size_t>(b.chain)].points;

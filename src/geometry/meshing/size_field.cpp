@@ -8,7 +8,7 @@ namespace pliant::mesh {
 namespace {
 
 constexpr double least_share = 1.0 / 8;
-/// Edges grow by this part of the way from where they are small.
+/// Edge length grows by this fraction of the distance from a small-size region.
 constexpr double growth = 0.5;
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {

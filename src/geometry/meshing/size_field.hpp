@@ -1,4 +1,4 @@
-// The wanted edge length at every point of a mesh.
+// The target edge length at every point of a mesh.
 #pragma once
 
 #include <array>
@@ -11,20 +11,20 @@
 
 namespace pliant::mesh {
 
-/// The least of what the whole mesh, a body, the cables nearby and the walls nearby ask for. Lengths in the unit of the
+/// The minimum of the sizes of the whole mesh, the body, nearby cables and nearby walls. Lengths in the unit of the
 /// bodies.
 class SizeField {
 public:
     SizeField(std::span<const BodyGeometry> bodies, const MeshSettings& settings);
 
-    /// Walls of a first mesh, each to have so many elements through it (above zero; a half: edges twice as long as it
-    /// is thick). Sizes go down to an eighth of the mesh size at most.
+    /// Walls of a first mesh, each to get this many elements through it (above zero; 0.5: edges twice as long as the
+    /// wall is thick). Sizes go down to an eighth of the mesh size at most.
     void add_walls(const std::vector<WallSample>& walls, double elements);
 
     [[nodiscard]] double at(std::size_t body, const Vec3& p) const;
-    /// Whether it is the same everywhere.
+    /// Whether the size is the same everywhere.
     [[nodiscard]] bool uniform() const;
-    /// True if a wall asked for less than is allowed.
+    /// True if a wall needed a size below the allowed minimum.
     [[nodiscard]] bool too_thin() const { return too_thin_; }
 
 private:
@@ -37,7 +37,8 @@ private:
     std::vector<double> body_;
     double cable_size_;
     std::vector<std::vector<Vec3>> cables_;
-    std::map<Cell, double> walls_;  ///< (cells of edge size_) the least size that a wall in or beside the cell asks for
+    std::map<Cell, double> walls_;  ///< (cells of edge size_) the smallest size required by a wall in or beside the
+                                    ///< cell
     bool too_thin_ = false;
 };
 

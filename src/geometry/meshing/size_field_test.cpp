@@ -54,7 +54,7 @@ TEST_CASE("walls: a plate is as thick as it is, a wedge of 50 degrees has none a
         CHECK(wall.thickness > 2);
 }
 
-TEST_CASE("a body has a size of its own, and what touches it follows") {
+TEST_CASE("a body has its own size, and neighbours adapt") {
     const TetMesh mesh =
         mesh_of({{"coarse", box({0, 0, 0}, {20, 10, 10})}, {"fine", box({20, 0, 0}, {30, 10, 10}), false, 1}},
                 {.size = 4, .order = 1});

@@ -31,7 +31,8 @@ public:
 
     void run() {
         constexpr int rounds = 12;
-        // Where so many are bad, walls are thinner than edges are long, and more nodes here and there do not help.
+        // If one tet in this many is bad, walls are thinner than the edges are long, and single additional nodes do not
+        // help.
         constexpr std::size_t many = 10;
         for (int round = 0; round < rounds; ++round) {
             bool better = false;
@@ -87,13 +88,13 @@ private:
         return true;
     }
 
-    /// Whether a triangle of the surface has turned too far.
+    /// Whether a triangle of the surface has rotated too far.
     [[nodiscard]] bool folds(const std::vector<Border>& before) const {
         return std::any_of(before.begin(), before.end(),
                            [&](const Border& b) { return dot(tets_.normal(b.nodes), b.normal) < smooth_; });
     }
 
-    /// Directions to try: to the sides and corners of a cube.
+    /// Directions to try: to the faces and corners of a cube.
     static const std::vector<Vec3>& ways() {
         static const std::vector<Vec3> all = [] {
             std::vector<Vec3> made;
@@ -110,8 +111,8 @@ private:
         return all;
     }
 
-    /// The nodes around edge a-b in order, such that (a, b, n[i], n[i + 1]) are its tets; empty where they make no
-    /// single ring or fan of one region.
+    /// The nodes around edge a-b in order, such that (a, b, n[i], n[i + 1]) are its tets; empty unless they form a
+    /// single ring or fan in one region.
     [[nodiscard]] std::vector<int> ring(int a, int b, const std::vector<int>& tets, bool& closed) const {
         std::vector<std::pair<int, int>> links;
         for (const int t : tets) {
@@ -143,9 +144,9 @@ private:
         return nodes.size() == links.size() + (closed ? 0 : 1) ? nodes : std::vector<int>{};
     }
 
-    /// Takes edge a-b away: the ring around it is cut into triangles, each with a tet to either end, such that the
-    /// worst is best (Klincsek's dynamic programme, as in Shewchuk, Two Discrete Optimization Algorithms for the
-    /// Topological Improvement of Tetrahedral Meshes, 2002).
+    /// Removes edge a-b: the ring around it is triangulated, with two tets per triangle, one to each end of the edge,
+    /// such that the worst tet is best (Klincsek's dynamic programme, as in Shewchuk, Two Discrete Optimization
+    /// Algorithms for the Topological Improvement of Tetrahedral Meshes, 2002).
     bool remove_edge(int a, int b) {
         const std::vector<int> tets = tets_.around(a, b);
         constexpr std::size_t most = 9;
@@ -188,7 +189,7 @@ private:
         return tets_.apply(change, closed ? same_volume : sliver_volume);
     }
 
-    /// Whether the surface may have edge c-d instead of a-b.
+    /// Whether edge c-d may replace a-b in the surface.
     [[nodiscard]] bool may_swap_surface(int a, int b, int c, int d, const std::vector<int>& tets) const {
         for (const Border& one : tets_.borders(c)) {
             if (std::find(one.nodes.begin(), one.nodes.end(), d) != one.nodes.end()) return false;
@@ -200,7 +201,7 @@ private:
                 if (gone == a || gone == b) continue;
                 const int other = tets_.behind(t, f);
                 if (other >= 0 && tets_.region(other) == tets_.region(t)) continue;
-                if (other >= 0) return false;  // a face between two regions is theirs together
+                if (other >= 0) return false;  // a face between two regions belongs to both
                 before.push_back(tets_.normal(tets_.face(t, f)));
             }
         }
@@ -211,7 +212,7 @@ private:
                dot(other, before[1]) > smooth_;
     }
 
-    /// Two tets at a face become three around the edge between the nodes opposite to it.
+    /// Replaces two tets at a face by three around the edge between the nodes opposite to it.
     bool remove_face(int t, std::size_t f) {
         const int other = tets_.behind(t, f);
         if (other < 0 || tets_.region(other) != tets_.region(t)) return false;
@@ -229,7 +230,7 @@ private:
         return tets_.apply(change, same_volume);
     }
 
-    /// Moves node v to its neighbour w; the tets that hold both vanish.
+    /// Merges node v into its neighbour w; the tets that contain both vanish.
     bool join(int v, int w) {
         const Freedom f = freedom_of(tets_, v, smooth_);
         if (f.dimensions == 0 || f.curved) return false;
@@ -249,7 +250,7 @@ private:
         return tets_.apply(change, same_volume, regions);
     }
 
-    /// Puts a node into the middle of edge a-b.
+    /// Inserts a node in the middle of edge a-b.
     int halve(int a, int b) {
         Exchange change{tets_.around(a, b), {}};
         std::vector<int> regions;
@@ -267,7 +268,7 @@ private:
         return v;
     }
 
-    /// Puts a node into an edge of a tet and goes on from there; undone where that does not help.
+    /// Splits an edge of a tet and improves from there; undone if that does not help.
     bool try_halving(int t) {
         std::array<std::array<int, 2>, 6> edges{};
         for (std::size_t e = 0; e < 6; ++e)
@@ -297,7 +298,7 @@ private:
         return false;
     }
 
-    /// Any step that makes a tet, or what takes its place, better.
+    /// Any operation that improves a tet or its replacements.
     bool improve(int t, bool may_add_nodes) {
         const Tet n = tets_.tet(t);
         for (const auto& [i, j] : edge_corners) {
@@ -317,7 +318,7 @@ private:
         return may_add_nodes && try_halving(t);
     }
 
-    /// From the worst on.
+    /// The worst first.
     [[nodiscard]] std::vector<int> bad_tets() const {
         std::vector<std::pair<double, int>> bad;
         for (int t = 0; t < tets_.tet_count(); ++t) {
@@ -332,13 +333,14 @@ private:
     }
 
     static constexpr double least_gain = 1e-6;     ///< in sine
-    static constexpr double same_volume = 1e-9;    ///< what rounding does, of an edge cubed
-    static constexpr double sliver_volume = 0.02;  ///< of a tet on a curved surface, of an edge cubed
+    static constexpr double same_volume = 1e-9;    ///< rounding error, as a fraction of the cubed edge length
+    static constexpr double sliver_volume = 0.02;  ///< of a tet on a curved surface, as a fraction of the cubed edge
+                                                   ///< length
 
     TetMesh& mesh_;
     EditableTets tets_;
     double wanted_, smooth_;
-    std::vector<int> slid_;  ///< per node, how often it was moved over a curved surface
+    std::vector<int> slid_;  ///< per node, how many times it was moved over a curved surface
 };
 
 }  // namespace

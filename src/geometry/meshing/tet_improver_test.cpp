@@ -25,7 +25,7 @@ TetMesh mesh_of(std::vector<Vec3> points, const std::vector<std::array<int, 4>>&
     return mesh;
 }
 
-/// A block of 4 x 4 x 4 cubes of six tets each, its inner nodes moved by up to `by` and a few of them far.
+/// A block of 4 x 4 x 4 cubes of six tets each, its inner nodes moved by up to `by`, a few of them much farther.
 TetMesh shaken_block(double by) {
     constexpr int n = 4;
     std::vector<Vec3> points;
@@ -38,7 +38,7 @@ TetMesh shaken_block(double by) {
         for (int j = 0; j <= n; ++j) {
             for (int k = 0; k <= n; ++k) {
                 Vec3 p{double(i), double(j), double(k)};
-                // Nodes on a face stay on it, those on an edge of the block along it.
+                // Nodes on a face stay on it; those on an edge of the block move along it.
                 for (std::size_t c = 0; c < 3; ++c) {
                     if (p[c] > 0 && p[c] < n) p[c] += by * random();
                 }
@@ -88,7 +88,7 @@ TEST_CASE("slivers of a shaken block vanish, its volume and faces stay") {
 
 TEST_CASE("the border between two regions stays a plane") {
     TetMesh mesh = shaken_block(0.33);
-    // Cut at x = 2: its nodes must lie there.
+    // With an interface at x = 2, whose nodes must stay there.
     for (Vec3& p : mesh.points) {
         if (std::fabs(p.x - 2) < 0.5) p.x = 2;
     }
@@ -112,7 +112,7 @@ TEST_CASE("a flat tet on a flat face is taken away") {
     const TetMesh good = mesh;
     improve_tets(mesh, {});
     CHECK(mesh.nodes == good.nodes);  // nothing to do
-    // The same pyramid with its square cut along both ways: four nodes in a plane but for 1e-7.
+    // The same pyramid with both diagonals of its square: four nodes coplanar up to 1e-7.
     mesh.points[3].z = -1e-7;
     mesh = mesh_of(mesh.points, {{0, 1, 3, 4}, {1, 2, 3, 4}, {0, 1, 2, 3}});
     REQUIRE(smallest_dihedral_deg(mesh) < 1e-3);
@@ -122,7 +122,7 @@ TEST_CASE("a flat tet on a flat face is taken away") {
     CHECK(volume(mesh) == near(0.8 / 3, {.relative = 1e-6}));
 }
 
-TEST_CASE("a good mesh stays as it is, and the same mesh gives the same result") {
+TEST_CASE("a good mesh is not changed, and results are deterministic") {
     const TetMesh good = shaken_block(0);
     TetMesh mesh = good;
     improve_tets(mesh, {});

@@ -12,12 +12,12 @@
 namespace pliant::mesh {
 namespace {
 
-/// Faces as near as this, as a share of the size, touch.
+/// Faces at most this far apart, as a fraction of the size, touch.
 constexpr double touch = 0.01;
-/// How well triangles follow a solid, as a share of the size.
+/// Deviation of triangles from a solid, as a fraction of the size.
 constexpr double chord = 0.02;
 
-/// A surface with what is asked of it again and again.
+/// A surface with data cached for repeated queries.
 struct Shape {
     TriangleTree tree;
     Box3 box;
@@ -26,7 +26,7 @@ struct Shape {
     [[nodiscard]] bool holds(const Vec3& p) const { return box.contains(p) && tree.winding_number(p) > 0.5; }
 };
 
-/// True if a point on one side or the other of a face of `one` is in `other`.
+/// True if a point directly beside a face of `one`, on either side, is in `other`.
 bool reaches(const Shape& one, const Shape& other, double size) {
     constexpr int most = 64;  // rows of samples on a triangle
     const TriMesh& surface = one.tree.surface();
@@ -116,7 +116,7 @@ private:
     std::span<const BodyGeometry> bodies_;
     double size_;
     std::vector<Box3> boxes_;
-    std::vector<std::optional<Shape>> shapes_;  ///< of those that came near another
+    std::vector<std::optional<Shape>> shapes_;  ///< of the bodies that are near another
 };
 
 }  // namespace

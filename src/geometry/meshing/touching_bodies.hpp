@@ -1,4 +1,4 @@
-// Bodies that only one mesh of all of them can join.
+// Groups of bodies that must be meshed together.
 #pragma once
 
 #include <cstddef>
@@ -12,11 +12,11 @@ namespace pliant::mesh {
 
 struct TouchingGroup {
     std::vector<std::size_t> bodies;  ///< ascending
-    std::vector<TriMesh> surfaces;    ///< of each of them; solids as triangles
+    std::vector<TriMesh> surfaces;    ///< one per body; solids as triangles
 };
 
-/// Groups of two or more bodies, among them a surface of triangles, that hang together: where faces come within a
-/// hundredth of `size`, or cut through each other, as samples `size` apart on all faces tell. Errors: a solid that
+/// Groups of two or more connected bodies, at least one of them a triangle surface. Bodies are connected where faces
+/// come within a hundredth of `size` or intersect, judged by samples `size` apart on all faces. Errors: a solid that
 /// cannot be tessellated.
 [[nodiscard]] Result<std::vector<TouchingGroup>> touching_groups(std::span<const BodyGeometry> bodies, double size);
 

@@ -34,7 +34,7 @@ TetMesh mesh_of(const std::vector<BodyGeometry>& bodies, double size, int order 
     return *mesh;
 }
 
-/// Of the faces that have a tet on one side only.
+/// Total area of the faces with a tet on one side only.
 double outer_area(const TetMesh& mesh) {
     double sum = 0;
     for (const Face& face : boundary_faces(mesh)) {
@@ -57,7 +57,7 @@ TEST_CASE("a ball in the hole that was drawn for it, other triangles on either s
     REQUIRE(mesh.notes.size() == 1);
     CHECK(mesh.notes[0].starts_with("bodies that touch were meshed together from their winding numbers"));
     CHECK(mesh.notes[0].find("body \"ball\" ") != std::string::npos);
-    // The ball's own size counts.
+    // The ball's own mesh size is used.
     const TetMesh coarse = mesh_of({{"block", fine(block, 0.03)}, {"ball", fine(ball, 0.01)}}, 3);
     const auto tets = [](const TetMesh& m) { return std::count(m.region.begin(), m.region.end(), 1); };
     CHECK(tets(mesh) > 3 * tets(coarse));
@@ -74,7 +74,7 @@ TEST_CASE("where a drawn solid and a surface overlap the later one has it; what 
     CHECK(volume(ball_last, 0) == near(1000 - cap, {.relative = 0.01}));
     CHECK(ball_last.order == 2);
     const double whole = 600 + 64 * pi;
-    const double covered = 2 * (7 * pi);  // the circle in which they meet
+    const double covered = 2 * (7 * pi);  // the circle of intersection
     CHECK(outer_area(drawn_last) == near(whole - covered - 8 * pi + 7 * pi, {.relative = 0.03}));
 
     const TetMesh apart = mesh_of({drawn, {"ball", fine(solid(SphereSolid{{5, 5, 5}, 4}), 0.005)}}, 2);
@@ -82,8 +82,8 @@ TEST_CASE("where a drawn solid and a surface overlap the later one has it; what 
     CHECK(outer_area(apart) == near(whole, {.relative = 0.02}));
 }
 
-TEST_CASE("a group holds all that hangs together, and nothing else") {
-    const TriMesh ball = fine(solid(SphereSolid{{5, 5, 14}, 4}), 0.005);  // stands on the first box
+TEST_CASE("a group holds all connected bodies, and nothing else") {
+    const TriMesh ball = fine(solid(SphereSolid{{5, 5, 14}, 4}), 0.005);  // standing on the first box
     const std::vector<BodyGeometry> bodies{{"alone", box({50, 0, 0}, {60, 10, 10})},
                                            {"foot", box({0, 0, 0}, {10, 10, 10.02})},
                                            {"beside", box({10, 0, 0}, {20, 10, 10})},
@@ -96,7 +96,7 @@ TEST_CASE("a group holds all that hangs together, and nothing else") {
     CHECK(touching_groups(std::span(bodies).first(3), 2)->empty());
 }
 
-TEST_CASE("what encloses nothing is named") {
+TEST_CASE("a surface that encloses nothing is named") {
     TriMesh sheet;
     constexpr int side = 24;
     for (int i = 0; i <= side; ++i) {

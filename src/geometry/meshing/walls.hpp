@@ -1,4 +1,4 @@
-// How thick are the walls of a body?
+// Wall thickness of bodies.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,13 @@
 namespace pliant::mesh {
 
 struct WallSample {
-    Vec3 at;           ///< middle of a triangle of the surface
-    double thickness;  ///< from there straight into the material to the face opposite
+    Vec3 at;           ///< centroid of a triangle of the surface
+    double thickness;  ///< from there along the inward normal to the opposite face
     double edge;       ///< mean edge length of the triangle
 };
 
-/// One sample for each triangle of a closed surface behind which a face looks the other way, within 45 degrees: beside
-/// a sharp edge there is no wall. Cost: about n log n.
+/// One sample for each triangle of a closed surface whose opposite face has a normal within 45 degrees of the opposite
+/// direction: next to a sharp edge there is no wall. Cost: about n log n.
 [[nodiscard]] std::vector<WallSample> wall_samples(const TriMesh& surface);
 
 }  // namespace pliant::mesh

@@ -10,11 +10,11 @@ namespace pliant::mesh {
 namespace {
 
 constexpr double most_cells = 4e6;
-/// Steps that listing the triangles of all boxes may take.
+/// Limit on the work of listing the triangles of all boxes.
 constexpr double most_work = 5e7;
-/// Of a box with more triangles the tree knows more quickly.
+/// For a box with more triangles the tree is faster.
 constexpr std::size_t crowd = 48;
-/// Edges of the border for each triangle: with more, the caps are as much to ask as the surface.
+/// Border edges per triangle: with more, the caps cost as much as the surface.
 constexpr double longest_border = 0.25;
 
 using Corners = std::array<Vec3, 3>;
@@ -40,7 +40,7 @@ Box3 box_of(const Corners& t) {
     return box;
 }
 
-/// False only if the plane of the triangle surely passes beside the box.
+/// False only if the plane of the triangle certainly misses the box.
 bool plane_meets(const Corners& t, const Box3& box) {
     const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
     const Vec3 half = 0.5 * box.size();
@@ -55,8 +55,8 @@ Side side(double value, double rounding) {
     return value < -rounding ? Side::below : Side::unclear;
 }
 
-/// By how much the winding number grows on the way from `a` to `b` as it passes a triangle; nothing if rounding may
-/// decide whether it does. Two triangles agree about the edge that they share.
+/// Change of the winding number from `a` to `b` due to one triangle; nothing if rounding could decide the crossing. Two
+/// triangles decide consistently at their common edge.
 std::optional<int> growth(const Corners& t, const Vec3& a, const Vec3& b) {
     constexpr double rounding = 1e-13;
     const Vec3 way = b - a;
@@ -120,7 +120,7 @@ Box3 WindingGrid::cell_box(const Place& place) const {
 }
 
 Vec3 WindingGrid::reference(const Place& place) const {
-    // Not in the middle nor at a simple share of the side, where drawings like to have edges.
+    // Not the middle or a simple fraction of the side, where drawings tend to have edges.
     constexpr Vec3 share{0.48713, 0.52139, 0.50931};
     return box_.low +
            Vec3{(place[0] + share.x) * side_.x, (place[1] + share.y) * side_.y, (place[2] + share.z) * side_.z};
@@ -136,7 +136,7 @@ std::pair<WindingGrid::Place, WindingGrid::Place> WindingGrid::places_of(const B
     return {place(box.low), place(box.high)};
 }
 
-/// Boxes about as large as triangles, but at least some along the longest side.
+/// Boxes about as large as triangles, and a minimum number along the longest side.
 void WindingGrid::choose_cells() {
     constexpr double least = 32;
     const Vec3 size = box_.size();
@@ -166,11 +166,11 @@ double WindingGrid::work() const {
     return sum;
 }
 
-/// Every box lists the triangles that it may hold, ascending: counted first, then written.
+/// Lists for every box the triangles that may reach into it, ascending: counted first, then written.
 void WindingGrid::list_triangles() {
     const auto cells =
         static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) * static_cast<std::size_t>(count_[2]);
-    // A point at the very face of a box may be counted to the next one by rounding.
+    // A point exactly on a face of a box may fall into the next one by rounding.
     const double rounding = 1e-12 * (norm(box_.low) + norm(box_.high));
     const Vec3 margin = 1e-9 * side_ + Vec3{rounding, rounding, rounding};
     const auto for_each_pair = [&](const auto& take) {
@@ -197,7 +197,7 @@ void WindingGrid::list_triangles() {
     for_each_pair([&](std::size_t cell, int triangle) { listed_[next[cell]++] = triangle; });
 }
 
-/// From outside along each row of boxes, from reference point to reference point.
+/// Starts outside and goes along each row of boxes, from reference point to reference point.
 void WindingGrid::find_references() {
     winding_.assign(begin_.size() - 1, 0);
     Place at{};

@@ -1,4 +1,4 @@
-// Winding numbers of very many points around one surface.
+// Winding numbers of very many points with respect to one surface.
 #pragma once
 
 #include <array>
@@ -12,31 +12,31 @@
 
 namespace pliant::mesh {
 
-/// A surface without a border winds around all points a whole number of times, and as often around two points unless it
-/// passes between them. So space is divided into boxes that know the number of one of their points: another point of
-/// the box has it too, but for the triangles of the box that lie between. A surface with a short border is one without
-/// less the caps that would close it.
+/// The winding number of a surface without a border is an integer, and the same at two points unless the surface passes
+/// between them. So space is divided into boxes, each of which stores the number of one of its points; for another
+/// point only the triangles of the box that lie in between are counted. A surface with a short border is treated as a
+/// closed one minus the caps that would close it.
 class WindingGrid {
 public:
-    /// Cost: n log n and some nanoseconds for each box, of which there are four million at most.
+    /// Cost: n log n, plus some nanoseconds for each box, of which there are four million at most.
     explicit WindingGrid(TriMesh surface);
 
-    /// As TriangleTree's. A whole number where the surface has no border; the tree is asked where the border is long,
-    /// where a box is crowded, and where rounding may decide on which side of a triangle a point lies.
+    /// As TriangleTree's. An integer if the surface has no border; the tree is used if the border is long, the box is
+    /// crowded, or rounding might decide on which side of a triangle a point lies.
     [[nodiscard]] double winding_number(const Vec3& point) const;
 
     [[nodiscard]] const TriMesh& surface() const { return tree_.surface(); }
     [[nodiscard]] const Box3& box() const { return box_; }
 
 private:
-    using Place = std::array<int, 3>;  ///< of a box of the grid
+    using Place = std::array<int, 3>;  ///< index of a box in the grid
 
-    /// Of the surface that a box may hold, in numbers of its triangles.
+    /// The triangles that may reach into the box, by number.
     [[nodiscard]] std::span<const int> triangles(std::size_t cell) const;
     [[nodiscard]] std::size_t index(const Place& place) const;
-    /// Where the box lies.
+    /// The extent of the box.
     [[nodiscard]] Box3 cell_box(const Place& place) const;
-    /// The point of the box whose winding number it knows.
+    /// The point of the box whose winding number is stored.
     [[nodiscard]] Vec3 reference(const Place& place) const;
     [[nodiscard]] std::pair<Place, Place> places_of(const Box3& box) const;
 
@@ -44,19 +44,19 @@ private:
     [[nodiscard]] double work() const;
     void list_triangles();
     void find_references();
-    /// How often more the surface winds around `b` than around `a`, both in the cell; nothing if that is not clear.
+    /// Winding number at `b` minus that at `a`, both in the cell; nothing if rounding leaves it unclear.
     [[nodiscard]] std::optional<int> change(std::size_t cell, const Vec3& a, const Vec3& b) const;
     [[nodiscard]] int asked_of_trees(const Vec3& point) const;
 
     TriangleTree tree_;
-    TriangleTree caps_;  ///< that the surface lacks
+    TriangleTree caps_;  ///< that close the surface
     TriMesh closed_;     ///< the surface and its caps
     Box3 box_;
-    Place count_{};                     ///< of boxes along x, y and z; none where the border is long
-    Vec3 side_;                         ///< of a box
+    Place count_{};                     ///< number of boxes along x, y and z; zero if the border is long
+    Vec3 side_;                         ///< size of a box
     std::vector<std::uint32_t> begin_;  ///< (cells + 1) of a cell's triangles in `listed_`
     std::vector<int> listed_;
-    std::vector<std::int16_t> winding_;  ///< (cells) number of the reference point
+    std::vector<std::int16_t> winding_;  ///< (cells) winding number of the reference point
 };
 
 }  // namespace pliant::mesh

@@ -16,7 +16,7 @@ using namespace pliant::mesh::test;
 
 namespace {
 
-/// A torus of m x n quads that winds `turns` times around its axis and so passes through itself where that is above 1.
+/// A torus of m x n quads that winds `turns` times around its axis; if above 1, it intersects itself.
 TriMesh torus(int m, int n, int turns) {
     TriMesh mesh;
     for (int i = 0; i < m; ++i) {
@@ -38,7 +38,7 @@ TriMesh turned_inside_out(TriMesh mesh) {
     return mesh;
 }
 
-/// By adding up the solid angles of all triangles (van Oosterom and Strackee 1983).
+/// By summing the solid angles of all triangles (van Oosterom and Strackee 1983).
 double exact_winding_number(const TriMesh& surface, const Vec3& point) {
     double halves = 0;
     for (const auto& t : surface.triangles) {
@@ -67,7 +67,7 @@ double largest_error(const TriMesh& surface, int points) {
     return largest;
 }
 
-/// What far triangles taken as dipoles may do to the number where there is a border.
+/// Allowed error from treating distant triangles as dipoles, if there is a border.
 constexpr double dipoles = 0.1;
 constexpr double rounding = 1e-9;
 

@@ -30,8 +30,8 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Labeled = CGAL::Mesh_domain_with_polyline_features_3<CGAL::Labeled_mesh_domain_3<Kernel>>;
 
-/// CGAL begins at points where random rays meet the surface, for which it may look very long if the body fills little
-/// of its box, unless sharp edges are enough. Here it is told of some when it asks.
+/// CGAL starts with points where random rays hit the surface, a search that can take very long if the body fills little
+/// of its box, unless sharp edges provide enough. Here it gets given points instead.
 class Domain : public Labeled {
 public:
     using Labeled::Labeled;
@@ -54,11 +54,11 @@ using Triangulation = CGAL::Mesh_triangulation_3<Domain>::type;
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, Domain::Corner_index, Domain::Curve_index>;
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
-/// Somewhere inside a surface must wind this often: a sheet reaches a half on its very face.
+/// The winding number must reach this value somewhere inside a surface: for a sheet it is at most a half, directly at
+/// its face.
 constexpr double surely_inside = 0.6;
 
-/// Tets with smaller dihedral angles are worked on after CGAL, whose own ways to be rid of them leave as many and may
-/// take minutes.
+/// Tets with smaller dihedral angles are improved after CGAL, whose own optimisers leave as many and may take minutes.
 constexpr double wanted_deg = 12;
 
 Kernel::Point_3 cgal(const Vec3& p) {
@@ -67,8 +67,8 @@ Kernel::Point_3 cgal(const Vec3& p) {
 
 constexpr int samples = 60000;
 
-/// The share of a box for which `holds` is true, by points spread evenly over it (Roberts' R3 sequence; no plane holds
-/// many of them, where a sheet could lie).
+/// The fraction of a box for which `holds` is true, by evenly spread points (Roberts' R3 sequence; no plane, such as a
+/// sheet, contains many of them).
 template <class Holds>
 double share_of(const Box3& box, const Holds& holds) {
     constexpr double g = 1.22074408460475947536;  // x^4 = x + 1
@@ -98,8 +98,8 @@ double volume_of(const Complex::Cell_handle& cell) {
     return std::fabs(signed_tet_volume(at(0), at(1), at(2), at(3)));
 }
 
-/// The cells of the complex without crumbs: what hangs together by faces and is less than a hundredth of a tet. Where a
-/// surface cuts through itself they cling to the rest by an edge, or nothing.
+/// The cells of the complex without crumbs: sets of cells connected by faces with a total below a hundredth of a tet.
+/// Where a surface intersects itself they are attached to the rest by an edge only, or not at all.
 Cells cells_without_crumbs(const Complex& complex, double size) {
     const double least = 1e-3 * size * size * size;
     Cells cells;
@@ -115,7 +115,7 @@ Cells cells_without_crumbs(const Complex& complex, double size) {
             if (other != number.end()) pieces.join(static_cast<int>(c), other->second);
         }
     }
-    std::vector<double> volumes(cells.size());  // of the piece, at its lowest cell
+    std::vector<double> volumes(cells.size());  // of each piece, stored at its lowest cell
     const auto piece = [&](std::size_t c) { return static_cast<std::size_t>(pieces.find(static_cast<int>(c))); };
     for (std::size_t c = 0; c < cells.size(); ++c) volumes[piece(c)] += volume_of(cells[c]);
     Cells kept;
@@ -145,7 +145,7 @@ TetMesh collect(const Complex& complex, const Vec3& offset, double size) {
     return mesh;
 }
 
-/// About what a mesh of this size has where nothing is finer than it.
+/// Estimated number of nodes in a mesh of this size without finer details.
 double expected_nodes(const TriMesh& surface, double size) {
     double area = 0;
     for (const auto& [a, b, c] : surface.triangles) {
@@ -155,17 +155,18 @@ double expected_nodes(const TriMesh& surface, double size) {
     return std::fabs(signed_volume(surface)) / (size * size * size) + area / (size * size);
 }
 
-/// Several times as many, and room for what is finer than the size.
+/// Several times that number, with allowance for details finer than the size.
 std::size_t node_limit(const LabelledSpace& space, double size) {
     double sum = 0;
     for (const WindingGrid& surface : space.surfaces()) sum += 6000 + 6 * expected_nodes(surface.surface(), size);
     return static_cast<std::size_t>(std::min(sum, 20e6));
 }
 
-/// CGAL cannot be asked to stop: it is left through the only function of ours that it calls.
+/// CGAL cannot be cancelled: an exception from our only function that it calls leaves it.
 struct Cancelled {};
 
-/// Where CGAL is, by how often it has asked whether a point is inside: `per_node` times for each node, as a guess.
+/// Progress of CGAL, by the number of times it has queried whether a point is inside: an estimated `per_node` for each
+/// node.
 class Asked {
 public:
     Asked(double nodes, Progress& progress) : expected_(per_node * nodes), progress_(progress) {}
@@ -173,7 +174,7 @@ public:
     void count() {
         if (progress_.cancelled()) throw Cancelled();
         constexpr long step = 1 << 14;
-        // How many are needed is a guess: the bar nears its end ever more slowly.
+        // The total is an estimate: the progress approaches 1 ever more slowly.
         if (++count_ % step == 0)
             progress_.advance("mesh surfaces", 1 - std::exp(-2 * static_cast<double>(count_) / expected_));
     }
@@ -185,16 +186,16 @@ private:
     Progress& progress_;
 };
 
-/// What is asked of the mesh beside its size.
+/// Requirements on the mesh other than its size.
 struct Demands {
-    std::vector<std::vector<Vec3>> edges;  ///< that stay
-    double distance;                       ///< of the mesh's surface from the true one, as a share of the size
+    std::vector<std::vector<Vec3>> edges;  ///< to be preserved
+    double distance;                       ///< of the mesh's surface from the true one, as a fraction of the size
     double facet_angle_deg;
-    double share = 1;  ///< of all sizes, which is how long edges become
+    double share = 1;  ///< of all sizes: factor on the edge length
 };
 
-/// Edge lengths as CGAL asks for them, `share` of what is wanted: of cells by their region, of facets and curves by the
-/// least of what is beside them, which for curves is anything.
+/// Edge lengths in the form that CGAL needs, times `share`: for cells by their region, for facets and curves the
+/// minimum over adjacent regions, which for curves may be any.
 class Sizes {
 public:
     using FT = double;
@@ -223,11 +224,11 @@ private:
     double share_;
 };
 
-/// Surfaces around the origin, and what is wanted of their mesh.
+/// Surfaces centred at the origin, and the requirements on their mesh.
 struct Task {
     const LabelledSpace& space;
     std::span<const std::string> names;
-    std::vector<double> volumes;  ///< that the regions should have
+    std::vector<double> volumes;  ///< expected for the regions
     Box3 box;
     double size;
     const SizeOfSurface& size_at;
@@ -263,8 +264,8 @@ std::vector<Domain::Start> points_on(const LabelledSpace& space, const TriMesh& 
     return found;
 }
 
-/// Of all surfaces `least` points as far from each other as can be, and more until they would be nearer than `apart`.
-/// Where walls are thinner than points are apart there may be no tet that meets the surface.
+/// From each surface `least` points as far apart as possible, and more as long as they are at least `apart` from each
+/// other. If walls are thinner than that spacing, there may be no tet that intersects the surface.
 std::vector<Domain::Start> spread_points(const LabelledSpace& space, double diagonal, double apart, std::size_t least) {
     constexpr std::size_t most = 200;
     std::vector<Domain::Start> found;
@@ -285,13 +286,13 @@ std::vector<Domain::Start> spread_points(const LabelledSpace& space, double diag
     return chosen;
 }
 
-/// Nothing where refinement does not come to an end within the limit. CGAL's edge of a facet of circumradius r is up to
+/// Nothing if refinement does not terminate within the limit. In CGAL the edge of a facet of circumradius r is up to
 /// sqrt(3) r long, that of a cell up to 1.63 r.
 std::optional<Complex> mesh_around_origin(const Task& task, const Demands& demands) {
     namespace params = CGAL::parameters;
     CGAL::get_default_random() = CGAL::Random(0);
     const double radius = 0.6 * task.box.diagonal();
-    constexpr double exact = 1e-3;  // of the size: how well points lie on the surface; each digit costs three questions
+    constexpr double exact = 1e-3;  // of the size: accuracy of points on the surface; each digit costs three queries
     Domain domain(
         [&](const Kernel::Point_3& p) {
             task.asked.count();
@@ -323,11 +324,11 @@ std::optional<Complex> mesh_around_origin(const Task& task, const Demands& deman
     return complex;
 }
 
-/// Surfaces turned outwards, around the origin.
+/// Surfaces oriented outwards and moved to the origin.
 struct Centred {
     std::vector<TriMesh> surfaces;
     std::vector<SurfaceDamage> damage;
-    Vec3 middle;  ///< where the origin was
+    Vec3 middle;  ///< the original centre
 };
 
 Centred centre(std::span<const TriMesh> surfaces) {
@@ -363,13 +364,13 @@ Result<std::vector<double>> expected_volumes(const LabelledSpace& space, std::sp
     return volumes;
 }
 
-/// What surfaces lose to later ones, where that is more than two samplings may differ by.
+/// Volumes that surfaces lose to later ones, if larger than the sampling error of two samplings.
 std::vector<JointMesh::Overlap> overlaps_of(const LabelledSpace& space, const std::vector<double>& volumes) {
     constexpr double least = 5e-3;  // of the smaller one
     std::vector<JointMesh::Overlap> found;
     for (std::size_t loser = 0; loser + 1 < volumes.size(); ++loser) {
         const WindingGrid& surface = space.surfaces()[loser];
-        std::vector<int> held(volumes.size() + 1);  // points of the loser by their label
+        std::vector<int> held(volumes.size() + 1);  // sample points of the losing surface, by their label
         (void)share_of(surface.box(), [&](const Vec3& p) {
             const bool its = surface.winding_number(p) > surely_inside;
             if (its) ++held[static_cast<std::size_t>(space.label(p))];
@@ -397,8 +398,8 @@ Status check_volumes(const TetMesh& mesh, const Task& task) {
     return {};
 }
 
-/// The mesh with edges of `share` of the sizes asked, its sharp edges rounded off if it does not come to an end with
-/// them.
+/// The mesh with edges of `share` times the wanted sizes, with sharp edges rounded off if it does not terminate
+/// otherwise.
 Result<TetMesh> try_mesh(const Task& task, const SharpEdges& edges, const Vec3& offset, double angle_deg,
                          double share) {
     std::optional<Complex> complex = mesh_around_origin(task, {edges.chains, 0.05, 25, share});
@@ -417,7 +418,7 @@ Result<TetMesh> try_mesh(const Task& task, const SharpEdges& edges, const Vec3& 
     return mesh;
 }
 
-/// The mesh with the sizes asked or, where they are too coarse to follow the surface, with somewhat smaller ones.
+/// The mesh with the wanted sizes or, if these are too coarse to follow the surface, with somewhat smaller ones.
 Result<TetMesh> mesh_finely_enough(const Task& task, const SharpEdges& edges, const Vec3& offset, double angle_deg) {
     constexpr std::array<double, 3> shares = {0.7, 0.5, 0.35};
     Result<TetMesh> mesh = try_mesh(task, edges, offset, angle_deg, 1);

@@ -1,5 +1,5 @@
-// Meshes what surfaces mean, damaged, touching or cutting through each other: where one winds around a point more than
-// half a time, there is its material.
+// Meshes surfaces that are damaged, touching or intersecting: a point is in the material if the winding number there is
+// above one half.
 #pragma once
 
 #include <functional>
@@ -16,23 +16,23 @@
 namespace pliant::mesh {
 
 /// A linear mesh in one region, of edges about `size` long, of a surface that may have holes, flipped, repeated and
-/// flat triangles, edges of more than two triangles, and may cut through itself. Edges sharper than `angle_deg` stay
-/// where the surface is whole around them, and where they keep a tenth of `size` from each other. Notes count the
-/// damage. Errors: a surface that encloses nothing (an open sheet); a mesh that misses more than a tenth of the volume;
-/// one of more than 20 million tets. The same input gives the same mesh. Through CGAL's Mesh_3.
+/// flat triangles, edges of more than two triangles, and self-intersections. Edges sharper than `angle_deg` are kept
+/// where the surface around them is intact and they are at least a tenth of `size` apart. Notes count the damage.
+/// Errors: a surface that encloses nothing (an open sheet); a mesh that misses more than a tenth of the volume; one of
+/// more than 20 million tets. The same input gives the same mesh. Uses CGAL's Mesh_3.
 [[nodiscard]] Result<TetMesh> mesh_by_winding(const TriMesh& surface, double size, double angle_deg,
                                               Progress& progress);
 
-/// Wanted edge length in surface i at a point.
+/// Target edge length in surface i at a point.
 using SizeOfSurface = std::function<double(std::size_t, const Vec3&)>;
 
-/// The same of several surfaces that may touch and overlap: region i is surface i, neighbours share the nodes of their
-/// common face, and where surfaces overlap the last of them has it. `names`: what messages call each surface. `size`:
-/// the largest that `size_at` gives.
+/// The same for several surfaces that may touch and overlap: region i is surface i, neighbours share the nodes of their
+/// common face, and an overlap belongs to the last of them. `names`: for messages. `size`: the maximum of `size_at`.
 struct JointMesh {
     TetMesh mesh;
-    std::vector<SurfaceDamage> damage;  ///< of each surface
-    /// A volume that two surfaces enclose, and which of them has it; by sampling, some thousandths of a body at least.
+    std::vector<SurfaceDamage> damage;  ///< one per surface
+    /// A volume that two surfaces enclose, and which of them gets it; estimated by sampling, at least some thousandths
+    /// of a body.
     struct Overlap {
         std::size_t loser, keeper;
         double volume;
@@ -43,7 +43,7 @@ struct JointMesh {
                                               double size, const SizeOfSurface& size_at, double angle_deg,
                                               Progress& progress);
 
-/// "3 open edges, 1 flat triangles"; empty where there is none.
+/// "3 open edges, 1 flat triangles"; empty if there is no damage.
 [[nodiscard]] std::string describe(const SurfaceDamage& damage);
 
 }  // namespace pliant::mesh

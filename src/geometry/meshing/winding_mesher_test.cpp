@@ -21,7 +21,7 @@ namespace {
 
 Progress silent;
 
-/// A convex or slightly notched outline, counter-clockwise in x and y, drawn out along z.
+/// A convex or slightly concave outline, counter-clockwise in x and y, extruded along z.
 TriMesh extruded(const std::vector<std::array<double, 2>>& outline, double height) {
     TriMesh mesh;
     const int n = static_cast<int>(outline.size());
@@ -45,7 +45,7 @@ double length(const std::vector<Vec3>& chain) {
     return sum;
 }
 
-/// The mesh's volume, and that its shapes are usable.
+/// The mesh's volume; checks that its tets are usable.
 double meshed_volume(const TriMesh& surface, double size) {
     const Result<TetMesh> mesh = mesh_by_winding(surface, size, 30, silent);
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
@@ -125,8 +125,8 @@ TEST_CASE("the same surface gives the same mesh; one that encloses nothing is re
     CHECK(mesh_by_winding(hole, 1e-3, 30, silent).error().message.find("more than the") != std::string::npos);
 }
 
-TEST_CASE("sharp edges that cross or nearly touch are left out, so that the mesher comes to an end") {
-    // Two bars that cut through each other: their edges cross each other's faces, and the upper ones lie in one plane.
+TEST_CASE("sharp edges that cross or nearly touch are left out, so that the mesher terminates") {
+    // Two intersecting bars: their edges cross each other's faces, and their top faces are coplanar.
     TriMesh along = cube({0, 0, 0}, 1);
     TriMesh across = along;
     for (Vec3& p : along.points) p = {20 * p.x, 8 + 4 * p.y, 4 * p.z};
@@ -165,13 +165,13 @@ TEST_CASE("edges that the mesh size cannot tell apart become one, and those that
     CHECK(sharp_edges(LabelledSpace({roof}), size, 30).dropped == 0);
 }
 
-TEST_CASE("a mesh size that cannot follow the surface gives way to a smaller one, and the mesh says so") {
+TEST_CASE("a size too coarse for the surface is reduced, with a note") {
     TriMesh frame = cube({0, 0, 0}, 20);
     TriMesh room = cube({2, 2, -5}, 16);
     for (auto& t : room.triangles) std::swap(t[0], t[1]);
     for (Vec3& p : frame.points) p.z *= 0.1;
     for (Vec3& p : room.points) p.z = p.z < 0 ? 0 : 2;
-    // The lids of frame and room lie in one plane and wind against each other.
+    // The lids of frame and room are coplanar with opposite orientation.
     const Result<TetMesh> mesh = mesh_by_winding(joined(frame, room), 9, 180, silent);
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(volume(*mesh) == near(2 * (400 - 256), {.relative = 0.1}));

@@ -1,4 +1,4 @@
-// What a person wants to know about a file that holds a mesh.
+// Text summary of a mesh file.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +9,11 @@
 
 namespace pliant::mesh {
 
-/// A tet mesh, a surface or a 3MF file, whichever it is; a line for each oddity. Errors: those of the reader, and a
-/// content that no reader knows.
+/// A tet mesh, a surface or a 3MF file, whichever it is; one line for each oddity. Errors: those of the reader, and
+/// content that no reader recognises.
 [[nodiscard]] Result<std::string> describe_mesh_file(const std::filesystem::path& path);
 
-/// The report on a file that must hold a tet mesh.
+/// The report on a file that must contain a tet mesh.
 [[nodiscard]] Result<MeshReport> report_on_file(const std::filesystem::path& path);
 
 }  // namespace pliant::mesh

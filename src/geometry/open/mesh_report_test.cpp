@@ -27,7 +27,7 @@ TetMesh one_tet(const std::vector<Vec3>& points) {
     return mesh;
 }
 
-/// What is said of a file with this content.
+/// The description of a file with this content.
 std::string described(std::string_view bytes) {
     const pliant::test::Folder folder("mesh_report");
     REQUIRE(write_file(folder / "nameless", bytes));
@@ -68,7 +68,7 @@ TEST_CASE("a file is described by what it holds, with what was odd about it") {
     CHECK(described(open).find("note: ") != std::string::npos);
 }
 
-TEST_CASE("a file that no reader knows is told so with all formats; a known one that is broken by its reader") {
+TEST_CASE("a file of unknown format is reported with all formats; a damaged one by its reader") {
     for (const std::string& junk : {std::string("hello"), std::string(200, 'x')}) {
         const std::string text = described(junk);
         CHECK(text.find("is not geometry that Pliant reads") != std::string::npos);

@@ -12,7 +12,7 @@
 namespace pliant::mesh {
 namespace {
 
-constexpr std::size_t head_bytes = 65536;  // what the readers look at to know a format
+constexpr std::size_t head_bytes = 65536;  // enough for the readers to recognise a format
 
 template <class T>
 Result<Geometry> as_geometry(Result<T> content) {
@@ -32,7 +32,7 @@ GeometryKind geometry_kind(std::string_view bytes) {
 
 GeometryKind geometry_kind_of(const std::filesystem::path& path) {
     std::error_code none;
-    if (!std::filesystem::is_regular_file(path, none)) return GeometryKind::unknown;  // a pipe gives its bytes once
+    if (!std::filesystem::is_regular_file(path, none)) return GeometryKind::unknown;  // a pipe can be read only once
     std::string head(head_bytes, '\0');
     std::ifstream stream(path, std::ios::binary);
     stream.read(head.data(), static_cast<std::streamsize>(head.size()));
@@ -41,7 +41,7 @@ GeometryKind geometry_kind_of(const std::filesystem::path& path) {
 }
 
 Result<Geometry> open_geometry(const std::filesystem::path& path) {
-    // These two are read by others, or not yet: the head is enough.
+    // These two are read elsewhere, or later: the first bytes are enough.
     const GeometryKind kind = geometry_kind_of(path);
     if (kind == GeometryKind::threemf) return as_geometry(threemf::read_3mf(path));
     if (kind == GeometryKind::step) return Geometry(StepPath{path});

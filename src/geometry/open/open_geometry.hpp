@@ -1,4 +1,4 @@
-// What a file of geometry is, decided in one place and by its content; names and extensions do not count.
+// The single place that decides what a geometry file is, by its content; names and extensions do not count.
 #pragma once
 
 #include <filesystem>
@@ -14,19 +14,19 @@ namespace pliant::mesh {
 
 enum class GeometryKind { unknown, threemf, step, tets, surface };
 
-/// By the first bytes, of which some hundreds are enough. Binary STL has no mark: bytes that are no text and nothing
-/// else count as a surface.
+/// From the first bytes; some hundreds are enough. Binary STL has no signature: bytes that are neither text nor another
+/// format count as a surface.
 [[nodiscard]] GeometryKind geometry_kind(std::string_view bytes);
-/// The same of a file; unknown where it cannot be read.
+/// The same for a file; unknown if it cannot be read.
 [[nodiscard]] GeometryKind geometry_kind_of(const std::filesystem::path& path);
 
-/// A STEP file: read_step() still needs to know which of its solids are wanted, and in which unit.
+/// A STEP file: read_step() still needs the names of the wanted solids and the unit.
 struct StepPath {
     std::filesystem::path path;
 };
 using Geometry = std::variant<threemf::ThreeMf, StepPath, TetMesh, SurfaceFile>;
 
-/// Errors: those of the readers, and a content that none of them knows.
+/// Errors: those of the readers, and content that none of them recognises.
 [[nodiscard]] Result<Geometry> open_geometry(const std::filesystem::path& path);
 
 }  // namespace pliant::mesh

@@ -21,7 +21,7 @@ std::filesystem::path write(const pliant::test::Folder& folder, const std::strin
 
 }  // namespace
 
-TEST_CASE("a file is what it holds, not what it is called") {
+TEST_CASE("a file is recognised by its content, not by its name") {
     const pliant::test::Folder folder("open_geometry");
     const auto stl = folder.path() / "part.step";
     REQUIRE(write_stl(stl, mesh::test::tetrahedron()));
@@ -53,7 +53,7 @@ TEST_CASE("a file is what it holds, not what it is called") {
 TEST_CASE("a solid's file is known by its head, and read by its reader alone") {
     const pliant::test::Folder folder("open_geometry");
     const auto step = write(folder, "huge.step", "ISO-10303-21;\nHEADER;\n");
-    std::filesystem::resize_file(step, std::uintmax_t{5} << 30);  // a hole on the disk, more than read_file() takes
+    std::filesystem::resize_file(step, std::uintmax_t{5} << 30);  // a sparse file, larger than read_file() accepts
     const Result<Geometry> solids = open_geometry(step);
     REQUIRE_MESSAGE(solids, (solids ? "" : solids.error().message));
     CHECK(std::holds_alternative<StepPath>(*solids));
@@ -78,7 +78,7 @@ TEST_CASE("a pipe is refused at once, and not read") {
     CHECK(refused.error().message == pipe.string() + ": is not a regular file");
 }
 
-TEST_CASE("what no reader knows is told with what they know") {
+TEST_CASE("an unknown format is reported with the list of known ones") {
     const pliant::test::Folder folder("open_geometry");
     const auto letter = write(folder, "letter.txt", "Dear reader,\nthis is no mesh.\n");
     const Result<Geometry> unknown = open_geometry(letter);

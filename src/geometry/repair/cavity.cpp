@@ -11,7 +11,7 @@
 namespace pliant::mesh {
 namespace {
 
-/// Connected sets of faces, by the edges they share: (faces) the first face of each one's set.
+/// Sets of faces connected by edges: (faces) the first face of each face's set.
 std::vector<int> components(const std::vector<Face>& faces) {
     struct Edge {
         int low, high, face;
@@ -57,7 +57,7 @@ Result<std::vector<Face>> cavity_faces(const TetMesh& mesh, const Vec3& point) {
         const TriMesh surface = surface_of(mesh, faces, component, static_cast<int>(f));
         const double turns = winding_number(surface, point);
         winding += turns;
-        const double volume = -signed_volume(surface);  // normals point out of the material: a cavity is inside out
+        const double volume = -signed_volume(surface);  // normals point out of the material, so a cavity is inside out
         if (turns > -0.5 || volume >= least) continue;
         nearest = static_cast<int>(f);
         least = volume;

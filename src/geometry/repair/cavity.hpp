@@ -1,4 +1,4 @@
-// Closed cavities of a mesh: the air inside, found by a point.
+// Closed cavities of a mesh (the air inside), found by a point.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace pliant::mesh {
 
-/// The faces of the outer surface that enclose the empty space around a point, normals into that space, in the order of
-/// boundary_faces(). Errors: the point lies in the material, or the space around it is open to the outside.
+/// The faces of the outer surface that enclose the empty space around a point, normals pointing into it, in the order
+/// of boundary_faces(). Errors: the point lies in the material, or the space around it is open to the outside.
 /// Cost: all faces.
 [[nodiscard]] Result<std::vector<Face>> cavity_faces(const TetMesh& mesh, const Vec3& point);
 

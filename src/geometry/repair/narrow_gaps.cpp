@@ -13,7 +13,7 @@
 namespace pliant::mesh {
 namespace {
 
-/// One region by itself.
+/// A single region.
 struct Piece {
     TetMesh mesh;
     Box3 box;
@@ -30,11 +30,11 @@ Piece piece_of(const TetMesh& mesh, int region) {
     return piece;
 }
 
-/// How far the surface of `one` stands from `other`, and where it is most; 0 where no face is near without being
-/// shared. Whole faces count: single nodes are near by chance, where round bodies are cut into chords.
+/// Largest distance of the surface of `one` from `other`, and its place; 0 if no face is near without being shared.
+/// Only whole faces count: single nodes may be near by chance, where round bodies are approximated by chords.
 std::pair<double, Vec3> widest(const TetMesh& mesh, const Piece& one, const Piece& other, const TetLocator& locator,
                                double tolerance) {
-    constexpr double touching = 1e-6;  // of the tolerance
+    constexpr double touching = 1e-6;  // as a fraction of the tolerance
     std::unordered_map<int, double> known;
     const auto distance = [&](int node) {
         if (other.own[static_cast<std::size_t>(node)] >= 0) return 0.0;

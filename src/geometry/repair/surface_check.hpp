@@ -1,4 +1,4 @@
-// Is a surface fit to enclose a volume?
+// Checks that a surface can enclose a volume.
 #pragma once
 
 #include "base/core/error.hpp"
@@ -6,8 +6,8 @@
 
 namespace pliant::mesh {
 
-/// Every edge has exactly one neighbour that runs the other way, and the volume is positive. The error counts what is
-/// open or says that the surface is inside out.
+/// Every edge has exactly one oppositely oriented neighbour, and the volume is positive. The error counts the open
+/// edges or says that the surface is inside out.
 [[nodiscard]] Status check_closed(const TriMesh& surface);
 
 }  // namespace pliant::mesh

@@ -12,7 +12,7 @@
 namespace pliant::mesh {
 namespace {
 
-constexpr double rounding = 1e-7;  // of a height or of an edge: nearer than this is touching
+constexpr double rounding = 1e-7;  // of a height or of an edge: smaller distances count as touching
 
 struct Corners {
     std::array<Vec3, 3> p;
@@ -24,14 +24,14 @@ bool has_node(const Corners& t, int node) {
     return std::find(t.node.begin(), t.node.end(), node) != t.node.end();
 }
 
-/// The edge a-b meets a triangle.
+/// True if the edge a-b meets a triangle.
 bool passes(const Vec3& a, const Vec3& b, const std::array<Vec3, 3>& t) {
     const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
     const double reach = rounding * norm(n) * std::max({norm(b - a), norm(t[1] - t[0]), norm(t[2] - t[0])});
     const double da = dot(n, a - t[0]);
     const double db = dot(n, b - t[0]);
     if ((da > reach && db > reach) || (da < -reach && db < -reach)) return false;
-    if (std::fabs(da - db) <= 2 * reach) return false;  // it lies in the plane: the other triangle's edges tell
+    if (std::fabs(da - db) <= 2 * reach) return false;  // in the plane: detected by the other triangle's edges
     const Vec3 p = a + std::clamp(da / (da - db), 0.0, 1.0) * (b - a);
     const double twice = dot(n, n);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -41,7 +41,7 @@ bool passes(const Vec3& a, const Vec3& b, const std::array<Vec3, 3>& t) {
     return true;
 }
 
-/// Edges of one that have no corner in the other against the other.
+/// Tests the edges of one that have no corner in the other against the other.
 bool edges_pass(const Corners& one, const Corners& other) {
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t next = (k + 1) % 3;
@@ -60,7 +60,7 @@ bool folded(const Corners& one, const Corners& other) {
     return dot(normal(one), normal(other)) < -0.99996;
 }
 
-/// Two triangles in one plane, the inside of one over that of the other.
+/// Two coplanar triangles with overlapping interiors.
 bool overlap(const Corners& one, const Corners& other) {
     const Vec3 n = normal(one);
     const double size = norm(one.box.size()) + norm(other.box.size());
@@ -107,7 +107,8 @@ bool cuts_itself(const TriMesh& surface) {
     }
     const BoxTree tree(boxes);
     const BoxTree::Fit fit = tree.fit(boxes);
-    // Of two the one that begins farther along the surface is asked first: rounding may tell them apart.
+    // Of each pair the one that begins farther along the surface is tested first, because rounding may give them
+    // different results.
     const std::size_t axis = longest_axis(bounds(surface));
     const auto begins = [&](int t) { return std::pair(triangles[static_cast<std::size_t>(t)].box.low[axis], t); };
     bool found = false;

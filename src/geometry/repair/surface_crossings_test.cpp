@@ -17,7 +17,7 @@ TEST_CASE("surfaces that cut through themselves, lie upon themselves or touch; a
     CHECK_FALSE(cuts_itself(joined(one, cube({10.01, 0, 0}, 10))));
     CHECK_FALSE(cuts_itself(joined(one, cube({3, 3, 3}, 4))));  // a shell inside
     CHECK(cuts_itself(joined(one, cube({9, 9, 9}, 10))));
-    CHECK(cuts_itself(joined(one, cube({10, 2, 2}, 5))));  // face on face
+    CHECK(cuts_itself(joined(one, cube({10, 2, 2}, 5))));  // coplanar faces
     CHECK(cuts_itself(joined(one, cube({10, 3, 3}, 10))));
     TriMesh folded = one;
     folded.points.push_back({5, 5, 0});

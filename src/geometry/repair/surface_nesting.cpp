@@ -17,16 +17,16 @@ namespace {
 constexpr std::size_t most_shells = 10000;
 
 struct Neighbour {
-    int triangle = -1;  ///< -1: the edge is not one of two triangles
+    int triangle = -1;  ///< -1: the edge does not have exactly two triangles
     bool agrees = true;
 };
 using Neighbours = std::vector<std::array<Neighbour, 3>>;
 
-/// By counting sides into their lower ends, then within each.
+/// Counting sort of the sides by their lower ends, then matching within each.
 Neighbours neighbours_of(const TriMesh& surface) {
     struct Side {
         int high;
-        std::uint32_t index;  ///< three times the triangle, and which of its sides
+        std::uint32_t index;  ///< three times the triangle, plus the side
         bool forward;
     };
     std::vector<std::uint32_t> ends(surface.points.size() + 1, 0);
@@ -46,7 +46,7 @@ Neighbours neighbours_of(const TriMesh& surface) {
         neighbours[one.index / 3][one.index % 3] = {static_cast<int>(other.index / 3), one.forward != other.forward};
     };
     std::uint32_t i = 0;
-    for (std::size_t low = 0; low + 1 < ends.size(); ++low) {  // each place was moved on to the end of its sides
+    for (std::size_t low = 0; low + 1 < ends.size(); ++low) {  // each start was advanced to the end of its sides
         std::sort(sides.begin() + i, sides.begin() + ends[low],
                   [](const Side& a, const Side& b) { return a.high != b.high ? a.high < b.high : a.index < b.index; });
         while (i < ends[low]) {
@@ -67,11 +67,11 @@ struct Shell {
     bool closed = true;  ///< and of two sides
     double volume = 0;
     Box3 box;
-    std::unique_ptr<TriangleTree> tree;  ///< once it is asked for
+    std::unique_ptr<TriangleTree> tree;  ///< made on first use
     bool turn = false;
 };
 
-/// What hangs together with a triangle, made to agree: the smaller part by area is turned. `side` becomes 1 or -1.
+/// Orients the shell of a triangle consistently: the smaller part by area is flipped. `side` becomes 1 or -1.
 Shell walk(TriMesh& surface, const Neighbours& neighbours, std::size_t first, std::vector<std::int8_t>& side,
            TurnedShells& count) {
     Shell shell;
@@ -128,7 +128,7 @@ class Nesting {
 public:
     Nesting(const TriMesh& surface, std::vector<Shell>& shells) : surface_(surface), shells_(shells) {}
 
-    /// In how many others the shell lies.
+    /// The number of shells that contain the shell.
     int depth(std::size_t s) {
         int count = 0;
         for (std::size_t o = 0; o < shells_.size(); ++o) {
@@ -177,7 +177,7 @@ private:
     std::vector<Shell>& shells_;
 };
 
-/// Decides from the shells as they are; none is turned before all are decided.
+/// Decides from the original shells; none is flipped before all are decided.
 void decide(const TriMesh& surface, std::vector<Shell>& shells, TurnedShells& count) {
     Nesting nesting(surface, shells);
     for (std::size_t s = 0; s < shells.size(); ++s) {

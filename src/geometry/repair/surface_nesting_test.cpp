@@ -17,7 +17,7 @@ TriMesh inverted(TriMesh mesh) {
     return mesh;
 }
 
-/// Volumes after turning; 10 x 10 x 10 around 6 x 6 x 6 around 2 x 2 x 2.
+/// Volumes after orientation; 10 x 10 x 10 around 6 x 6 x 6 around 2 x 2 x 2.
 const TriMesh outer = cube({0, 0, 0}, 10);
 const TriMesh inner = cube({2, 2, 2}, 6);
 const TriMesh core = cube({4, 4, 4}, 2);
@@ -53,13 +53,13 @@ TEST_CASE("nesting: solids beside, in and across each other stay solids") {
         CHECK(turned.inside_out + turned.cavities + turned.triangles == 0);
         CHECK(copy.triangles == mesh.triangles);
     }
-    // Two shells that cross inside a third: bodies that somebody embedded, and no cavity with a nonzero winding.
+    // Two crossing shells inside a third: embedded bodies, not a cavity.
     TriMesh crossing = joined(outer, joined(cube({2, 2, 2}, 3), cube({3, 3, 3}, 3)));
     CHECK(orient_by_nesting(crossing).cavities == 0);
 }
 
 TEST_CASE("nesting: a shell pierced without a corner inside does not count as nested") {
-    // A plate with its corners inside a larger box that has a needle through the plate, from the box's floor.
+    // A plate with its corners inside a larger box, pierced by a needle from the box's floor.
     TriMesh box = cube({0, 0, 0}, 10);
     const int n = static_cast<int>(box.points.size());
     box.points.insert(box.points.end(), {{4.9, 4.9, 0}, {5.1, 4.9, 0}, {5, 5.1, 0}, {5, 5, 8}});

@@ -80,7 +80,7 @@ std::vector<std::vector<Link>> neighbours(const TriMesh& surface, SurfaceDamage&
     return links;
 }
 
-/// Lets everything that hangs together with triangle `first` agree; the smaller part by area is turned.
+/// Orients everything connected to triangle `first` consistently; the smaller part by area is flipped.
 void agree(TriMesh& surface, const std::vector<std::vector<Link>>& links, std::size_t first, std::vector<int>& side,
            SurfaceDamage& damage) {
     std::vector<std::size_t> patch = {first};

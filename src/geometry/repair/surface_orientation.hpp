@@ -1,4 +1,4 @@
-// Turns triangles so that neighbours agree and the surface looks outwards, as far as a damaged surface can.
+// Orients triangles consistently and outwards, as far as a damaged surface allows.
 #pragma once
 
 #include <cstddef>
@@ -12,16 +12,16 @@ struct SurfaceDamage {
     std::size_t crowded_edges = 0;  ///< edges of more than two
     std::size_t repeated = 0;       ///< triangles with the same corners as another, removed
     std::size_t flat = 0;           ///< triangles without area, removed
-    std::size_t turned = 0;         ///< triangles that looked the other way than most of their neighbours
-    bool inside_out = false;        ///< all looked inwards
+    std::size_t turned = 0;         ///< triangles that were opposite to most of their neighbours
+    bool inside_out = false;        ///< all normals pointed inwards
 };
 
-/// Removes repeated and flat triangles, lets neighbours across edges of two triangles agree with the greater part (by
-/// area) of what hangs together so, and turns everything if the signed volume is negative.
+/// Removes repeated and flat triangles, orients each part connected by edges of two triangles like the majority (by
+/// area) of its triangles, and flips everything if the signed volume is negative.
 [[nodiscard]] SurfaceDamage orient(TriMesh& surface);
 
-/// Turns the surface of one connected solid outwards: of its shells the largest is the outer one, the rest are
-/// cavities. Precondition: each edge has two triangles.
+/// Orients the surface of one connected solid outwards: the largest shell is the outer one, the rest are cavities.
+/// Precondition: each edge has two triangles.
 void orient_solid(TriMesh& surface);
 
 }  // namespace pliant::mesh

@@ -13,7 +13,7 @@
 namespace pliant::mesh {
 namespace {
 
-/// Of the surface's size: 32 bits hold 6e-8 of a coordinate, and what was reckoned before added to that.
+/// As a fraction of the surface's size: 32-bit floats have an error of 6e-8, plus that of earlier computations.
 constexpr double rounding = 1e-6;
 
 std::vector<int> ends_of(const std::vector<BorderEdge>& edges) {
@@ -27,10 +27,10 @@ std::vector<int> ends_of(const std::vector<BorderEdge>& edges) {
     return points;
 }
 
-/// Points in boxes of twice the reach, so that whatever is within reach of a place lies in one of eight boxes.
+/// A grid of boxes of twice the reach, so that all points within reach of a place are in one of eight boxes.
 class NearPoints {
 public:
-    /// For `count` points of the surface, to be added.
+    /// Space for `count` points of the surface, to be added.
     NearPoints(const TriMesh& surface, double reach, std::size_t count)
         : surface_(surface), low_(bounds(surface).low), reach_(reach), next_(surface.points.size(), -1) {
         first_.reserve(count);
@@ -42,7 +42,7 @@ public:
         next_[static_cast<std::size_t>(point)] = entry->second;
         entry->second = point;
     }
-    /// Calls `visit` for all within reach of a point, itself among them.
+    /// Calls `visit` for all points within reach of a point, including itself.
     template <class Visit>
     void each_near(int point, const Visit& visit) const {
         const Box near_low = boxes_of(at(point), -reach_);
@@ -64,7 +64,7 @@ private:
             box[k] = static_cast<std::int64_t>(std::floor(std::min((p[k] - low_[k] + aside) / (2 * reach_), 1e15)));
         return box;
     }
-    /// Boxes that share a key are told apart by the distances.
+    /// Boxes with the same key are told apart by the distances.
     static std::uint64_t key(const Box& box) {
         std::uint64_t h = 0;
         for (const std::int64_t k : box) h = (h ^ static_cast<std::uint64_t>(k)) * 0x9e3779b97f4a7c15U, h ^= h >> 29;
@@ -83,10 +83,10 @@ private:
     Vec3 low_;
     double reach_;
     std::unordered_map<std::uint64_t, int> first_;
-    std::vector<int> next_;  ///< (points) in the same box
+    std::vector<int> next_;  ///< (points) next one in the same box
 };
 
-/// Which point each becomes: the first one of `points`, in ascending order, that it is within reach of.
+/// The new index of each point: the first of `points`, in ascending order, within reach of it.
 std::vector<int> joined(const TriMesh& surface, const std::vector<int>& points, double reach) {
     std::vector<int> becomes(surface.points.size());
     std::iota(becomes.begin(), becomes.end(), 0);
@@ -104,8 +104,8 @@ std::vector<int> joined(const TriMesh& surface, const std::vector<int>& points, 
     return becomes;
 }
 
-/// How often the triangles run along each edge from its lower to its higher end, less how often they run back; edges in
-/// ascending order of lower, then higher ends. By counting into the lower ends, then within each: an end has a handful.
+/// For each edge, how many triangles run from its lower to its higher end minus how many run back; edges are sorted by
+/// lower, then higher ends. Counting sort by the lower ends, then within each: an end has only a few edges.
 template <class Visit>
 void each_edge(const TriMesh& surface, const Visit& visit) {
     std::vector<std::uint32_t> ends(surface.points.size() + 1, 0);
@@ -118,12 +118,12 @@ void each_edge(const TriMesh& surface, const Visit& visit) {
     };
     each_side([&](int a, int b) { ++ends[static_cast<std::size_t>(std::min(a, b)) + 1]; });
     for (std::size_t p = 1; p < ends.size(); ++p) ends[p] += ends[p - 1];
-    std::vector<std::pair<int, int>> ways(ends.back());  // the higher end, and which way
+    std::vector<std::pair<int, int>> ways(ends.back());  // the higher end, and the direction
     each_side([&](int a, int b) {
         ways[ends[static_cast<std::size_t>(std::min(a, b))]++] = {std::max(a, b), a < b ? 1 : -1};
     });
     std::uint32_t i = 0;
-    for (std::size_t low = 0; low + 1 < ends.size(); ++low) {  // each place was moved on to the end of its ways
+    for (std::size_t low = 0; low + 1 < ends.size(); ++low) {  // each start was advanced to the end of its ways
         std::sort(ways.begin() + i, ways.begin() + ends[low]);
         while (i < ends[low]) {
             const int high = ways[i].first;

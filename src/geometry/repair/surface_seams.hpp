@@ -1,5 +1,5 @@
-// The borders of surfaces, and those that are there only because a point was written twice, once a little beside the
-// other.
+// Borders of surfaces, and seams: borders that exist only because a point was written twice with slightly different
+// coordinates.
 #pragma once
 
 #include <cstddef>
@@ -9,31 +9,31 @@
 
 namespace pliant::mesh {
 
-/// Where a surface ends: its triangles run `times` more often from `from` to `to` than back.
+/// A border edge of a surface: its triangles contain `times` more half-edges from `from` to `to` than back.
 struct BorderEdge {
     int from, to;
     int times;  ///< 1 or more
 };
 
-/// The border of the surface, in ascending order of the edges' lower, then higher ends.
+/// The border of the surface, sorted by the lower, then the higher end of the edges.
 [[nodiscard]] std::vector<BorderEdge> border_edges(const TriMesh& surface);
 
-/// Triangles that the surface lacks to have no border: from each connected piece of the border to its middle. Their
-/// points are those of the surface and then the middles.
+/// Triangles that would close the surface: from each connected piece of the border to its centre. Their points are
+/// those of the surface followed by the centres.
 [[nodiscard]] TriMesh border_caps(const TriMesh& surface);
 
 struct ClosedSeams {
-    std::size_t edges = 0;   ///< of the border, that are gone
-    std::size_t points = 0;  ///< that became another one
+    std::size_t edges = 0;   ///< of the border, removed
+    std::size_t points = 0;  ///< merged into another one
 };
 
-/// Joins points of the border that are no farther apart than `reach` and drops triangles that have become edges, and
-/// points that no triangle uses any more: programs reckon a point once for each triangle and arrive at different last
-/// digits. No point moves by more than `reach`, however many lie in a row. The surface stays as it was if its border
-/// does not get shorter, or nothing would be left of it.
+/// Merges border points no farther apart than `reach` and drops triangles that become degenerate and points that become
+/// unused: programs compute a point once per triangle, with different rounding. No point moves by more than `reach`,
+/// however many form a chain. The surface is unchanged if its border would not get shorter or nothing would be left of
+/// it.
 ClosedSeams close_seams(TriMesh& surface, double reach);
 
-/// The same for what rounding to 32 bits may do to points, a millionth of the surface's size.
+/// The same with the error of rounding points to 32 bits as reach, a millionth of the surface's size.
 ClosedSeams close_seams(TriMesh& surface);
 
 }  // namespace pliant::mesh

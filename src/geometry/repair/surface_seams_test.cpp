@@ -14,7 +14,7 @@ using namespace pliant::mesh::test;
 
 namespace {
 
-/// Every triangle with points of its own, each moved by up to `by`.
+/// A triangle soup without shared points, each point moved by up to `by`.
 TriMesh torn(const TriMesh& surface, double by) {
     TriMesh result;
     int count = 0;
@@ -54,7 +54,7 @@ TEST_CASE("seams: a closed surface and a real hole stay as they are") {
     CHECK(close_seams(*std::make_unique<TriMesh>()).edges == 0);
 }
 
-TEST_CASE("seams: a triangle that has become an edge goes") {
+TEST_CASE("seams: a degenerate triangle is dropped") {
     TriMesh split = cube();
     // The edge from corner 1 to corner 3 gets a point beside corner 3, with a sliver on one side only.
     split.points.push_back(split.points[3] + Vec3{0, -1e-6, 0});

@@ -10,7 +10,7 @@ using namespace pliant::mesh;
 
 namespace {
 
-/// Adds a tetrahedron with legs of length `leg` at `at`, looking outwards, or inwards as a cavity does.
+/// Adds a tetrahedron with legs of length `leg` at `at`, oriented outwards, or inwards as a cavity.
 void add(TriMesh& mesh, Vec3 at, double leg, bool outwards = true) {
     const int n = static_cast<int>(mesh.points.size());
     for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{leg, 0, 0}, Vec3{0, leg, 0}, Vec3{0, 0, leg}})
@@ -54,7 +54,7 @@ TEST_CASE("cavities go with the shell around them, and islands in cavities are p
     for (const TriMesh& piece : *pieces) CHECK(check_closed(piece));
 }
 
-TEST_CASE("shells that make no sense are refused") {
+TEST_CASE("invalid shells are refused") {
     TriMesh twice;
     add(twice, {0, 0, 0}, 60);
     add(twice, {1, 1, 1}, 6);

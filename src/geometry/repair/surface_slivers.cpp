@@ -9,14 +9,14 @@ namespace {
 
 using Triangle = std::array<int, 3>;
 
-/// Smallest height over longest edge.
+/// Smallest height divided by longest edge.
 double flatness(const TriMesh& surface, const Triangle& t) {
     const Vec3 &a = surface.points[t[0]], &b = surface.points[t[1]], &c = surface.points[t[2]];
     const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
     return longest > 0 ? norm(cross(b - a, c - a)) / (longest * longest) : 0;
 }
 
-/// Which triangle runs along an edge, for edges with a direction.
+/// The triangle of each directed edge.
 class Edges {
 public:
     explicit Edges(const TriMesh& surface) {
@@ -54,8 +54,8 @@ Triangle longest_first(const TriMesh& surface, const Triangle& t) {
     return {t[best], t[(best + 1) % 3], t[(best + 2) % 3]};
 }
 
-/// Flips the longest edge of triangle `index` if both triangles that come of it are less flat and the edge between them
-/// is new.
+/// Flips the longest edge of triangle `index` if both resulting triangles are less flat and the new edge does not exist
+/// yet.
 bool flip(TriMesh& surface, Edges& edges, std::size_t index) {
     const Triangle old = surface.triangles[index];
     const auto [a, b, m] = longest_first(surface, old);
@@ -102,7 +102,7 @@ SliverCount remove_slivers(TriMesh& surface) {
     }
     if (flat.empty()) return count;
     Edges edges(surface);
-    // Behind a flat triangle may stand another: its turn comes when the first is gone.
+    // A flat triangle may be next to another one: it can be flipped after that one is gone.
     for (std::size_t before = flat.size() + 1; flat.size() < before;) {
         before = flat.size();
         std::erase_if(flat, [&](std::size_t t) { return flip(surface, edges, t); });

@@ -15,8 +15,8 @@ using namespace pliant::mesh::test;
 
 namespace {
 
-/// Puts `count` points on the first edge of a triangle, on its side of the edge only: the gap to the straight edge of
-/// the neighbour is filled by a fan of triangles without area.
+/// Inserts `count` points into the first edge of a triangle, on this side only: a fan of triangles without area fills
+/// the gap to the neighbour's unsplit edge.
 void split_edge(TriMesh& mesh, std::size_t triangle, int count) {
     const auto [a, b, c] = mesh.triangles[triangle];
     const Vec3 from = mesh.points[a];

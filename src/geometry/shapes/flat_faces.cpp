@@ -15,8 +15,8 @@
 namespace pliant::mesh {
 namespace {
 
-constexpr double flat_share = 1e-6;    // of the surface's size: points this near to a plane lie in it
-constexpr double exact_share = 1e-10;  // what Open CASCADE takes as flat, by a wide margin
+constexpr double flat_share = 1e-6;    // of the surface's size: points within this distance of a plane count as in it
+constexpr double exact_share = 1e-10;  // well within what Open CASCADE accepts as flat
 
 struct Plane {
     Vec3 normal;  ///< of length 1
@@ -53,7 +53,7 @@ public:
                 shell.push_back(std::move(face));
                 continue;
             }
-            for (const std::size_t t : members[g]) {  // not flat enough, or it touches itself: as it was drawn
+            for (const std::size_t t : members[g]) {  // not flat enough, or self-touching: keep its triangles
                 const auto& [a, b, c] = surface_.triangles[t];
                 shell.push_back({{a, b, c}});
             }
@@ -73,7 +73,7 @@ private:
         return 0.5 * cross(at(b) - at(a), at(c) - at(a));
     }
 
-    /// Neighbours across edges, and each one's shell.
+    /// Neighbours across edges, and the shell of each triangle.
     void link() {
         std::map<std::pair<int, int>, std::size_t> of_edge;
         for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
@@ -114,7 +114,7 @@ private:
         }
     }
 
-    /// Planes through all of each group, not only through its largest triangle.
+    /// Fits planes to all triangles of each group, not only to its largest one.
     void fit_planes() {
         std::vector<Vec3> normal(planes_.size());
         std::vector<double> area(planes_.size(), 0);
@@ -133,7 +133,7 @@ private:
         }
     }
 
-    /// To where the planes around each point meet, by projection onto one after the other.
+    /// Moves each point to the intersection of its planes, by projection onto one after the other.
     void move_points(std::vector<Vec3>& points) {
         std::vector<std::set<int>> around(surface_.points.size());
         for (std::size_t t = 0; t < group_.size(); ++t) {
@@ -152,7 +152,7 @@ private:
         }
     }
 
-    /// The loops around a group of triangles, the outer one first; empty if that is no face by itself.
+    /// The loops around a group of triangles, the outer one first; empty if they do not form a single face.
     [[nodiscard]] FacetedSurface::Face outline(const std::vector<std::size_t>& triangles, const Plane& plane,
                                                const std::vector<Vec3>& points) const {
         std::map<int, int> next;
@@ -220,7 +220,7 @@ Vec3 area_normal(const FacetedSurface::Loop& loop, const std::vector<Vec3>& poin
     return sum;
 }
 
-/// Of how many faces some neighbour lies at less than 30 degrees: as a round surface looks when it is cut into strips.
+/// The number of faces with a neighbour at less than 30 degrees: typical of a round surface cut into strips.
 std::size_t smooth_faces(const FacetedSurface& faceted) {
     constexpr double cosine = 0.8660254037844387;
     constexpr double flat = 1 - 1e-9;  // faces of several loops may be kept as triangles of one plane
@@ -277,8 +277,8 @@ Result<FacetedSurface> flat_faces(const TriMesh& surface, std::size_t most) {
 }
 
 Result<Solid> polyhedron(const TriMesh& surface) {
-    constexpr std::size_t most = 400;        // Open CASCADE takes half a minute for as many
-    constexpr std::size_t most_smooth = 40;  // more are a round thing, of which no mesh wants every strip
+    constexpr std::size_t most = 400;        // this many take Open CASCADE half a minute
+    constexpr std::size_t most_smooth = 40;  // more mean a round surface, whose strips no mesh should keep
     TriMesh clean = surface;
     (void)remove_slivers(clean);
     Result<FacetedSurface> faceted = flat_faces(clean, most);

@@ -1,4 +1,4 @@
-// The flat faces of a surface, as a drawing program knew them before it cut them into triangles.
+// Recovers the flat faces of a triangulated surface, as they were drawn.
 #pragma once
 
 #include <memory>
@@ -20,13 +20,12 @@ struct FacetedSurface {
     std::vector<Piece> pieces;
 };
 
-/// Joins triangles that lie in one plane, within what coordinates of 32 bits can say, and moves corners by as little as
-/// that to where their planes meet. Errors: a surface that is not closed (check_closed()), or has more than `most`
-/// faces.
+/// Merges triangles that are coplanar within the rounding of 32-bit coordinates, and moves corners by as little to
+/// where their planes meet. Errors: a surface that is not closed (check_closed()), or has more than `most` faces.
 [[nodiscard]] Result<FacetedSurface> flat_faces(const TriMesh& surface, std::size_t most);
 
-/// A solid that other solids may touch, from a closed surface of at most 400 flat faces, of which 40 at most meet
-/// another one at less than 30 degrees: more are a round surface.
+/// A solid that other solids may touch, from a closed surface of at most 400 flat faces, of which at most 40 meet
+/// another one at less than 30 degrees; more would mean a round surface.
 [[nodiscard]] Result<Solid> polyhedron(const TriMesh& surface);
 
 }  // namespace pliant::mesh

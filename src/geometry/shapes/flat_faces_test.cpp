@@ -27,7 +27,7 @@ TriMesh triangles(const Solid& shape, double tolerance = 0.05) {
     return *surface;
 }
 
-/// Coordinates as an STL file holds them.
+/// Coordinates rounded as in an STL file.
 TriMesh rounded(TriMesh surface) {
     for (Vec3& p : surface.points) p = {double(float(p.x)), double(float(p.y)), double(float(p.z))};
     return surface;
@@ -41,7 +41,7 @@ std::size_t face_count(const FacetedSurface& surface) {
     return count;
 }
 
-/// Turned so that no face lies along an axis.
+/// Rotated so that no face is parallel to an axis.
 Solid askew(const Solid& shape) {
     return solid(RotatedSolid{shape, {1, 2, 3}, {1, 0.3, 0.7}, 0.6});
 }
@@ -102,7 +102,7 @@ TEST_CASE("triangles become the faces that were drawn: holes, cavities and coord
     }
 }
 
-TEST_CASE("what is open, or has too many faces, is refused with a reason") {
+TEST_CASE("open surfaces and those with too many faces are refused with a reason") {
     TriMesh open = triangles(box({0, 0, 0}, {1, 1, 1}));
     open.triangles.pop_back();
     CHECK_FALSE(flat_faces(open, 100));
@@ -122,7 +122,7 @@ TEST_CASE("surfaces that touch each other or a drawn body share the nodes of the
     CHECK(shared_area(mixed, 0, 1) == near(49, {.relative = 1e-12}));
 }
 
-TEST_CASE("of surfaces that overlap the later one has what they share") {
+TEST_CASE("an overlap of surfaces belongs to the later one") {
     const TriMesh plate = triangles(box({0, 0, 0}, {20, 20, 5}));
     const TriMesh pin = rounded(triangles(askew(box({0, 0, 0}, {4, 4, 10}))));
     const TetMesh mesh = mesh_of({{"pin", pin}, {"plate", plate}}, 3);

@@ -50,7 +50,7 @@ struct PrismSolid {
 struct CombinedSolid {
     enum class Operation { unite, intersect, subtract };
     Operation operation;
-    std::vector<Solid> parts;  ///< subtract: the first without all others
+    std::vector<Solid> parts;  ///< subtract: the first minus all others
 };
 struct TranslatedSolid {
     Solid of;
@@ -67,17 +67,17 @@ struct RepeatedSolid {
     Vec3 step;
 };
 
-/// The piece of the empty space between walls that holds a point. Not written by people: the air of a chamber.
+/// The connected piece of the empty space between walls that contains a point. No user syntax: the air of a chamber.
 struct EnclosedSolid {
     Vec3 point;
     std::vector<Solid> walls;  ///< at least one
 };
 
-/// What convex hulls hold of the empty space between walls, in the pieces around points. Not written by people: the
-/// notches that a cable crosses.
+/// The part of the empty space between walls that is inside convex hulls, in the pieces around points. No user syntax:
+/// the notches that a cable crosses.
 struct NotchesSolid {
     std::vector<Solid> hulls;  ///< at least one
-    std::vector<Vec3> points;  ///< of the pieces
+    std::vector<Vec3> points;  ///< one in each piece
     std::vector<Solid> walls;
 };
 
@@ -91,8 +91,8 @@ struct PolyhedronSolid {
 struct StepSolid {
     std::string file;
     std::vector<int> numbers;                     ///< of the solids, from 0, in the order of the file
-    double scale;                                 ///< lengths of a caller per millimetre
-    std::shared_ptr<const TriangleTree> surface;  ///< of them all, near enough to tell inside from outside
+    double scale;                                 ///< the caller's length units per millimetre
+    std::shared_ptr<const TriangleTree> surface;  ///< of all solids, accurate enough to tell inside from outside
 };
 
 struct SolidNode {
@@ -101,17 +101,17 @@ struct SolidNode {
         shape;
 };
 
-/// Exact membership; points on the surface may fall either way, and on a STEP file's curved
-/// faces those near it. Between walls: in any piece.
+/// Exact point test; points on the surface may count either way, and so do points near the curved faces of a STEP file.
+/// Between walls: true in any piece.
 [[nodiscard]] bool contains(const Solid& solid, const Vec3& point);
 
-/// A box that holds the solid (not always the smallest one).
+/// A box that contains the solid (not always the smallest one).
 [[nodiscard]] Box3 bounds(const Solid& solid);
 
 /// Shapes that `use` may name.
 using NamedShapes = std::vector<std::pair<std::string, const config::Value*>>;
 
-/// Reads an expression. Problems carry line and key; the result then is some solid that must not be used.
+/// Parses an expression. Problems carry line and key; if there are any, the result must not be used.
 [[nodiscard]] Solid read_solid(const config::Value& value, const std::string& path, const NamedShapes& shapes,
                                config::Problems& problems);
 

@@ -16,21 +16,21 @@ using config::Value;
 constexpr int max_depth = 32;
 constexpr int max_copies = 1000;
 constexpr int most_shapes = 20000;
-constexpr double most_primitives = 2000;  // Open CASCADE takes minutes for so many on one face
-constexpr double farthest = 1e9;          // beyond, lengths lose their fine digits
+constexpr double most_primitives = 2000;  // this many on one face take Open CASCADE minutes
+constexpr double farthest = 1e9;          // beyond, lengths lose precision
 
 Solid make(decltype(SolidNode::shape) shape) {
     return std::make_shared<const SolidNode>(SolidNode{std::move(shape)});
 }
 
-/// What an expression with a problem stands for: something valid.
+/// A valid stand-in for an expression with a problem.
 Solid placeholder() {
     return make(BoxSolid{{0, 0, 0}, {1, 1, 1}});
 }
 
 using Corner = std::array<double, 2>;
 
-/// Twice the area of the triangle p, q, r; positive if r lies to the left of p -> q.
+/// Twice the signed area of the triangle p, q, r; positive if r is to the left of p -> q.
 double side(const Corner& p, const Corner& q, const Corner& r) {
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
@@ -47,7 +47,7 @@ bool segments_meet(const Corner& a, const Corner& b, const Corner& c, const Corn
     return !apart(side(a, b, c), side(a, b, d)) && !apart(side(c, d, a), side(c, d, b));
 }
 
-/// What keeps the polygon from being the simple outline of an area, or "".
+/// Why the polygon is not a simple outline, or "".
 std::string polygon_fault(const std::vector<Corner>& polygon) {
     const std::size_t n = polygon.size();
     for (std::size_t i = 0; i < n; ++i) {
@@ -107,7 +107,7 @@ public:
             return placeholder();
         }
         if (depth > max_depth) {
-            given_up_ = true;  // one message says it all; a doubling shape would give thousands
+            given_up_ = true;  // one message is enough; a doubling shape would give thousands
             reader.problem("", "shapes nested too deep, or a shape that uses itself");
             return placeholder();
         }
@@ -265,7 +265,7 @@ private:
         }
         CombinedSolid solid{operation, {}};
         for (std::size_t i = 0; i < parts->size(); ++i) {
-            // A list in a list doubles with each level: the budget stops what nesting alone would not.
+            // A list in a list doubles with each level: a limit on the nesting alone would not be enough.
             if (++read_shapes_ > most_shapes && !given_up_) {
                 given_up_ = true;
                 reader.problem(kind, fmt::format("too many shapes: more than {}", most_shapes));
@@ -283,7 +283,7 @@ private:
     bool given_up_ = false;
 };
 
-/// Primitive shapes after all copies are made; stops counting soon after `most`.
+/// Number of primitive shapes after all copies are made; stops counting soon after `most`.
 double primitive_count(const Solid& solid, double most);
 
 struct PrimitiveCount {

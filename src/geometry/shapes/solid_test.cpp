@@ -7,7 +7,7 @@ using namespace pliant::mesh;
 
 namespace {
 
-/// Reads `geometry = TEXT` with the named shapes of `shapes`; the problems, or "".
+/// Parses `geometry = TEXT` with the named shapes of `shapes`; returns the problems, or "".
 std::string read(const std::string& text, Solid& solid, const std::string& shapes = "") {
     const auto document = config::parse("geometry = " + text + "\n" + shapes, "r.toml");
     REQUIRE_MESSAGE(document, (document ? "" : document.error().message));

@@ -20,14 +20,14 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
     return norm(p - a - t * along);
 }
 
-/// Normal of a loop by Newell's sum, which also holds where it is not convex.
+/// Normal of a loop by Newell's method, which also works for non-convex loops.
 Vec3 loop_normal(const Loop& loop) {
     Vec3 n;
     for (std::size_t i = 0; i < loop.size(); ++i) n += cross(loop[i] - loop[0], loop[(i + 1) % loop.size()] - loop[0]);
     return unit(n);
 }
 
-/// Parity of crossings, in the two axes in which the plane is seen best.
+/// Parity of crossings, in the two axes in which the projected plane is largest.
 bool inside_loops(const std::vector<Loop>& loops, const Vec3& normal, const Vec3& p) {
     std::size_t w = 0;
     for (std::size_t a = 1; a < 3; ++a) {
@@ -58,7 +58,7 @@ SurfacePiece flat(std::vector<Loop> loops) {
     return {SurfacePiece::Kind::plane, loops.front().front(), loop_normal(loops.front()), 0, std::move(loops)};
 }
 
-/// A polygon that is swept from `from` to `to` along the third of `axes`.
+/// A polygon extruded from `from` to `to` along the third of `axes`.
 void add_prism(const std::vector<std::array<double, 2>>& polygon, const std::array<int, 3>& axes, double from,
                double to, Pieces& out) {
     const auto at = [&](std::size_t corner, double w) {
@@ -79,7 +79,7 @@ void add_prism(const std::vector<std::array<double, 2>>& polygon, const std::arr
     }
 }
 
-/// Every point of a piece, and its directions, elsewhere.
+/// Transforms every point of a piece and its directions.
 template <class Move, class Turn>
 void move_all(Pieces& pieces, std::size_t first, const Move& move, const Turn& turn) {
     for (std::size_t k = first; k < pieces.size(); ++k) {
@@ -159,7 +159,7 @@ struct Collector {
     }
 };
 
-/// From the axis to a point.
+/// The vector from the axis to a point.
 Vec3 from_axis(const SurfacePiece& piece, const Vec3& p) {
     const Vec3 along = unit(piece.direction);
     return p - piece.point - dot(p - piece.point, along) * along;

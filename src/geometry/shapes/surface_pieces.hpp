@@ -1,5 +1,5 @@
-// The smooth pieces of surface that a drawn solid is bounded by, each as an equation: so that it can be told how a
-// point of the surface moves with the numbers of a drawing.
+// The smooth faces that bound a drawn solid, each as an equation, to tell how a surface point moves with the parameters
+// of the drawing.
 #pragma once
 
 #include <vector>
@@ -9,30 +9,30 @@
 
 namespace pliant::mesh {
 
-/// A part of a plane, a sphere or a cylinder; unions and cuts may use only a part of it.
+/// A part of a plane, a sphere or a cylinder; after unions and cuts only some of it may be surface.
 struct SurfacePiece {
     enum class Kind {
-        plane,     ///< `loops` bound it
-        disk,      ///< of a plane, within `radius` of `point`
+        plane,     ///< bounded by `loops`
+        disk,      ///< in a plane, within `radius` of `point`
         sphere,    ///< about `point`
-        cylinder,  ///< about the line from `point` along `direction`, which is as long as it
-        drawn,     ///< of a file, turned and moved; `point` and `direction` tell where it is
+        cylinder,  ///< about the line from `point` along `direction`, whose length is the cylinder's
+        drawn,     ///< from a file, rotated and moved; `point` and `direction` tell where it is
     };
     Kind kind = Kind::plane;
-    Vec3 point;      ///< on it, or its centre
-    Vec3 direction;  ///< of planes and disks the unit normal
+    Vec3 point;      ///< on the piece, or its centre
+    Vec3 direction;  ///< unit normal of planes and disks
     double radius = 0;
     std::vector<std::vector<Vec3>> loops{};  ///< in the plane: the outline, then holes
 
-    /// Distance from the whole plane, sphere or cylinder, with a sign.
+    /// Signed distance from the whole plane, sphere or cylinder.
     [[nodiscard]] double distance(const Vec3& p) const;
-    /// Its gradient, of length 1.
+    /// Gradient of distance(), of length 1.
     [[nodiscard]] Vec3 normal(const Vec3& p) const;
-    /// The point is on the piece, or nearer to it than `within`.
+    /// True if the point is on the piece or nearer to it than `within`.
     [[nodiscard]] bool holds(const Vec3& p, double within) const;
 };
 
-/// Of all solids that it is made of, in an order that the same expression with other numbers keeps.
+/// Of all solids in the expression, in an order that does not depend on its numbers.
 [[nodiscard]] std::vector<SurfacePiece> surface_pieces(const Solid& solid);
 
 }  // namespace pliant::mesh

@@ -1,4 +1,4 @@
-// Drawn solids as equations of their surfaces.
+// Surfaces of drawn solids as equations.
 #include "geometry/shapes/surface_pieces.hpp"
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ Solid solid(Shape shape) {
     return std::make_shared<const SolidNode>(SolidNode{std::move(shape)});
 }
 
-/// How many pieces a point is on.
+/// Number of pieces that contain a point.
 int count_at(const Solid& of, const Vec3& p) {
     int count = 0;
     for (const SurfacePiece& piece : surface_pieces(of)) count += piece.holds(p, 1e-9) ? 1 : 0;

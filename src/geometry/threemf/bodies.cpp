@@ -11,7 +11,7 @@
 namespace pliant::threemf {
 namespace {
 
-/// Which points hang together by triangles, or lie at the same place.
+/// Sets of points that are connected by triangles or coincide.
 DisjointSets shells_of(const mesh::TriMesh& mesh) {
     std::vector<int> order(mesh.points.size());
     std::iota(order.begin(), order.end(), 0);

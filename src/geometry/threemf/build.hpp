@@ -11,10 +11,10 @@ namespace pliant::threemf {
 
 class Build {
 public:
-    /// `package` gives the parts that others name; without one there are none.
+    /// `package` provides other parts that this one references; nullptr: none.
     Build(const Package* package, std::string file) : package_(package), file_(std::move(file)) {}
 
-    /// Errors: objects that are not there or must not be built, parts that are missing, more bodies than anyone prints.
+    /// Errors: objects that are missing or must not be built, missing parts, too many bodies.
     [[nodiscard]] Result<ThreeMf> assemble(ModelPart start);
 
 private:

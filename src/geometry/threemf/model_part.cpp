@@ -26,7 +26,7 @@ double unit_mm(std::string_view unit) {
     return unit == "meter" ? 1000 : 0;
 }
 
-/// Reads one part; everything that is wrong goes to `problem_`.
+/// Reads one part; the first error goes to `problem_`.
 class Reader {
 public:
     explicit Reader(const XmlPart& part) : part_(part) {}

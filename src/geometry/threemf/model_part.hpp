@@ -1,4 +1,4 @@
-// One model part of a 3MF package: its objects, what is built of them, and its slice stacks.
+// One model part of a 3MF package: its objects, build items and slice stacks.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace pliant::threemf {
 
-/// [x y z 1] times four rows of three, as 3MF writes them.
+/// [x y z 1] times a matrix of four rows of three, as 3MF writes it.
 struct Transform {
     std::array<double, 12> m{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
 
@@ -22,7 +22,7 @@ struct Transform {
     [[nodiscard]] Transform then(const Transform& after) const;
 };
 
-/// A placed object, of another part where `path` is not empty.
+/// A placed object, in another part if `path` is not empty.
 struct Placed {
     int object = 0;
     std::string path;
@@ -33,7 +33,7 @@ struct Placed {
 struct Object {
     std::string name, type;
     mesh::TriMesh mesh;                     ///< in the part's unit
-    std::vector<std::string> materials;     ///< that its triangles name
+    std::vector<std::string> materials;     ///< referenced by its triangles
     std::vector<int> material_of_triangle;  ///< (m), into materials
     std::string material;                   ///< of the object; "" if it names none
     std::vector<Placed> components;
@@ -49,7 +49,7 @@ struct ModelPart {
     std::vector<std::string> warnings;
 };
 
-/// Errors: what the specification forbids, with its line; a required extension that is not known.
+/// Errors: violations of the specification, with the line; a required extension that is not supported.
 [[nodiscard]] Result<ModelPart> read_model_part(const XmlPart& part);
 
 }  // namespace pliant::threemf

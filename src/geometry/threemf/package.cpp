@@ -58,7 +58,7 @@ Status Package::find_model() {
     return {};
 }
 
-/// `folder`: of the part that the relationships belong to, for targets that do not begin at the root.
+/// `folder`: of the part that the relationships belong to, for relative targets.
 void Package::check_targets(const XmlPart& relationships, const std::string& folder) {
     constexpr std::size_t most = 20;
     for (const pugi::xml_node& node : relationships.root().children("Relationship")) {

@@ -1,4 +1,4 @@
-// The zip file around a 3MF model: which part is the model, and the text of parts.
+// The zip file around a 3MF model: finds the model part and reads parts.
 #pragma once
 
 #include <filesystem>
@@ -13,15 +13,16 @@ namespace pliant::threemf {
 
 class Package {
 public:
-    /// Errors: no zip file; no, several or an outside start part; relationships that the specification forbids.
+    /// Errors: not a zip file; no start part, several, or one outside the file; relationships that the specification
+    /// forbids.
     [[nodiscard]] static Result<Package> open(const std::filesystem::path& path);
 
     [[nodiscard]] const std::string& name() const { return name_; }
     /// Path of the start part, as in "/3D/3dmodel.model".
     [[nodiscard]] const std::string& model() const { return model_; }
-    /// Relationships to parts that are not in the file, where no body needs them.
+    /// Relationships to missing parts that no body needs.
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
-    /// A part by its path from the root of the package. Errors: missing, above 1 GB, no well-formed XML.
+    /// A part by its path from the root of the package. Errors: missing, over 1 GB, not well-formed XML.
     [[nodiscard]] Result<XmlPart> part(std::string_view path) const;
 
 private:

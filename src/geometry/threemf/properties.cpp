@@ -20,7 +20,7 @@ std::vector<int> indices(const XmlPart& part, const pugi::xml_node& node, const 
     return found;
 }
 
-/// "#RRGGBB" or "#RRGGBBAA", in capitals and without its alpha.
+/// "#RRGGBB" or "#RRGGBBAA", in capitals and without alpha.
 std::string colour(const XmlPart& part, const pugi::xml_node& node, const char* key, Problem& problem) {
     std::string text(part.needed(node, key, problem));
     const bool digits = text.size() > 1 && std::all_of(text.begin() + 1, text.end(),
@@ -108,7 +108,7 @@ PropertyGroup read_multi(const XmlPart& part, const pugi::xml_node& node, const 
         }
     }
     auto entries = part.children(node, Space::material, "multi");
-    if (entries.empty()) entries = part.children(node, Space::core, "multi");  // as some files have it
+    if (entries.empty()) entries = part.children(node, Space::core, "multi");  // found in some files
     for (const pugi::xml_node& multi : entries) {
         const std::vector<int> used = indices(part, multi, "pindices", problem);
         const std::size_t i = place < used.size() && used[place] >= 0 ? static_cast<std::size_t>(used[place]) : 0;

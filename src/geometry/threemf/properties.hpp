@@ -9,19 +9,19 @@
 
 namespace pliant::threemf {
 
-/// A group of properties: what a body of the property p is printed in. Groups that colour surfaces (textures) or mix
-/// materials name one material for all their properties.
+/// A property group: the material of each property. Groups for surface colour (textures) or mixed materials have one
+/// material for all their properties.
 struct PropertyGroup {
     enum class Kind { base, colour, texture, composite, multi };
     Kind kind = Kind::base;
     std::vector<std::string> materials;  ///< per property
 };
 
-/// By the id that objects and triangles use.
+/// By the id that objects and triangles reference.
 using Properties = std::map<int, PropertyGroup>;
 
-/// Reads the element if it is a property group or a texture, and returns whether it was one. Notes: what the
-/// specification of materials forbids (missing values, references to groups that are not there or of a wrong kind).
+/// Reads the element if it is a property group or a texture, and returns whether it was one. Problems: what the
+/// materials specification forbids (missing values, references to missing groups or groups of a wrong kind).
 bool read_property_group(const XmlPart& part, const pugi::xml_node& node, int id, Properties& properties,
                          std::map<int, std::string>& textures, Problem& problem);
 

@@ -73,7 +73,7 @@ TEST_CASE("units, transforms and components place a body; a mirrored one keeps i
     CHECK(file.bodies[0].material == "default");
     CHECK(mesh::signed_volume(file.bodies[0].mesh_mm) == near(2000.0 / 6, {.relative = 1e-12}));
     CHECK(mesh::signed_volume(file.bodies[1].mesh_mm) == near(1000.0 / 6, {.relative = 1e-12}));
-    // The corner at 0 goes to x = 10 cm, then a quarter turn makes that y, then up by 3 cm.
+    // The corner at 0 goes to x = 10 cm, a quarter turn rotates that to y, then it moves up by 3 cm.
     CHECK(norm(file.bodies[0].mesh_mm.points[0] - Vec3{0, 100, 30}) < 1e-9);
 }
 
@@ -96,7 +96,7 @@ TEST_CASE("shells of one property are bodies, a shell of several is one body wit
           "\"soft\"");
 }
 
-TEST_CASE("a slice stack is the body") {
+TEST_CASE("a slice stack defines the body") {
     const std::string stack =
         "<s:slicestack id=\"3\" zbottom=\"1\"><s:slice ztop=\"2\"><s:vertices><s:vertex x=\"0\" y=\"0\"/><s:vertex "
         "x=\"1\" "
@@ -128,7 +128,7 @@ TEST_CASE("a polygon of a slice that encloses nothing is left out with a warning
           "a.3mf:4: <s:slicestack>: 2 polygon(s) of fewer than three points enclose nothing and were left out");
 }
 
-TEST_CASE("what the specification forbids but harms no body is a warning with its section") {
+TEST_CASE("violations that affect no body are warnings with their section") {
     const std::string item = "<item objectid=\"7\"/>";
     const auto warnings = [&](const std::string& before, const std::string& objects, const std::string& items) {
         std::string text = model(objects, items);

@@ -96,8 +96,8 @@ private:
     void note(const pugi::xml_node& node, const std::string& text) { remarks_.push_back(part_.at(node, text)); }
 
     const XmlPart& part_;
-    std::set<std::string> seen_;                                 ///< kinds that were noted
-    std::set<std::pair<pugi::xml_node, std::string>> metadata_;  ///< by what holds them
+    std::set<std::string> seen_;                                 ///< kinds already reported
+    std::set<std::pair<pugi::xml_node, std::string>> metadata_;  ///< by parent element
     std::vector<std::string> remarks_;
 };
 

@@ -1,4 +1,4 @@
-// What a model part has that the core specification does not allow, but that harms no body: it is said and passed over.
+// Deviations of a model part from the core specification that affect no body: reported and ignored.
 #pragma once
 
 #include <string>
@@ -8,9 +8,8 @@
 
 namespace pliant::threemf {
 
-/// One line each, with its place: elements and attributes of the core namespace that it does not know (each kind once),
-/// attributes of the namespaces xml and xsi, metadata without a known name, of an undeclared namespace or given twice.
-/// At most 50.
+/// One line each, with its place: unknown elements and attributes of the core namespace (each kind once), attributes of
+/// the namespaces xml and xsi, metadata with an unknown name, an undeclared namespace or given twice. At most 50.
 [[nodiscard]] std::vector<std::string> remarks_on(const XmlPart& part);
 
 }  // namespace pliant::threemf

@@ -9,18 +9,18 @@
 
 namespace pliant::threemf {
 
-/// A stack holds its own slices, or refers to stacks of other parts. Coordinates are in the part's unit.
+/// A stack has its own slices or references stacks of other parts. Coordinates are in the part's unit.
 struct SliceStack {
     struct Reference {
         std::string path;
         int stack = 0;
     };
-    std::vector<Slice> slices;  ///< in file order, tops rising
+    std::vector<Slice> slices;  ///< in file order, tops ascending
     std::vector<Reference> references;
 };
 
-/// Notes: tops that do not rise, points that are not there. Outlines of fewer than three points enclose nothing: they
-/// are left out, and one of the `warnings` counts them.
+/// Problems: tops that do not ascend, missing points. Outlines of fewer than three points enclose nothing: they are
+/// left out, and a warning counts them.
 [[nodiscard]] SliceStack read_slice_stack(const XmlPart& part, const pugi::xml_node& node, Problem& problem,
                                           std::vector<std::string>& warnings);
 

@@ -1,4 +1,4 @@
-// The 3MF files of the reference data against what their README expects of them.
+// The 3MF files of the reference data, compared with the expectations in their README.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Read when a test runs: without the variable none of these does, but others of this program do.
+/// Read at run time: without the variable these tests are skipped, but others in this program run.
 fs::path folder() {
     return fs::path(std::getenv("PLIANT_REFERENCE_DATA")) / "3mf";
 }
@@ -102,7 +102,7 @@ TEST_CASE("consortium: core, units, colours, production") {
     REQUIRE(colours.warnings.size() == 1);
     CHECK(colours.warnings[0].find("do not bound volumes") != std::string::npos);
     CHECK(volume(read("consortium/material_multiprop-opaque.3mf")) == near(1e6, {.relative = 1e-12}));
-    // Its objects live in other parts of the package.
+    // Its objects are in other parts of the package.
     const ThreeMf production = read("consortium/production_cube_gears_prod_req.3mf");
     CHECK(production.bodies.size() == 17);
     CHECK(volume(production) == near(112366.3, {.relative = 1e-6}));
@@ -117,7 +117,7 @@ TEST_CASE("consortium: slice stacks have the area times height of the bodies the
     CHECK(box.bodies[0].slices.back().contours.empty());
 }
 
-TEST_CASE("what cannot be built is refused by name") {
+TEST_CASE("objects that must not be built are refused by name") {
     CHECK(refused("consortium/beam_lattice_pyramid.3mf").find("requires the extension b") != std::string::npos);
     CHECK(refused("consortium/material_multiprop-metallic.3mf").find(":62: ") != std::string::npos);
 }
@@ -131,7 +131,8 @@ TEST_CASE("conformance: every file that must pass opens, every file that must fa
     int refusals = 0;
     for (const auto& entry : fs::directory_iterator(folder() / "consortium/mustfail")) {
         const auto result = read_3mf(entry.path());
-        if (result && entry.path().stem() == "Chapter3.4.1a_MissingMetadataName") {  // a note harms nobody's part
+        if (result && entry.path().stem() == "Chapter3.4.1a_MissingMetadataName") {  // a remark must not affect any
+                                                                                     // body
             REQUIRE(result->warnings.size() == 1);
             CHECK(result->warnings[0].find("section 3.4.1") != std::string::npos);
             continue;
@@ -143,7 +144,7 @@ TEST_CASE("conformance: every file that must pass opens, every file that must fa
     CHECK(refusals == 18);
 }
 
-TEST_CASE("other makers' files") {
+TEST_CASE("files of other programs") {
     const ThreeMf pyramids = read("mit_models/pyramids.3mf");
     CHECK(pyramids.bodies.size() >= 9);
     const ThreeMf two = read("mit_models/cube_and_sphere_same_name.3mf");

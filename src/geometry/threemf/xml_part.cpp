@@ -34,7 +34,7 @@ bool declared(pugi::xml_node node, std::string_view prefix) {
     return false;
 }
 
-/// The encoding that a text declares, in small letters; "" where it declares none.
+/// The encoding that a text declares, in lower case; "" if none.
 std::string declared_encoding(std::string_view text) {
     const std::string_view head = text.substr(0, text.substr(0, 1024).find("?>"));
     const std::size_t declaration = head.find("<?xml");

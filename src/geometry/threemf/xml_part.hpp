@@ -1,4 +1,5 @@
-// An XML part of a 3MF package: parsed, checked for what a parser lets pass, and read with line numbers in errors.
+// An XML part of a 3MF package: parsed, checked for errors that the parser accepts, and read with line numbers in
+// errors.
 #pragma once
 
 #include <map>
@@ -13,7 +14,7 @@
 
 namespace pliant::threemf {
 
-/// The first thing that is wrong, as one line. Once there is one, readers return harmless values and stop.
+/// The first problem found, as one line. After it, readers return harmless values and stop.
 class Problem {
 public:
     [[nodiscard]] bool found() const { return !text_.empty(); }
@@ -26,13 +27,13 @@ private:
     std::string text_;
 };
 
-/// What namespaces the parts may use; elements are asked for by these, whatever prefix a file gives them.
+/// Namespaces that parts may use; elements are looked up by these, whatever their prefix in the file.
 enum class Space { none, core, material, production, slice };
 
 class XmlPart {
 public:
-    /// `name`: of file and part, for messages. Refuses what is not well-formed: also several roots and prefixes without
-    /// a namespace, which pugixml lets pass; a document type; and an encoding other than UTF-8 or UTF-16.
+    /// `name`: file and part, for messages. Refuses XML that is not well-formed, also several roots and undeclared
+    /// prefixes, which pugixml accepts; a document type; and encodings other than UTF-8 or UTF-16.
     [[nodiscard]] static Result<XmlPart> parse(std::string text, std::string name);
 
     [[nodiscard]] pugi::xml_node root() const { return document_->document_element(); }
@@ -42,19 +43,19 @@ public:
     [[nodiscard]] pugi::xml_node child(const pugi::xml_node& node, Space space, std::string_view local) const;
     [[nodiscard]] std::vector<pugi::xml_node> children(const pugi::xml_node& node, Space space,
                                                        std::string_view local) const;
-    /// An attribute with a namespace; "" if it is not there.
+    /// An attribute with a namespace; "" if it is missing.
     [[nodiscard]] std::string_view attribute(const pugi::xml_node& node, Space space, std::string_view local) const;
-    /// The address of a prefix, or "".
+    /// The namespace URI of a prefix, or "".
     [[nodiscard]] std::string_view address_of_prefix(std::string_view prefix) const;
 
     /// "FILE: PART:12: <object>: text".
     [[nodiscard]] std::string at(const pugi::xml_node& node, std::string_view text) const;
 
-    /// A required attribute without namespace; "" and a note where it is missing or empty.
+    /// A required attribute without namespace; "" and a problem if missing or empty.
     std::string_view needed(const pugi::xml_node& node, const char* key, Problem& problem) const;
-    /// A number that is finite; 0 and a note otherwise.
+    /// A finite number; otherwise 0 and a problem.
     double number(const pugi::xml_node& node, const char* key, Problem& problem) const;
-    /// A whole number of 0 to 2^31 - 1; `missing` where there is no such attribute.
+    /// An integer from 0 to 2^31 - 1; `missing` if there is no such attribute.
     int index(const pugi::xml_node& node, const char* key, Problem& problem) const;
     int index_or(const pugi::xml_node& node, const char* key, int missing, Problem& problem) const;
 
@@ -66,13 +67,13 @@ private:
 
     std::string name_, text_;
     std::unique_ptr<pugi::xml_document> document_;
-    std::map<std::string, std::string, std::less<>> addresses_;  ///< of the prefixes that the root declares
+    std::map<std::string, std::string, std::less<>> addresses_;  ///< namespace URIs by prefix, as declared at the root
 };
 
-/// The next node of the document after this one, children first; none after the last.
+/// The next node of the document in preorder; none after the last.
 [[nodiscard]] pugi::xml_node next_in_document(pugi::xml_node node);
 
-/// "m" and "color" of "m:color"; no prefix is "".
+/// "m" and "color" of "m:color"; the prefix is "" if there is none.
 [[nodiscard]] std::pair<std::string_view, std::string_view> split_name(std::string_view name);
 
 /// Splits "a b  c" at blanks.

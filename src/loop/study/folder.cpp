@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a study that was killed before it had a plan may have left.
+/// True if the folder holds only what a study killed before it had a plan may have left.
 bool is_beginning(const fs::path& folder) {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -26,7 +26,7 @@ bool is_beginning(const fs::path& folder) {
     return !error;
 }
 
-/// Writes plan.json unless there is one: of several that begin at one time, one wins.
+/// Writes plan.json unless it exists: of several processes that begin at once, one wins.
 Status place_plan(const Plan& plan, const fs::path& folder) {
     std::array<char, 256> host{};
     (void)::gethostname(host.data(), host.size() - 1);
@@ -60,7 +60,7 @@ Status check_same(const Plan& plan, const Plan& there, const fs::path& folder) {
         folder.string());
 }
 
-/// Another study was planned here, and has no rows: a slip in its file was put right since.
+/// Replaces a study that was planned here and has no rows: its file was corrected since.
 Status plan_anew(const Plan& plan, const fs::path& folder) {
     const auto leader = lead(folder);
     if (!leader) return tl::unexpected(leader.error());

@@ -1,4 +1,4 @@
-// The folder of a study: the plan as it was made, records of rows, results.
+// The folder of a study: its plan, the records of rows, results.
 #pragma once
 
 #include <filesystem>
@@ -13,25 +13,25 @@
 
 namespace pliant::study {
 
-/// What a folder may hold when a study begins.
+/// What a folder may contain when a study begins.
 enum class Begin {
     fresh,   ///< no records
     resume,  ///< records of this study
 };
 
-/// Makes the folder with the plan in it, or opens it, and gives the plan that is in it: rows go on as they were
-/// planned. A fresh study takes the place of another one that has no records yet. Any number of processes may call it
-/// at one time. Errors: the folder holds another study, or this one before a file changed; it holds records and `begin`
-/// is fresh; something else stands there.
+/// Creates the folder with the plan in it, or opens it, and returns the plan in the folder: rows continue as they were
+/// planned. A fresh study replaces another one that has no records yet. Safe to call from any number of processes at
+/// once. Errors: the folder holds another study, or this one before a file changed; it holds records and `begin` is
+/// fresh; it contains something else.
 [[nodiscard]] Result<Plan> open_folder(const Plan& plan, const std::filesystem::path& folder, Begin begin);
 
-/// The plan of a folder.
+/// Reads the plan of a folder.
 [[nodiscard]] Result<Plan> load_plan(const std::filesystem::path& folder);
 
-/// Held by the process that leads the study, as long as it lives. Error: another does.
+/// A lock held by the process that leads the study. Error: another process holds it.
 [[nodiscard]] Result<FileHandle> lead(const std::filesystem::path& folder);
 
-/// What is known of all rows.
+/// The state of all rows.
 struct Collected {
     std::vector<std::optional<RowRecord>> rows;  ///< (rows)
     std::vector<TaskRecord> tasks;
@@ -40,19 +40,19 @@ struct Collected {
     [[nodiscard]] std::size_t recorded() const { return done + failed; }
 };
 
-/// Reads the records of all chunks. Cost: all bytes of them.
+/// Reads the records of all chunks. Cost: proportional to their size.
 [[nodiscard]] Result<Collected> collect(const Plan& plan, const std::filesystem::path& folder);
 
-/// Follows the records while others write them: only files that have grown are read again.
+/// Follows the records while other processes write them: reads only files that have grown.
 class Follower {
 public:
     Follower(const Plan& plan, std::filesystem::path folder);
     struct Count {
         std::size_t recorded = 0, done = 0, missing_path = 0;
-        std::string missing_reason;  ///< of a row whose wanted result is not there
+        std::string missing_reason;  ///< of a row that lacks a wanted result
     };
     [[nodiscard]] Result<Count> look();
-    /// Chunks with rows that have no record, as of the last look().
+    /// Chunks with rows without a record, as of the last look().
     [[nodiscard]] std::vector<std::size_t> open_chunks() const;
 
 private:

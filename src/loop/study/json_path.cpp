@@ -15,7 +15,7 @@ bool is_word_letter(char c) {
            (static_cast<unsigned char>(c) & 0x80U) != 0;
 }
 
-/// The keys of an object, or how many values an array has: what could have been written.
+/// The keys of an object, or the length of an array: the valid continuations, for messages.
 std::string contents(const nlohmann::json& json) {
     constexpr std::size_t most_shown = 12;
     if (json.is_array())
@@ -53,7 +53,7 @@ const nlohmann::json* child(const nlohmann::json& json, long place) {
     return index < 0 || index >= size ? nullptr : &json[static_cast<std::size_t>(index)];
 }
 
-/// The rest of a text as the parts of a path.
+/// Parses the rest of a text into the parts of a path.
 struct Scanner {
     std::string_view whole, rest;
 
@@ -68,7 +68,7 @@ struct Scanner {
         rest.remove_prefix(found.size());
         return found;
     }
-    /// Behind an opening bracket.
+    /// Parses what follows an opening bracket.
     Result<std::variant<std::string, long>> bracket() {
         if (rest.starts_with('"')) {
             const std::size_t end = rest.find("\"]", 1);

@@ -1,4 +1,4 @@
-// Where a number stands in a command's JSON: steps[-1].cables.flexor.tension_N.
+// The path of a number in a command's JSON: steps[-1].cables.flexor.tension_N.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -11,15 +11,15 @@
 
 namespace pliant::study {
 
-/// Keys and places of arrays, in order; a negative place counts from the end.
+/// Keys and array indices, in order; a negative index counts from the end.
 class JsonPath {
 public:
-    /// Keys are joined by dots, places stand in brackets; a key with other letters than those of a word stands in
-    /// quotes in brackets, as in cables["left flexor"]. Errors say where the text is wrong.
+    /// Keys are separated by dots, indices are in brackets; a key with characters other than letters, digits and
+    /// underscores is quoted in brackets, as in cables["left flexor"]. Errors say where the text is wrong.
     [[nodiscard]] static Result<JsonPath> parse(std::string_view text);
 
-    /// The number there; true is 1, false 0, null is not a number (NaN). A path whose first key is none of the whole is
-    /// looked for in the last of its `steps`. Errors name how far the path goes and what there is.
+    /// The number there; true is 1, false 0, null NaN. A path whose first key is not at the top level is looked up in
+    /// the last of the `steps`. Errors name the part of the path that exists and what is there.
     [[nodiscard]] Result<double> number_in(const nlohmann::json& json) const;
 
 private:

@@ -53,7 +53,7 @@ TEST_CASE("true is 1, null is no number") {
     CHECK(std::isnan(number("energy")));
 }
 
-TEST_CASE("what is not there is answered with what is") {
+TEST_CASE("a missing path is answered with what exists") {
     CHECK(mistake("cables.flexr.tension_N") ==
           "steps[-1].cables has no \"flexr\"; did you mean \"flexor\"?: there is flexor and left one");
     CHECK(mistake("steps[2].markers") == "steps has no [2]: it is a list of 2, [0] to [1]");
@@ -63,7 +63,7 @@ TEST_CASE("what is not there is answered with what is") {
     CHECK(mistake("tension") == "the result has no \"tension\": there is converged, energy, nodes, robot and steps");
 }
 
-TEST_CASE("a path that cannot be read says where") {
+TEST_CASE("an invalid path is reported with the position") {
     CHECK(mistake("").starts_with("\"\": a key is missing at letter 1"));
     CHECK(mistake("steps.").starts_with("\"steps.\": a key is missing at letter 7"));
     CHECK(mistake("steps[x]").starts_with("\"steps[x]\": a whole number and ] are expected at letter 7"));

@@ -9,7 +9,7 @@
 namespace pliant::study {
 namespace {
 
-/// Magic, version, and a dictionary of Python that is padded to a multiple of 64 bytes.
+/// Magic number, version, and a Python dictionary padded to a multiple of 64 bytes.
 std::string header(const std::string& type, std::size_t count) {
     constexpr std::size_t align = 64, before = 10;
     std::string text = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({},), }}", type, count);
@@ -21,7 +21,7 @@ std::string header(const std::string& type, std::size_t count) {
     return bytes + text;
 }
 
-/// The next code point of UTF-8, and U+FFFD for a byte that begins none.
+/// The next code point of UTF-8, or U+FFFD for an invalid byte.
 char32_t take_letter(std::string_view& text) {
     const auto byte = [&text](std::size_t k) { return static_cast<unsigned char>(text[k]); };
     const std::size_t length = byte(0) < 0x80       ? 1

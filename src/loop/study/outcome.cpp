@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A cell as RFC 4180 has it.
+/// A cell in the format of RFC 4180.
 std::string cell(const std::string& text) {
     if (text.find_first_of(",\"\r\n;\t#") == std::string::npos && !text.empty()) return text;
     std::string quoted = "\"";
@@ -34,7 +34,7 @@ std::string column(const Key& key) {
     return key.unit.empty() ? key.name : fmt::format("{} ({})", key.name, key.unit);
 }
 
-/// A result of every row; NaN where there is none.
+/// A result of every row; NaN if missing.
 std::vector<double> result_of(const Plan& plan, const Collected& rows, std::size_t result) {
     std::vector<double> values(plan.rows.size(), std::nan(""));
     for (std::size_t row = 0; row < values.size(); ++row) {
@@ -112,7 +112,7 @@ nlohmann::json account_json(const Collected& rows, const RunAccount* account) {
     return json;
 }
 
-/// The values of a key: numbers where all are, else texts.
+/// The values of a key: as numbers if all are numbers, else as texts.
 std::string key_array(const Plan& plan, std::size_t k) {
     if (plan.keys[k].numeric) {
         std::vector<double> numbers;

@@ -1,4 +1,4 @@
-// What a study found: tables for people, programs and numpy.
+// Results of a study: tables for people, programs and numpy.
 #pragma once
 
 #include <filesystem>
@@ -13,27 +13,28 @@
 
 namespace pliant::study {
 
-/// A result over all rows that gave it.
+/// Statistics of a result over all rows that have it.
 struct ResultFigures {
     std::string name;
     std::size_t count = 0;
-    double least = 0, most = 0, mean = 0, deviation = 0;  ///< of the sample; 0 where there are none
-    Sensitivity sensitivity;                              ///< of a study of sensitivity; else empty
+    double least = 0, most = 0, mean = 0, deviation = 0;  ///< of the sample; 0 if it is empty
+    Sensitivity sensitivity;                              ///< for a sensitivity study; otherwise empty
 };
 
 [[nodiscard]] std::vector<ResultFigures> figures_of(const Plan& plan, const Collected& rows);
 
-/// Keys with their units, results, status and reason, a row each; the same bytes wherever the rows ran.
+/// One line per row: keys with their units, results, status and reason; the same bytes wherever the rows ran.
 [[nodiscard]] std::string results_csv(const Plan& plan, const Collected& rows);
 /// Wall and processor time of each row.
 [[nodiscard]] std::string times_csv(const Collected& rows);
-/// First and total indices with their intervals; "" for another study.
+/// First-order and total indices with their intervals; "" for other studies.
 [[nodiscard]] std::string sensitivity_csv(const Plan& plan, const std::vector<ResultFigures>& figures);
-/// All figures. `account`: of this process, where it ran rows.
+/// All figures. `account`: of this process, if it ran rows.
 [[nodiscard]] std::string summary_json(const Plan& plan, const Collected& rows,
                                        const std::vector<ResultFigures>& figures, const RunAccount* account);
 
-/// results.csv, results.npz, times.csv, summary.json and, of a sensitivity, sensitivity.csv: each whole or not at all.
+/// Writes results.csv, results.npz, times.csv, summary.json and, for a sensitivity study, sensitivity.csv, each
+/// atomically.
 [[nodiscard]] Status write_outcome(const Plan& plan, const std::filesystem::path& folder, const Collected& rows,
                                    const std::vector<ResultFigures>& figures, const std::string& summary);
 

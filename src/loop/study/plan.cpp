@@ -31,7 +31,7 @@ SlurmOptions slurm_of(const nlohmann::json& json) {
     return slurm;
 }
 
-/// Whether what plan_json() wrote was not changed into something that nobody can run.
+/// Checks that a plan read from JSON is consistent and can be run.
 bool fits_together(const Plan& plan) {
     const bool counts = plan.rows_per_chunk >= 1 && plan.rows.size() <= most_rows && !plan.rows.empty() &&
                         plan.keys.size() <= most_keys && !plan.command.empty() && plan.slurm.cpus_per_task >= 1;

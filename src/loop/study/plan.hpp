@@ -1,4 +1,4 @@
-// A plan of experiments as a value: which command is run with which values, and what is wanted of its result.
+// A plan of experiments as a value: the command, its values in each row, and the wanted results.
 #pragma once
 
 #include <cstdint>
@@ -16,46 +16,46 @@ inline constexpr std::size_t most_keys = 64;
 /// How the rows of a plan were chosen.
 enum class Design {
     grid,             ///< every combination of the keys' levels
-    latin_hypercube,  ///< one row in each of n equal layers of every key
+    latin_hypercube,  ///< one row in each of n equal strata of every key
     sobol,            ///< Sobol's sequence
-    sensitivity,      ///< Saltelli's: n (k + 2) rows, from which Sobol indices follow
+    sensitivity,      ///< Saltelli's: n (k + 2) rows, for Sobol indices
     table,            ///< rows of a CSV file
 };
 [[nodiscard]] std::string_view name(Design design);
 
-/// What changes from row to row, and how the command is told.
+/// A quantity that changes from row to row, and how it is passed to the command.
 struct Key {
-    std::string name;     ///< heads its column
-    std::string set;      ///< key that `--set` takes, or
-    std::string option;   ///< option of the command, as in --layer; or neither: the command's words hold {NAME}
-    std::string unit;     ///< follows each value; "" for pure numbers and words
-    bool numeric = true;  ///< every value is a number (with the unit)
+    std::string name;     ///< name of its column
+    std::string set;      ///< key for `--set`, or
+    std::string option;   ///< option of the command, such as --layer; if neither, the command contains {NAME}
+    std::string unit;     ///< appended to each value; "" for pure numbers and words
+    bool numeric = true;  ///< every value is a number (plus the unit)
 };
 
-/// A number of the command's JSON.
+/// A number to be read from the command's JSON.
 struct Wanted {
-    std::string name;  ///< heads its column
-    std::string path;  ///< as json_path.hpp reads it
-    int line = 0;      ///< of the study file; 0: not known
+    std::string name;  ///< name of its column
+    std::string path;  ///< in the syntax of json_path.hpp
+    int line = 0;      ///< in the study file; 0: unknown
 };
 
-/// What Slurm is asked for; empty or 0: nothing is said, and the cluster's default holds.
+/// Resources requested from Slurm; empty or 0: not requested, the cluster's default applies.
 struct SlurmOptions {
     std::string partition, account, time, memory;
     int cpus_per_task = 1;
-    std::vector<std::string> options{};  ///< further ones of sbatch, a word each
+    std::vector<std::string> options{};  ///< more options of sbatch, one word each
 };
 
-/// Immutable once made. The rows stand in it as they are run: what made them (a file, a seed) may change afterwards.
+/// Immutable once made. It contains the rows as they are run: their origin (a file, a seed) may change afterwards.
 struct Plan {
-    std::string study;             ///< its name
-    std::string study_file;        ///< for messages
-    std::string version;           ///< of the program that made it
-    std::string fingerprint;       ///< of version, study file, table and files that the command names: 16 hex digits
-    std::filesystem::path folder;  ///< absolute; rows are run in it
-    std::vector<std::string> command;  ///< its words, from the command's name on
+    std::string study;                 ///< its name
+    std::string study_file;            ///< for messages
+    std::string version;               ///< of the program that made the plan
+    std::string fingerprint;           ///< of version, study file, table and files named by the command: 16 hex digits
+    std::filesystem::path folder;      ///< absolute; working directory of the rows
+    std::vector<std::string> command;  ///< from the command's name on
     Design design = Design::grid;
-    std::size_t samples = 0;  ///< of a sensitivity: n
+    std::size_t samples = 0;  ///< n of a sensitivity study
     std::vector<Key> keys;
     std::vector<Wanted> results;
     std::vector<std::vector<std::string>> rows;  ///< (rows, keys), without units
@@ -65,22 +65,22 @@ struct Plan {
 
     [[nodiscard]] std::size_t chunk_count() const { return (rows.size() + rows_per_chunk - 1) / rows_per_chunk; }
     [[nodiscard]] std::size_t chunk_of(std::size_t row) const { return row / rows_per_chunk; }
-    /// [begin, end) of a chunk's rows.
+    /// Rows [begin, end) of a chunk.
     [[nodiscard]] std::size_t chunk_begin(std::size_t chunk) const { return chunk * rows_per_chunk; }
     [[nodiscard]] std::size_t chunk_end(std::size_t chunk) const;
 };
 
-/// The words of a row's command line, `--json` among them. `row_folder` is what {row} stands for.
+/// The command line of a row, including `--json`. `row_folder` replaces {row}.
 [[nodiscard]] std::vector<std::string> row_words(const Plan& plan, std::size_t row,
                                                  const std::filesystem::path& row_folder);
-/// True where a word of the command holds {row}.
+/// True if the command contains {row}.
 [[nodiscard]] bool wants_row_folder(const Plan& plan);
 
-/// As many chunks as keep some hundred tasks busy, of at most 200 rows, and at most 1,000 chunks: what a cluster takes
-/// as one array.
+/// A chunk size that keeps some hundred tasks busy: at most 200 rows, and at most 1,000 chunks, the size of a job array
+/// that clusters accept.
 [[nodiscard]] std::size_t usual_rows_per_chunk(std::size_t rows);
 
-/// plan.json, and back. Errors of reading: not a plan, or one whose parts do not fit together.
+/// plan.json, written and parsed. Errors of parsing: not a plan, or an inconsistent one.
 [[nodiscard]] std::string plan_json(const Plan& plan);
 [[nodiscard]] Result<Plan> parse_plan(std::string_view text, const std::string& file);
 

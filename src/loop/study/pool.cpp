@@ -60,7 +60,7 @@ public:
         process_ = -1;
         return death_;
     }
-    /// What it died of by itself; one that only closed its socket is given a second to end.
+    /// Its own exit status; a process that only closed its socket gets a second to end.
     Death died() {
         for (int look = 0; look < 100; ++look) {
             siginfo_t info{};
@@ -71,7 +71,7 @@ public:
         }
         return end();
     }
-    /// Lets it end by itself: its socket closes.
+    /// Closes its socket, so that it ends by itself.
     Death finish() {
         ::shutdown(socket_.number(), SHUT_RDWR);
         return died();
@@ -82,7 +82,7 @@ public:
     bool ready = false;
     std::optional<RowOrder> order;
     Clock::time_point begun;
-    double rows_cpu_s = 0;  ///< of the rows that it has ended
+    double rows_cpu_s = 0;  ///< of the rows it has completed
 
 private:
     pid_t process_;
@@ -99,7 +99,7 @@ Result<std::unique_ptr<Worker>> start_worker(const PoolOptions& options) {
     const auto process = start_process(options.worker.program, options.worker.words, {.input = theirs.number()});
     if (!process) return tl::unexpected(process.error());
     auto worker = std::make_unique<Worker>(*process, std::move(ours));
-    // A process that is dead already shows when it is listened to.
+    // If the process is already dead, the next read notices it.
     (void)send_message(worker->file(), {{"paths", options.paths}, {"work_in", options.folder.string()}});
     return worker;
 }
@@ -172,13 +172,13 @@ private:
         return order;
     }
 
-    /// Processes that have not said yet that they are there.
+    /// Processes that have not reported ready yet.
     [[nodiscard]] std::size_t starting() const {
         return static_cast<std::size_t>(
             std::count_if(workers_.begin(), workers_.end(), [](const auto& worker) { return !worker->ready; }));
     }
 
-    /// Whether so many rows wait, and one more: no process is started for nothing.
+    /// Whether more than `count` rows wait: no process is started in vain.
     Result<bool> more_than(std::size_t count) {
         while (again_.size() <= count) {
             if (exhausted_) return false;
@@ -190,7 +190,7 @@ private:
         return true;
     }
 
-    /// Every process that waits gets a row; there are as many processes as rows at a time.
+    /// Gives a row to every waiting process; there are as many processes as parallel rows.
     Status give_orders() {
         for (std::size_t k = 0; k <= workers_.size() && k < static_cast<std::size_t>(options_.jobs); ++k) {
             if (k < workers_.size() && (!workers_[k]->ready || workers_[k]->order)) continue;
@@ -249,7 +249,7 @@ private:
         return {};
     }
 
-    /// A process that is gone: the failure of its row, unless somebody killed it.
+    /// Handles a dead process: its row fails, unless the process was killed from outside.
     Status bury(Worker& worker) {
         constexpr int most_failed_starts = 3;
         const Death death = worker.died();
@@ -302,7 +302,7 @@ private:
     const PoolCalls& calls_;
     const Progress& progress_;
     std::vector<std::unique_ptr<Worker>> workers_;
-    std::deque<RowOrder> again_;  ///< taken, and not running: to be run before others
+    std::deque<RowOrder> again_;  ///< rows taken but not running, to be run before others
     std::map<std::size_t, int> kills_;
     bool exhausted_ = false;
     int failed_starts_ = 0;

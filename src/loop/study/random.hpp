@@ -1,11 +1,11 @@
-// Random numbers that are the same on every machine.
+// Portable random numbers: the same on every machine.
 #pragma once
 
 #include <cstdint>
 
 namespace pliant::study {
 
-/// SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014): 64 random bits a call.
+/// SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014): 64 random bits per call.
 class Random {
 public:
     explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -17,7 +17,7 @@ public:
     }
     /// In [0, 1), 53 bits.
     double share() { return static_cast<double>(next() >> 11) / 9007199254740992.0; }
-    /// In [0, n), for n up to 2^32; no number is likelier than another by more than 2^-32.
+    /// In [0, n), for n up to 2^32; probabilities differ by at most 2^-32.
     std::uint64_t below(std::uint64_t n) { return ((next() >> 32) * n) >> 32; }
 
 private:

@@ -33,7 +33,7 @@ std::string line_of(const nlohmann::json& json) {
     return with_checksum(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-/// What stands behind a right checksum.
+/// The text after the checksum, if that is correct.
 std::optional<std::string_view> checked(std::string_view line) {
     constexpr std::size_t digits = 16;
     if (line.size() <= digits || line[digits] != ' ') return std::nullopt;
@@ -63,7 +63,7 @@ TaskRecord task_of(const nlohmann::json& json) {
             number_or_nan(json.at("rows_cpu_s"))};
 }
 
-/// Lines in their order into what they say together.
+/// Combines lines, in order, into records.
 class Collector {
 public:
     Collector(std::size_t begin, std::size_t end, std::size_t results) : begin_(begin), end_(end), results_(results) {}
@@ -116,7 +116,7 @@ tl::unexpected<Error> system_failure(const std::string& file, std::string_view w
     return failure("{}: {}: {}", file, what, std::strerror(errno));
 }
 
-/// True: the lock is ours. False: another's.
+/// True: locked by us. False: by another process.
 Result<bool> lock(int file, const std::string& name) {
     struct flock whole {};
     whole.l_type = F_WRLCK;

@@ -1,4 +1,4 @@
-// Records of rows: a line each, with a checksum, in one file a chunk that only grows.
+// Records of rows: one line each with a checksum, in one append-only file per chunk.
 #pragma once
 
 #include <cstddef>
@@ -14,40 +14,39 @@
 
 namespace pliant::study {
 
-/// What became of a row.
+/// The outcome of a row.
 struct RowRecord {
     std::size_t row = 0;
-    bool done = false;           ///< else it failed
-    bool missing_path = false;   ///< it failed because a wanted result is not in what the command gave
-    std::string reason;          ///< why it failed, one line
-    std::vector<double> values;  ///< (results); NaN: there was none
+    bool done = false;           ///< false: it failed
+    bool missing_path = false;   ///< it failed because a wanted result is missing from the command's output
+    std::string reason;          ///< of the failure, one line
+    std::vector<double> values;  ///< (results); NaN: missing
     double wall_s = 0, cpu_s = 0;
     bool operator==(const RowRecord&) const = default;
 };
 
-/// A process that ran rows of a chunk, as it ended.
+/// Accounting of a process that ran rows of a chunk, written when it ended.
 struct TaskRecord {
-    std::string place;             ///< the machine, and the task of the cluster if it was one
-    double wall_s = 0, cpu_s = 0;  ///< of the process and all that it started
-    double rows_cpu_s = 0;         ///< of it in rows
+    std::string place;             ///< host name, and task of the cluster, if any
+    double wall_s = 0, cpu_s = 0;  ///< of the process and its child processes
+    double rows_cpu_s = 0;         ///< part of cpu_s spent in rows
     bool operator==(const TaskRecord&) const = default;
 };
 
-/// What a file of records holds.
+/// The content of a records file.
 struct ChunkRecords {
-    std::vector<RowRecord> rows;  ///< the first of each row, in the order in which they ended
+    std::vector<RowRecord> rows;  ///< the first record of each row, in order of completion
     std::vector<TaskRecord> tasks;
-    std::vector<std::size_t> begun;  ///< rows, once for each time that one was begun and has no end
+    std::vector<std::size_t> begun;  ///< rows, one entry for each start without an end
     std::size_t damaged = 0;         ///< lines with a wrong checksum: their rows are run again
-    std::size_t doubled = 0;         ///< further records of a row
-    std::size_t whole_bytes =
-        0;  ///< up to the end of the last whole line; what follows was cut off while it was written
+    std::size_t doubled = 0;         ///< duplicate records of rows
+    std::size_t whole_bytes = 0;     ///< end of the last complete line; an interrupted write may follow
 };
 
 /// The first line of a chunk's file.
 [[nodiscard]] std::string records_header(const Plan& plan, std::size_t chunk);
-/// `begin` to `end`: the rows of the chunk; `results`: how many numbers a row has. An empty text, or less than a first
-/// line, is an empty file. Errors: the first line is another.
+/// `begin` to `end`: the rows of the chunk; `results`: the numbers per row. An empty text, or an incomplete first line,
+/// counts as an empty file. Errors: a different first line.
 [[nodiscard]] Result<ChunkRecords> parse_records(std::string_view text, const std::string& file,
                                                  std::string_view header, std::size_t begin, std::size_t end,
                                                  std::size_t results);
@@ -59,18 +58,18 @@ struct ChunkRecords {
 
 [[nodiscard]] std::filesystem::path records_file(const std::filesystem::path& folder, std::size_t chunk);
 
-/// What a chunk's file holds, without a claim to it; an absent file is empty.
+/// Reads a chunk's file without locking it; a missing file is empty.
 [[nodiscard]] Result<ChunkRecords> read_records(const Plan& plan, const std::filesystem::path& folder,
                                                 std::size_t chunk);
 
-/// A chunk's file, held by this process alone: a lock that ends with it, by whatever death. Movable.
+/// A chunk's file, locked by this process; the lock ends with the process, however it dies. Movable.
 class RecordFile {
 public:
-    /// Nothing where another process holds it. What a killed writer left of a line is cut off.
+    /// Nothing if another process holds the lock. An incomplete last line of a killed writer is cut off.
     [[nodiscard]] static Result<std::optional<RecordFile>> claim(const Plan& plan, const std::filesystem::path& folder,
                                                                  std::size_t chunk);
     [[nodiscard]] const ChunkRecords& records() const { return records_; }
-    /// A line goes to the system in one write, and to the disk with sync().
+    /// Passes a line to the system in one write; sync() brings it to the disk.
     [[nodiscard]] Status append(const std::string& line);
     [[nodiscard]] Status sync();
 

@@ -39,7 +39,7 @@ Result<ChunkRecords> parsed(const Plan& plan, std::string_view text) {
 
 }  // namespace
 
-TEST_CASE("what is written is read, to the last bit") {
+TEST_CASE("records are read back to the last bit") {
     const Plan plan = ten_rows();
     RowRecord failed{5, false, true, "no convergence: \"x\"\n at step 3", {NAN, -0.0}, 1, 2};
     const TaskRecord task{"node1 job 7_3", 3, 2.5, 2.25};
@@ -104,7 +104,7 @@ TEST_CASE("rows of other chunks and second records do not count") {
     CHECK(found->doubled == 1);
 }
 
-TEST_CASE("a row that was begun and has no end is told, unless it was given up in good order") {
+TEST_CASE("a row that was begun and has no end is reported, unless it was given up properly") {
     const Plan plan = ten_rows();
     const auto found =
         parsed(plan, chunk_text(plan) + begun_line(5) + begun_line(5) + begun_line(7) + given_up_line(7));
@@ -123,7 +123,7 @@ TEST_CASE("a chunk has one writer at a time, and the next one goes on behind the
         const auto second = RecordFile::claim(plan, folder.path(), 1);
         REQUIRE(second);
         CHECK_FALSE(second->has_value());
-        REQUIRE((*first)->append(record_line(record(5)).substr(0, 40)));  // as if it were killed here
+        REQUIRE((*first)->append(record_line(record(5)).substr(0, 40)));  // as if killed during this write
     }
     auto next = RecordFile::claim(plan, folder.path(), 1);
     REQUIRE((next && *next));

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// A chunk that this process holds.
+/// A chunk locked by this process.
 struct OpenChunk {
     RecordFile file;
     std::deque<std::size_t> waiting;
@@ -29,7 +29,7 @@ struct OpenChunk {
     Clock::time_point synced = Clock::now();
 };
 
-/// Hands out the rows of one chunk after the other, and writes down what becomes of them.
+/// Hands out the rows of one chunk after the other, and records their outcomes.
 class Rows {
 public:
     Rows(const Plan& plan, const fs::path& folder, const RunSettings& settings, Progress& progress)
@@ -80,7 +80,7 @@ private:
         return {};
     }
 
-    /// Others are at work on what is left: until one of them has died or all is there.
+    /// Other processes work on the rest: waits until one of them has died or all rows are recorded.
     Status wait(Follower& follower) {
         constexpr auto pause_us = 200'000;
         for (;;) {
@@ -184,7 +184,7 @@ private:
         return status;
     }
 
-    /// The reason ends with what there is; the study file says where it was asked for.
+    /// Adds to the row's reason, which lists the results present, the place in the study file that asks for the result.
     [[nodiscard]] Status no_such_result(const RowRecord& record) const {
         for (const Wanted& wanted : plan_.results) {
             const std::string key = "result." + wanted.name;

@@ -1,4 +1,4 @@
-// Runs the rows of a study here: all of them, or those of some chunks.
+// Runs rows of a study on this machine: all of them, or those of some chunks.
 #pragma once
 
 #include <cstddef>
@@ -15,29 +15,29 @@ namespace pliant::study {
 
 struct RunSettings {
     WorkerProgram worker;
-    int jobs = 1;                      ///< rows at a time
-    std::vector<std::size_t> chunks;   ///< to be run, in this order; of those of others only what they leave
-    bool wait_for_others = true;       ///< until all rows of the chunks are recorded, by whomsoever
-    bool stop_at_missing_path = true;  ///< the first row of all has no such result: nobody wants the others
-    int most_begun = 0;                ///< a row that ended so many tasks is a failure; 0: there is no such thing
-    std::string place;                 ///< for the accounts: the machine and its task
+    int jobs = 1;                      ///< number of parallel rows
+    std::vector<std::size_t> chunks;   ///< to be run, in this order; for chunks of other processes only what these
+                                       ///< leave
+    bool wait_for_others = true;       ///< until all rows of the chunks are recorded, by any process
+    bool stop_at_missing_path = true;  ///< stop if the first row lacks a wanted result: the others would, too
+    int most_begun = 0;                ///< a row during which this many tasks died counts as failed; 0: no limit
+    std::string place;                 ///< host name and task, for the accounting
 };
 
-/// What this process did.
+/// Accounting of this process.
 struct RunAccount {
     std::size_t rows = 0;
     double rows_cpu_s = 0;     ///< processor time in rows
-    double workers_cpu_s = 0;  ///< of the processes that ran them, with their start
+    double workers_cpu_s = 0;  ///< of the processes that ran them, including their start
     double wall_s = 0;
 };
 
-/// Runs what has no record yet. Records are written as rows end; where it is stopped, by whatever, it goes on from
-/// there the next time. Errors: of the disk, a process that does not start, a wanted result that is not there,
-/// cancellation.
+/// Runs all rows without a record. Records are written as rows end; an interrupted run can be continued. Errors: of the
+/// disk, a process that does not start, a missing wanted result, cancellation.
 [[nodiscard]] Result<RunAccount> run_rows(const Plan& plan, const std::filesystem::path& folder,
                                           const RunSettings& settings, Progress& progress);
 
-/// Every chunk, beginning with the `share`-th of `shares` equal parts: processes that start together meet late.
+/// Every chunk, beginning at part `share` of `shares` equal parts, so that processes started together rarely meet.
 [[nodiscard]] std::vector<std::size_t> all_chunks(const Plan& plan, std::size_t share = 0, std::size_t shares = 1);
 
 }  // namespace pliant::study

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// x = 0, 1, ...; the program of test_rows.cpp squares it, or does what `kind` says where x is 3.
+/// x = 0, 1, ...; the program of test_rows.cpp squares x, or fails as `kind` says at x = 3.
 Plan squares(const std::string& kind, int rows = 8) {
     Plan plan;
     plan.study = "squares";
@@ -49,7 +49,7 @@ Collected collected(const Plan& plan, const fs::path& folder) {
     return *found;
 }
 
-/// All rows but `except` are there with their squares, none twice.
+/// Checks that all rows except `except` are recorded with their squares, once each.
 void check_squares(const Plan& plan, const Collected& found, std::size_t except = 1000000) {
     CHECK(found.doubled == 0);
     CHECK(found.damaged == 0);
@@ -61,7 +61,7 @@ void check_squares(const Plan& plan, const Collected& found, std::size_t except 
     }
 }
 
-/// Runs a study in which row 3 goes wrong, and gives the reason that is kept.
+/// Runs a study in which row 3 fails, and returns the recorded reason.
 std::string reason_of_row_3(Plan plan) {
     const test::Folder folder("study");
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
@@ -100,7 +100,7 @@ TEST_CASE("rows run in parallel, each once, many in a process") {
     CHECK(again->rows == 0);
 }
 
-TEST_CASE("what goes wrong in a row is the failure of that row, with its reason") {
+TEST_CASE("an error in a row fails only that row, with its reason") {
     CHECK(reason_of_row_3(squares("fail")) == "finger.toml: step 4: no equilibrium");
     CHECK(reason_of_row_3(squares("silent")) == "the command printed no JSON");
     CHECK(reason_of_row_3(squares("crash")) == "crashed (signal 11: Segmentation fault)");
@@ -199,7 +199,7 @@ TEST_CASE("several processes share the chunks of one folder") {
         ranks.push_back(process);
     }
     ::usleep(150000);
-    ::kill(ranks[1], SIGKILL);  // the others take what it leaves
+    ::kill(ranks[1], SIGKILL);  // the other ranks take over its rows
     for (const pid_t rank : ranks) {
         int status = 0;
         ::waitpid(rank, &status, 0);
@@ -241,7 +241,7 @@ TEST_CASE("a folder with another study, or with something else, is left alone") 
     CHECK(newer.error().message.find("was begun with pliant 1, and this is 2") != std::string::npos);
     REQUIRE(write_file(folder / "notes.txt", "mine"));
     CHECK_FALSE(open_folder(plan, folder.path(), Begin::fresh));
-    // Nothing has been run: the study that stood there was a slip.
+    // No row has run, so the first study counts as a mistake and is replaced.
     CHECK(open_folder(plan, folder / "s", Begin::fresh));
     CHECK(load_plan(folder / "s")->version == "2");
     const auto leader = lead(folder / "s");

@@ -9,14 +9,14 @@
 namespace pliant::study {
 namespace {
 
-/// Rows A, B and A with the k-th number of B, of one base point.
+/// Rows A, B and, for each k, A with the k-th number of B, of one base point.
 using Base = std::span<const double>;
 
 struct Pair {
     double first = 0, total = 0;
 };
 
-/// Both indices of every key, from the base points `chosen`, about the mean `centre`, which keeps the products small.
+/// Both indices of every key, from the base points `chosen`. Subtracting the mean `centre` keeps the products small.
 std::vector<Pair> indices_of(std::span<const Base> bases, std::span<const std::size_t> chosen, std::size_t keys,
                              double centre, double* variance) {
     double sum = 0, squares = 0;
@@ -42,7 +42,7 @@ std::vector<Pair> indices_of(std::span<const Base> bases, std::span<const std::s
     return pairs;
 }
 
-/// The interval between two percentiles of what bootstrap samples gave.
+/// The interval between two percentiles of the bootstrap samples.
 Index interval(double value, std::vector<double> samples) {
     std::sort(samples.begin(), samples.end());
     const auto at = [&samples](double share) {

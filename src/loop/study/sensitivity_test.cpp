@@ -43,7 +43,8 @@ TEST_CASE("the Ishigami function's indices are those of its closed form") {
     const Sensitivity found = sobol_indices(ishigami_values(4096, 1), 3);
     REQUIRE(found.keys.size() == 3);
     CHECK(found.samples == 4096);
-    // Scrambled Sobol points integrate this function to about 1/n; 1 % of the variance is far above what was seen.
+    // Scrambled Sobol points integrate this function with an error of about 1/n; 1 % of the variance is far above the
+    // observed error.
     CHECK(found.variance == near(variance, {.relative = 0.01}));
     const double first[] = {variance_x / variance, variance_y / variance, 0};
     const double total[] = {(variance_x + variance_xz) / variance, variance_y / variance, variance_xz / variance};

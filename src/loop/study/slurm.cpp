@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr double patience_s = 120;  // of one call; Slurm's own limits are shorter
+constexpr double patience_s = 120;  // per call; Slurm's own limits are shorter
 
 std::string in_quotes(const std::string& text) {
     std::string quoted = "'";
@@ -26,7 +26,7 @@ std::string in_quotes(const std::string& text) {
     return quoted + "'";
 }
 
-/// The last line that a task of these chunks said.
+/// The last line logged by a task of these chunks.
 std::string last_words(const fs::path& folder, const std::vector<std::size_t>& chunks) {
     for (const std::size_t chunk : chunks) {
         const auto text = read_file(folder / "slurm" / fmt::format("{}.out", chunk), std::uintmax_t{16} << 20);
@@ -60,7 +60,8 @@ public:
             if (progress_.cancelled()) return cancel();
             if (!jobs) return tl::unexpected(jobs.error());
             if (*jobs == Jobs::none) {
-                // Rows may have been recorded since: a task that has left the queue has written all that it will.
+                // Read the records again: a task that has left the queue has written all of its rows, perhaps since the
+                // last look.
                 Status status = look();
                 if (status && !complete()) status = submit();
                 if (!status) return give_up(std::move(status));
@@ -88,7 +89,7 @@ private:
         return {};
     }
 
-    /// Errors: Slurm is not here, or has not answered since this began.
+    /// Errors: Slurm is not installed, or has not responded since the start.
     Result<Jobs> ask() {
         const auto answer = run_tool("squeue", {"--noheader", "--format=%i", "--name=" + job_name(plan_, folder_)},
                                      patience_s, progress_);
@@ -115,8 +116,8 @@ private:
         recorded_at_submission_ = count_.recorded;
         const auto answer =
             run_tool("sbatch", sbatch_words(plan_, folder_, chunks, settings_.most_tasks), patience_s, progress_);
-        if (!answer) return {};  // it took too long: squeue will tell, as below
-        if (answer->status != 0 && passes_later(answer->errors)) return {};  // whether it was taken, squeue will tell
+        if (!answer) return {};  // timeout: squeue will tell below whether it was accepted
+        if (answer->status != 0 && passes_later(answer->errors)) return {};  // squeue will tell whether it was accepted
         if (answer->status != 0) return failure("sbatch refuses the study: {}", trimmed(answer->errors));
         ++account_.submissions;
         account_.tasks += chunks.size();
@@ -124,7 +125,7 @@ private:
         return {};
     }
 
-    /// Until Slurm is asked again; all rows may be there before.
+    /// Waits until the next query of Slurm, or until all rows are recorded.
     Status wait() {
         const auto until =
             Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(pause_s_));
@@ -138,7 +139,7 @@ private:
     }
 
     void end_jobs() {
-        const Progress patient;  // also after Ctrl-C
+        const Progress patient;  // completes even after Ctrl-C
         (void)run_tool("scancel", {"--quiet", "--name=" + job_name(plan_, folder_)}, patience_s, patient);
     }
     Result<SlurmAccount> cancel() {
@@ -159,7 +160,7 @@ private:
     SlurmAccount account_;
     std::size_t recorded_at_submission_ = 0;
     int idle_ = 0;
-    bool answered_ = false;  ///< Slurm is there: where it does not answer, it will again
+    bool answered_ = false;  ///< Slurm has responded before: if it does not respond now, it will again
     Clock::time_point begun_ = Clock::now();
     double pause_s_ = 1;
 };
@@ -194,7 +195,7 @@ std::vector<std::string> sbatch_words(const Plan& plan, const fs::path& folder, 
         "--nodes=1",
         "--ntasks=1",
         fmt::format("--cpus-per-task={}", slurm.cpus_per_task),
-        "--no-requeue",  // what is missing is submitted anew
+        "--no-requeue",  // missing rows are submitted anew instead
         "--chdir=" + folder.string(),
         "--output=" + (folder / "slurm" / "%a.out").string(),
     };

@@ -1,4 +1,4 @@
-// A study on a cluster with Slurm: chunks of rows as tasks of an array, and those again that are missing.
+// Runs a study on a Slurm cluster: chunks of rows are tasks of a job array, resubmitted while rows are missing.
 #pragma once
 
 #include <cstddef>
@@ -14,34 +14,34 @@
 namespace pliant::study {
 
 struct SlurmSettings {
-    std::filesystem::path program;  ///< pliant, as the nodes find it
-    int most_tasks = 0;             ///< at a time; 0: as many as the cluster gives
-    double look_every_s = 10;       ///< how often Slurm is asked, at most; records are looked at every second
+    std::filesystem::path program;  ///< pliant, by its path on the nodes
+    int most_tasks = 0;             ///< running at a time; 0: no limit
+    double look_every_s = 10;       ///< minimum interval between queries of Slurm; records are read every second
 };
 
-/// What became of it.
+/// Summary of the run.
 struct SlurmAccount {
     int submissions = 0;
-    std::size_t tasks = 0;  ///< that were submitted
+    std::size_t tasks = 0;  ///< number submitted
 };
 
-/// Submits what has no record, waits, and submits again what tasks left, until no row is missing. Jobs go by a name
-/// that belongs to study and folder: where this program, or slurmctld, died and begins anew, it finds them by it and
-/// submits nothing twice. While Slurm does not answer, it waits. Errors: Slurm refuses the job; tasks end again and
-/// again without a row; a wanted result is not there; cancellation, with which the jobs end too.
+/// Submits chunks with missing records, waits, and resubmits what tasks leave, until no row is missing. The job name is
+/// derived from study and folder: after this program or slurmctld died, a new run finds the jobs by it and submits
+/// nothing twice. While Slurm does not respond, it waits. Errors: Slurm refuses the job; tasks repeatedly end without
+/// completing a row; a missing wanted result; cancellation, which also cancels the jobs.
 [[nodiscard]] Result<SlurmAccount> run_on_slurm(const Plan& plan, const std::filesystem::path& folder,
                                                 const SlurmSettings& settings, Progress& progress);
 
-/// The name of the jobs of a study in a folder.
+/// The job name for a study in a folder.
 [[nodiscard]] std::string job_name(const Plan& plan, const std::filesystem::path& folder);
-/// "0-3,7": what `--array` takes. In rising order, without doubles.
+/// "0-3,7": the argument of `--array`. Ascending, without duplicates.
 [[nodiscard]] std::string array_text(std::span<const std::size_t> chunks);
-/// The words of sbatch for these chunks.
+/// The command line of sbatch for these chunks.
 [[nodiscard]] std::vector<std::string> sbatch_words(const Plan& plan, const std::filesystem::path& folder,
                                                     std::span<const std::size_t> chunks, int most_tasks);
-/// What a task runs: a script of the shell.
+/// The shell script of a task.
 [[nodiscard]] std::string task_script(const std::filesystem::path& program, const std::filesystem::path& folder);
-/// Slurm did not answer, or not now: the same again later may pass.
+/// True if the error is temporary, so that a later attempt may succeed.
 [[nodiscard]] bool passes_later(std::string_view errors);
 
 }  // namespace pliant::study

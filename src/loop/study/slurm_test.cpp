@@ -10,7 +10,7 @@ TEST_CASE("chunks as an array") {
     CHECK(array_text(std::vector<std::size_t>{0, 2, 3, 7, 9, 10, 11}) == "0,2-3,7,9-11");
 }
 
-TEST_CASE("what sbatch is told") {
+TEST_CASE("the arguments of sbatch") {
     Plan plan;
     plan.fingerprint = "0123456789abcdef";
     plan.slurm = {"short", "soft", "00:10:00", "2G", 4, {"--qos=low"}};
@@ -46,7 +46,7 @@ TEST_CASE("the script of a task takes folders with blanks and quotes") {
               .find("exec '/opt/pliant' study '/scratch/it'\\''s here' --chunk") != std::string::npos);
 }
 
-TEST_CASE("a controller that is away is waited for, a refusal is not") {
+TEST_CASE("an absent controller is waited for, a refusal is not") {
     CHECK(passes_later(
         "sbatch: error: Batch job submission failed: Unable to contact slurm controller (connect failure)"));
     CHECK(passes_later("sbatch: error: Batch job submission failed: Socket timed out on send/recv operation"));

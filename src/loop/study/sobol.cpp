@@ -11,14 +11,14 @@ namespace {
 constexpr int bits = 32;
 constexpr int highest_degree = 9;
 
-/// A primitive polynomial over the field of two elements, bit k the coefficient of x^k, and the first direction numbers
-/// that belong to it, as many as its degree.
+/// A primitive polynomial over GF(2), bit k the coefficient of x^k, and its initial direction numbers, as many as its
+/// degree.
 struct Direction {
     std::uint32_t polynomial;
     std::array<std::uint32_t, highest_degree> first;
 };
 
-// The second dimension and those after it; the first is van der Corput's sequence. Numbers of S. Joe and F. Y. Kuo,
+// The second and further dimensions; the first is van der Corput's sequence. Numbers of S. Joe and F. Y. Kuo,
 // "Constructing Sobol sequences with better two-dimensional projections", SIAM J. Sci. Comput. 30 (2008), table
 // new-joe-kuo-6.21201.
 constexpr std::array<Direction, most_sobol_dimensions - 1> directions{{
@@ -89,7 +89,7 @@ constexpr std::array<Direction, most_sobol_dimensions - 1> directions{{
 
 using Numbers = std::array<std::uint32_t, bits>;
 
-/// V of one dimension: number k has its leading bit at position k from the left.
+/// The direction numbers of one dimension: number k has its leading bit at position k from the left.
 Numbers direction_numbers(int dimension) {
     Numbers v{};
     if (dimension == 0) {
@@ -117,7 +117,7 @@ std::vector<double> sobol_points(std::size_t count, int dimensions, std::uint64_
         const Numbers v = direction_numbers(d);
         std::uint32_t x = seed == 0 ? 0 : static_cast<std::uint32_t>(random.next() >> 32);
         for (std::size_t i = 0; i < count; ++i) {
-            if (i > 0) x ^= v[std::countr_zero(i)];  // in the order of Gray's code
+            if (i > 0) x ^= v[std::countr_zero(i)];  // Gray code order
             points[i * dimensions + d] = static_cast<double>(x) / 4294967296.0;
         }
     }

@@ -45,7 +45,7 @@ std::vector<std::string> read_command(Reader& root, const StudyContext& context)
     return words;
 }
 
-/// `set`, `option`, or a word {NAME} of the command: exactly one of them.
+/// Requires exactly one of `set`, `option`, or a word {NAME} in the command.
 Key read_key(const std::string& name, Reader& table, const std::vector<std::string>& command) {
     Key key{name, table.text("set", ""), table.text("option", ""), "", true};
     if (name == "row") table.problem("", "{row} stands for the row's folder; another name is needed");
@@ -109,7 +109,7 @@ SlurmOptions read_slurm(Reader table, std::size_t& rows_per_task) {
     return slurm;
 }
 
-/// What a study file says, before there are rows.
+/// The content of a study file before rows are made.
 struct Draft {
     Plan plan;
     std::vector<KeyChoice> keys;
@@ -173,7 +173,7 @@ std::vector<std::vector<std::string>> sampled_rows(const Draft& draft, Reader& r
     return rows_of(sobol_points(draft.samples, count, draft.seed), draft.keys);
 }
 
-/// The name of a column, without its unit in brackets.
+/// The name of a column, without the unit in brackets.
 std::string_view bare(std::string_view column) {
     const std::string_view unit = csv_unit(column);
     if (unit.empty()) return column;
@@ -182,7 +182,7 @@ std::string_view bare(std::string_view column) {
     return column;
 }
 
-/// Each column is a key: of the study file by its name, or else of the file that the command reads.
+/// The key of each column: one of the study file by name, or else a key of the file that the command reads.
 Result<Key> key_of_column(const std::string& column, const Draft& draft, const std::string& place) {
     const std::string name(bare(column)), unit(csv_unit(column));
     if (name.empty()) return input_error("{}: a column has no name", place);
@@ -245,7 +245,7 @@ Status take_table(const std::string& text, const std::string& file, Draft& draft
     return read_table_rows(*table, plan);
 }
 
-/// Of a plan by a table: how a column is told the command; the values are in the table.
+/// The keys of a table plan: how a column is passed to the command; the values are in the table.
 std::vector<KeyChoice> read_table_keys(Reader& root, const std::vector<std::string>& command) {
     std::vector<KeyChoice> keys;
     for (auto& [name, table] : root.named_tables("key")) {
@@ -288,7 +288,7 @@ Draft read_draft(Reader& root, const StudyContext& context, const fs::path& file
     return draft;
 }
 
-/// Rows depend on these bytes: where one changes, it is another study.
+/// Rows depend on these bytes: any change makes a different study.
 std::string fingerprint_of(std::string_view text, std::string_view table, const Plan& plan) {
     Digest digest;
     const auto add = [&digest](std::string_view bytes) {

@@ -1,4 +1,4 @@
-// A program that serves rows for tests, in the place of pliant: what a row does stands in its words.
+// A program that serves rows for tests, in place of pliant: the words of a row say what it does.
 #include <fmt/format.h>
 #include <signal.h>
 #include <unistd.h>
@@ -19,7 +19,7 @@ double value_of(const std::vector<std::string>& words, const std::string& key) {
     return std::nan("");
 }
 
-/// The square of x; and what can go wrong, by the command's second word.
+/// The square of x, or a failure chosen by the command's second word.
 int work(const std::vector<std::string>& words) {
     const double x = value_of(words, "x");
     const std::string& kind = words.at(1);

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where PATH has it; empty: nowhere.
+/// The program's path on PATH; empty: not found.
 fs::path found_in_path(const std::string& name) {
     const char* const path = std::getenv("PATH");
     std::string_view rest = path == nullptr ? "/usr/local/bin:/usr/bin:/bin" : path;
@@ -44,7 +44,7 @@ Result<Pipe> make_pipe() {
     return Pipe{FileHandle(ends[0]), FileHandle(ends[1])};
 }
 
-/// Takes what has come; closes the file at its end.
+/// Appends available bytes; closes the file at its end.
 void take(FileHandle& file, std::string& text) {
     std::array<char, 4096> piece{};
     const ssize_t got = ::read(file.number(), piece.data(), piece.size());

@@ -1,4 +1,4 @@
-// Programs of the cluster, asked for something: sbatch, squeue, scancel.
+// Runs programs of the cluster: sbatch, squeue, scancel.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@
 namespace pliant::study {
 
 struct ToolOutcome {
-    int status = 0;  ///< exit status; -1: it was killed
+    int status = 0;  ///< exit status; -1: killed
     std::string output, errors;
 };
 
-/// Runs a program of PATH to its end, or `limit_s`. Errors: it is not there, cannot be started, was ended because it
-/// took longer; cancellation.
+/// Runs a program found on PATH for at most `limit_s`. Errors: not found, cannot be started, killed because it took
+/// longer; cancellation.
 [[nodiscard]] Result<ToolOutcome> run_tool(const std::string& name, const std::vector<std::string>& words,
                                            double limit_s, const Progress& progress);
 

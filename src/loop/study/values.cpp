@@ -11,7 +11,7 @@ namespace {
 
 using config::Value;
 
-/// A number, a truth or a text of TOML, as `--set` takes it.
+/// A TOML number, boolean or string in the form that `--set` takes.
 std::optional<std::string> scalar_text(const Value& value) {
     if (const auto* text = std::get_if<std::string>(&value.data)) return *text;
     if (const auto* whole = std::get_if<std::int64_t>(&value.data)) return fmt::format("{}", *whole);
@@ -20,7 +20,7 @@ std::optional<std::string> scalar_text(const Value& value) {
     return std::nullopt;
 }
 
-/// The texts of a list; a problem where it is none, is empty or holds lists.
+/// The texts of a list; a problem if it is not a list, is empty or contains lists.
 std::vector<std::string> texts_of(config::Reader& table, std::string_view key) {
     std::vector<std::string> texts;
     const Value* value = table.raw(key);
@@ -40,7 +40,7 @@ std::vector<std::string> texts_of(config::Reader& table, std::string_view key) {
     return texts;
 }
 
-/// Takes the unit off where all are numbers of one unit.
+/// Splits off the unit if all values are numbers with the same unit.
 void find_common_unit(Choice& choice) {
     std::vector<Measure> measures;
     for (const std::string& value : choice.values) {
@@ -94,7 +94,7 @@ std::optional<Measure> read_measure(std::string_view text) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc{} || !std::isfinite(number)) return std::nullopt;
     const std::string_view unit = trimmed(text.substr(static_cast<std::size_t>(end - text.data())));
-    // Digits, points and commas behind a number make it a version, a list or a date.
+    // Digits, points or commas after a number mean a version, a list or a date.
     if (unit.find_first_of(" \t,;:=[]{}\"'") != std::string_view::npos) return std::nullopt;
     if (!unit.empty() && (unit.front() == '.' || unit.front() == '-' || (unit.front() >= '0' && unit.front() <= '9')))
         return std::nullopt;

@@ -1,4 +1,4 @@
-// The values that a key takes: listed, or from a range.
+// The values of a key: listed, or from a range.
 #pragma once
 
 #include <optional>
@@ -10,32 +10,32 @@
 
 namespace pliant::study {
 
-/// "12.5 MPa" as 12.5 and "MPa"; a pure number has no unit. Nothing where the text is no finite number with at most one
-/// word behind it.
+/// "12.5 MPa" as 12.5 and "MPa"; a pure number has no unit. Nothing if the text is not a finite number followed by at
+/// most one word.
 struct Measure {
     double number = 0;
     std::string unit;
 };
 [[nodiscard]] std::optional<Measure> read_measure(std::string_view text);
 
-/// The shortest text that reads as the same number.
+/// The shortest text that parses to the same number.
 [[nodiscard]] std::string number_text(double number);
 
-/// What a key's table in the study file says about its values.
+/// The values of a key as given in its table of the study file.
 struct Choice {
-    std::vector<std::string> values;  ///< listed ones, without the common unit; else from `low` to `high`
+    std::vector<std::string> values;  ///< listed values, without the common unit; if empty, from `low` to `high`
     double low = 0, high = 0;
     std::string unit;
     bool numeric = true;
     bool log = false;    ///< equal ratios instead of equal steps
-    bool whole = false;  ///< rounded to whole numbers, all equally likely
-    int levels = 0;      ///< of a grid; 0: not said
+    bool whole = false;  ///< rounded to integers, all equally likely
+    int levels = 0;      ///< of a grid; 0: not given
 };
 
-/// Reads range, scale, whole, levels or values of a key's table; mistakes become problems of the reader.
+/// Reads range, scale, whole, levels or values from a key's table; mistakes become problems of the reader.
 [[nodiscard]] Choice read_choice(config::Reader& table);
 
-/// The value for u in [0, 1): along the range, or one of the listed.
+/// The value for u in [0, 1): along the range, or one of the list.
 [[nodiscard]] std::string value_at(const Choice& choice, double u);
 /// The levels of a grid, from end to end.
 [[nodiscard]] std::vector<std::string> levels_of(const Choice& choice);

@@ -1,4 +1,4 @@
-// Messages between a study and the processes that run its rows: a length, and JSON.
+// Messages between a study and its worker processes: a length, and JSON.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,15 +9,16 @@
 
 namespace pliant::study {
 
-/// Sends all of it; false: the other end is gone.
+/// Sends the whole message; false: the other end is closed.
 [[nodiscard]] bool send_message(int file, const nlohmann::json& message);
 
-/// Collects what comes on a file until there is a message.
+/// Buffers received bytes until a message is complete.
 class Inbox {
 public:
-    /// Reads what is there, or waits for something; false: the other end is gone.
+    /// Reads available bytes, or waits for some; false: the other end is closed.
     [[nodiscard]] bool read_some(int file);
-    /// The next whole message, if it has come. One that is none, or longer than 64 MB, ends the talk: failed() is true.
+    /// The next complete message, if any. An invalid one, or one longer than 64 MB, ends the connection: failed() is
+    /// true.
     [[nodiscard]] std::optional<nlohmann::json> take();
     [[nodiscard]] bool failed() const { return failed_; }
 

@@ -24,7 +24,7 @@ double seconds(const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-/// Processor time of this process and of those that it started and that have ended.
+/// Processor time of this process and its ended child processes.
 double cpu_s() {
     double sum = 0;
     for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
@@ -35,7 +35,7 @@ double cpu_s() {
     return sum;
 }
 
-/// The last line that says something: errors come last.
+/// The last non-empty line: errors come last.
 std::string last_line(const std::string& text) {
     const std::size_t end = text.find_last_not_of(" \r\n");
     if (end == std::string::npos) return "";
@@ -44,7 +44,7 @@ std::string last_line(const std::string& text) {
                        end - (before == std::string::npos ? 0 : before + 1) + 1);
 }
 
-/// The wanted numbers of what a command printed; null where they are not there.
+/// Extracts the wanted numbers from a command's output; null if missing.
 class Reading {
 public:
     explicit Reading(const std::vector<JsonPath>& paths) : paths_(paths), values(nlohmann::json::array()) {}
@@ -67,8 +67,8 @@ private:
 public:
     nlohmann::json values;
     bool readable = false;
-    std::string missing;  ///< what the first missing path has to say
-    std::string error;    ///< as the command told it
+    std::string missing;  ///< error message of the first missing path
+    std::string error;    ///< the command's own error message
 };
 
 nlohmann::json run_row(const std::vector<std::string>& words, const std::vector<JsonPath>& paths,
@@ -107,7 +107,7 @@ std::string contents(int file) {
     return text;
 }
 
-/// Standard output or error, led into a file for a while.
+/// Redirects standard output or error to a file, temporarily.
 class Redirected {
 public:
     Redirected(int standard, int into) : standard_(standard), before_(::fcntl(standard, F_DUPFD_CLOEXEC, 3)) {
@@ -124,7 +124,7 @@ private:
     FileHandle before_;
 };
 
-/// The first message: what is wanted of each row, and where they are run.
+/// The first message: the wanted results of each row, and the working directory.
 bool begin(const nlohmann::json& message, std::vector<JsonPath>& paths) {
     const auto work_in = message.at("work_in").get<std::string>();
     if (!work_in.empty() && ::chdir(work_in.c_str()) != 0) return false;
@@ -136,7 +136,7 @@ bool begin(const nlohmann::json& message, std::vector<JsonPath>& paths) {
     return true;
 }
 
-/// False: this was no message of a study.
+/// False: not a message of a study.
 bool answer(int file, const nlohmann::json& message, std::vector<JsonPath>& paths, const RunCommand& run) {
     if (message.contains("paths")) return begin(message, paths) && send_message(file, {{"ready", true}});
     const auto folder = message.at("folder").get<std::string>();
@@ -165,7 +165,7 @@ CommandOutcome captured(const std::function<int()>& work) {
 }
 
 int serve_rows(int file, const RunCommand& run) {
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // also in the middle of a row: nobody would take its result
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // even in the middle of a row: its result would be lost anyway
     Inbox inbox;
     std::vector<JsonPath> paths;
     try {

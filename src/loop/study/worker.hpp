@@ -1,4 +1,4 @@
-// The process that runs rows, many one after the other: what takes long to start is started once.
+// The worker process, which runs many rows one after the other to save the start-up cost.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,7 @@
 
 namespace pliant::study {
 
-/// What a command did.
+/// The result of a command.
 struct CommandOutcome {
     int exit_status = 0;
     std::string output;  ///< its standard output: JSON
@@ -16,11 +16,11 @@ struct CommandOutcome {
 /// Runs a command line, from the command's name on.
 using RunCommand = std::function<CommandOutcome(const std::vector<std::string>& words)>;
 
-/// Answers the rows that come over the socket `file`, until its other end closes. The study that started it is looked
-/// for after each row, and the process ends with it. The exit status of the process.
+/// Runs rows received over the socket `file` until its other end closes. After each row it checks that the study that
+/// started it still runs, and ends with it. Returns the exit status of the process.
 [[nodiscard]] int serve_rows(int file, const RunCommand& run);
 
-/// Runs `work`, which writes to standard output and error, and gives what it wrote. One at a time in a process.
+/// Runs `work`, which writes to standard output and error, and returns what it wrote. Only one at a time per process.
 [[nodiscard]] CommandOutcome captured(const std::function<int()>& work);
 
 }  // namespace pliant::study

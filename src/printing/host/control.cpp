@@ -33,7 +33,7 @@ bool is_printing(State state) {
     return state == State::printing || state == State::pausing || state == State::paused || state == State::cancelling;
 }
 
-/// Names one run of the computer; "" where it cannot be told.
+/// Identifies the boot of the computer; "" if unknown.
 std::string boot_name() {
     std::ifstream file("/proc/sys/kernel/random/boot_id");
     std::string name;
@@ -41,7 +41,7 @@ std::string boot_name() {
     return name;
 }
 
-/// The number with which a session's lines begin: far from where other hosts count, and from the last sessions.
+/// The first line number of a session: far from the numbers of other hosts and of recent sessions.
 long new_base(const Clock& clock, long last) {
     const auto spread = static_cast<long>(clock.now() * 1000) % 900;
     const long base = 1'000'000 + spread * 10'000;
@@ -80,30 +80,30 @@ std::string job_digest(std::string_view bytes) {
     return digest.text();
 }
 
-/// Everything behind the door. The members below the line belong to the working thread.
+/// The private state. The last members are used by the working thread only.
 struct Control::State_ {
     explicit State_(ControlSetup s) : setup(std::move(s)), desk(setup.clock) {}
 
     ControlSetup setup;
     Desk desk;
-    std::mutex mutex;  ///< of tasks, quitting, and of `wire` while it is replaced
+    std::mutex mutex;  ///< protects tasks, quitting, and `wire` while it is replaced
     std::condition_variable woken;
     std::deque<std::function<void()>> tasks;
     bool quitting = false;
-    bool hears_m112 = true;  ///< at once, even while it is busy: EMERGENCY_PARSER
+    bool hears_m112 = true;  ///< acts on M112 at once, even when busy: EMERGENCY_PARSER
     std::shared_ptr<Wire> wire;
-    bool moves_by_hand = false;    ///< one move, that the next one stops
-    bool stopped_by_hand = false;  ///< that has happened
+    bool moves_by_hand = false;    ///< a single move, which the next one stops
+    bool stopped_by_hand = false;  ///< this has happened
 
-    // ---------------
+    // Working thread only:
     std::unique_ptr<Machine> machine;
-    bool touched = false;  ///< the controller has been spoken to since the last start
+    bool touched = false;  ///< something was sent to the controller since the last start
     long last_line = 0;    ///< of the controller when the wire was opened
-    /// The same, as long as nothing but numbers and questions has been sent since: what is connected and then resumed
-    /// is as proven as what is resumed at once.
+    /// The same, if only line numbers and queries have been sent since: connecting first and resuming later then proves
+    /// as much as resuming at once.
     std::optional<long> untouched_line;
-    long last_base = 0;          ///< of our own last session
-    bool may_be_halted = false;  ///< the controller was, when it was heard last
+    long last_base = 0;          ///< of our previous session
+    bool may_be_halted = false;  ///< the controller was halted when last heard
     std::optional<PrintJob> job;
     Script script;
     std::vector<double> times;
@@ -134,10 +134,10 @@ struct Control::State_ {
     void look_at_journal();
 };
 
-// --- asking --------------------------------------------------------------------------------------------------------
+// Requests.
 
-/// Checks the state and takes the next one in one go, so that two who ask at once do not both get it. Without a next
-/// one it stays as it is.
+/// Checks the state and changes it to the next one atomically, so that only one of two concurrent requests succeeds.
+/// Without `next` the state is unchanged.
 Status Control::State_::ask_for(std::optional<State> next, const std::function<Status(const Snapshot&)>& allowed,
                                 std::function<void()> task) {
     Status status;
@@ -267,7 +267,7 @@ Status Control::suspend() {
 
 void Control::emergency_stop() {
     const Status pulled = state_->setup.emergency_line != nullptr ? state_->setup.emergency_line->pull() : Status{};
-    std::shared_ptr<Wire> wire;  // also while the working thread lets go of it
+    std::shared_ptr<Wire> wire;  // kept alive while the working thread releases it
     bool hears_m112 = true;
     {
         const std::scoped_lock lock(state_->mutex);
@@ -278,10 +278,10 @@ void Control::emergency_stop() {
     state_->desk.stop_everything();
     state_->woken.notify_all();
     if (wire) {
-        // Not on the devices' clock: a virtual one may stand still.
+        // In real time: the devices' clock may be a virtual one that stands still.
         std::this_thread::sleep_for(std::chrono::duration<double>(m112_after_m410_s));
         (void)wire->write("\nM112\n");
-        // A firmware that reads it in its turn only is stopped by a reset, where the wire can.
+        // Firmware that reads M112 only in its turn is stopped by a reset, if the wire supports it.
         if (!hears_m112) (void)wire->reset();
     }
     if (!pulled) state_->desk.event("error", pulled.error().message);
@@ -309,10 +309,9 @@ Status Control::skip_layer(int layer) {
     return {};
 }
 
-// --- by hand -------------------------------------------------------------------------------------------------------
+// Manual operations.
 
-/// From any thread: M410 to the move by hand that is under way. False if there is none, or the firmware would not hear
-/// it.
+/// From any thread: sends M410 to the current manual move. False if there is none, or the firmware would not act on it.
 bool Control::State_::stop_move() {
     const std::scoped_lock lock(mutex);
     if (!moves_by_hand || stopped_by_hand || !hears_m112 || !wire) return false;
@@ -337,7 +336,7 @@ Status Control::State_::run_one_move(const std::string& program) {
     return failure("the move was stopped on its way; home the axes before the next one");
 }
 
-/// What `program` makes of where the machine stands is sent; no print may be under way or waiting to be resumed.
+/// Runs the program that `program` makes for the present state; no print may be running or waiting to be resumed.
 Status Control::State_::by_hand(std::function<Result<std::string>(const machine::Interlock&)> program, bool one_move) {
     return ask_for(
         State::working,
@@ -462,7 +461,7 @@ Status Control::reset_controller() {
         });
 }
 
-// --- what is known -------------------------------------------------------------------------------------------------
+// Queries.
 
 Snapshot Control::snapshot() const {
     return state_->desk.snapshot();
@@ -476,7 +475,7 @@ std::vector<Event> Control::events_since(long number) const {
     return state_->desk.events_since(number);
 }
 
-// --- the thread that works -----------------------------------------------------------------------------------------
+// The working thread.
 
 bool Control::State_::run_next_task() {
     std::function<void()> task;
@@ -648,7 +647,7 @@ void Control::State_::look_at_journal() {
     desk.update([&](Snapshot& s) { s.can_resume = interrupted; });
 }
 
-/// Numbers its lines anew, and says so in the journal before the controller hears of it.
+/// Sets new line numbers, and records them in the journal before the controller gets them.
 Status Control::State_::new_session(Journal* journal, const JournalFacts& facts, const Standing& standing) {
     const long base = new_base(setup.clock, std::max({last_line, last_base, facts.base}));
     last_base = base;
@@ -667,7 +666,7 @@ Status Control::State_::new_session(Journal* journal, const JournalFacts& facts,
     return {};
 }
 
-/// Before anything moves: the switches as they must be, the door shut.
+/// Before any motion: checks the switches and that the door is shut.
 Status Control::State_::preflight() const {
     if (Status status = machine->look_at_switches(); !status) return status;
     return machine->door_open().value_or(false) ? Status(failure("the door is open: close it")) : Status{};
@@ -706,7 +705,7 @@ Result<Ending> Control::State_::print_anew(Journal* journal) {
     if (ready) ready = new_session(journal, {}, {machine::Interlock(setup.printer), false});
     if (ready) ready = preflight();
     if (!ready) {
-        if (journal != nullptr) (void)journal->clear();  // nothing has begun
+        if (journal != nullptr) (void)journal->clear();  // nothing has begun yet
         return tl::unexpected(ready.error());
     }
     PrintRun run({setup, *job, script, times, *machine, journal, desk}, {});
@@ -786,7 +785,7 @@ void Control::State_::do_start(const StartOptions& options, bool abandon) {
 void Control::State_::finish(const Result<Ending>& ending) {
     (void)setup.projector.black();
     look_at_journal();
-    if (!ending && !touched) {  // refused before anything was asked of the machine
+    if (!ending && !touched) {  // refused before anything was sent to the machine
         desk.event("error", ending.error().message);
         desk.update([](Snapshot& s) { s.failed = true; });
         return desk.state(machine ? State::idle : State::offline, ending.error().message);

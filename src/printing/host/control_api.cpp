@@ -14,7 +14,7 @@ namespace {
 using json = nlohmann::json;
 using machine::Axis;
 
-// --- what is known, as JSON ----------------------------------------------------------------------------------------
+// State as JSON.
 
 json state_json(const Snapshot& s) {
     const bool connected = s.state != State::offline && s.state != State::connecting && s.state != State::halted;
@@ -96,11 +96,11 @@ std::string message(const Control& control, std::string_view kind, long& last_ev
                           {"progress", progress_json(s)},
                           {"machine", machine_json(s)},
                           {"events", list}};
-    // Names and messages may hold any bytes.
+    // Names and messages may contain any bytes.
     return json{{std::string(kind), content}}.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-// --- what is asked -------------------------------------------------------------------------------------------------
+// Requests.
 
 ApiAnswer with(const json& content) {
     return {200, content.dump(-1, ' ', false, json::error_handler_t::replace)};
@@ -110,13 +110,13 @@ ApiAnswer refusal(int status, std::string_view why) {
     return {status, json{{"error", why}}.dump(-1, ' ', false, json::error_handler_t::replace)};
 }
 
-/// Bad input is a bad request; what cannot be done now is a conflict.
+/// Bad input is a bad request; what the present state forbids is a conflict.
 ApiAnswer answer(const Status& status) {
     if (status) return {204, ""};
     return refusal(status.error().cause == Cause::input ? 400 : 409, status.error().message);
 }
 
-/// 100 m, as in printer files: micrometres of such places, and of the way between two, are ints.
+/// 100 m, as in printer files: such positions and their differences in micrometres fit an int.
 constexpr double farthest_mm = 1e5;
 
 struct Request {
@@ -133,7 +133,7 @@ struct Request {
         const double value = found->get<double>();
         return std::isfinite(value) && std::abs(value) < 1e9 ? std::optional(value) : std::nullopt;
     }
-    /// A number of something: whole, and not beyond what an int holds.
+    /// An integer in the range of an int.
     [[nodiscard]] std::optional<int> whole(const char* key) const {
         const auto value = number(key);
         return value && *value == std::trunc(*value) ? std::optional(static_cast<int>(*value)) : std::nullopt;

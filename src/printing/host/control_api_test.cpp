@@ -13,7 +13,7 @@ using nlohmann::json;
 
 namespace {
 
-/// A control of a printer that answers as a good Marlin, served in the calling thread.
+/// A control of a printer that behaves like a faultless Marlin, running in the calling thread.
 struct Bench {
     CountingClock clock;
     RememberingProjector projector;
@@ -88,7 +88,7 @@ TEST_CASE("a way that no whole micrometres of an int can hold is refused, not ta
     }
 }
 
-TEST_CASE("what cannot be had now is a conflict, with the reason") {
+TEST_CASE("what the state forbids is a conflict, with the reason") {
     Bench b;
     for (const char* command : {"start", "pause", "cancel", "resume", "suspend"}) {
         const ApiAnswer answer = b.post("/api/job", {{"command", command}});

@@ -1,5 +1,4 @@
-// One print on a wire whose other end is a function: what is sent in which order, and what is left behind when it
-// fails.
+// One print on a wire whose other end is a function: the order of what is sent, and what remains after a failure.
 #include "printing/host/control.hpp"
 
 #include <doctest/doctest.h>
@@ -35,7 +34,7 @@ struct Bench {
     std::function<std::string(const std::string&)> answer;
     bool opened = false;
     std::vector<Given> lights;
-    std::vector<std::string> written;  ///< kept when the wire is gone
+    std::vector<std::string> written;  ///< survives the wire
     Control control{setup()};
 
     explicit Bench(std::function<std::string(const std::string&)> says) : answer(std::move(says)) {}
@@ -56,7 +55,7 @@ struct Bench {
         s.after_light = [this](const Given& given) { lights.push_back(given); };
         return s;
     }
-    /// What load() said, or how the print ended.
+    /// The error of load(), or the outcome of the print.
     Status print(const std::string& text, const ImageSource& images = image_of) {
         PrintJob job;
         job.name = "a job";
@@ -100,7 +99,7 @@ TEST_CASE("commands go to the wire, light comes behind a fence for its time") {
     CHECK(b.control.snapshot().lines_sent > 8);
 }
 
-TEST_CASE("a job that is none, or that the machine must not do, is refused before the wire is opened") {
+TEST_CASE("an invalid or forbidden job is refused before the wire is opened") {
     for (const char* text : {"G90\nhello\n", ";@expose layer=0\n", "G28 Z\nG1 X1 X2\n", "G28 Z\nG90\nG1 Z-1 F60\n",
                              "G90\n;@expose layer=0 material=0 seconds=2.5 image=a.png\n"}) {
         CAPTURE(text);
@@ -123,7 +122,7 @@ TEST_CASE("any failure leaves the projector black, stops motion and switches off
     CHECK(b.lights.size() == 1);
 }
 
-TEST_CASE("an image that cannot be had stops the print in the dark") {
+TEST_CASE("an unavailable image stops the print in the dark") {
     Bench b(good_answer);
     const Status status = b.print(job_text, [](int, int) -> Result<job::Image> { return input_error("gone"); });
     REQUIRE_FALSE(status);

@@ -1,4 +1,4 @@
-// Where those who ask for something and the thread that works meet: wishes go one way, snapshot and events the other.
+// The exchange between requesting threads and the working thread: requests go one way, snapshot and events the other.
 #pragma once
 
 #include <deque>
@@ -14,7 +14,7 @@
 
 namespace pliant::host {
 
-/// What is asked of a print under way.
+/// Requests to a running print.
 struct Wishes {
     bool pause_after = false;
     bool pause_now = false;
@@ -27,7 +27,7 @@ class Desk {
 public:
     explicit Desk(Clock& clock) : clock_(clock) {}
 
-    // --- any thread ---
+    // Any thread.
     [[nodiscard]] Snapshot snapshot() const;
     [[nodiscard]] State state() const;
     [[nodiscard]] std::vector<Event> events_since(long number) const;
@@ -41,13 +41,13 @@ public:
     void skip_layer(int layer);
     void stop_everything();
 
-    // --- the working thread ---
-    /// An error once an emergency stop was asked for.
+    // The working thread.
+    /// An error once an emergency stop was requested.
     [[nodiscard]] Status watch() const;
     [[nodiscard]] bool stopped() const;
     void clear_stop();
     [[nodiscard]] Wishes wishes() const;
-    /// What has been asked for since the last call.
+    /// The changes requested since the last call.
     [[nodiscard]] std::vector<ChangeFact> take_changes();
     [[nodiscard]] std::vector<int> take_skips();
 

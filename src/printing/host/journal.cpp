@@ -17,7 +17,7 @@ namespace pliant::host {
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t{1} << 28;
-constexpr off_t reserve_bytes = 1 << 16;  // for the records that end a print when the disk has filled up
+constexpr off_t reserve_bytes = 1 << 16;  // for the last records of a print when the disk is full
 
 std::uint32_t crc32(std::string_view bytes) {
     std::uint32_t crc = 0xffffffffU;
@@ -73,7 +73,7 @@ bool parse_whole(std::string_view text, Number& value, int base = 10) {
     return code == std::errc() && end == text.data() + text.size() && !text.empty();
 }
 
-/// A line without its end; nullopt if it is not whole.
+/// A line without its end; nullopt if it is invalid.
 std::optional<JournalRecord> parse_record(std::string_view line) {
     std::uint32_t sum = 0;
     const std::string_view written = take_word(line);
@@ -102,7 +102,7 @@ Status write_all(int file, std::string_view bytes) {
     return {};
 }
 
-/// A new name in a folder is safe only when the folder is.
+/// A new file is safe on the disk only once its folder is synced.
 void sync_folder(const std::filesystem::path& file) {
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
     const FileHandle handle(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
@@ -170,7 +170,7 @@ Result<JournalText> parse_journal(std::string_view text, std::string_view where)
     return journal;
 }
 
-// --- the file ------------------------------------------------------------------------------------------------------
+// The file.
 
 Result<Journal> Journal::open(const std::filesystem::path& path, bool sync) {
     const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
@@ -207,8 +207,8 @@ Status Journal::read_all() {
     return {};
 }
 
-/// Room beyond the end, so that the last records of a print fit also when others have filled the disk. Where the file
-/// system cannot do that, nothing is lost.
+/// Allocates space beyond the end, so that the last records of a print fit even if others have filled the disk.
+/// Optional: not all file systems support it.
 void Journal::reserve() const {
     struct stat status {};
     if (::fstat(file_.number(), &status) == 0)
@@ -230,7 +230,7 @@ Result<long> Journal::append(std::string_view kind, const JournalValues& values)
     if (status && sync_ && ::fdatasync(file_.number()) != 0) status = failure("{}", std::strerror(errno));
     if (!status) {
         (void)::ftruncate(file_.number(),
-                          static_cast<off_t>(good_bytes_));  // half a record must not stand before the next one
+                          static_cast<off_t>(good_bytes_));  // remove a partial record before the next one
         return failure("{}: the journal cannot be written, so no step is taken: {}", path_.string(),
                        status.error().message);
     }

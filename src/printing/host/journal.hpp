@@ -1,6 +1,6 @@
 // The journal of a print: an append-only text file beside the job. Every step is written and synced before it is taken,
-// so that after any end (kill -9, a power cut, a pulled cable) the file says what has been done and what was about to
-// be. One record a line:
+// so after any interruption (kill -9, a power cut, a pulled cable) the file says what was done and what was about to
+// be. One record per line:
 //
 //     5f3a9c21 17 light step=120 layer=3 material=0 planned=2.5 at=1234.567
 //
@@ -25,7 +25,7 @@ struct JournalRecord {
     std::string kind;
     std::vector<std::pair<std::string, std::string>> values;
 
-    [[nodiscard]] const std::string* find(std::string_view key) const;  ///< nullptr: not there
+    [[nodiscard]] const std::string* find(std::string_view key) const;  ///< nullptr: missing
     /// Errors name record and key.
     [[nodiscard]] Result<std::string> text(std::string_view key) const;
     [[nodiscard]] Result<double> number_of(std::string_view key) const;
@@ -34,32 +34,32 @@ struct JournalRecord {
 
 using JournalValues = std::vector<std::pair<std::string, std::string>>;
 
-/// A line, with its line end. Keys are plain words; values may be anything.
+/// One line, with its line end. Keys are plain words; values may be anything.
 [[nodiscard]] std::string write_record(long number, std::string_view kind, const JournalValues& values);
 
 struct JournalText {
     std::vector<JournalRecord> records;
-    std::size_t good_bytes = 0;  ///< what follows is a torn end, and is no record
+    std::size_t good_bytes = 0;  ///< length of the valid part; a truncated record may follow
 };
 
-/// Reads a journal. A damaged end is what a power cut leaves and is passed over; a damaged record with good ones behind
-/// it is an error, as is a number that does not follow.
+/// Parses a journal. A damaged end is what a power cut leaves and is ignored; a damaged record followed by good ones is
+/// an error, and so is a gap in the numbers.
 [[nodiscard]] Result<JournalText> parse_journal(std::string_view text, std::string_view where);
 
-/// An open journal; no other host can open it meanwhile. Movable.
+/// An open journal, locked against other hosts. Movable.
 class Journal {
 public:
-    /// Opens or makes the file, locks it, reads what it holds and cuts a torn end off. With `sync` every record is on
-    /// the disk when append() returns. Errors: locked by another host, not readable, damaged, the disk.
+    /// Opens or creates the file, locks it, reads its content and cuts off a damaged end. With `sync` every record is
+    /// on the disk when append() returns. Errors: locked by another host, not readable, damaged, the disk.
     [[nodiscard]] static Result<Journal> open(const std::filesystem::path& path, bool sync);
 
-    /// What was in the file when it was opened.
+    /// The records that the file held when it was opened.
     [[nodiscard]] const std::vector<JournalRecord>& records() const { return records_; }
     /// The number that the next record will have.
     [[nodiscard]] long next_number() const { return last_number_ + 1; }
-    /// Throws everything away and begins anew.
+    /// Deletes all records and starts anew.
     [[nodiscard]] Status clear();
-    /// The number of the new record. Errors: the disk is full or broken; then no step may be taken.
+    /// Returns the number of the new record. Errors: the disk is full or broken; then no step may be taken.
     [[nodiscard]] Result<long> append(std::string_view kind, const JournalValues& values);
 
 private:

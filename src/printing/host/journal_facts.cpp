@@ -16,7 +16,7 @@ std::string vat_word(const std::optional<int>& vat) {
     return vat ? fmt::format("{}", *vat) : "-";
 }
 
-/// The text up to the next `end`, taken off `rest`.
+/// Removes the text up to the next `end` from `rest` and returns it.
 std::string_view take(std::string_view& rest, char end) {
     const std::string_view part = rest.substr(0, rest.find(end));
     rest.remove_prefix(std::min(rest.size(), part.size() + 1));
@@ -43,7 +43,7 @@ bool read_flag(std::string_view text, bool& flag) {
     return text == "0" || text == "1";
 }
 
-/// Reads the records one after the other.
+/// Processes the records one after the other.
 class Reader {
 public:
     explicit Reader(JournalFacts& facts) : facts_(facts) {}
@@ -61,7 +61,7 @@ public:
         if (r.kind == "stop") return stop(r);
         if (r.kind == "end") facts_.ended = true;
         if (r.kind == "cancel") facts_.cancelled = true;
-        return {};  // what a later version adds, and what is for people: pause, resume, suspend, note
+        return {};  // additions of later versions, and records for people: pause, resume, suspend, note
     }
 
 private:

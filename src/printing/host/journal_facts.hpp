@@ -1,4 +1,4 @@
-// What a journal proves: which light has been given, what was under way, where the machine stands.
+// What a journal proves: which exposures were given, what was in progress, where the machine is.
 #pragma once
 
 #include <map>
@@ -14,28 +14,28 @@
 
 namespace pliant::host {
 
-/// A state as one word of a journal, and back. Errors: no such word.
+/// Encodes a state as one word of a journal, and decodes it. Errors: an invalid word.
 [[nodiscard]] std::string write_state(const machine::Interlock::State& state);
 [[nodiscard]] Result<machine::Interlock::State> read_state(std::string_view word);
 
-/// Light of one step, all its pieces together.
+/// The exposure of one step, all its pieces together.
 struct LightFact {
     int layer = 0;
     int material = 0;
     double planned_s = 0;
-    double lit_s = 0;  ///< that is proven
+    double lit_s = 0;  ///< proven exposure
     bool complete = false;
-    long open_light = 0;      ///< number of the record of a light whose end is not in the journal; 0: none
+    long open_light = 0;      ///< number of the record of an exposure without an end in the journal; 0: none
     double open_since_s = 0;  ///< when it began, on the devices' clock
 };
 
-/// The last place where the machine stood still, and what was sent from there on.
+/// The last point where the machine stood still, and what was sent from there on.
 struct GoFact {
-    long program = 0;      ///< 0: the job itself; -1: nothing was sent; else the number of a program's record
+    long program = 0;      ///< 0: the job itself; -1: nothing was sent; else the record number of a program
     std::size_t step = 0;  ///< of the job, or line of the program
-    long line = 0;         ///< number on the wire of that step; each further step has the next
+    long line = 0;         ///< line number of that step on the wire; each further step has the next number
     machine::Interlock::State state;
-    long most = 0;  ///< steps sent from there at most, before the next entry; 0: up to the next phase
+    long most = 0;  ///< maximum number of steps sent from there before the next entry; 0: up to the next phase
 };
 
 struct ChangeFact {
@@ -46,25 +46,25 @@ struct ChangeFact {
 
 struct JournalFacts {
     std::string job, digest, printer;
-    std::string boot;      ///< of the computer, in the last session
-    long base = 0;         ///< line number with which the last session began
-    long before_base = 0;  ///< number of the controller's last line before that; -1: it did not know any of ours
+    std::string boot;      ///< boot identifier of the computer in the last session
+    long base = 0;         ///< first line number of the last session
+    long before_base = 0;  ///< the controller's last line number before that; -1: none of ours
     bool begun = false;
     bool ended = false;          ///< the print is complete
     bool cancelled = false;      ///< for good
     bool moved = false;          ///< a command that may move the machine was about to be sent
     bool halted = false;         ///< the last session ended with a halted controller, which answers only after a reset
-    bool stopped_short = false;  ///< motion was stopped on the way (M410): nobody knows where
+    bool stopped_short = false;  ///< motion was stopped midway (M410): the position is unknown
     std::map<std::size_t, LightFact> lights;            ///< by step of the job
-    std::optional<std::size_t> last_light;              ///< step of the last one
+    std::optional<std::size_t> last_light;              ///< step of the last exposure
     std::map<long, std::vector<std::string>> programs;  ///< commands of inserted programs, by record
     std::optional<GoFact> go;
     std::vector<ChangeFact> changes;
     std::vector<int> skipped_layers;
 };
 
-/// Whether there is a print to go on with. One of which nothing has moved and nothing was lit has not begun: its port
-/// may have been the wrong one.
+/// Whether there is a print to resume. One without any motion or exposure has not begun: its port may have been the
+/// wrong one.
 [[nodiscard]] bool is_interrupted(const JournalFacts& facts);
 
 /// Errors name the record.

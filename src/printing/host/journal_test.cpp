@@ -38,7 +38,7 @@ TEST_CASE("a record is a checksum, a number, a kind and values; any bytes surviv
     CHECK_FALSE(text.records[1].text("none"));
 }
 
-TEST_CASE("a torn end is passed over wherever it is torn; damage in the middle is not") {
+TEST_CASE("a damaged end is ignored wherever it begins; damage in the middle is not") {
     const std::string all = three_records();
     const std::size_t second = all.find('\n') + 1, third = all.find('\n', second) + 1;
     for (std::size_t bytes = 0; bytes <= all.size(); ++bytes) {
@@ -54,7 +54,7 @@ TEST_CASE("a torn end is passed over wherever it is torn; damage in the middle i
         const auto text = parse_journal(damaged, "x");
         if (at >= third)
             CHECK((text && text->records.size() == 2));
-        else if (at == third - 1)  // the line end between the last two: both are the torn end
+        else if (at == third - 1)  // the line end between the last two: both count as the damaged end
             CHECK((text && text->records.size() == 1));
         else
             CHECK_FALSE(text);
@@ -82,7 +82,7 @@ TEST_CASE("a journal is kept, locked, torn ends are cut off, and records go on b
     CHECK(journal.append("begin", {}).value() == 1);
 }
 
-TEST_CASE("what is no journal is not touched") {
+TEST_CASE("a file that is not a journal is not changed") {
     const pliant::test::Folder folder;
     const auto path = folder.path() / "picture.png";
     REQUIRE(write_file(path, "something else\nof two lines\n"));
@@ -129,7 +129,7 @@ TEST_CASE("the facts: pieces of a light add up, an open light stays open, states
     CHECK(facts.lights.at(3).open_light == 4);
     CHECK(facts.lights.at(3).open_since_s == 90);
     records.push_back({5, "dark", {{"light", "2"}, {"on", "1"}, {"done", "1"}}});
-    CHECK_FALSE(facts_of(records));  // light 2 was not on any more
+    CHECK_FALSE(facts_of(records));  // exposure 2 had already ended
 
     machine::Interlock::State state;
     state.position = {{1, -2, 3, 4}};

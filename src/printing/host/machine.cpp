@@ -15,7 +15,7 @@ using machine::Axis;
 using machine::Interlock;
 using machine::Printer;
 
-/// 0: the vat in use lies under the platform; 1: the carriage is on its way; 2: at the tower. Without a tower always 0.
+/// 0: the vat in use is under the platform; 1: the carriage is between; 2: at the tower. Without a tower always 0.
 int carriage_zone(const Printer& printer, const Interlock& state) {
     if (!printer.has_carriage()) return 0;
     const int at_um = state.position()[Axis::carriage];
@@ -23,7 +23,7 @@ int carriage_zone(const Printer& printer, const Interlock& state) {
     return at_um >= printer.carriage.print_um && at_um <= printer.carriage.print_um + printer.carriage.shear_um ? 0 : 1;
 }
 
-/// "X:0.00 Y:1.25 Z:4.00 ..." up to "Count"; nothing if a word of it is not whole.
+/// "X:0.00 Y:1.25 Z:4.00 ..." up to "Count"; nothing if a word is malformed.
 std::map<char, double> axis_values(std::string_view answer) {
     std::map<char, double> values;
     answer = answer.substr(0, answer.find("Count"));
@@ -50,7 +50,7 @@ std::vector<Axis> homed_by(const Printer& printer, std::string_view command) {
     return axes.empty() ? machine::homing_order(printer) : axes;
 }
 
-/// From end to end of the travel, and what Marlin adds: it goes back a little and comes again, slowly.
+/// Along the whole travel, plus Marlin's second, slow approach.
 double longest_homing_s(const Printer& printer, const std::vector<Axis>& axes) {
     constexpr double slack = 1.1, again_s = 8;
     double seconds = 0;
@@ -62,7 +62,7 @@ double longest_homing_s(const Printer& printer, const std::vector<Axis>& axes) {
     return seconds;
 }
 
-/// What M119 calls the switch that the axis homes to.
+/// The name in M119 of the switch that the axis homes to.
 std::string home_switch(const Printer& printer, Axis axis) {
     return machine::switch_names(printer, {axis, printer.axis(axis).homes_to_max, false}).front();
 }
@@ -105,7 +105,7 @@ Status Machine::connect(long base) {
     auto firmware = link_.introduce();
     if (!firmware) return tl::unexpected(firmware.error());
     firmware_ = std::move(*firmware);
-    return link_.send_if_known("M113 S2");  // `busy` every two seconds, whatever the build says
+    return link_.send_if_known("M113 S2");  // `busy` every two seconds, whatever the build's default
 }
 
 Status Machine::note_go(long program, std::size_t step, const Interlock& before, long most) {
@@ -122,7 +122,7 @@ Status Machine::note_go(long program, std::size_t step, const Interlock& before,
     return number ? Status{} : tl::unexpected(number.error());
 }
 
-// --- switches ------------------------------------------------------------------------------------------------------
+// Switches.
 
 void Machine::hear(std::string_view line) {
     if (!has_switches()) return;
@@ -152,7 +152,7 @@ Status Machine::ask_for_door() {
     return link_.send("M119");
 }
 
-/// Nothing of it is left on the wire when it returns: what comes next may begin a new session.
+/// Nothing of it remains on the wire afterwards: a new session may begin next.
 Status Machine::ask_for_switches() {
     constexpr double every_s = 1;
     if (!has_switches() || clock_.now() - switches_asked_s_ < every_s) return {};
@@ -162,7 +162,7 @@ Status Machine::ask_for_switches() {
     return answers ? Status{} : tl::unexpected(answers.error());
 }
 
-/// Answers lose bytes: what is not named is asked for again before it counts as not there.
+/// Answers may lose bytes: what is missing is queried again before it counts as absent.
 Status Machine::look_at_switches() {
     if (!has_switches()) return {};
     constexpr int attempts = 3;
@@ -182,7 +182,8 @@ Status Machine::look_at_switches() {
     return status;
 }
 
-/// A dead switch would let the axis push against its end until Marlin gives up, after one and a half times the travel.
+/// With a dead switch, the axis would push against its end until Marlin gives up, after one and a half times the
+/// travel.
 Status Machine::wait_for_homing(std::string_view command) {
     const std::vector<Axis> axes = homed_by(printer_, command);
     noted_ = false;
@@ -198,7 +199,7 @@ Status Machine::wait_for_homing(std::string_view command) {
         "homing failed: {}; the board is halted: check the switch, its plug and its wire, then reset the board", where);
 }
 
-/// Of every axis that `command` has homed.
+/// Checks every axis that `command` has homed.
 Status Machine::after_homing(std::string_view command) {
     if (Status status = wait_for_homing(command); !status || printer_.limit_switches.empty()) return status;
     for (const Axis axis : homed_by(printer_, command)) {
@@ -207,8 +208,8 @@ Status Machine::after_homing(std::string_view command) {
     return {};
 }
 
-/// A switch that is stuck ends homing wherever the axis stands. So it goes a little further than the switch reaches,
-/// where the machine allows that, is looked at, and goes back.
+/// A stuck switch ends homing wherever the axis is. So the axis moves beyond the reach of the switch, if the machine
+/// allows that, the switch is checked, and the axis returns.
 Status Machine::leave_switch(Axis axis) {
     const machine::AxisSpec& spec = printer_.axis(axis);
     const machine::Position home = at_.lock.position();
@@ -223,24 +224,24 @@ Status Machine::leave_switch(Axis axis) {
     return status ? run(back + "\n") : status;
 }
 
-// --- sending -------------------------------------------------------------------------------------------------------
+// Sending.
 
 Status Machine::send(long program, std::size_t step, std::string_view command) {
     machine::Followed after = at_;
     if (Status status = after.line(printer_, command); !status)
         return failure("{} is not sent: {}", command, status.error().message);
-    // What is sent after homing, to wait for it and to try the switch, is no step of this program: it must not be taken
-    // for the next ones.
+    // After G28, commands follow that wait for it and check the switch. They are not steps of this program, so their
+    // lines must not be counted as its next steps.
     const bool alone = command.substr(0, 3) == "G28";
     if (journal_ != nullptr && (!noted_ || alone || !same_phase(printer_, at_.lock, after.lock))) {
         if (Status status = note_go(program, step, at_.lock, alone ? 1 : 0); !status) return status;
     }
-    if (alone && journal_ == nullptr) {  // the time of homing begins when the moves before it are done
+    if (alone && journal_ == nullptr) {  // homing starts when the moves before it are done
         if (Status status = link_.fence(); !status) return status;
     }
     if (Status status = link_.send(command); !status) return status;
-    // When the tower has done its stroke, the journal says so as soon as it can: in the middle of it nobody knows where
-    // it stands.
+    // As soon as the tower has completed its stroke the journal records it: part-way through, its position cannot be
+    // reconstructed.
     if (after.lock.in_hooks_stroke() && after.lock.position() != at_.lock.position()) noted_ = false;
     at_ = std::move(after);
     return alone ? after_homing(command) : Status{};

@@ -1,5 +1,5 @@
-// The controller under the eye of the interlocks and of the journal: no command goes out that the machine's rules
-// forbid, and none that a later host could not reckon with.
+// The controller, guarded by interlocks and journal: no command is sent that the machine's rules forbid, or that a
+// later host could not reconstruct.
 #pragma once
 
 #include <optional>
@@ -24,46 +24,47 @@ public:
 
     [[nodiscard]] Link& link() { return link_; }
     [[nodiscard]] const Link& link() const { return link_; }
-    /// Where it stands after the last command.
+    /// The state after the last command.
     [[nodiscard]] const machine::Interlock& state() const { return at_.lock; }
     void stand(const machine::Interlock& state) { at_.lock = state; }
     [[nodiscard]] const Firmware& firmware() const { return firmware_; }
 
-    /// What is sent from here on is kept; nullptr: no more. The journal must outlive that.
+    /// From here on everything sent is recorded; nullptr: no recording. The journal must outlive that.
     void keep(Journal* journal);
 
-    /// Connects and learns what the firmware can; lines are numbered from `base` on.
+    /// Connects and reads the firmware's capabilities; lines are numbered from `base`.
     [[nodiscard]] Status connect(long base);
 
-    /// Sends step `step` of program `program` (see GoFact). Homing is waited for, not longer than its way takes: past a
-    /// switch that is dead the machine is halted. Then the axis leaves its switch and comes back: one that stays
-    /// pressed is stuck. Where a vat is taken, left or carried, the machine first comes to rest and the
-    /// journal says so. Errors: forbidden by the interlocks, journal, link.
+    /// Sends step `step` of program `program` (see GoFact). Homing is awaited, for no longer than the travel takes: if
+    /// the switch is dead the machine is halted. Then the axis backs off its switch and returns: a switch that stays
+    /// pressed is stuck. Before a vat is taken, left or carried, the machine comes to rest and the journal records it.
+    /// Errors: forbidden by the interlocks, journal, link.
     [[nodiscard]] Status send(long program, std::size_t step, std::string_view command);
-    /// Sends a program that is not the job's, and waits until it is done.
+    /// Sends a program that is not part of the job, and waits until it is done.
     [[nodiscard]] Status run(std::string_view program);
     /// Waits until the machine stands still.
     [[nodiscard]] Status rest();
-    /// The same, and the controller says that it is where it has been sent. A controller that cannot say is believed.
+    /// The same, and checks that the controller's reported position is the expected one. A controller that cannot
+    /// report is trusted.
     [[nodiscard]] Status rest_in_place();
 
-    /// After M410: asks where it has come to rest. Nothing counts as homed any more: steps may have been lost.
+    /// After M410: queries the position at rest. All axes then count as not homed, since steps may have been lost.
     [[nodiscard]] Status stand_where_stopped();
 
-    // Switches: nothing is asked of a machine whose file lists none and that has no door.
+    // Switches: a machine whose file lists none and that has no door is not queried.
 
-    /// Waits until the machine stands still, asks M119 and holds the answer against where it stands. Errors: what
-    /// machine::check_switches() says.
+    /// Waits until the machine stands still, sends M119 and checks the answer against the position. Errors: those of
+    /// machine::check_switches().
     [[nodiscard]] Status look_at_switches();
-    /// Asks M119, four times a second at most and only if nothing is under way; hear() gets the answer.
+    /// Sends M119, at most four times a second and only if nothing is in progress; hear() receives the answer.
     [[nodiscard]] Status ask_for_door();
-    /// Asks M119 of a machine that stands idle, once a second at most, and waits for the answer.
+    /// Sends M119 to an idle machine, at most once a second, and waits for the answer.
     [[nodiscard]] Status ask_for_switches();
-    /// Takes a line that the controller has said.
+    /// Handles a line from the controller.
     void hear(std::string_view line);
-    /// As last heard; nullopt: not yet, or there is no switch.
+    /// Last known state; nullopt: not yet known, or there is no switch.
     [[nodiscard]] std::optional<bool> door_open() const { return door_open_; }
-    /// The limit switches that the printer file lists, in its order, as last heard; those not yet heard are left out.
+    /// Last known states of the limit switches that the printer file lists, in its order; unknown ones are left out.
     [[nodiscard]] std::vector<machine::SwitchReading> limit_switches() const;
 
     [[nodiscard]] Status light_on() { return at_.lock.light_on(false); }
@@ -83,12 +84,12 @@ private:
     machine::Followed at_;
     Journal* journal_ = nullptr;
     std::optional<bool> door_open_;
-    std::vector<std::optional<bool>> pressed_;  ///< of every listed limit switch
+    std::vector<std::optional<bool>> pressed_;  ///< per listed limit switch
     double switches_asked_s_ = 0;
-    bool noted_ = false;  ///< the journal knows which line the next step will have
+    bool noted_ = false;  ///< the journal knows the line number of the next step
 };
 
-/// What of a state matters to a host that has to go on from it: the vat on the hooks, and where the carriage is.
+/// Whether two states agree in what a resuming host needs: the vat on the hooks, and the place of the carriage.
 [[nodiscard]] bool same_phase(const machine::Printer& printer, const machine::Interlock& a,
                               const machine::Interlock& b);
 

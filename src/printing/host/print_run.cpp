@@ -11,20 +11,20 @@
 namespace pliant::host {
 namespace {
 
-constexpr double look_every_s = 0.01;   // at wishes, while the light is on
-constexpr double pause_look_s = 0.05;   // at wishes, while paused
-constexpr double last_stretch_s = 0.5;  // of a light: what a noisy wire asks for must not delay its end
+constexpr double look_every_s = 0.01;   // interval of checks for requests during an exposure
+constexpr double pause_look_s = 0.05;   // interval of checks for requests during a pause
+constexpr double last_stretch_s = 0.5;  // of an exposure: resend requests on a noisy wire must not delay its end
 
 std::string number(double value) {
     return fmt::format("{}", value);
 }
 
-/// Why a run returns before its end without an error of its own.
+/// Ends a run early without an error of its own.
 tl::unexpected<Error> wish_to_end() {
     return cancelled();
 }
 
-/// Steps at whose end the machine has done everything that was sent: lights, and homing.
+/// Steps at whose end everything sent has been done: exposures, and homing.
 bool is_waited_for(const std::variant<std::string, machine::Expose>& step) {
     const auto* command = std::get_if<std::string>(&step);
     return command == nullptr || command->compare(0, 3, "G28") == 0;
@@ -93,7 +93,7 @@ Result<Ending> PrintRun::abandon(const Recovery& recovery) {
     return Ending::cancelled;
 }
 
-/// The machine has done what stands before step `step`.
+/// The machine has done everything before step `step`.
 void PrintRun::reach(std::size_t step) {
     reached_s_ = sent_s_ = run_.times[step];
     reached_at_s_ = clock_.now();
@@ -119,7 +119,7 @@ Result<Ending> PrintRun::steps_from(std::size_t first) {
     return Ending::finished;
 }
 
-// --- light ---------------------------------------------------------------------------------------------------------
+// Exposures.
 
 double PrintRun::exposure_s(const machine::Expose& light) const {
     double seconds = light.seconds;
@@ -166,7 +166,7 @@ Status PrintRun::expose(std::size_t step) {
     return {};
 }
 
-/// One piece of a light: all that is left of it, unless somebody wants it to end before.
+/// One piece of an exposure: all of its remaining time, unless it is interrupted.
 Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fact) {
     if (Status status = run_.machine.light_on(); !status) return status;
     const double left_s = fact.planned_s - fact.lit_s;
@@ -183,7 +183,7 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
         return status;
     }
     fact.open_light = last_record_;
-    // The last look before the light: a controller that has restarted since says so, or does not answer any more.
+    // The last check before the exposure: a controller that has restarted reports it, or does not answer any more.
     Status alive = run_.machine.rest();
     if (alive) alive = run_.machine.link().listen_for(0);
     if (!alive) {
@@ -230,7 +230,7 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
     return noted;
 }
 
-/// Waits, with an ear on the wire. `whole`: until the end.
+/// Waits while listening to the wire. `whole`: whether the exposure reached its end.
 Status PrintRun::burn(double until_s, bool& whole) {
     const double start_s = clock_.now();
     for (double now_s = start_s; now_s < until_s; now_s = clock_.now()) {
@@ -248,14 +248,14 @@ Status PrintRun::burn(double until_s, bool& whole) {
     return {};
 }
 
-// --- what people want ----------------------------------------------------------------------------------------------
+// Requests.
 
 bool PrintRun::wants_to_end() const {
     const Wishes wishes = run_.desk.wishes();
     return wishes.cancel || wishes.suspend;
 }
 
-/// Between two layers, or two vats: pump off, the vat under the platform, the part loose from its floor.
+/// Between two layers or vats: pump off, the vat under the platform, the part detached from its floor.
 bool PrintRun::at_safe_point() const {
     const machine::Interlock& state = run_.machine.state();
     if (state.pump_runs()) return false;
@@ -282,7 +282,7 @@ Status PrintRun::serve_wishes(std::size_t step) {
     return at_safe_point() ? between_layers(step) : Status{};
 }
 
-/// The picture of the layer before, and resin for the one to come.
+/// Calls the hook for the layer before, and requests resin for the next one.
 Status PrintRun::between_layers(std::size_t step) {
     const bool hook = run_.setup.after_layer && layer_ > hooked_layer_;
     if (!hook && run_.job.refills.empty()) return {};
@@ -329,7 +329,7 @@ Status PrintRun::pause(const std::string& prompt) {
     return halt(prompt, run_.setup.programs.pause_begin, run_.setup.programs.pause_end);
 }
 
-/// Somebody has opened the door: nothing moves before it is shut and somebody says so.
+/// The door was opened: nothing moves until it is shut and the print is resumed.
 Status PrintRun::hold_for_door() {
     if (Status status = note("door", {{"open", "1"}}); !status) return status;
     run_.desk.event("log", "the door is open");
@@ -338,7 +338,7 @@ Status PrintRun::hold_for_door() {
     return status ? note("door", {{"open", "0"}}) : status;
 }
 
-/// Brings the machine to a halt by `begin`, waits for somebody to resume, and goes back by `end`.
+/// Stops the machine with `begin`, waits for resume(), and returns with `end`.
 Status PrintRun::halt(const std::string& prompt, const Programs::Make& make_begin, const Programs::Make& make_end) {
     run_.desk.state(State::pausing);
     if (Status status = run_.machine.rest(); !status) return status;
@@ -367,7 +367,7 @@ Status PrintRun::wait_for_resume() {
         if (Status status = run_.desk.watch(); !status) return status;
         if (wants_to_end()) return wish_to_end();
         if (run_.desk.wishes().resume && !door_is_open()) break;
-        run_.desk.wish([](Wishes& w) { w.resume = false; });  // not while the door is open
+        run_.desk.wish([](Wishes& w) { w.resume = false; });  // ignored while the door is open
         if (Status status = listen_at_door(pause_look_s); !status) return status;
     }
     run_.desk.wish([](Wishes& w) { w.resume = false; });
@@ -378,7 +378,7 @@ Status PrintRun::wait_for_resume() {
     return {};
 }
 
-// --- the door ------------------------------------------------------------------------------------------------------
+// The door.
 
 Status PrintRun::listen_at_door(double seconds) {
     if (Status status = run_.machine.ask_for_door(); !status) return status;
@@ -394,8 +394,8 @@ void PrintRun::show_switches() {
     });
 }
 
-/// Nothing is parked while the door is open. A suspended print stays as it is; a cancelled one waits, unless the host
-/// has to end.
+/// No parking while the door is open. A suspended print stays as it is; a cancelled one waits, unless the host must
+/// end.
 Result<Ending> PrintRun::wait_to_park(Ending ending) {
     if (!door_is_open()) return ending;
     if (ending == Ending::cancelled)
@@ -408,7 +408,7 @@ Result<Ending> PrintRun::wait_to_park(Ending ending) {
     return ending;
 }
 
-// --- the end -------------------------------------------------------------------------------------------------------
+// The end.
 
 Result<Ending> PrintRun::park(Ending ending) {
     (void)projector_.black();
@@ -436,7 +436,7 @@ void PrintRun::make_safe(const Error& error) {
     (void)note("stop", {{"quick", quick ? "1" : "0"}, {"why", error.message}});
     if (emergency || link.was_reset() || link.wire_failed() || link.has_halted()) return;
     if (!journal_failed_) return link.stop(run_.script.stop_commands);
-    // Nothing more can be kept: what is under way ends, and nothing else moves.
+    // The journal cannot be written: what is in progress ends, and nothing else moves.
     for (const std::string& command : run_.script.stop_commands) (void)link.send(command);
     (void)link.fence();
 }
@@ -450,7 +450,7 @@ Status PrintRun::note(std::string_view kind, const JournalValues& values) {
     return {};
 }
 
-/// Time goes on while the machine is homed or a vat is brought, but not beyond what has been sent.
+/// Time is counted while the machine is homed or a vat is brought, but not beyond what has been sent.
 void PrintRun::show_progress() {
     const double all_s = run_.times.back();
     const double now_s = clock_.now();

@@ -1,4 +1,4 @@
-// One print from some step to its end: commands, lights, pauses, prompts, parking.
+// One print from some step to its end: commands, exposures, pauses, prompts, parking.
 #pragma once
 
 #include <cstddef>
@@ -15,14 +15,14 @@
 
 namespace pliant::host {
 
-/// All must outlive the run.
+/// All references must outlive the run.
 struct RunSetup {
     const ControlSetup& setup;
     const PrintJob& job;
     const Script& script;
-    const std::vector<double>& times;  ///< of script_times()
+    const std::vector<double>& times;  ///< result of script_times()
     Machine& machine;
-    Journal* journal;  ///< nullptr: none is kept
+    Journal* journal;  ///< nullptr: no journal
     Desk& desk;
 };
 
@@ -42,11 +42,11 @@ public:
 
     /// Prints from the beginning.
     [[nodiscard]] Result<Ending> print();
-    /// Goes on from where the machine stands.
+    /// Continues from where the machine is.
     [[nodiscard]] Result<Ending> resume(const Recovery& recovery);
-    /// Puts an interrupted print away for good.
+    /// Ends an interrupted print for good.
     [[nodiscard]] Result<Ending> abandon(const Recovery& recovery);
-    /// After an error: dark, and what else can be made safe.
+    /// After an error: light off, and whatever else can be made safe.
     void make_safe(const Error& error);
 
 private:
@@ -68,7 +68,7 @@ private:
     [[nodiscard]] Result<Ending> park(Ending ending);
     [[nodiscard]] Status note(std::string_view kind, const JournalValues& values);
     [[nodiscard]] double exposure_s(const machine::Expose& light) const;
-    [[nodiscard]] std::string material_name(int material) const;  ///< as people know it
+    [[nodiscard]] std::string material_name(int material) const;  ///< for messages
     [[nodiscard]] bool skipped(int layer) const;
     [[nodiscard]] bool at_safe_point() const;
     [[nodiscard]] int next_layer(std::size_t step) const;
@@ -82,12 +82,12 @@ private:
     Projector& projector_;
     Clock& clock_;
     double begin_s_;
-    // Seconds of the job as planned: what has been reached for sure (and when), what has been sent, what is shown.
+    // Planned seconds of the job: reached for certain (and when), sent, shown.
     double reached_s_ = 0, reached_at_s_ = 0, sent_s_ = 0, done_s_ = 0;
-    bool waits_ = false;       ///< for somebody to resume: that is no time of the job
-    int layer_ = -1;           ///< of the last light
-    int hooked_layer_ = -1;    ///< for which after_layer has been called
-    int refilled_layer_ = -1;  ///< before which a refill has been asked for
+    bool waits_ = false;       ///< waiting for resume(), which does not count as time of the job
+    int layer_ = -1;           ///< of the last exposure
+    int hooked_layer_ = -1;    ///< last layer for which after_layer was called
+    int refilled_layer_ = -1;  ///< last layer before which a refill was requested
     long last_record_ = 0;
     bool journal_failed_ = false;
 };

@@ -17,7 +17,7 @@ constexpr int least_px = 16;
 constexpr int most_px = 32768;
 constexpr std::uint8_t full = 255;
 
-/// Draws on an image; what lies outside is left out.
+/// Draws on an image, with clipping.
 class Canvas {
 public:
     Canvas(int width_px, int height_px, std::uint8_t ground = 0)
@@ -62,7 +62,8 @@ job::Image checkerboard(const PatternOptions& o) {
     return canvas.take();
 }
 
-/// Stripes of 1, 2 and 3 pixels, standing and lying, `size` wide: sharp ones stay apart, others run into grey.
+/// Vertical and horizontal stripes of 1, 2 and 3 pixels, `size` wide: if the image is sharp they stay separate,
+/// otherwise they blur to grey.
 void stripes(Canvas& canvas, int x0, int y0, int size) {
     for (int group = 0; group < 3; ++group) {
         const int width = group + 1;
@@ -75,7 +76,7 @@ void stripes(Canvas& canvas, int x0, int y0, int size) {
     }
 }
 
-/// Fine lines all over, and stripes in the middle and near the corners, where a lens is weakest.
+/// Fine lines everywhere, and stripes in the centre and near the corners, where a lens is worst.
 job::Image focus_grid(const PatternOptions& o) {
     Canvas canvas(o.width_px, o.height_px);
     const int pitch = std::max(8, std::min(o.width_px, o.height_px) / 18);
@@ -95,10 +96,10 @@ job::Image focus_grid(const PatternOptions& o) {
     return canvas.take();
 }
 
-/// Marks along both middle lines, outwards from the centre: every millimetre a short one, every ten a long one.
+/// Marks along both centre lines, outwards from the centre: a short one every millimetre, a long one every ten.
 void ruler(Canvas& canvas, double pixel_um) {
     const double mark_px = pixel_um > 0 ? 1000 / pixel_um : 10;
-    if (mark_px < 3) return ruler(canvas, pixel_um / 10);  // only every ten
+    if (mark_px < 3) return ruler(canvas, pixel_um / 10);  // only one in ten
     const int cx = canvas.width() / 2;
     const int cy = canvas.height() / 2;
     for (int i = 1; i * mark_px < std::max(canvas.width(), canvas.height()) / 2.0; ++i) {
@@ -111,7 +112,7 @@ void ruler(Canvas& canvas, double pixel_um) {
     }
 }
 
-/// The outermost pixels, the rectangle to be measured, the centre with rulers, and a block that tells the top left.
+/// The outermost pixels, the rectangle to be measured, the centre with rulers, and a block that marks the top left.
 job::Image border(const PatternOptions& o) {
     Canvas canvas(o.width_px, o.height_px);
     canvas.frame(0, 0, o.width_px - 1, o.height_px - 1);
@@ -127,7 +128,7 @@ job::Image border(const PatternOptions& o) {
     return canvas.take();
 }
 
-/// Above every value from 0 to 255 from left to right, below 16 steps.
+/// Upper half: every value from 0 to 255 from left to right; lower half: 16 steps.
 job::Image ramp(const PatternOptions& o) {
     Canvas canvas(o.width_px, o.height_px);
     for (int x = 0; x < o.width_px; ++x) {
@@ -137,7 +138,7 @@ job::Image ramp(const PatternOptions& o) {
     return canvas.take();
 }
 
-/// White, with a dark ring at every place where the light is to be measured: in its middle it is white.
+/// White, with a dark ring at each place where the light is to be measured; the inside of the ring is white.
 job::Image points(const PatternOptions& o) {
     Canvas canvas(o.width_px, o.height_px, full);
     const int radius = std::max(3, std::min(o.width_px / o.columns, o.height_px / o.rows) / 6);
@@ -166,7 +167,7 @@ Status check(const PatternOptions& o) {
     return {};
 }
 
-/// The value at `at` (in places, from 0) of a row of places that is straight between them.
+/// Linear interpolation in a row of samples, at position `at` (in samples, from 0).
 struct Between {
     int low = 0, high = 0;
     double share = 0;
@@ -211,7 +212,7 @@ Result<job::Image> test_pattern(std::string_view name, const PatternOptions& opt
 }
 
 MeasuredSpan measured_span(int width_px, int height_px) {
-    // Even, so that the middle line is in the middle; a tenth of the image stays around it.
+    // Even, so that the centre line is exact; a tenth of the image remains around it.
     const auto most = [](int length) { return length * 9 / 10 / 2 * 2; };
     return {most(width_px), most(height_px)};
 }

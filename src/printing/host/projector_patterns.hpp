@@ -1,4 +1,4 @@
-// Images that a projector is set up with, and what is measured on them turned into keys of the printer file.
+// Test images for setting up a projector, and the conversion of measurements on them to keys of the printer file.
 #pragma once
 
 #include <span>
@@ -11,20 +11,20 @@
 
 namespace pliant::host {
 
-/// white, black, checkerboard, grid, border, ramp, points: what they are for is in docs/reference/projector.md.
+/// white, black, checkerboard, grid, border, ramp, points: docs/reference/projector.md explains their use.
 [[nodiscard]] std::span<const std::string> pattern_names();
 
 struct PatternOptions {
     int width_px = 0, height_px = 0;  ///< at least 16
-    double pixel_um = 0;              ///< of the printer; 0: not known, scales are then in pixels
-    int square_px = 1;                ///< of the checkerboard
-    int columns = 5, rows = 3;        ///< of the points
+    double pixel_um = 0;              ///< of the printer; 0: unknown, scales are then in pixels
+    int square_px = 1;                ///< square of the checkerboard
+    int columns = 5, rows = 3;        ///< of the points pattern
 };
 
 /// Errors: an unknown name (with the nearest), sizes out of range.
 [[nodiscard]] Result<job::Image> test_pattern(std::string_view name, const PatternOptions& options);
 
-/// The rectangle that `border` draws to be measured: lines one pixel wide, this far apart from middle to middle.
+/// The rectangle that `border` draws for measuring: lines one pixel wide, distances from centre to centre.
 struct MeasuredSpan {
     int x_px = 0, y_px = 0;
 };
@@ -32,31 +32,31 @@ struct MeasuredSpan {
 
 struct PixelSize {
     double pixel_um = 0;        ///< mean of both directions
-    double x_um = 0, y_um = 0;  ///< each by itself
-    double off_percent = 0;     ///< of x from y: above some 0.1 % something is not square
+    double x_um = 0, y_um = 0;  ///< per direction
+    double off_percent = 0;     ///< difference of x from y: above about 0.1 % the optics are distorted or tilted
 };
-/// From the distances of `measured_span`'s lines on the vat's floor. Errors: nothing above 0.
+/// From the measured distances between `measured_span`'s lines on the vat's floor. Errors: a distance not above 0.
 [[nodiscard]] Result<PixelSize> pixel_size(int width_px, int height_px, double x_mm, double y_mm);
 
-/// Readings of a light meter at the places that `points` marks: a table, (rows, columns), in any unit.
+/// Light meter readings at the marks of the `points` pattern: a table, (rows, columns), in any unit.
 struct LightTable {
     int columns = 0, rows = 0;
     std::vector<double> readings;  ///< row by row from the top
 };
-/// One row of the image in a line, from the top; numbers with blanks, commas, semicolons or tabs between them; `#`
-/// begins a comment. 2 to 100 rows and columns, all above 0. Errors name file and line.
+/// One line per row of the table, from the top; numbers separated by blanks, commas, semicolons or tabs; `#` begins a
+/// comment. 2 to 100 rows and columns, all above 0. Errors name file and line.
 [[nodiscard]] Result<LightTable> parse_light_table(std::string_view text, std::string_view file);
 
 struct LightMask {
-    job::Image mask;   ///< share of its light that each pixel may get, in 1/255
-    double least = 0;  ///< share of the brightest reading that the darkest has: what every pixel gets then
+    job::Image mask;   ///< fraction of its light that each pixel may get, in 1/255
+    double least = 0;  ///< darkest reading over brightest: the light that every pixel then gets
 };
-/// What makes the light the same everywhere: of the darkest place all, of others as much as there. Between the places
-/// readings go straight (beyond the outer ones they go on as at the edge). `gamma`: of the projector, whose light is
-/// the value's share to that power; 1: light follows the value.
+/// The mask that makes the light uniform: the darkest place gets all its light, the others are dimmed to the same
+/// level. Readings are interpolated linearly (and constant beyond the outer ones). `gamma`: of the projector, whose
+/// light is the value's fraction to that power; 1: light is proportional to the value.
 [[nodiscard]] LightMask light_mask(const LightTable& table, int width_px, int height_px, double gamma);
 
-/// Where the reading of a column (row) is taken: the middle of its share of `length_px`.
+/// Position of a column's (row's) reading: the middle of its share of `length_px`.
 [[nodiscard]] double point_px(int index, int count, int length_px);
 
 }  // namespace pliant::host

@@ -55,7 +55,7 @@ TEST_CASE("the border's rectangle is as wide as is said, and the rulers' marks a
     const MeasuredSpan span = measured_span(320, 200);
     CHECK(span.x_px == 288);
     CHECK(span.y_px == 180);
-    // A row that crosses only frame, rectangle and the middle line.
+    // A row that crosses only the frame, the rectangle and the centre line.
     std::vector<int> lit;
     for (int x = 0; x < 320; ++x) {
         if (image.at(45, x) == 255) lit.push_back(x);
@@ -88,7 +88,7 @@ TEST_CASE("a mask makes a light that falls off towards the edges the same everyw
     const LightMask mask = light_mask(*table, 300, 150, 1);
     CHECK(mask.least == near(4.0 / 5.5, {.relative = 1e-12}));
     CHECK(mask.mask.at(0, 0) == 255);
-    // Light of a place times its mask is that of the darkest.
+    // The light of a place times its mask equals the darkest reading.
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column) {
             const int y = static_cast<int>(point_px(row, 3, 150));
@@ -101,7 +101,7 @@ TEST_CASE("a mask makes a light that falls off towards the edges the same everyw
     CHECK(5.5 * std::pow(curved.mask.at(75, 150) / 255.0, 2.2) == near(4.0, {.relative = 0.01}));
 }
 
-TEST_CASE("a table that is none is refused, by line") {
+TEST_CASE("an invalid table is refused, by line") {
     const auto said = [](std::string_view text) {
         const auto table = parse_light_table(text, "light.txt");
         return table ? std::string("read") : table.error().message;

@@ -10,10 +10,10 @@ namespace {
 
 using machine::Interlock;
 
-constexpr long most_introduction_lines = 100;  // that a session sends before it moves anything
-constexpr long most_questions = 100;           // fences and such, among the commands up to a light
+constexpr long most_introduction_lines = 100;  // sent by a session before it moves anything
+constexpr long most_questions = 100;           // fences and the like, among the commands up to an exposure
 
-/// Whether the controller is as that host left it, which had `commands` to send at most.
+/// Whether the controller is in the state that its last host left it in; that host had at most `commands` to send.
 bool is_proven(const JournalFacts& facts, long last_line, std::size_t commands) {
     if (facts.stopped_short || last_line <= 0) return false;
     if (facts.go->program >= 0) {
@@ -24,7 +24,7 @@ bool is_proven(const JournalFacts& facts, long last_line, std::size_t commands) 
     return last_line >= facts.base && last_line < facts.base + most_introduction_lines;
 }
 
-/// The commands from there on, up to a light or the end.
+/// The commands from there on, up to an exposure or the end.
 std::vector<std::string> commands_from(const GoFact& go, const JournalFacts& facts, const Script& script) {
     std::vector<std::string> commands;
     if (go.program > 0) {
@@ -41,7 +41,7 @@ std::vector<std::string> commands_from(const GoFact& go, const JournalFacts& fac
     return commands;
 }
 
-/// What the journal asks for, against what the machine allows.
+/// Checks the exposures in the journal against the machine's limits.
 Status check_lights(const JournalFacts& facts, const machine::Printer& printer) {
     const auto allowed = [&](double seconds) { return seconds >= 0 && seconds <= printer.limits.exposure_s; };
     for (const auto& [step, light] : facts.lights) {
@@ -85,7 +85,7 @@ Result<Standing> standing_of(const JournalFacts& facts, const Script& script, co
     for (std::size_t i = 0; i < commands.size() && static_cast<long>(i) < carried_out; ++i) {
         machine::Followed after = at;
         if (Status status = after.line(printer, commands[i]); !status) return tl::unexpected(status.error());
-        // Where the next phase begins the journal would have another entry.
+        // At the start of the next phase the journal would have another entry.
         if (i > 0 && !same_phase(printer, at.lock, after.lock)) break;
         const bool stroke =
             at.lock.in_hooks_stroke() && after.lock.in_hooks_stroke() && at.lock.position() != after.lock.position();
@@ -100,7 +100,7 @@ Result<Standing> standing_of(const JournalFacts& facts, const Script& script, co
         at = std::move(after);
     }
     if (proven) return Standing{at.lock, false};
-    // The vat on the hooks is the same all the way; what else has happened does not matter, the axes are homed anew.
+    // The vat on the hooks is the same all along; other state does not matter, because the axes are homed again.
     return Standing{without_position(commands.empty() ? at.lock : *restored), on_hooks};
 }
 

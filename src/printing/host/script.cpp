@@ -22,7 +22,7 @@ Status read_command(std::string_view line, Script& script) {
     return {};
 }
 
-/// One step on a machine that stands still for every light: the host puts a fence before each.
+/// One step on a machine that is at rest for every exposure: the host sends a fence before each.
 Status follow_step(const Script& script, const machine::Printer& printer, std::size_t step, machine::Followed& at) {
     if (const auto* command = std::get_if<std::string>(&script.steps[step])) return at.line(printer, *command);
     const machine::Expose& light = *script.light(step);

@@ -1,4 +1,5 @@
-// The G-code of a job, read whole before anything moves: commands for the wire and lights for the projector, in order.
+// The G-code of a job, parsed completely before anything moves: commands for the wire and exposures for the projector,
+// in order.
 #pragma once
 
 #include <deque>
@@ -16,7 +17,7 @@ namespace pliant::host {
 
 struct Script {
     std::vector<std::variant<std::string, machine::Expose>> steps;
-    std::deque<std::string> stop_commands;  ///< what `;@stop` names
+    std::deque<std::string> stop_commands;  ///< listed by `;@stop`
 
     [[nodiscard]] const machine::Expose* light(std::size_t step) const {
         return std::get_if<machine::Expose>(&steps[step]);
@@ -26,12 +27,12 @@ struct Script {
 /// Errors name the line.
 [[nodiscard]] Result<Script> read_script(std::string_view gcode);
 
-/// When each step begins, in seconds from the beginning, and behind them the end; (steps + 1). Errors: a step that the
-/// interlocks of the machine forbid, or light for longer than it allows.
+/// Start time of each step, in seconds from the beginning, followed by the end; (steps + 1). Errors: a step that the
+/// machine's interlocks forbid, or an exposure longer than it allows.
 [[nodiscard]] Result<std::vector<double>> script_times(const Script& script, const machine::Printer& printer);
 
-/// The machine before step `step` of a print that has gone as it should. Precondition: script_times() has found no
-/// fault. The printer must outlive the result.
+/// The machine's state before step `step` of an uninterrupted print. Precondition: script_times() found no error. The
+/// printer must outlive the result.
 [[nodiscard]] machine::Interlock state_before(const Script& script, const machine::Printer& printer, std::size_t step);
 
 }  // namespace pliant::host

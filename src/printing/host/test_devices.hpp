@@ -1,4 +1,4 @@
-// Devices for tests: a wire whose other end is a function, a clock that only counts, a projector that remembers.
+// Devices for tests: a wire whose other end is a function, a clock that only counts, a projector that records.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ public:
     double now_s = 0;
 };
 
-/// A number far ahead, with which a host asks for the last line.
+/// A line number far ahead, which a host uses to query the last line.
 inline bool is_probe(const std::string& line) {
     return line.rfind("N2147483640 ", 0) == 0;
 }
@@ -30,8 +30,8 @@ inline std::string refusal(long last_line) {
                        last_line + 1);
 }
 
-/// `answer` gets every written line and says what comes back. What it says before the first line: `start`. A probe to
-/// which the answer would be a plain `ok` is answered as a Marlin does that has taken every line so far that had one.
+/// `answer` is called for every written line and returns the answer. Before the first line, `start` is sent. A probe
+/// that would get a plain `ok` is answered like a Marlin that has accepted every numbered line so far.
 class ScriptedWire final : public Wire {
 public:
     ScriptedWire(CountingClock& clock, std::function<std::string(const std::string&)> answer)
@@ -43,7 +43,7 @@ public:
                 line_ += c;
                 continue;
             }
-            if (line_.empty()) continue;  // a firmware gives no answer to an empty line
+            if (line_.empty()) continue;  // firmware does not answer an empty line
             written.push_back(line_);
             pending_ += answer_to(line_);
             line_.clear();
@@ -58,8 +58,8 @@ public:
     }
 
     std::vector<std::string> written;
-    std::string forgets;  ///< a line that holds it is not taken, once, whatever the answer to it is
-    std::string talk;     ///< what it says every second, asked or not
+    std::string forgets;  ///< a line that contains this is dropped once, whatever its answer
+    std::string talk;     ///< sent every second, unasked
 
 private:
     std::string answer_to(const std::string& line) {
@@ -94,7 +94,7 @@ public:
     std::vector<job::Image> shown;
 };
 
-/// What a Marlin says to a good line: the echo of M118, and ok.
+/// Marlin's answer to a valid line: the echo of M118, and ok.
 inline std::string good_answer(const std::string& line) {
     const std::size_t token = line.find("M118 E1 ");
     if (token == std::string::npos) return "ok\n";

@@ -41,7 +41,7 @@ Status check_images(const ZipReader& zip, const Manifest& manifest, const std::s
     return {};
 }
 
-/// Every entry with a fingerprint is there.
+/// Checks that every entry with a hash exists.
 Status check_listed(const ZipReader& zip, const Manifest& manifest, const std::string& path) {
     for (const auto& [file, hash] : manifest.sha256) {
         if (!zip.has(file))

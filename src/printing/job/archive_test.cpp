@@ -54,7 +54,7 @@ std::string refused(const fs::path& path) {
     return archive.error().message;
 }
 
-/// An archive of any entries, without the writer's care.
+/// An archive of arbitrary entries, without the writer's checks.
 void write_raw(const fs::path& path, const std::vector<std::pair<std::string, std::string>>& entries) {
     auto zip = ZipWriter::create(path);
     REQUIRE(zip.has_value());
@@ -82,7 +82,7 @@ std::string little_endian(std::uint32_t value) {
 
 }  // namespace
 
-TEST_CASE("a job comes back as it went") {
+TEST_CASE("a job is read back as written") {
     const Folder folder;
     const fs::path path = folder / "a.zip";
     REQUIRE(write(path).has_value());
@@ -188,7 +188,7 @@ TEST_CASE("the writer refuses bad names, repeated names and missing folders") {
     CHECK(!Writer::create(folder / ".").has_value());
 }
 
-TEST_CASE("archives that are none, or that lack parts, are refused") {
+TEST_CASE("invalid or incomplete archives are refused") {
     const Folder folder;
     const fs::path path = folder / "a.zip";
     CHECK(refused(path).find("no such file") != std::string::npos);
@@ -257,7 +257,7 @@ TEST_CASE("sizes that an entry claims are checked before memory is taken") {
         archive->file("printer.toml").error().message.find("claims 4294967280 bytes, more than the archive can hold") !=
         std::string::npos);
 
-    // A manifest that unpacks to more than is allowed, from a few hundred kilobytes.
+    // A manifest that unpacks from a few hundred kilobytes to more than is allowed.
     write_raw(path, {{"manifest.json", std::string(std::size_t{65} << 20, ' ')}});
     CHECK(refused(path).find("more than the 67108864 allowed") != std::string::npos);
 }

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Letters, digits, '-' and '_' as they are, all else '_'.
+/// Keeps letters, digits, '-' and '_'; everything else becomes '_'.
 std::string file_word(const std::string& text) {
     std::string word;
     for (const char c : text.substr(0, 80)) {
@@ -23,7 +23,7 @@ std::string file_word(const std::string& text) {
     return word.empty() ? "job" : word;
 }
 
-/// Calls `put(layer, png)` for every layer of a material, blank ones too.
+/// Calls `put(layer, png)` for every layer of a material, including blank ones.
 Status each_layer(const Archive& archive, int material, const std::function<Status(std::size_t, std::string)>& put) {
     const Manifest& m = archive.manifest();
     const std::string blank = encode_png(slice::RunImage(m.width_px, m.height_px));
@@ -43,7 +43,7 @@ std::string image_name(Format format, const std::string& prefix, std::size_t lay
     return fmt::format("{}.png", layer + 1);
 }
 
-/// Of every layer's image of a material.
+/// The areas of every layer image of a material.
 Result<std::vector<ImageAreas>> layer_areas(const Archive& archive, int material) {
     const Manifest& m = archive.manifest();
     std::vector<ImageAreas> areas(m.layers.size());
@@ -127,7 +127,7 @@ Status write_vats(const Archive& archive, const fs::path& folder) {
     });
 }
 
-/// The formats know one thickness of all layers.
+/// These formats have only one thickness for all layers.
 Status check_alike(const Manifest& m, Format format) {
     if (format != Format::sl1 && format != Format::nanodlp) return {};
     for (std::size_t k = 1; k < m.layers.size(); ++k) {

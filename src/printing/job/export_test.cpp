@@ -42,7 +42,7 @@ Archive make(const fs::path& path) {
     return std::move(*archive);
 }
 
-/// How many pixels of an exported image are lit.
+/// Number of lit pixels in an exported image.
 long lit(const Result<std::string>& png) {
     REQUIRE(png.has_value());
     const auto image = decode_png(*png, {64, 48}, "x");
@@ -178,7 +178,7 @@ TEST_CASE("a .nanodlp read as NanoDLP and UVtools read it") {
     CHECK(plate["XRes"] == 64);
     CHECK(plate["YRes"] == 48);
     CHECK(plate["MultiMaterial"] == false);
-    // Rigid stands in layers 4 to 9, x from -1 to 0.5 mm, y from -1 to 1 mm: 15 x 20 pixels of 0.1 mm.
+    // Rigid is in layers 4 to 9, x from -1 to 0.5 mm, y from -1 to 1 mm: 15 x 20 pixels of 0.1 mm.
     CHECK(plate["TotalSolidArea"].get<double>() == near(6 * 3.0, {.relative = 1e-12}));
     CHECK(plate["XMin"].get<double>() == near(-1, {.relative = 1e-12}));
     CHECK(plate["XMax"].get<double>() == near(0.5, {.relative = 1e-12}));

@@ -10,7 +10,7 @@ using Ordered = nlohmann::ordered_json;
 
 constexpr const char* no_date = "1980-01-01 at 00:00:00 UTC";  // equal jobs give equal bytes
 
-/// One line without what ends a value of an .ini file.
+/// One line, without characters that end a value in an .ini file.
 std::string one_line(std::string text) {
     std::replace_if(
         text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
@@ -33,7 +33,7 @@ Ordered layer_info(const ImageAreas& areas, double pixel_mm2) {
             {"AreaCount", areas.count}};
 }
 
-/// First and last lit pixel of all layers, as a piece of its own; none where all are dark.
+/// First and last lit pixel over all layers, as one component; none if all are dark.
 ImageAreas whole(const std::vector<ImageAreas>& layers) {
     ImageAreas all;
     for (const ImageAreas& a : layers) {
@@ -48,7 +48,7 @@ ImageAreas whole(const std::vector<ImageAreas>& layers) {
     return all;
 }
 
-/// Lowest and highest of the layers with light, mm: bottom of the one, top of the other.
+/// Bottom of the lowest and top of the highest layer with light, mm.
 std::pair<double, double> z_mm(const Manifest& m, const std::vector<ImageAreas>& layers) {
     double low = 0, high = 0;
     for (std::size_t k = 0; k < layers.size(); ++k) {
@@ -77,7 +77,7 @@ int StackFacts::fading_layers() const {
     const auto bottom = static_cast<std::size_t>(std::max(0, manifest.bottom_layers));
     std::size_t end = bottom;
     for (std::size_t k = bottom; k < light_s.size(); ++k) {
-        if (area_mm2[k] == 0) continue;  // dark: it tells nothing
+        if (area_mm2[k] == 0) continue;  // dark: no information
         if (light_s[k] <= low || light_s[k] >= high) break;
         end = k + 1;
     }
@@ -152,7 +152,7 @@ std::vector<NamedText> nanodlp_texts(const StackFacts& s, const std::vector<Imag
     const ImageAreas all = whole(areas);
     const double x_mm = pixel_mm * m.width_px / 2, y_mm = pixel_mm * m.height_px / 2;
     const auto [z_low, z_high] = z_mm(m, areas);
-    const int past = all.count;  // the far side of the last pixel, if there is one
+    const int past = all.count;  // one past the last pixel, if there is one
     const Ordered meta{
         {"FormatVersion", 1}, {"Distro", "generic"}, {"Program", "Pliant"}, {"Version", m.pliant_version},
         {"OS", ""},           {"Arch", ""},          {"Profile", true}};

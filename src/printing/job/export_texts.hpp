@@ -1,4 +1,4 @@
-// The files beside the images in other programs' formats.
+// The metadata files beside the images in other programs' formats.
 #pragma once
 
 #include <string>
@@ -12,30 +12,30 @@ namespace pliant::job {
 
 using NamedText = std::pair<std::string, std::string>;  ///< entry and content
 
-/// What the images of one material light up.
+/// Exposures and areas of the images of one material.
 struct StackFacts {
     const Manifest& manifest;
     int material = 0;
-    std::string image_prefix;      ///< of the images' names
+    std::string image_prefix;      ///< prefix of the image names
     std::vector<double> area_mm2;  ///< per layer
     double layer_um = 0;           ///< of the lowest layer
-    std::vector<double> light_s;   ///< per layer; of a dark one what its material says
+    std::vector<double> light_s;   ///< per layer; for a dark one the material's default
 
     [[nodiscard]] const Material& of() const { return manifest.materials[static_cast<std::size_t>(material)]; }
     [[nodiscard]] double volume_mm3() const;
-    /// Of the first layer, which every format has an exposure for.
+    /// Of the first layer, for which every format has its own exposure.
     [[nodiscard]] double first_light_s() const;
-    /// Layers above the bottom ones whose light lies between that of the first and that of all others.
+    /// Layers above the bottom ones whose exposure is between that of the first layer and that of the rest.
     [[nodiscard]] int fading_layers() const;
 };
 
-/// Of the material's images and the job's layers.
+/// From the material's images and the job's layers.
 [[nodiscard]] StackFacts facts_of(const Manifest& manifest, int material, const std::string& image_prefix);
 
 [[nodiscard]] std::vector<NamedText> sl1_texts(const StackFacts& stack);
-/// `areas`: of every layer's image.
+/// `areas`: per layer image.
 [[nodiscard]] std::vector<NamedText> nanodlp_texts(const StackFacts& stack, const std::vector<ImageAreas>& areas);
-/// What UVtools reads beside a zip file's images. Precondition: layers of one height.
+/// The files that UVtools reads beside a zip file's images. Precondition: layers of equal height.
 [[nodiscard]] std::vector<NamedText> zip_texts(const StackFacts& stack);
 
 }  // namespace pliant::job

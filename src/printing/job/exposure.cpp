@@ -31,7 +31,7 @@ double exposure_s(const Material& material, const ExposureRule& rule, int k, int
     for (const ExposureSpan& span : rule.spans) {
         if (span.first <= k && k <= span.last) seconds = span.seconds;
     }
-    // Whole milliseconds, as G-code has them.
+    // Whole milliseconds, as in G-code.
     return std::round(seconds * 1000) / 1000;
 }
 

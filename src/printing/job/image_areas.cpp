@@ -8,7 +8,7 @@
 namespace pliant::job {
 namespace {
 
-/// The image with full light wherever it has any.
+/// The image with every lit pixel at full light.
 slice::RunImage full_where_lit(const slice::RunImage& image) {
     slice::RunImage full(image.width_px(), image.height_px());
     for (int row = image.first_row(); row < image.end_row(); ++row) {

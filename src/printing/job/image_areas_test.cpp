@@ -28,7 +28,7 @@ TEST_CASE("pieces hang together through sides of pixels; grey counts as its shar
                                          ".#..#.",  //
                                          ".....+",  //
                                          "......"}));
-    // Three whole pixels, one, and two faint ones that touch others by corners only.
+    // Three whole pixels, one, and two faint ones that touch others only at corners.
     CHECK(a.count == 4);
     CHECK(a.total_px == near(4.4, {.relative = 1e-12}));
     CHECK(a.largest_px == near(3, {.relative = 1e-12}));
@@ -51,7 +51,7 @@ TEST_CASE("a ring is one piece, its hole none; a faint rim belongs to its piece"
     CHECK(a.smallest_px == a.total_px);
 }
 
-TEST_CASE("a dark image has nothing") {
+TEST_CASE("a dark image has no components") {
     const ImageAreas a = areas_of(image(3, 1, {"..."}));
     CHECK(a.count == 0);
     CHECK(a.total_px == 0);

@@ -12,12 +12,12 @@
 namespace pliant::job {
 
 /// The PNG images of a folder or a zip file (.sl1, .nanodlp, .cws, any .zip) whose names end with a number: layer
-/// images in the order of that number, which may begin at 0 or 1. Previews and thumbnails are passed over. Of several
-/// groups of names, as in "cone_0001.png", the largest is the stack. One thread at a time.
+/// images in the order of that number, which may begin at 0 or 1. Previews and thumbnails are ignored. Of several
+/// groups of names, such as "cone_0001.png", the largest is the stack. Not thread-safe.
 class ImageStack {
 public:
-    /// Errors: no such images, a number that is missing or comes twice, images of different sizes, a layer height that
-    /// cannot be (stack_height.hpp); all with names.
+    /// Errors: no such images, a missing or duplicate number, images of different sizes, an invalid layer height
+    /// (stack_height.hpp); all with names.
     [[nodiscard]] static Result<ImageStack> open(const std::filesystem::path& path);
     ImageStack(ImageStack&&) noexcept;
     ImageStack& operator=(ImageStack&&) noexcept;
@@ -26,9 +26,9 @@ public:
     [[nodiscard]] int layer_count() const;
     [[nodiscard]] int width_px() const;
     [[nodiscard]] int height_px() const;
-    /// As the files beside the images say; nullopt: they do not.
+    /// From the files beside the images; nullopt if they do not say.
     [[nodiscard]] std::optional<double> layer_um() const;
-    /// Grey, of any kind of PNG that the file holds. Errors: what libpng refuses.
+    /// The image as grey, whatever kind of PNG the file holds. Errors: what libpng rejects.
     [[nodiscard]] Result<slice::Image> image(int layer) const;
 
 private:
@@ -37,7 +37,7 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// True for a folder, and for a zip file that holds PNG images and is neither a 3MF file nor a job.
+/// True for a folder, and for a zip file with PNG images that is neither a 3MF file nor a job.
 [[nodiscard]] bool is_image_stack(const std::filesystem::path& path);
 
 }  // namespace pliant::job

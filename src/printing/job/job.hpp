@@ -19,12 +19,12 @@
 
 namespace pliant::job {
 
-/// What a job calls the projector's mask, whatever its name beside the printer file.
+/// The name of the projector's mask in a job, whatever its name beside the printer file.
 inline constexpr const char* mask_entry = "mask.png";
 
 using Image = slice::Image;
 
-/// A material as drawn that is printed with others as one.
+/// A drawn material that is printed together with others as one.
 struct MaterialPart {
     std::string name;
     double model_volume_mm3 = 0, model_area_mm2 = 0;
@@ -32,13 +32,15 @@ struct MaterialPart {
 
 struct Material {
     std::string name;   ///< as in the robot file; unique
-    std::string resin;  ///< what a printer's vat is filled with
+    std::string resin;  ///< the resin a printer's vat holds
     double model_volume_mm3 =
-        0;  ///< of the bodies as drawn, less overlaps that others keep, for the comparison after the print
-    double model_area_mm2 = 0;          ///< of their surface: one pixel layer around it is the error a raster may make
+        0;  ///< of the bodies as drawn, without overlaps assigned to others, for comparison after the print
+    double model_area_mm2 = 0;          ///< of their surface: one pixel layer around it is the possible rasterisation
+                                        ///< error
     double exposure_s = 0;              ///< of a normal layer
     double bottom_exposure_s = 0;       ///< of the first `bottom_layers`
-    std::vector<MaterialPart> parts{};  ///< two or more as drawn, of one resin and lit alike; empty: it is one
+    std::vector<MaterialPart> parts{};  ///< two or more drawn materials with the same resin and exposure; empty: a
+                                        ///< single one
 };
 
 /// One image that is not blank.
@@ -46,26 +48,26 @@ struct LayerImage {
     int material = 0;       ///< index into Manifest::materials
     std::string file;       ///< name inside the archive
     double area_mm2 = 0;    ///< sum of pixel values / 255 times the pixel's area
-    double exposure_s = 0;  ///< of this image; 0: what the material says
-    double shared_mm2 = 0;  ///< of `area_mm2`: what an image of another material lights too, for bonding
+    double exposure_s = 0;  ///< of this image; 0: the material's exposure
+    double shared_mm2 = 0;  ///< part of `area_mm2` that images of other materials expose too, for bonding
 };
 
 struct Layer {
     int z_um = 0;  ///< height of the layer's top above the platform
     int thickness_um = 0;
-    std::vector<LayerImage> images;  ///< ordered by material; empty where nothing is printed
+    std::vector<LayerImage> images;  ///< ordered by material; empty if nothing is printed
 };
 
-/// Something that will not print well, and where to look.
+/// A possible printing problem, and where it is.
 struct Finding {
     std::string kind;  ///< "island", "trap", "cup" or "thin"
     int first_layer = 0, last_layer = 0;
-    int row = 0, column = 0;  ///< a pixel of it, in `first_layer`
+    int row = 0, column = 0;  ///< a pixel of the problem, in `first_layer`
     double area_mm2 = 0;      ///< of an island or a thin feature in `first_layer`
     double volume_mm3 = 0;    ///< of a trap or a cup
     std::string picture;      ///< PNG inside the archive; "": none
-    std::string severity;     ///< "high", "medium" or "low"; "": not said
-    int count = 1;            ///< islands that it stands for: those that grow together, or all of low severity
+    std::string severity;     ///< "high", "medium" or "low"; "": not rated
+    int count = 1;            ///< number of islands it stands for: those that grow together, or all of low severity
 };
 
 struct Manifest {
@@ -76,15 +78,15 @@ struct Manifest {
     int bottom_layers = 0;
     std::vector<Material> materials;
     std::vector<Layer> layers;
-    std::vector<std::string> warnings;  ///< what the slicer repaired or noticed
+    std::vector<std::string> warnings;  ///< repairs and remarks of the slicer
     bool compensated = false;           ///< images differ from the drawing on purpose
     std::vector<Finding> findings{};
-    bool any_vat = false;  ///< a resin that no vat holds may be filled into any
-    /// Fingerprint (64 hex digits) of every entry but the manifest; empty: a job of format 1, which has none.
+    bool any_vat = false;  ///< a resin without a vat may be filled into any vat
+    /// SHA-256 (64 hex digits) of every entry but the manifest; empty: a job of format 1, which has none.
     std::map<std::string, std::string> sha256{};
 };
 
-/// How long image `index` of a layer is lit.
+/// Exposure of image `index` of a layer.
 [[nodiscard]] inline double exposure_s(const Manifest& manifest, std::size_t layer, std::size_t index) {
     const LayerImage& image = manifest.layers[layer].images[index];
     if (image.exposure_s > 0) return image.exposure_s;
@@ -92,31 +94,31 @@ struct Manifest {
     return static_cast<int>(layer) < manifest.bottom_layers ? m.bottom_exposure_s : m.exposure_s;
 }
 
-/// Refuses a manifest that does not agree with itself: sizes and numbers out of range, a material without a name or
-/// named twice, heights that do not rise, an image of a material that does not exist or comes twice in its layer, file
-/// names that are not plain relative paths. The message starts with `where`.
+/// Checks the consistency of a manifest. Errors: sizes and numbers out of range, a material without a name or named
+/// twice, heights that do not ascend, an image of a missing material or two of one material in a layer, file names that
+/// are not plain relative paths. The message starts with `where`.
 [[nodiscard]] Status check(const Manifest& manifest, std::string_view where);
 
-/// The archive's small picture of the part, a square of 400 pixels.
+/// The thumbnail of the part, 400 by 400 pixels.
 inline constexpr const char* thumbnail_file = "thumbnail.png";
 
-/// "layers/00012_soft.png"; what is not a letter, digit, '-' or '_' in the material's name becomes '_'.
+/// "layers/00012_soft.png"; characters of the material's name other than letters, digits, '-' and '_' become '_'.
 [[nodiscard]] std::string image_file_name(int layer, std::string_view material);
 
-/// An image as a PNG file, with its size at hand.
+/// An image as a PNG file, with its size.
 struct EncodedImage {
     int width_px = 0;
     int height_px = 0;
     std::string png;
 };
 
-/// 8-bit grey PNG, not interlaced; fast rather than small. Safe to call from several threads. Precondition: at least
-/// one pixel, and as many values as pixels.
+/// 8-bit grey PNG, not interlaced; optimised for speed, not size. Thread-safe. Precondition: at least one pixel, and as
+/// many values as pixels.
 [[nodiscard]] EncodedImage encode(const Image& image);
 [[nodiscard]] EncodedImage encode(const slice::RunImage& image);
 
-/// Writes a job as PATH.partial and puts it in place with finish(); without it nothing is left behind. The same calls
-/// give the same bytes. Images go to the disk as they come.
+/// Writes a job as PATH.partial; finish() renames it, and without finish() nothing is left behind. The same calls give
+/// the same bytes. Images are written to disk as they come.
 class Writer {
 public:
     /// Errors: the folder does not exist, PATH is a folder.
@@ -125,15 +127,14 @@ public:
     Writer& operator=(Writer&&) noexcept;
     ~Writer();
 
-    /// Adds an image; `file` as in LayerImage. Errors: an unsafe name, a name used before, an image
-    /// without pixels or with another number of values.
+    /// Adds an image; `file` as in LayerImage. Errors: an unsafe or duplicate name, an image without pixels or with a
+    /// wrong number of values.
     [[nodiscard]] Status add_image(const std::string& file, const Image& image);
     [[nodiscard]] Status add_image(const std::string& file, EncodedImage image);
     /// Adds any other file, deflated. Errors as above.
     [[nodiscard]] Status add_file(const std::string& file, std::string_view bytes);
-    /// Adds the manifest with the fingerprints of all that was added, writes everything and renames. Errors: check(),
-    /// an image that was not added or has another size than the manifest says, the disk. The writer is spent either
-    /// way.
+    /// Adds the manifest with the hashes of all entries, writes everything and renames. Errors: check(), an image that
+    /// was not added or whose size differs from the manifest's, the disk. The writer cannot be used afterwards.
     [[nodiscard]] Status finish(const Manifest& manifest);
 
 private:
@@ -142,9 +143,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// A job that has been opened and validated: every image that the manifest lists exists, indices and sizes agree.
-/// Archives from anywhere are safe to open: sizes are checked before memory is taken. Errors name archive and entry.
-/// One thread at a time.
+/// A job, opened and validated: every image that the manifest lists exists, indices and sizes agree. Untrusted archives
+/// are safe to open: sizes are checked before memory is allocated. Errors name archive and entry. Not thread-safe.
 class Archive {
 public:
     [[nodiscard]] static Result<Archive> open(const std::filesystem::path& path);
@@ -154,8 +154,8 @@ public:
 
     [[nodiscard]] const Manifest& manifest() const;
     [[nodiscard]] bool has_file(const std::string& file) const;
-    /// The bytes of an entry of at most 1 GB. Errors: they are not those that the manifest has the fingerprint of, or
-    /// it has fingerprints but none of this entry.
+    /// The bytes of an entry of at most 1 GB. Errors: their hash differs from the manifest's, or the manifest has
+    /// hashes but none for this entry.
     [[nodiscard]] Result<std::string> file(const std::string& file) const;
     /// Decodes an image; its size is that of the manifest.
     [[nodiscard]] Result<Image> image(const std::string& file) const;

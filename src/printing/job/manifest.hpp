@@ -8,10 +8,10 @@
 
 namespace pliant::job {
 
-/// Of jobs without fingerprints, and with them.
+/// Formats of jobs without and with SHA-256 hashes.
 inline constexpr int plain_format = 1, sealed_format = 2;
 
-/// Whether a name may be an entry of a job: a plain relative path such as "layers/00012_soft.png", of at most 200
+/// Whether a name is a valid entry of a job: a plain relative path such as "layers/00012_soft.png", of at most 200
 /// printable characters, without empty, "." or ".." parts, backslashes or colons.
 [[nodiscard]] bool is_safe_entry_name(std::string_view name);
 

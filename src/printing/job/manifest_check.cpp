@@ -110,7 +110,7 @@ Status check_findings(const Manifest& m, std::string_view where) {
     return {};
 }
 
-/// A manifest with fingerprints has one of every image.
+/// A manifest with hashes must have one for every image.
 Status check_sha256(const Manifest& m, std::string_view where) {
     if (m.sha256.empty()) return {};
     for (const auto& [file, hash] : m.sha256) {

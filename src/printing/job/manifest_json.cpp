@@ -10,7 +10,7 @@ namespace {
 using nlohmann::json;
 using Ordered = nlohmann::ordered_json;
 
-/// Reads keys of one object; the first problem is kept, everything after it returns harmless values.
+/// Reads the keys of one object; keeps the first problem and returns harmless values after it.
 class Fields {
 public:
     Fields(const json& object, std::string path, std::string& problem)
@@ -28,7 +28,7 @@ public:
     int integer(const char* key) {
         const json* value = find(key);
         if (value == nullptr) return 0;
-        // Unsigned first: what does not fit 64 signed bits is kept as unsigned.
+        // Unsigned first: JSON numbers beyond signed 64 bits are stored as unsigned.
         constexpr int most = std::numeric_limits<int>::max(), least = std::numeric_limits<int>::min();
         if (value->is_number_unsigned() && value->get<std::uint64_t>() <= most) return value->get<int>();
         if (value->is_number_integer() && !value->is_number_unsigned() && value->get<std::int64_t>() >= least)
@@ -52,7 +52,7 @@ public:
         complain(key, "true or false is needed");
         return false;
     }
-    /// Calls `read(entry, path)` for the entries of an array until something is wrong.
+    /// Calls `read(entry, path)` for the entries of an array until a problem occurs.
     template <class Read>
     void each(const char* key, const Read& read) {
         const json* value = find(key);
@@ -61,7 +61,7 @@ public:
         for (std::size_t i = 0; i < value->size() && problem_.empty(); ++i)
             read((*value)[i], fmt::format("{}{}[{}]", path_, key, i));
     }
-    /// An object of texts.
+    /// An object whose values are texts.
     std::map<std::string, std::string> texts(const char* key) {
         std::map<std::string, std::string> result;
         const json* value = find(key);
@@ -87,7 +87,7 @@ private:
     }
 
     const json& object_;
-    std::string path_;  ///< what messages put before a key
+    std::string path_;  ///< prefix of keys in messages
     std::string& problem_;
 };
 
@@ -171,7 +171,8 @@ Manifest read_manifest(const json& root, std::string& problem) {
 }
 
 Result<json> parse(std::string_view text, std::string_view where) {
-    // Nothing in a manifest is nested deeper; without the limit a file of brackets would take sixty times its size.
+    // No valid manifest is nested deeper; without the limit a file of brackets would take sixty times its size in
+    // memory.
     constexpr int max_depth = 8;
     bool too_deep = false;
     const auto shallow = [&](int depth, json::parse_event_t, json&) {

@@ -42,7 +42,7 @@ std::string refused_json(const std::string& json) {
 
 }  // namespace
 
-TEST_CASE("a manifest comes back as it went") {
+TEST_CASE("a manifest is read back as written") {
     const Manifest m = example();
     const auto back = manifest_from_json(to_json(m), "x");
     REQUIRE(back.has_value());
@@ -58,7 +58,7 @@ TEST_CASE("a manifest comes back as it went") {
     CHECK(back->warnings == m.warnings);
 }
 
-TEST_CASE("a manifest that does not agree with itself is refused") {
+TEST_CASE("an inconsistent manifest is refused") {
     Manifest m = example();
     m.width_px = 0;
     refuse(m, "width_px");

@@ -37,13 +37,13 @@ void put_chunk(std::string& out, std::string_view type, std::string_view data) {
     put_u32(out, libdeflate_crc32(0, out.data() + start, out.size() - start));
 }
 
-/// Bytes of a row that are equal, up to the column `end`.
+/// Equal bytes of a row, up to the column `end`.
 struct Piece {
     int end;
     std::uint8_t value;
 };
 
-/// A row of pixels from its first column to its last, dark ones too.
+/// A row of pixels as pieces from the first column to the last, including dark ones.
 void spell_row(std::span<const slice::Run> runs, int width, std::vector<Piece>& pieces) {
     pieces.clear();
     int at = 0;
@@ -55,7 +55,7 @@ void spell_row(std::span<const slice::Run> runs, int width, std::vector<Piece>& 
     if (at < width) pieces.push_back({width, 0});
 }
 
-/// What a row adds to the one above it, byte by byte.
+/// The difference of a row to the one above it, byte by byte.
 void subtract(const std::vector<Piece>& row, const std::vector<Piece>& above, std::vector<Piece>& difference) {
     difference.clear();
     for (auto r = row.begin(), a = above.begin(); r != row.end();) {
@@ -71,7 +71,8 @@ void subtract(const std::vector<Piece>& row, const std::vector<Piece>& above, st
     }
 }
 
-/// About the bits that pieces take: ends of a solid (0, 255) and steps of a full pixel (1) are frequent, so short.
+/// Estimated number of bits for the pieces: 0, 255 (edges of a solid) and 1 (steps of a full pixel) are frequent, so
+/// short.
 int cost(const std::vector<Piece>& pieces) {
     int bits = 0, at = 0;
     for (const Piece& piece : pieces) {
@@ -82,8 +83,8 @@ int cost(const std::vector<Piece>& pieces) {
     return bits;
 }
 
-/// The bytes that a PNG file packs: per row the number of a filter, then the row as that filter leaves it. Rows are
-/// kept as they are (filter 0) or as the difference to the row above ("up", filter 2), whichever takes less.
+/// The bytes that a PNG file compresses: for each row the number of a filter, then the filtered row. Rows are
+/// unfiltered (filter 0) or differences to the row above ("up", filter 2), whichever is smaller.
 class RowPacker {
 public:
     explicit RowPacker(const slice::RunImage& image) : image_(image) {}
@@ -132,10 +133,10 @@ struct FreeDecompressor {
     void operator()(libdeflate_decompressor* d) const { libdeflate_free_decompressor(d); }
 };
 
-/// The pixels of a file as encode_png() writes them: one IDAT, rows unfiltered or as differences to the row above.
-/// Nothing for any other file, which libpng then reads (or refuses). Three times as fast as libpng.
+/// The pixels of a file in the form that encode_png() writes: one IDAT, rows unfiltered or as differences to the row
+/// above. Nothing for any other file, which is left to libpng. Three times as fast as libpng.
 std::optional<slice::Image> decode_own(std::string_view png, const PngSize& size) {
-    constexpr std::size_t data_at = 41;  // signature, IHDR, head of IDAT
+    constexpr std::size_t data_at = 41;  // signature, IHDR, header of IDAT
     if (png.size() < data_at + 16 || png.substr(37, 4) != "IDAT") return std::nullopt;
     const std::size_t length = get_u32(png, 33);
     if (length > png.size() - data_at - 16 || png.substr(data_at + length + 8, 4) != "IEND") return std::nullopt;
@@ -190,7 +191,7 @@ Result<PngSize> size_in_header(std::string_view head, std::string_view where) {
     return PngSize{static_cast<int>(width), static_cast<int>(height)};
 }
 
-/// `size` is what the header says.
+/// `size`: from the header.
 Result<slice::Image> decode(std::string_view png, const PngSize& size, std::string_view where) {
     const std::size_t count = static_cast<std::size_t>(size.width_px) * static_cast<std::size_t>(size.height_px);
     if (auto own = decode_own(png, size)) return std::move(*own);
@@ -240,7 +241,7 @@ Result<PngSize> any_png_size(std::string_view png, std::string_view where) {
     constexpr long long most = 1LL << 28;
     if (size && static_cast<long long>(size->width_px) * size->height_px > most)
         return input_error("{}: {} x {} pixels, more than 2^28", where, size->width_px, size->height_px);
-    // The least that a pixel takes is a bit, packed.
+    // A pixel takes at least one bit, compressed.
     if (size &&
         static_cast<std::size_t>(size->width_px) * static_cast<std::size_t>(size->height_px) / 8 / max_deflate_ratio >
             png.size())

@@ -14,22 +14,22 @@ struct PngSize {
     int height_px = 0;
 };
 
-/// The number of bytes that hold a PNG's size and kind.
+/// Number of leading bytes that contain a PNG's size and kind.
 inline constexpr std::size_t png_head_bytes = 29;
 
-/// Not interlaced; fast rather than small. Preconditions: at least one pixel, and as many values as pixels.
+/// Not interlaced; optimised for speed, not size. Preconditions: at least one pixel, and as many values as pixels.
 [[nodiscard]] std::string encode_png(const slice::Image& image);
-/// From runs straight to the file: the pixels never exist.
+/// Directly from runs, without ever expanding the pixels.
 [[nodiscard]] std::string encode_png(const slice::RunImage& image);
 
-/// Reads signature and header. Errors (prefixed with `where`): no PNG; not 8-bit grey without interlacing.
+/// Reads signature and header. Errors (prefixed with `where`): not a PNG; not 8-bit grey without interlacing.
 [[nodiscard]] Result<PngSize> png_size(std::string_view head, std::string_view where);
 
-/// Decodes; the size must be `expected`, which the caller has found acceptable. Memory is taken only once the file is
-/// long enough to hold that many pixels at deflate's greatest ratio.
+/// Decodes; the size must be `expected`, which the caller has accepted. Memory is allocated only if the file is long
+/// enough to hold that many pixels at deflate's maximum ratio.
 [[nodiscard]] Result<slice::Image> decode_png(std::string_view png, const PngSize& expected, std::string_view where);
 
-/// The same for PNG images of any kind (colours become grey, what is transparent dark); at most 2^28 pixels.
+/// The same for PNG images of any kind (colours become grey, transparent pixels dark); at most 2^28 pixels.
 [[nodiscard]] Result<PngSize> any_png_size(std::string_view png, std::string_view where);
 [[nodiscard]] Result<slice::Image> decode_any_png(std::string_view png, const PngSize& expected,
                                                   std::string_view where);

@@ -27,7 +27,7 @@ std::string refused(std::string_view png, PngSize size = {30, 20}) {
 
 }  // namespace
 
-TEST_CASE("images come back as they went, from one pixel to a full screen") {
+TEST_CASE("images are read back as written, from one pixel to a full screen") {
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 50}, {50, 1}, {30, 20}, {1920, 1080}}) {
         const Image image = pattern(width, height);
         const auto back = decode_png(encode_png(image), {width, height}, "x");
@@ -41,7 +41,7 @@ TEST_CASE("a blank full screen takes little") {
     CHECK(encode_png(blank).size() < 2300);
 }
 
-TEST_CASE("what is no such image is refused") {
+TEST_CASE("other images are refused") {
     const std::string good = encode_png(pattern(30, 20));
     CHECK(refused("").find("is not a PNG") != std::string::npos);
     CHECK(refused(good.substr(0, 28)).find("is not a PNG") != std::string::npos);
@@ -65,7 +65,7 @@ TEST_CASE("a header that lies about its size costs no memory") {
 }
 
 TEST_CASE("rows of every kind survive the choice of filters") {
-    // Equal rows, blank rows between, steps to the side, grey edges that move: both filters win somewhere.
+    // Equal rows, blank rows between, sideways steps, moving grey edges: each filter is best somewhere.
     slice::RunImage image(300, 60);
     for (int row = 5; row < 55; ++row) {
         if (row % 11 == 0) continue;

@@ -13,7 +13,7 @@ constexpr int end_of_block = 256;
 constexpr int symbol_count = 286;
 constexpr std::uint64_t longest_match = 258;
 
-/// A match length as RFC 1951 codes it, table of its section 3.2.5.
+/// A match length in the code of RFC 1951, table of its section 3.2.5.
 struct LengthCode {
     int symbol;
     int extra_bits;
@@ -29,11 +29,11 @@ LengthCode length_code(std::uint32_t length) {
     return {257 + 4 * bits + static_cast<int>(offset >> bits), bits, offset & ((1U << bits) - 1)};
 }
 
-/// How a run is spelled: its byte, matches of the greatest length, one more match, its byte again.
+/// Encoding of a run: its byte, matches of maximum length, one more match, its byte again.
 struct Spelling {
     std::uint64_t longest;   ///< matches of 258
     std::uint32_t match;     ///< one match of this length; 0: none
-    std::uint32_t literals;  ///< the byte itself, once in front, the others at the end
+    std::uint32_t literals;  ///< the byte itself, one before the matches and the others after them
 };
 
 Spelling spell(std::uint64_t count) {
@@ -46,8 +46,8 @@ Spelling spell(std::uint64_t count) {
 using Counts = std::array<std::uint32_t, symbol_count>;
 using Lengths = std::array<std::uint8_t, symbol_count>;
 
-/// The depths of the leaves of a Huffman tree over `leaves` (count, symbol), ordered by count: joins, over and over,
-/// the two lightest of the leaves and of the nodes made so far, which come in order of weight by themselves.
+/// The depths of the leaves of a Huffman tree over `leaves` (count, symbol), ordered by count. Repeatedly joins the two
+/// lightest leaves or nodes; new nodes are created in order of weight, so a queue is enough.
 int assign_depths(const std::vector<std::pair<std::uint32_t, int>>& leaves, Lengths& lengths) {
     const std::size_t n = leaves.size();
     std::vector<std::uint64_t> weight(2 * n - 1);
@@ -72,8 +72,8 @@ int assign_depths(const std::vector<std::pair<std::uint32_t, int>>& leaves, Leng
     return deepest;
 }
 
-/// Code lengths of a Huffman code over the first `symbols` counts; 0 for symbols that do not occur. Where the code
-/// would be deeper than `limit`, counts are flattened until it is not.
+/// Code lengths of a Huffman code over the first `symbols` counts; 0 for symbols that do not occur. If the code would
+/// be deeper than `limit`, counts are flattened until it fits.
 Lengths huffman_lengths(const Counts& counts, int symbols, int limit) {
     Lengths lengths{};
     std::vector<std::pair<std::uint32_t, int>> leaves;
@@ -92,7 +92,7 @@ Lengths huffman_lengths(const Counts& counts, int symbols, int limit) {
 }
 
 struct Code {
-    std::uint32_t bits = 0;  ///< reversed, as deflate sends Huffman codes
+    std::uint32_t bits = 0;  ///< bit-reversed, as deflate stores Huffman codes
     int length = 0;
 };
 
@@ -113,7 +113,7 @@ Codes canonical_code(const Lengths& lengths) {
     return codes;
 }
 
-/// Writes bits into memory that is long enough for them and eight bytes more.
+/// Writes bits to memory, which must have room for eight extra bytes.
 class BitWriter {
 public:
     explicit BitWriter(char* out) : begin_(out), out_(out) {}
@@ -121,7 +121,7 @@ public:
     void put(std::uint64_t bits, int count) {
         buffer_ |= bits << filled_;
         filled_ += count;
-        std::memcpy(out_, &buffer_, 8);  // the whole bytes among these stay
+        std::memcpy(out_, &buffer_, 8);  // only the whole bytes of these are kept
         const int whole = filled_ >> 3;
         out_ += whole;
         buffer_ = whole == 8 ? 0 : buffer_ >> (8 * whole);
@@ -149,7 +149,7 @@ private:
 };
 static_assert(std::endian::native == std::endian::little, "BitWriter stores words as deflate wants them");
 
-/// Code lengths as the header sends them: themselves, or 17 and 18 for runs of zeros.
+/// Code lengths in the header: literal, or 17 and 18 for runs of zeros.
 struct LengthSymbol {
     int symbol;
     std::uint32_t extra;
@@ -177,14 +177,14 @@ std::vector<LengthSymbol> pack_lengths(const std::vector<std::uint8_t>& lengths)
 
 void put_header(BitWriter& out, const Lengths& symbol_lengths) {
     std::vector<std::uint8_t> lengths(symbol_lengths.begin(), symbol_lengths.end());
-    lengths.push_back(1);  // the one distance code: the byte before
+    lengths.push_back(1);  // the only distance code: distance 1
     const std::vector<LengthSymbol> packed = pack_lengths(lengths);
     Counts counts{};
     for (const LengthSymbol& s : packed) ++counts[s.symbol];
     const Lengths code_lengths = huffman_lengths(counts, 19, 7);
     const Codes codes = canonical_code(code_lengths);
     out.put(1, 1);  // the last block
-    out.put(2, 2);  // with codes of its own
+    out.put(2, 2);  // dynamic Huffman codes
     out.put(symbol_count - 257, 5);
     out.put(0, 5);   // 1 distance code
     out.put(15, 4);  // 19 code lengths follow, in this order:
@@ -195,7 +195,7 @@ void put_header(BitWriter& out, const Lengths& symbol_lengths) {
     }
 }
 
-/// Checksum of RFC 1950 over runs: for n bytes b, the first sum grows by b each time and the second by the first.
+/// Checksum of RFC 1950 over runs: for each of n bytes b, the first sum grows by b and the second by the first.
 class Adler32 {
 public:
     void add(std::uint8_t byte, std::uint64_t count) {
@@ -212,7 +212,7 @@ private:
     std::uint64_t first_ = 1, second_ = 0;
 };
 
-/// A match as it is sent: its length, with what the length's code leaves open, and the distance, one bit 0.
+/// A match as it is stored: its length code with extra bits, and the distance, one 0 bit.
 Code match_code(std::uint32_t length, const Codes& codes) {
     const LengthCode code = length_code(length);
     const Code& symbol = codes[code.symbol];
@@ -224,7 +224,7 @@ std::size_t run_end(std::string_view bytes, std::size_t begin) {
     return end == std::string_view::npos ? bytes.size() : end;
 }
 
-constexpr std::size_t header_bytes = 400;  // more than the code lengths of 286 symbols take
+constexpr std::size_t header_bytes = 400;  // upper limit for the code lengths of 286 symbols
 
 }  // namespace
 

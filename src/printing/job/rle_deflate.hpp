@@ -1,4 +1,4 @@
-// A zlib stream made of runs: deflate for data in which equal bytes follow each other.
+// A zlib stream from runs: deflate for data with long runs of equal bytes.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace pliant::job {
 
-/// Compresses runs to a zlib stream (RFC 1950) of one block with its own Huffman codes (RFC 1951), whose matches all
-/// repeat the byte before. The bytes themselves never exist: time goes with the number of runs, plus one bit operation
-/// for some seven thousand bytes of a long run.
+/// Compresses runs to a zlib stream (RFC 1950) of one block with dynamic Huffman codes (RFC 1951), in which all matches
+/// have distance 1. The bytes are never expanded: time is proportional to the number of runs, plus one bit operation
+/// per about seven thousand bytes of a long run.
 class RunDeflater {
 public:
     /// Appends `count` bytes of one value.

@@ -9,7 +9,7 @@ using pliant::job::deflate_runs;
 
 namespace {
 
-/// Unpacks with another library's decoder.
+/// Decompresses with another library.
 std::string inflated(const std::string& stream, std::size_t size) {
     std::string out(size + 1, '\0');
     std::size_t got = 0;
@@ -44,7 +44,7 @@ TEST_CASE("every byte, noise, and counts so uneven that the code must be limited
     std::uint32_t state = 1;
     for (int i = 0; i < 100000; ++i) bytes.push_back(static_cast<char>((state = state * 1664525 + 1013904223) >> 24));
     check_round_trip(bytes);
-    // Fibonacci counts give the deepest Huffman tree, here 25 levels where 15 are allowed.
+    // Fibonacci counts give the deepest Huffman tree: 25 levels here, where 15 are allowed.
     std::string deep;
     std::size_t a = 1, b = 1;
     for (int symbol = 0; symbol < 25; ++symbol) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double um_per_mm = 1000;
 
-/// Values of a key as they stand in a file; several where the file has several.
+/// Values of a key as written in a file; several if it occurs several times.
 using Values = std::vector<std::string>;
 
 std::string_view trimmed(std::string_view text) {
@@ -49,7 +49,7 @@ Values xml_values(std::string_view text, std::string_view key) {
     return values;
 }
 
-/// The member of a JSON object; a text that is no JSON has none.
+/// The member of a JSON object; none if the text is not JSON.
 Values json_values(std::string_view text, std::string_view key) {
     const auto json = nlohmann::json::parse(text, nullptr, false);
     if (!json.is_object()) return {};
@@ -59,10 +59,10 @@ Values json_values(std::string_view text, std::string_view key) {
 }
 
 struct Source {
-    std::string_view file;  ///< whole name, or with '*' in front how it ends
+    std::string_view file;  ///< whole name, or after a '*' its ending
     std::string_view key;
     Values (*values)(std::string_view text, std::string_view key);
-    double um;  ///< of its unit
+    double um;  ///< per unit of the value
 };
 constexpr std::array<Source, 7> sources = {Source{"config.ini", "layerHeight", ini_values, um_per_mm},
                                            Source{"prusaslicer.ini", "layer_height", ini_values, um_per_mm},

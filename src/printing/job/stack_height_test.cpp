@@ -46,13 +46,13 @@ TEST_CASE("every format says its layer height in its own words and unit") {
           near(50, {.relative = 1e-12}));
     CHECK(um({{"manifest.uvtools", "<Manifest><LayerHeight>0.1</LayerHeight></Manifest>"}}) ==
           near(100, {.relative = 1e-12}));
-    // The printer goes by config.ini.
+    // config.ini takes precedence, as on the printer.
     CHECK(um({{"config.ini", "layerHeight = 0.1"}, {"prusaslicer.ini", "layer_height = 0.05"}}) ==
           near(100, {.relative = 1e-12}));
     CHECK(um({{"config.ini", "nothing"}, {"prusaslicer.ini", "layer_height = 0.05"}}) == near(50, {.relative = 1e-12}));
 }
 
-TEST_CASE("what says nothing says nothing") {
+TEST_CASE("files without a layer height give none") {
     CHECK(um({}) == -1);
     CHECK(um({{"old_config.ini", "layerHeight = 0.05"}}) == -1);
     CHECK(um({{"slicer.json", "{ broken"}}) == -1);
@@ -60,7 +60,7 @@ TEST_CASE("what says nothing says nothing") {
     CHECK(um({{"config.ini", std::string("\0\xff=\n==\n", 7)}}) == -1);
 }
 
-TEST_CASE("a height that cannot be is an error that names file and key") {
+TEST_CASE("an invalid height is an error that names file and key") {
     CHECK(refused({{"config.ini", "layerHeight = thin"}}) ==
           "config.ini: layerHeight = \"thin\": a layer height above 0 and below 10 mm is needed");
     for (const char* value : {"0", "-0.05", "nan", "inf", "10", "0.05mm", ""})

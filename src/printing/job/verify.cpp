@@ -8,10 +8,10 @@
 namespace pliant::job {
 namespace {
 
-/// Where two images light the same pixels.
+/// The overlap of two images.
 struct Shared {
-    std::int64_t light = 0;     ///< the lesser values of both, added up
-    int row = -1, column = -1;  ///< of the first
+    std::int64_t light = 0;     ///< sum of the smaller of both values
+    int row = -1, column = -1;  ///< first shared pixel
 };
 
 Shared shared_pixels(const slice::RunImage& a, const slice::RunImage& b) {
@@ -34,7 +34,7 @@ Shared shared_pixels(const slice::RunImage& a, const slice::RunImage& b) {
     return shared;
 }
 
-/// Images may share no more pixels than the manifest says they do.
+/// Checks that images share no more light than the manifest says.
 Status check_shared(const Manifest& m, std::size_t k, const std::vector<slice::RunImage>& images, bool corrected,
                     const std::string& path) {
     const std::vector<LayerImage>& entries = m.layers[k].images;
@@ -43,7 +43,7 @@ Status check_shared(const Manifest& m, std::size_t k, const std::vector<slice::R
         for (std::size_t j = i + 1; j < images.size(); ++j) {
             const Shared shared = shared_pixels(images[i], images[j]);
             const double said = (entries[i].shared_mm2 + entries[j].shared_mm2) / pixel_mm2;
-            // Calibrated greys are another amount of light, but none is none.
+            // Calibrated greys change the amount of shared light, but not whether there is any.
             const bool agreed = corrected ? said > 0 : static_cast<double>(shared.light) / 255 <= said * (1 + 1e-6);
             if (shared.light == 0 || agreed) continue;
             return input_error("{}: layer {}: {} and {} both light the pixel at row {}, column {}", path, k,

@@ -1,14 +1,13 @@
-// What opening a job does not check: its pixels.
+// The check that opening a job leaves out: its pixels.
 #pragma once
 
 #include "printing/job/job.hpp"
 
 namespace pliant::job {
 
-/// Decodes every image: its area must be the manifest's, where `corrected` does not say that images hold greys
-/// calibrated for a projector, and no two images of a layer may light the same pixel, unless the manifest says that
-/// they share so much. Errors name archive, layer and
-/// image.
+/// Decodes every image. Its area must be the manifest's, unless `corrected` says that images hold greys calibrated for
+/// a projector; and no two images of a layer may light the same pixel, except for the shared area in the manifest.
+/// Errors name archive, layer and image.
 [[nodiscard]] Status verify_images(const Archive& archive, bool corrected, const std::string& path);
 
 }  // namespace pliant::job

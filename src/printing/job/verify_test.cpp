@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A job of one layer with two images of 10 pixels, the second from `column` on, and areas as given.
+/// A job of one layer with two images of 10 pixels, the second starting at `column`, with the given areas.
 std::string verdict(int column, double area_mm2, bool corrected = false, double shared_mm2 = 0) {
     const pliant::test::Folder folder("verify");
     const fs::path path = folder / "job.zip";

@@ -14,7 +14,7 @@ struct Writer::State {
     fs::path path, aside;
     ZipWriter zip;
     std::map<std::string, std::pair<int, int>> image_sizes;  ///< of the images added so far
-    std::map<std::string, std::string> sha256;               ///< of all that was added so far
+    std::map<std::string, std::string> sha256;               ///< of all entries added so far
     bool finished = false;
 
     Status add(const std::string& file, std::string bytes, ZipWriter::Method method) {

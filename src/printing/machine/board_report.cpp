@@ -21,7 +21,7 @@ std::string_view trimmed(std::string_view line) {
     return line.substr(0, last == std::string_view::npos ? 0 : last + 1);
 }
 
-/// "X80.00 Y:80.00 ...": letters with numbers; whatever is damaged is left out.
+/// "X80.00 Y:80.00 ...": letters with numbers; malformed ones are left out.
 std::map<char, double> read_words(std::string_view words) {
     std::map<char, double> values;
     while (!(words = trimmed(words)).empty()) {
@@ -48,8 +48,8 @@ void read_name(std::string_view line, BoardReport& board) {
     }
 }
 
-/// The soft endstops, "M211 S1 ; ON" and "Min:  X0.00 Y0.00   Max:  X358.00 Y1.00", or both in one line as older
-/// releases say it, "Soft endstops: On  Min: X0.00 ...". False: neither.
+/// The soft endstops: "M211 S1 ; ON" and "Min:  X0.00 Y0.00   Max:  X358.00 Y1.00", or both on one line in older
+/// releases, "Soft endstops: On  Min: X0.00 ...". False: neither.
 bool read_soft_endstops(std::string_view line, BoardReport& board) {
     constexpr std::string_view old_heading = "Soft endstops: ";
     bool found = false;
@@ -146,7 +146,7 @@ private:
         check_home_offset(which, axis);
     }
 
-    /// Marlin limits every move by M204 too, beside each axis by its M201.
+    /// Marlin limits every move by M204, too, in addition to the M201 of each axis.
     void check_common_acceleration() {
         const auto values = board_.values.find("M204");
         if (values == board_.values.end()) return problems_.push_back("M503: does not say M204");
@@ -166,7 +166,7 @@ private:
         }
     }
 
-    /// A firmware without M206 has no offsets.
+    /// Firmware without M206 has no offsets.
     void check_home_offset(Axis which, const AxisSpec& axis) {
         const auto values = board_.values.find("M206");
         if (values == board_.values.end()) return;
@@ -187,10 +187,10 @@ private:
         }
     }
 
-    /// Soft endstops closer than the travel cut moves short in silence. An extruder, which E is, has none.
+    /// Soft endstops within the travel silently truncate moves. E, an extruder, has none.
     void check_soft_travel(Axis which, const AxisSpec& axis) {
         if (axis.letter == 'E') return;
-        constexpr double tolerance_mm = 0.01;  // they are told with two digits
+        constexpr double tolerance_mm = 0.01;  // reported with two decimals
         const auto low = board_.soft_min.find(axis.letter), high = board_.soft_max.find(axis.letter);
         if (low == board_.soft_min.end() || high == board_.soft_max.end()) {
             problems_.push_back(

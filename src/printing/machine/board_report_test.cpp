@@ -10,7 +10,7 @@ using pliant::test::replaced;
 
 namespace {
 
-/// A board built by the list for tower8, as Marlin answers; the arithmetic is by hand.
+/// A board configured for tower8, with Marlin's answers; the values are calculated by hand.
 const std::string good_board =
     "FIRMWARE_NAME:Marlin 2.1.2 (Jan  1 2024) SOURCE_CODE_URL:x PROTOCOL_VERSION:1.0 MACHINE_TYPE:tower "
     "EXTRUDER_COUNT:0\nCap:EEPROM:0\nCap:SOFTWARE_POWER:1\nCap:EMERGENCY_PARSER:1\nok\n"
@@ -58,7 +58,7 @@ TEST_CASE("accelerations of all moves, home offsets, soft endstops and the power
     CHECK(only_problem("P200.00", "P100.00") ==
           "M503: M204 P is 100, which slows axes of up to 200 mm/s^2: send M204 P200");
     CHECK(only_problem("T200.00", "T150.00").find("M204 T is 150") != std::string::npos);
-    CHECK(problems(good_board, "T200.00", "T3000.00").empty());  // the axes' own limits hold
+    CHECK(problems(good_board, "T200.00", "T3000.00").empty());  // each axis is limited by its own M201
     CHECK(only_problem("  M204 P200.00 R3000.00 T200.00", "") == "M503: does not say M204");
     CHECK(only_problem("M206 X0.00 Y0.00 Z0.00", "M206 X0.00 Y0.00 Z-1.50") ==
           "M503: M206 Z is -1.5: the platform stands that far from where it is told: send M206 Z0");

@@ -6,7 +6,7 @@ namespace pliant::machine {
 
 namespace {
 
-constexpr int bristles_um = 200;  // that they bend at least: so much higher they still wipe
+constexpr int bristles_um = 200;  // minimum deflection: the brush still wipes a part this much higher
 
 }  // namespace
 
@@ -16,7 +16,7 @@ void BrushWatch::move(const Position& from, const Position& to, int part_height_
     const int above_rim_um =
         std::max(from[Axis::platform], to[Axis::platform]) - part_height_um - printer_->vat_shape.wall_um;
     const bool from_print = from[Axis::carriage] <= c.print_um + c.shear_um;
-    if (from_print && to[Axis::carriage] <= c.print_um + c.shear_um) return;  // a stroke that loosens a layer
+    if (from_print && to[Axis::carriage] <= c.print_um + c.shear_um) return;  // a shear stroke
     highest_um_ = from_print ? above_rim_um : std::max(highest_um_, above_rim_um);
     left_ = left_ || from_print;
     arrived_ = left_ && to[Axis::carriage] >= c.tower_um;

@@ -13,8 +13,8 @@ constexpr std::array<CleaningTest, 4> tests = {{
     {"cloth", 0, {0.12, 0.07, 0.69, 0.27}, 0.37},
 }};
 
-/// The time constant for which a law reaches `share` of what it removes in `long_s` already in `short_s`; by bisection,
-/// since the share falls as the constant grows.
+/// The time constant for which a law removes in `short_s` the fraction `share` of what it removes in `long_s`; by
+/// bisection, since that fraction decreases with the constant.
 double tau_through(double short_s, double long_s, double share) {
     double low = short_s / 50, high = 50 * long_s;
     for (int i = 0; i < 200; ++i) {

@@ -1,4 +1,4 @@
-// Numbers as people and firmware write them.
+// Short decimal notation of numbers, for people and firmware.
 #pragma once
 
 #include <fmt/format.h>
@@ -7,7 +7,7 @@
 
 namespace pliant::machine {
 
-/// With at most four digits behind the point, and no zeros at the end.
+/// With at most four decimals, and no trailing zeros.
 [[nodiscard]] inline std::string decimal(double value) {
     std::string text = fmt::format("{:.4f}", value);
     while (text.back() == '0') text.pop_back();

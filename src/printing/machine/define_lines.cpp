@@ -29,7 +29,7 @@ bool goes_on(std::string_view line) {
     return !line.empty() && line.back() == '\\';
 }
 
-/// Where a comment begins, `//` or `/*`, outside strings and characters; the line's size if none does.
+/// The start of a comment, `//` or `/*`, outside strings and character literals; the line's size if there is none.
 std::size_t comment_at(std::string_view line, std::size_t at) {
     char quote = 0;
     for (; at < line.size(); ++at) {
@@ -63,14 +63,14 @@ bool stays_in_comment(std::string_view line, bool inside) {
     }
 }
 
-/// The parts of the first line of a #define, as places in it.
+/// The parts of the first line of a #define, as offsets.
 struct Parts {
-    std::size_t slashes = 0;          ///< where `//` stands, or `hash`
-    std::size_t hash = 0;             ///< where `#define` stands
-    std::size_t name = 0, value = 0;  ///< where they begin; value: behind the blanks
+    std::size_t slashes = 0;          ///< offset of `//`, or equal to `hash`
+    std::size_t hash = 0;             ///< offset of `#define`
+    std::size_t name = 0, value = 0;  ///< where they begin; the value without leading blanks
     std::size_t name_end = 0;
-    std::size_t value_end = 0;  ///< without blanks
-    std::size_t comment = 0;    ///< the line's size if there is none
+    std::size_t value_end = 0;  ///< without trailing blanks
+    std::size_t comment = 0;    ///< the line's size if there is no comment
 };
 
 bool split(std::string_view line, Parts& p) {
@@ -100,7 +100,7 @@ std::string without_comment(std::string_view line) {
     return std::string(trimmed(line));
 }
 
-/// Takes `//` away from the beginning of a line.
+/// Removes `//` from the beginning of a line.
 void uncomment(std::string& line) {
     const std::size_t at = skip_blanks(line, 0);
     std::size_t end = at;
@@ -156,7 +156,7 @@ std::vector<DefineLine> DefineLines::find(std::string_view name) const {
 
 void DefineLines::set(std::string_view name, std::string_view value) {
     std::vector<DefineLine> places = find(name);
-    std::reverse(places.begin(), places.end());  // a line that goes away moves only what is done
+    std::reverse(places.begin(), places.end());  // from the end, because removing a line shifts only those after it
     for (const DefineLine& d : places) {
         const auto first = lines_.begin() + static_cast<std::ptrdiff_t>(d.first_line);
         const auto end = first + static_cast<std::ptrdiff_t>(d.lines);

@@ -1,4 +1,4 @@
-// The settings of a C header in Marlin's manner: `#define NAME value  // comment`, or `//#define NAME` where it is off.
+// The settings of a C header in Marlin's style: `#define NAME value  // comment`, or `//#define NAME` when disabled.
 #pragma once
 
 #include <string>
@@ -7,36 +7,36 @@
 
 namespace pliant::machine {
 
-/// One place where a header defines a name, or would if it were not commented out.
+/// One place where a header defines a name, active or commented out.
 struct DefineLine {
     std::string name;
-    std::string value;           ///< as written, lines that go on joined by a space; empty: none
+    std::string value;           ///< as written, continuation lines joined by a space; empty: none
     bool active = false;         ///< not commented out
     std::size_t first_line = 0;  ///< index of its line
     std::size_t lines = 1;       ///< more where a line ends in a backslash
 };
 
-/// A header line by line, whose settings can be changed in place: everything else stays as it is, byte by byte.
-/// Names inside block comments, and macros with arguments, are no settings.
+/// A header as lines, whose settings can be changed in place; everything else is preserved byte by byte.
+/// Names in block comments and macros with arguments are not settings.
 class DefineLines {
 public:
     explicit DefineLines(std::string_view text);
 
-    /// Every place of `name`, in order; there may be several in branches of an #if.
+    /// All places of `name`, in order; there may be several in branches of an #if.
     [[nodiscard]] std::vector<DefineLine> find(std::string_view name) const;
 
-    /// Defines `name` in all its places: "on" takes the comment away and keeps a value, "off" comments it out, anything
-    /// else becomes its value. Indentation and the comment behind it stay.
+    /// Defines `name` in all its places: "on" uncomments it and keeps a value, "off" comments it out, anything else
+    /// becomes its value. Indentation and trailing comments are preserved.
     void set(std::string_view name, std::string_view value);
 
-    /// A line at the end of the header.
+    /// Adds a line at the end of the header.
     void append(std::string_view line);
 
     [[nodiscard]] std::string text() const;
 
 private:
     struct Line {
-        std::string text, end;  ///< end: "\n" or "\r\n"; the last line may have none
+        std::string text, end;  ///< `end`: "\n" or "\r\n"; the last line may have none
     };
 
     void scan();

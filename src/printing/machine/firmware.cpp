@@ -14,10 +14,10 @@ namespace pliant::machine {
 namespace {
 
 constexpr int ramps_outputs = 5;
-constexpr double most_steps_s = 40000;  // what an 8-bit board of 16 MHz can make
+constexpr double most_steps_s = 40000;  // maximum of an 8-bit board at 16 MHz
 
-/// One of Marlin's axes, in its own order. An extra axis needs all before it; one that the machine does not have is a
-/// stand-in that never moves.
+/// One of Marlin's axes, in Marlin's order. An extra axis needs all those before it; one that the machine does not have
+/// becomes a stand-in that never moves.
 struct Slot {
     char id = 'X';  ///< X Y Z, then I J K
     const AxisSpec* axis = nullptr;
@@ -25,19 +25,19 @@ struct Slot {
     [[nodiscard]] bool extra() const { return id >= 'I' && id <= 'K'; }
 };
 
-/// Where a motor is plugged in, with the pins of that socket.
+/// A motor socket of the board, with its pins.
 struct Socket {
     std::string_view name;
     int step, dir, enable;
 };
 constexpr std::array<Socket, 2> free_sockets = {Socket{"E0", 26, 28, 24}, Socket{"E1", 36, 34, 30}};
 
-/// 2.1.3 knows a switch by the level at which it is pressed, and finds out by itself which switches home an axis.
+/// 2.1.3 defines a switch by its level when pressed, and finds out by itself which switches home an axis.
 bool finds_plugs(const Printer& printer) {
     return printer.controller.firmware >= MarlinRelease::v2_1_3;
 }
 
-/// X, Y and Z whether the machine has them or not, then its extra axes.
+/// X, Y and Z in any case, then the machine's extra axes.
 Result<std::vector<Slot>> marlin_axes(const Printer& printer) {
     std::vector<Slot> slots = {{'X', nullptr}, {'Y', nullptr}, {'Z', nullptr}};
     for (const AxisSpec& axis : printer.axes) {
@@ -91,7 +91,7 @@ private:
     std::vector<FirmwareSetting> settings_;
 };
 
-/// M106 P2: the output that would heat a hotend is free without one.
+/// M106 P2: the output for a hotend heater is free when there is no hotend.
 void add_third_output(List& list, const Printer& printer) {
     std::vector<Switch> devices = printer.fans;
     devices.push_back(printer.pump);
@@ -102,7 +102,7 @@ void add_third_output(List& list, const Printer& printer) {
     }
 }
 
-/// M42 writes to a pin only where the firmware is built for it.
+/// M42 can write to a pin only if the firmware is built with it.
 void add_pin_control(List& list, const Printer& printer) {
     std::vector<Switch> devices = printer.fans;
     devices.insert(devices.end(), {printer.pump, printer.hooks.magnet.coil, printer.wall.fork});
@@ -113,7 +113,7 @@ void add_pin_control(List& list, const Printer& printer) {
     }
 }
 
-/// The relay that M112 drops: what Marlin calls the switch of a power supply.
+/// The relay released by M112: in Marlin's terms the switch of a power supply.
 void add_emergency_line(List& list, const Printer& printer) {
     if (printer.emergency_line.signal != EmergencyLine::Signal::controller) return;
     list.add("PSU_CONTROL", "on", "the emergency line: a relay that holds the power of motors, pump, fans and lamp");
@@ -122,7 +122,7 @@ void add_emergency_line(List& list, const Printer& printer) {
     list.add("PSU_DEFAULT_OFF", "off", "power as soon as the firmware runs; no program may send M80 or M81");
 }
 
-/// A C string. What C or the reader of config.ini would take for something else, such as \" and % and #, becomes '_'.
+/// A C string. Characters with a meaning in C or to the parser of config.ini, such as \", % and #, become '_'.
 std::string c_string(std::string_view name) {
     constexpr std::string_view harmless = " -_.,:()+/";
     std::string text;
@@ -172,7 +172,7 @@ void add_idle(List& list, MarlinRelease release) {
     list.add("SLOWDOWN", "off", "moves keep their speed when few are queued: times are as planned");
 }
 
-/// What Marlin has no default for where an axis is beyond X, Y and Z.
+/// Settings without a default in Marlin for axes beyond X, Y and Z.
 void add_extra_axis(List& list, const Slot& slot) {
     const int n = 4 + (slot.id - 'I');
     list.add(fmt::format("AXIS{}_NAME", n), fmt::format("'{}'", slot.axis->letter), "its letter in G-code");
@@ -210,14 +210,14 @@ Status add_motors(List& list, const std::vector<Slot>& slots) {
     return {};
 }
 
-/// A switch input of the board by the name that M119 has for it, and its pin.
+/// A switch input of the board by its name in M119, and its pin.
 struct Input {
     std::string_view name;
     int pin;
 };
 constexpr std::array<Input, 2> free_inputs = {Input{"x_max", 2}, Input{"y_max", 15}};
 
-/// Inputs that no extra axis may take: a limit switch or the door is on them.
+/// Whether a limit switch or the door uses the input, so that no extra axis may.
 bool is_taken(const Printer& printer, std::string_view input) {
     if (printer.door.input == input) return true;
     const auto switches = switches_of(printer);
@@ -225,11 +225,11 @@ bool is_taken(const Printer& printer, std::string_view input) {
                        [&](const LimitSwitch& s) { return switch_names(printer, s).front() == input; });
 }
 
-/// Where an axis has a switch, and how Marlin is told of it.
+/// A switch of an axis, and how Marlin is told of it.
 struct Plug {
     char id;
     bool at_max, inverted;
-    bool homes = true;  ///< or it is at the other end, or the door's
+    bool homes = true;  ///< false: at the other end of the axis, or the door's
 };
 
 void add_plug(List& list, const Printer& printer, const Plug& plug, const std::string& reason = "") {
@@ -244,7 +244,7 @@ void add_plug(List& list, const Printer& printer, const Plug& plug, const std::s
     list.add(fmt::format("{}_{}_ENDSTOP_HIT_STATE", plug.id, end), plug.inverted ? "LOW" : "HIGH", open);
 }
 
-/// The lower end of an axis that homes upwards is not to be looked at: nothing is plugged in there.
+/// The lower input of an axis that homes upwards must be ignored: nothing is connected there.
 void add_no_plug(List& list, const Printer& printer, char id) {
     if (!finds_plugs(printer)) return list.add(fmt::format("USE_{}MIN_PLUG", id), "off");
     if (id == 'Z')
@@ -267,7 +267,7 @@ std::string low_end_of(const Slot& slot) {
     return lower(std::string_view(&slot.id, 1)) + "_min";
 }
 
-/// A stand-in is told to home where the input is, and so has the switch's settings already.
+/// A stand-in is configured to home at that input, which includes the switch's settings.
 bool is_home_of_stand_in(std::string_view input, const std::vector<Slot>& slots) {
     return std::any_of(slots.begin(), slots.end(),
                        [&](const Slot& s) { return s.axis == nullptr && low_end_of(s) == input; });
@@ -294,7 +294,7 @@ bool has_far_switch(const Printer& printer, const AxisSpec& axis) {
     });
 }
 
-/// The switches of an axis; of a stand-in the one where it would home.
+/// The switches of an axis; for a stand-in the one where it would home.
 void add_axis_switches(List& list, const Printer& printer, const Slot& slot) {
     const bool to_max = slot.axis != nullptr && slot.axis->homes_to_max;
     list.add(fmt::format("{}_HOME_DIR", slot.id), to_max ? "1" : "-1",
@@ -343,7 +343,7 @@ void add_travel(List& list, const std::vector<Slot>& slots) {
     }
 }
 
-/// "{ a, b, c }" of one value of every slot; a stand-in has `idle`.
+/// "{ a, b, c }" with one value per slot; a stand-in gets `idle`.
 template <class Value>
 std::string row(const std::vector<Slot>& slots, double idle, Value value) {
     std::string text;
@@ -352,7 +352,7 @@ std::string row(const std::vector<Slot>& slots, double idle, Value value) {
     return "{ " + text + " }";
 }
 
-/// The arithmetic of an axis' steps, for its reason.
+/// The calculation of the steps per mm, as the reason of the setting.
 std::string steps_sum(const std::vector<Slot>& slots) {
     std::string text;
     for (const Slot& slot : slots) {
@@ -397,7 +397,7 @@ void add_motion(List& list, const std::vector<Slot>& slots) {
     list.add("HOMING_BUMP_DIVISOR", row(slots, 4, [](const AxisSpec&) { return 4.0; }));
 }
 
-/// A pin that M42 writes to must be nobody else's: Marlin refuses to write to one that it uses.
+/// A pin written by M42 must not be used otherwise: Marlin refuses to write to pins that it uses.
 Status check_free_pins(const List& list, const Printer& printer) {
     struct Device {
         const char* name;
@@ -440,7 +440,7 @@ Result<std::vector<FirmwareSetting>> firmware_settings(const Printer& printer) {
 Result<std::string> firmware_ini(const Printer& printer) {
     const auto settings = firmware_settings(printer);
     if (!settings) return tl::unexpected(settings.error());
-    // All in the section "base", which every release reads; the script of 2.1.1 fails on `all`.
+    // All in the section "base", which every release reads; the build script of 2.1.1 fails on `all`.
     std::string text = fmt::format(
         "# Marlin {} for the machine {}: put it as Marlin/config.ini into Marlin's source and build.\n"
         "# Written by: pliant firmware PRINTER.toml. Everything that is not here stays as Marlin has it.\n"

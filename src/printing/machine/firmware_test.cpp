@@ -26,7 +26,7 @@ std::string value(const std::vector<FirmwareSetting>& settings, const std::strin
 
 constexpr std::array releases = {MarlinRelease::v2_1_1, MarlinRelease::v2_1_2, MarlinRelease::v2_1_3};
 
-/// What Marlin's SanityCheck.h would say, one line each.
+/// The errors that Marlin's SanityCheck.h would give, one line each.
 std::string problems(const Printer& printer) {
     const auto list = firmware_settings(printer);
     REQUIRE_MESSAGE(list, (list ? "" : list.error().message));
@@ -36,7 +36,7 @@ std::string problems(const Printer& printer) {
     return text;
 }
 
-/// The machine with drives where its file has none: the rules are about names, not about sizes.
+/// Adds drives if the machine's file has none: the rules are about names, not about sizes.
 Printer with_drives(Printer printer) {
     for (AxisSpec& axis : printer.axes) {
         if (!axis.drive.known()) axis.drive.per_turn_mm = 8;
@@ -138,7 +138,7 @@ TEST_CASE("what 2.1.3 knows by other names") {
     printer.door = {"y_max", true};
     const auto settings = firmware_settings(printer).value();
     CHECK(value(settings, "DEFAULT_STEPPER_TIMEOUT_SEC") == "0");
-    CHECK(value(settings, "X_MIN_ENDSTOP_HIT_STATE") == "HIGH");  // a broken wire reads as pressed
+    CHECK(value(settings, "X_MIN_ENDSTOP_HIT_STATE") == "HIGH");  // a broken wire counts as pressed
     CHECK(value(settings, "Y_SAFETY_STOP") == "on");
     CHECK(value(settings, "Y_MAX_ENDSTOP_HIT_STATE") == "LOW");
     CHECK(value(settings, "Z_MIN_PROBE_USES_Z_MIN_ENDSTOP_PIN") == "off");
@@ -146,7 +146,7 @@ TEST_CASE("what 2.1.3 knows by other names") {
 }
 
 TEST_CASE("the settings stand in the section that the scripts of all releases read") {
-    // That of 2.1.1 takes "all" for the name of a section, and fails.
+    // The build script of 2.1.1 takes "all" for the name of a section, and fails.
     for (const MarlinRelease release : releases) {
         Printer printer = load("tower");
         printer.controller.firmware = release;
@@ -173,7 +173,7 @@ TEST_CASE("gear, pinion and screws become steps; the tower is a linear axis of i
     CHECK(value(three, "I_DRIVER_TYPE") == "(not there)");
 }
 
-TEST_CASE("what cannot be built says why") {
+TEST_CASE("impossible builds are refused with a reason") {
     CHECK(firmware_settings(load("rotary")).error().message.find("give per_turn") != std::string::npos);
     Printer fast = load("tower8");
     fast.axes[0].drive.microsteps = 64;
@@ -182,7 +182,7 @@ TEST_CASE("what cannot be built says why") {
     classic.controller.dialect = Dialect::classic;
     CHECK_FALSE(firmware_settings(classic));
     Printer motors = with_drives(load("carousel"));
-    motors.axes[static_cast<std::size_t>(Axis::platform)].drive.motors = 2;  // five in all, but Marlin keeps a Y
+    motors.axes[static_cast<std::size_t>(Axis::platform)].drive.motors = 2;  // five in all, but Marlin also needs a Y
     CHECK(firmware_settings(motors).error().message.find("no free socket") != std::string::npos);
 }
 

@@ -15,7 +15,7 @@ Status follow_move(Followed& at, const Printer& printer, const Command& command)
     return {};
 }
 
-/// G28, or G92 for an axis that a person stands at its home.
+/// G28, or G92 for an axis that a person places at its home position.
 Status follow_home(Followed& at, const Printer& printer, const Command& command) {
     std::vector<Axis> axes;
     for (const Word& word : command.words) {
@@ -27,7 +27,7 @@ Status follow_home(Followed& at, const Printer& printer, const Command& command)
     for (const Axis axis : axes) {
         if (command.is('G', 92) && !printer.axis(axis).homes_by_hand)
             return input_error("G92 moves the origin of {}: coordinates are absolute", printer.axis(axis).letter);
-        // One that is not homed may stand anywhere: the whole way, as the plan takes it.
+        // An axis that is not homed may be anywhere: count the whole travel, as the plan does.
         const AxisSpec& spec = printer.axis(axis);
         const int far_um = spec.homes_to_max ? spec.min_um : spec.max_um;
         at.seconds += home_seconds(printer, axis, at.lock.homed(axis) ? at.lock.position()[axis] : far_um);

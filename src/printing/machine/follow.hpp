@@ -1,5 +1,5 @@
-// What a program does to the machine, command by command: the same commands that go to the controller, tried on the
-// interlocks first.
+// The effect of a program on the machine, command by command: the commands that go to the controller are first checked
+// against the interlocks.
 #pragma once
 
 #include <string_view>
@@ -11,14 +11,14 @@
 
 namespace pliant::machine {
 
-/// A machine as far as its commands have been followed. A value; the printer must outlive it.
+/// A machine's state after the commands so far. A value; the printer must outlive it.
 struct Followed {
     Interlock lock;
     double feed_mm_s = 0;
-    double seconds = 0;  ///< that the commands take, homing from where the axes stand
+    double seconds = 0;  ///< duration of the commands, including homing from the current positions
 
-    /// Carries out one command; what moves nothing is passed over. Errors: what the interlocks forbid (the state stays
-    /// as it was), letters that are no axis.
+    /// Carries out one command; commands without motion are ignored. Errors: what the interlocks forbid (the state then
+    /// is unchanged), letters that are not axes.
     [[nodiscard]] Status command(const Printer& printer, const Command& command);
     [[nodiscard]] Status line(const Printer& printer, std::string_view line);
 };

@@ -21,7 +21,7 @@ std::string_view trim(std::string_view text) {
     return text;
 }
 
-/// Takes the text up to the next blank off `rest`.
+/// Removes the text up to the next blank from `rest` and returns it.
 std::string_view take_token(std::string_view& rest) {
     rest = trim(rest);
     const std::string_view token = rest.substr(0, rest.find(' '));
@@ -48,7 +48,7 @@ Result<Word> parse_word(std::string_view token) {
     return word;
 }
 
-/// M118's parameters (A1, E1, Pn) stand before its message.
+/// M118's parameters (A1, E1, Pn) come before its message.
 bool is_message_parameter(std::string_view token) {
     return token.size() == 2 && std::string_view("AEP").find(token[0]) != std::string_view::npos && token[1] >= '0' &&
            token[1] <= '9';
@@ -124,7 +124,7 @@ std::vector<std::string> preamble(const Printer& printer) {
     std::vector<std::string> lines = {"G90"};
     const bool extruder =
         std::any_of(printer.axes.begin(), printer.axes.end(), [](auto& a) { return a.letter == 'E'; });
-    // The extruder keeps a mode of its own and refuses to move cold.
+    // The extruder has a positioning mode of its own and refuses cold moves.
     if (extruder) lines.insert(lines.end(), {"M82", "M302 P1"});
     lines.emplace_back("M84 S0");
     return lines;
@@ -140,7 +140,7 @@ std::vector<Axis> homing_order(const Printer& printer) {
 
 namespace {
 
-/// Fan outputs by M106 and M107, any pin by M42.
+/// A fan output (M106 and M107), or any pin (M42).
 struct Pin {
     bool fan = false;
     int number = 0;
@@ -155,7 +155,7 @@ struct Pin {
     }
 };
 
-/// What its command `on` writes to.
+/// The output that its command `on` switches.
 std::optional<Pin> pin_of(const Switch& device) {
     if (device.on.empty()) return std::nullopt;
     const auto parsed = parse_command(device.on);
@@ -222,7 +222,7 @@ Result<Expose> parse_expose(std::string_view rest) {
     Expose e;
     unsigned seen = 0;
     for (rest = trim(rest); !rest.empty(); rest = trim(rest)) {
-        // The image comes last and runs to the end of the line: material names may hold blanks.
+        // The image comes last and extends to the end of the line: material names may contain blanks.
         const bool image = rest.substr(0, 6) == "image=";
         const std::string_view token = image ? rest : take_token(rest);
         if (image) rest = {};

@@ -51,8 +51,8 @@ bool Interlock::in_print_window(int carriage_um) const {
     return carriage_um >= c.print_um && carriage_um <= c.print_um + c.shear_um;
 }
 
-/// The slot of the tower before the carriage whose level is at most one hook stroke above the tower. Of a wall the one
-/// behind its last: the tray, if it stands before the carriage.
+/// The slot in front of the carriage whose level is at most one hook stroke above the tower's position. With a wall,
+/// the index after the last slot: the tray, if it is in front of the carriage.
 std::optional<int> Interlock::slot_in_hook_stroke(const Position& at) const {
     if (printer_->store() == Store::wall) {
         const int below = printer_->wall.bay_lift_um - at[Axis::tower];
@@ -149,7 +149,7 @@ Status Interlock::check_travel(const Position& to) const {
     return {};
 }
 
-/// Whether the platform, clear or not homed, and everything beside it may move past each other.
+/// Whether the platform (clear, or not homed) and everything beside it can move past each other.
 Status Interlock::check_platform(const Position& to) const {
     const bool beside = to[Axis::carriage] != position_[Axis::carriage] || to[Axis::table] != position_[Axis::table];
     if (!homed(Axis::platform)) {
@@ -165,8 +165,8 @@ Status Interlock::check_platform(const Position& to) const {
     return {};
 }
 
-/// The part hangs as low as the brush wipes it, over the rims of the vats: only the vat in use may pass under it, on
-/// its way into the tower.
+/// The part is low enough for the brush, below the rims of the vats: only the vat in use may pass under it, on its way
+/// into the tower.
 bool Interlock::brushes(const Position& to, int lowest_um) const {
     if (!printer_->has_brush() || lowest_um < printer_->push_um(part_height_um_)) return false;
     if (to[Axis::table] != position_[Axis::table]) return false;
@@ -175,7 +175,7 @@ bool Interlock::brushes(const Position& to, int lowest_um) const {
     return to[Axis::platform] >= position_[Axis::platform] || to[Axis::carriage] == printer_->carriage.tower_um;
 }
 
-/// Platform and part hang in the vat below the clear height: then the carriage may only shear, the table not move.
+/// Platform and part are in the vat, below the clear height: the carriage may only shear, the table must not move.
 Status Interlock::check_carriage_in_vat(const Position& to) const {
     const double lowest = mm(std::min(to[Axis::platform], position_[Axis::platform]));
     const double clear = mm(printer_->clear_um(part_height_um_));
@@ -192,18 +192,18 @@ Status Interlock::check_carriage_in_vat(const Position& to) const {
                    lowest, clear);
 }
 
-/// No vat is hooked and the carriage stands back, now and at the end of the move.
+/// No vat is hooked and the carriage is back, now and at the end of the move.
 bool Interlock::tower_free(const Position& to) const {
     const int nearest = std::max(to[Axis::carriage], position_[Axis::carriage]);
     return !hooked_vat_ && nearest <= printer_->carriage.tower_um - printer_->carriage.back_off_um;
 }
 
-/// The vat in use lies under the platform.
+/// The vat in use is under the platform.
 bool Interlock::vat_out_of_tower() const {
     return hooked_vat_ && in_print_window(position_[Axis::carriage]);
 }
 
-/// The tower comes level with an empty slot for the vat that lies under the platform.
+/// The tower moves level with an empty slot for the vat under the platform.
 bool Interlock::takes_vat_back(const Position& to) const {
     const auto slot = level_slot(to);
     return vat_out_of_tower() && in_print_window(to[Axis::carriage]) && slot && !vat_in_slot(*slot);
@@ -228,7 +228,7 @@ Status Interlock::check_tower(const Position& to) const {
 
 Status Interlock::check_table(const Position& to) const {
     if (position_[Axis::table] == to[Axis::table] || !printer_->has_carriage() || tower_free(to)) return {};
-    // On the way back to the tower that a vat came from; which slot it will be, the tower's move says.
+    // On the way back to the tower that the vat came from; the slot is determined by the tower's move.
     if (vat_out_of_tower() && in_print_window(to[Axis::carriage])) return {};
     return failure("the {} moves while {}", name(Axis::table),
                    hooked_vat_ ? "a vat is hooked to the carriage" : "the carriage stands before it");
@@ -263,7 +263,7 @@ Status Interlock::pump(bool on) {
     return {};
 }
 
-/// At the tower, a level slot gives its vat to the hooks; a lowered one keeps it.
+/// At the tower, a level slot passes its vat to the hooks; a lowered one keeps it.
 void Interlock::take_or_leave_vat() {
     if (!printer_->has_carriage() || printer_->hooks.magnet.present() ||
         position_[Axis::carriage] != printer_->carriage.tower_um)

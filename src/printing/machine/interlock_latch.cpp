@@ -1,4 +1,4 @@
-// What holds a vat by a switch: the magnet of the carriage, and the fork of a wall's retriever.
+// Latches of a vat: the magnet of the carriage, and the fork of a wall's retriever.
 #include "printing/machine/interlock.hpp"
 
 namespace pliant::machine {
@@ -10,15 +10,15 @@ Status Interlock::output(const Command& command) {
     return {};
 }
 
-// --- the magnet ----------------------------------------------------------------------------------------------------
+// The magnet.
 
-/// Off, it leaves its vat where it stands; on, it takes the one before it.
+/// Switched off, it releases its vat where that is; switched on, it takes the vat before it.
 Status Interlock::magnet(bool on) {
     const bool at_store = position_[Axis::carriage] == printer_->carriage.tower_um && homed(Axis::carriage);
     const auto slot = at_store && homed(Axis::tower) ? level_slot(position_) : std::nullopt;
     auto* place = slot ? &slots_[static_cast<std::size_t>(*slot - 1)] : nullptr;
     if (on) {
-        // One that let go without being told, as the firmware was stopped, takes the same vat again.
+        // A magnet that was switched off by a stop of the firmware takes the same vat again.
         if (!hooked_vat_ && (place == nullptr || !*place))
             return failure("the magnet is switched on with no vat before it");
         if (!hooked_vat_) std::swap(hooked_vat_, *place);
@@ -30,20 +30,20 @@ Status Interlock::magnet(bool on) {
     return {};
 }
 
-/// A vat that nothing holds must not be dragged along.
+/// A vat that is not held must not be dragged along.
 Status Interlock::check_hold(const Position& to) const {
     const bool loose = hooked_vat_ && printer_->hooks.magnet.present() && !magnet_;
     if (!loose || to[Axis::carriage] == position_[Axis::carriage]) return {};
     return failure("the carriage moves with a vat that its magnet does not hold");
 }
 
-// --- the retriever of a wall ---------------------------------------------------------------------------------------
+// The retriever of a wall.
 
 std::optional<int> Interlock::tray_vat() const {
     return printer_->store() == Store::wall ? slots_.back() : std::nullopt;
 }
 
-/// The slot that the tray stands before, level with it or at most the lift-off stroke below.
+/// The slot in front of the tray, which is level with it or at most the lift-off stroke below.
 std::optional<int> Interlock::place_in_wall(const Position& at) const {
     for (int slot = 1; slot <= printer_->slot_count(); ++slot) {
         const int below = printer_->row_um(slot) - at[Axis::tower];
@@ -53,7 +53,7 @@ std::optional<int> Interlock::place_in_wall(const Position& at) const {
     return std::nullopt;
 }
 
-/// The carriage stands back, or lies with its vat under the platform: the retriever may go where it likes.
+/// The carriage is back, or under the platform with its vat: the retriever may move freely.
 bool Interlock::retriever_free(const Position& to) const {
     return tower_free(to) || (vat_out_of_tower() && in_print_window(to[Axis::carriage]));
 }
@@ -76,7 +76,7 @@ Status Interlock::fork(bool out) {
     return {};
 }
 
-/// With the fork in the wall nothing but the stroke that takes a vat off its place, or puts it there.
+/// With the fork in the wall, only the stroke that takes a vat off its place or puts it there is allowed.
 Status Interlock::check_fork(const Position& to) const {
     if (!fork_out_) return {};
     if (to[Axis::table] != position_[Axis::table]) return failure("the rail moves with the fork in the wall");
@@ -86,7 +86,7 @@ Status Interlock::check_fork(const Position& to) const {
     return failure("the lift leaves its place with the fork in the wall");
 }
 
-/// Raised level with a place the fork takes its vat; lowered, it leaves its own there.
+/// When raised level with a place the fork takes its vat; when lowered, it leaves its own there.
 void Interlock::take_or_leave_in_wall() {
     const auto slot = fork_out_ ? place_in_wall(position_) : std::nullopt;
     if (!slot) return;

@@ -125,7 +125,7 @@ TEST_CASE("with a brush the vat goes into the tower under a part that it wipes, 
     b.must(Axis::platform, 1000);
     REQUIRE(b.lock.light_on(false));
     b.lock.light_off();
-    // A part of 1 mm over the wall of 82.55 mm, 1 mm above its rim.
+    // A part of 1 mm above the vat's wall of 82.55 mm, 1 mm above the rim.
     b.must(Axis::platform, 84549);
     CHECK(b.refused(Axis::carriage, 355600, "the platform is down"));
     b.must(Axis::platform, 84550);
@@ -186,7 +186,7 @@ TEST_CASE(
     Bench b;
     b.home();
     b.load();
-    b.must(Axis::carriage, 100000);  // half-way back into the tower, which stands level
+    b.must(Axis::carriage, 100000);  // half-way back into the tower, which is level
     b.lock.stopped_at({{90000, 200000, 30000}});
     REQUIRE(b.lock.home(Axis::platform));
     REQUIRE(b.lock.home(Axis::carriage));

@@ -1,4 +1,4 @@
-// Which place of Marlin's an axis beyond X, Y and Z takes.
+// Maps axes beyond X, Y and Z to Marlin's axis names.
 #pragma once
 
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace pliant::machine {
 
-/// The letters that Marlin 2.1 knows, and what it calls its places beyond X, Y and Z, of which Pliant uses three.
+/// The axis letters that Marlin 2.1 knows, and its names for axes beyond X, Y and Z, of which Pliant uses three.
 inline constexpr std::string_view marlin_letters = "XYZABCUVW";
 inline constexpr std::array<char, 3> marlin_extra_places = {'I', 'J', 'K'};
 
-/// The machine's axes beyond X, Y and Z in the order in which they take the places: those that turn first, which
-/// Marlin insists on, then by the alphabet. Axes whose letter Marlin does not know are left out.
+/// The machine's axes beyond X, Y and Z in the order of Marlin's names: rotary axes first, as Marlin requires, then
+/// alphabetically. Axes whose letter Marlin does not know are left out.
 [[nodiscard]] std::vector<const AxisSpec*> extra_axes(const Printer& printer);
 
-/// What Marlin's settings call `axis`, one of the printer's: X, Y, Z, I, J or K; nullopt: there is no place for it.
+/// Marlin's name for `axis`, one of the printer's: X, Y, Z, I, J or K; nullopt if none is left.
 [[nodiscard]] std::optional<char> marlin_place(const Printer& printer, const AxisSpec& axis);
 
 }  // namespace pliant::machine

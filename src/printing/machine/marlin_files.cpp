@@ -12,7 +12,7 @@
 namespace pliant::machine {
 namespace {
 
-/// "02010201" is 2.1.2.1, "02010300" 2.1.3 and "020008" 2.0.8; "" if it is no such number.
+/// "02010201" is 2.1.2.1, "02010300" 2.1.3 and "020008" 2.0.8; "" if it is not such a number.
 std::string version(std::string_view digits) {
     if (digits.size() < 4 || digits.size() % 2 != 0 || digits.find_first_not_of("0123456789") != std::string_view::npos)
         return "";
@@ -27,7 +27,7 @@ std::string only_value(const DefineLines& lines, std::string_view name) {
     return found.empty() ? "" : found.front().value;
 }
 
-/// The two files under way.
+/// One of the two files, being changed.
 struct Header {
     const MarlinFile* file = nullptr;
     std::string_view name, version_name;
@@ -56,7 +56,7 @@ std::string state(const DefineLine& line) {
     return line.value.empty() ? "on" : line.value;
 }
 
-/// Of a setting that is only enabled a value is none of the list's business.
+/// If a setting is only enabled, its value does not matter.
 bool is_as_before(const DefineLine& before, const FirmwareSetting& setting) {
     if (setting.value == "on") return before.active;
     return state(before) == setting.value;
@@ -77,7 +77,7 @@ Status check_names(const Headers& headers, const std::vector<FirmwareSetting>& s
                        headers[0].file->path, headers[1].file->path, unknown.front(), more);
 }
 
-/// One setting, in each file that has it; a line of the record per place.
+/// Applies a setting in each file that has it; adds a line to the record per place.
 void apply(Headers& headers, const FirmwareSetting& setting, ConfiguredMarlin& result) {
     bool found = false, changed = false;
     if (!setting.reason.empty()) result.record += fmt::format("# {}\n", setting.reason);
@@ -97,7 +97,7 @@ void apply(Headers& headers, const FirmwareSetting& setting, ConfiguredMarlin& r
     ++result.added;
 }
 
-/// Whose configuration it is, unless it is Marlin's own.
+/// The configuration's author, unless it is Marlin's default.
 std::string author_of(const DefineLines& lines) {
     const std::string author = only_value(lines, "STRING_CONFIG_H_AUTHOR");
     return author.find("default config") == std::string::npos ? author : "";

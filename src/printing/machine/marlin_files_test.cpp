@@ -24,7 +24,7 @@ std::string digits(MarlinRelease release) {
     return texts[static_cast<std::size_t>(release)];
 }
 
-/// Files with every name that the release knows, on, off and indented by turns, and no pins: Marlin's have none either.
+/// Files with every name that the release knows, alternately on, off and indented, and without pins, as in Marlin's.
 std::array<MarlinFile, 2> stock(MarlinRelease release) {
     std::string text = fmt::format(
         "#pragma once\n/**\n * Settings.\n */\n#define CONFIGURATION_H_VERSION {}\n"
@@ -43,7 +43,7 @@ std::array<MarlinFile, 2> stock(MarlinRelease release) {
                        fmt::format("#define CONFIGURATION_ADV_H_VERSION {}\n  #define BUFSIZE 4\n", digits(release))}};
 }
 
-/// What configure_marlin says of files that are changed by `edit` first.
+/// The result of configure_marlin for files first changed by `edit`.
 template <class Edit>
 std::string error_of(Edit edit) {
     auto files = stock(MarlinRelease::v2_1_2);
@@ -124,7 +124,7 @@ TEST_CASE("files of another release, of another program, or without a setting ar
           }).find("more of the list") != std::string::npos);
 }
 
-TEST_CASE("a vendor's configuration is told by its author") {
+TEST_CASE("a vendor's configuration is recognised by its author") {
     auto files = stock(MarlinRelease::v2_1_2);
     const std::string own = "\"(none, default config)\"";
     files[0].text.replace(files[0].text.find(own), own.size(), "\"(A Vendor, Model 3)\"");
@@ -133,8 +133,9 @@ TEST_CASE("a vendor's configuration is told by its author") {
 }
 
 TEST_CASE("settings in all the shapes that Marlin's own files give them") {
-    // In our own words and numbers; read beside the files of 2.1.1: guarded by #ifndef, behind a branch of another
-    // setting, in three branches, redefined for a kit, named in a comment, with one that goes on, as another's value.
+    // Cases found in the files of 2.1.1, in our own words and numbers: guarded by #ifndef, behind a branch of another
+    // setting, in three branches, redefined for a kit, named in a comment, continued on the next line, used as
+    // another's value.
     const char* basic =
         "/**\n * An example: #define BAUDRATE 9600\n */\n#pragma once\n#define CONFIGURATION_H_VERSION 02010100\n"
         "#ifndef MOTHERBOARD\n  #define MOTHERBOARD BOARD_SOME\n#endif\n"

@@ -38,7 +38,7 @@ double Profile::seconds_to(double share) const {
     if (share <= 0 || total <= 0) return 0;
     if (share >= 1) return total;
     double low = 0, high = total;
-    constexpr int halvings = 60;  // to the last bit of any time that a move takes
+    constexpr int halvings = 60;  // exact to the last bit for any duration of a move
     for (int i = 0; i < halvings; ++i) {
         const double middle = (low + high) / 2;
         (share_at(middle) < share ? low : high) = middle;

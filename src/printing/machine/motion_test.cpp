@@ -33,11 +33,11 @@ TEST_CASE("a long move is a trapezoid, a short one a triangle") {
 
 TEST_CASE("in a coordinated move the slowest axis sets the pace") {
     const Printer p = simple();
-    // Along the diagonal both ways are 20 mm: the platform alone would take 20/4 + 4/8.
+    // Along the diagonal both axes move 20 mm: the platform alone would take 20/4 + 4/8.
     CHECK(move_seconds(p, {{0, 0, 0}}, {{20000, 20000, 0}}, 0) == near(5.5, {.relative = 1e-12}));
 }
 
-TEST_CASE("the way is covered symmetrically") {
+TEST_CASE("motion is symmetric in time") {
     const Printer p = simple();
     const Position to{{100000, 0, 0}};
     const Profile way = profile(p, {}, to, 0);

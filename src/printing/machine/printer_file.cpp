@@ -1,4 +1,4 @@
-// From TOML to a Printer: one function per table, then the checks that join tables.
+// From TOML to a Printer: one function per table, then checks across tables.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ char read_letter(Reader& r, Dialect dialect) {
     return '?';
 }
 
-/// How fast, how hard, and where it homes.
+/// Speeds, acceleration, and homing.
 void read_motion(Reader& r, AxisSpec& axis) {
     const Dimension speeds = axis.rotary ? Dimension::angular_speed : Dimension::speed;
     const double factor = axis.rotary ? degrees : 1e3;
@@ -50,7 +50,7 @@ void read_motion(Reader& r, AxisSpec& axis) {
         axis.homing_speed_mm_s = positive(r, "homing_speed", speeds, factor);
 }
 
-/// Steps a mm follow from what can be counted on the machine.
+/// Steps per mm are computed from what can be counted on the machine.
 Drive read_drive(Reader& r, bool rotary) {
     Drive d;
     if (r.has("motors")) d.motors = whole(r, "motors", 1, 2);
@@ -182,7 +182,7 @@ Resin read_resin(const std::string& name, Reader r) {
     return resin;
 }
 
-/// Light at evenly spaced coverages: from 0, never falling, at most 1.
+/// Light at evenly spaced coverages: starting at 0, non-decreasing, at most 1.
 std::vector<double> read_grey(Reader& r) {
     if (!r.has("grey")) return {};
     std::vector<double> grey = r.numbers("grey");
@@ -193,7 +193,7 @@ std::vector<double> read_grey(Reader& r) {
     return grey;
 }
 
-/// How the image lies on the platform, besides mirrors.
+/// Alignment of the image on the platform, without mirroring.
 void read_alignment(Reader& r, Projector& p) {
     p.rotation_deg = r.number("rotation", 0);
     if (!(std::abs(p.rotation_deg) <= 360)) r.problem("rotation", "must be -360 to 360 degrees");
@@ -208,7 +208,7 @@ Projector read_projector(Reader r) {
     Projector p;
     p.width_px = whole(r, "width", 1, 32768);
     p.height_px = whole(r, "height", 1, 32768);
-    constexpr double parts = 1e6;  // of a micrometre; what is left beyond is the rounding of "100 um" to metres
+    constexpr double parts = 1e6;  // of a micrometre; the remainder is rounding of "100 um" to metres
     p.pixel_um = std::round(parts * positive(r, "pixel", Dimension::length, 1e6)) / parts;
     p.mirror_x = r.boolean("mirror_x", false);
     p.mirror_y = r.boolean("mirror_y", false);
@@ -232,7 +232,7 @@ Limits read_limits(Reader r) {
     return limits;
 }
 
-/// Which axes there are follows from where the vats are kept.
+/// The set of axes follows from the kind of store.
 void read_axes(Reader r, Printer& printer, const StoreTables& has) {
     const auto name = [&](Axis axis) { return axis_name(axis, has.names()); };
     for (const Axis axis : all_axes) {
@@ -261,7 +261,7 @@ void read_vats(Reader& root, Printer& printer) {
     for (Reader& r : vats) printer.vats.push_back(read_vat(r, printer));
 }
 
-/// Resins that a cleaning pair names must be known, or a slip would go unnoticed.
+/// Resins in a cleaning pair must exist, so that misspelt names are noticed.
 void check_pairs(Reader& root, const Printer& p) {
     for (const CleaningPair& pair : p.cleaning.pairs) {
         for (const std::string& resin : {pair.from, pair.to}) {

@@ -1,4 +1,4 @@
-// The tables of a printer file that say how it cleans: [cleaning], [solution], [[sprinkler]].
+// The tables of a printer file about cleaning: [cleaning], [solution], [[sprinkler]].
 #include "printing/machine/cleaning_data.hpp"
 #include "printing/machine/printer_reading.hpp"
 
@@ -19,7 +19,7 @@ CleaningPair read_pair(Reader& r, double spray_s) {
     return pair;
 }
 
-/// What the brush takes off if the file does not say: what the thesis measured for wiping with a cloth.
+/// The default for what the brush takes off: the thesis' measurement for wiping with a cloth.
 double cloth_share() {
     for (const CleaningTest& test : cleaning_tests()) {
         if (test.method == "cloth") return test.mean();
@@ -27,7 +27,7 @@ double cloth_share() {
     return 0;
 }
 
-/// The brush stands in the vats of a tower. On a table the part would pass over the brushes of other resins.
+/// The brush is in the vats of a tower. On a table the part would pass over the brushes of other resins.
 void read_brush(Reader& r, Store store, int clearance_um, Cleaning& c) {
     c.brush = r.boolean("brush", false);
     if (c.brush && store != Store::tower && store != Store::wall)
@@ -39,7 +39,7 @@ void read_brush(Reader& r, Store store, int clearance_um, Cleaning& c) {
     c.brush_share = share(r, "brush_share", cloth_share());
 }
 
-/// The filter's two keys go together.
+/// The filter needs both of its keys.
 void read_filter(Reader& r, Solution& s) {
     if (r.has("filter") != r.has("filter_share")) {
         r.problem("filter", "and filter_share go together: how much resin it holds, and which share it keeps");

@@ -1,5 +1,5 @@
-// The tables of a printer file that say where its vats are and how they come: [carriage], [tower], [wall], [table],
-// [hooks]; and the checks that join them.
+// The tables of a printer file about the store and how vats move: [carriage], [tower], [wall], [table], [hooks]; and
+// checks across them.
 #include <string>
 #include <tuple>
 #include <vector>
@@ -33,7 +33,7 @@ Tower read_tower(Reader r) {
     return t;
 }
 
-/// Its fork has two places, in and out, and so a switch and a time of its own.
+/// The fork has two positions, in and out, so it has a switch and a duration.
 void read_fork(Reader r, Wall& w) {
     w.fork_s = positive(r, "time", Dimension::time, 1);
     w.fork = read_switch(r);
@@ -67,7 +67,7 @@ Wall read_wall(Reader r) {
     return w;
 }
 
-/// Commands and times of the electromagnet; no hooks, so no stroke.
+/// Commands and times of the electromagnet; it has no hooks, so no stroke.
 Magnet read_magnet(Reader& r) {
     Magnet m;
     m.coil = {r.text("on"), r.text("off")};
@@ -92,7 +92,7 @@ Magnet read_magnet(Reader& r) {
 Hooks read_hooks(Reader r) {
     Hooks hooks;
     (void)r.choice("kind", {"hooks", "electromagnet"}, "hooks");
-    // Whatever else it is called, its other keys are a magnet's.
+    // The other keys of any other kind are those of a magnet.
     if (r.text("kind", "hooks") != "hooks") {
         hooks.magnet = read_magnet(r);
     } else {
@@ -106,7 +106,7 @@ Hooks read_hooks(Reader r) {
     return hooks;
 }
 
-/// Stations are a list of any length; the reader wants to know how long.
+/// Stations are a list of any length; Reader needs the length in advance.
 std::vector<int> read_stations(Reader& r, bool rotary) {
     std::vector<int> stations;
     const config::Value* raw = r.raw("stations");
@@ -133,7 +133,7 @@ Table read_table(Reader r, bool rotary, bool has_tower) {
     return t;
 }
 
-/// Every station must lie within the travel of its axis.
+/// Checks that stations are within the travel of their axis.
 class Within {
 public:
     Within(Reader& root, const Printer& p) : root_(&root), p_(&p) {}
@@ -190,7 +190,7 @@ void check_carriage_way(Reader& root, const Printer& p) {
     }
 }
 
-/// Vats beside and above each other, and room to lift them off their places.
+/// Checks that vats fit beside and above each other, with room to lift them off their places.
 void check_wall(Reader& root, const Printer& p) {
     const Wall& w = p.wall;
     const int wide_um = p.carriage.along_y ? p.platform.width_um : p.platform.depth_um;
@@ -249,7 +249,7 @@ void read_store(Reader& root, Printer& p, const StoreTables& has) {
         root.problem(has.wall ? "wall.rows" : "tower.slots", "makes more than 1000 places for vats");
 }
 
-/// Twice what it takes to pull the fullest vat along its rails.
+/// Twice the force needed to pull the fullest vat along its rails.
 void check_magnet(Reader& root, const Printer& p) {
     const Magnet& m = p.hooks.magnet;
     if (!m.present() || m.force_N <= 0) return;

@@ -1,5 +1,4 @@
-// The tables of a printer file that name inputs and outputs of the board: pump, fans, limit switches, door, emergency
-// line.
+// The tables of a printer file about inputs and outputs of the board: pump, fans, limit switches, door, emergency line.
 #include <string>
 #include <utility>
 #include <vector>
@@ -85,7 +84,7 @@ EmergencyLine read_emergency_line(Reader r) {
     return line;
 }
 
-/// A list of limit switches must be whole: an axis without the one that it homes to would run into its end.
+/// A list of limit switches must be complete: an axis without the one that it homes to would hit its end.
 void check_limit_switches(Reader& root, const Printer& p) {
     if (p.limit_switches.empty()) return;
     for (const Axis axis : all_axes) {
@@ -100,7 +99,7 @@ void check_limit_switches(Reader& root, const Printer& p) {
     }
 }
 
-/// A magnet or fork that shares its output with something else would let a vat go when that is switched.
+/// If a magnet or fork shared its output with another device, switching that would release a vat.
 void check_outputs(Reader& root, const Printer& p) {
     struct Named {
         std::string key;

@@ -1,5 +1,5 @@
-// Reading keys of a printer file: quantities in its units, with the ranges that hold for any of them; and the tables
-// that stand in a file of their own.
+// Parsing of printer files: quantities in the file's units, with range checks, and the tables that have a source file
+// of their own.
 #pragma once
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ namespace pliant::machine::reading {
 
 using config::Reader;
 
-inline constexpr double longest_um = 1e8;  // 100 m: far beyond any machine, and safe to add up in an int
+inline constexpr double longest_um = 1e8;  // 100 m: far beyond any machine, and small enough to add in an int
 
 inline int checked_um(Reader& r, std::string_view key, double metres) {
     const double um = metres * 1e6;
@@ -70,7 +70,7 @@ inline double share(Reader& r, std::string_view key, double fallback) {
     return value;
 }
 
-/// A position of the table: a length, or an angle as thousandths of a degree.
+/// A position of the table: a length, or an angle in thousandths of a degree.
 inline int place_um(Reader& r, std::string_view key, double value, bool rotary) {
     return checked_um(r, key, rotary ? value * degrees * 1e-3 : value);
 }
@@ -89,25 +89,25 @@ struct StoreTables {
 [[nodiscard]] StoreTables store_tables(Reader& root);
 /// [carriage], [tower], [wall], [hooks], [table]; needs the axes.
 void read_store(Reader& root, Printer& p, const StoreTables& tables);
-/// What a magnet must hold; needs the vats.
+/// Checks the force of the magnet; needs the vats.
 void check_magnet(Reader& root, const Printer& p);
-/// Every station lies within the travel of its axis, and none where another is.
+/// Checks that every station is within the travel of its axis, and that no two are at the same place.
 void check_store(Reader& root, const Printer& p);
 
-/// A switch may only switch: a motion hidden in the printer file would pass every interlock of the planner.
+/// A switch may only switch: motion commands hidden in the printer file would bypass every interlock of the planner.
 [[nodiscard]] Switch read_switch(Reader r);
-/// The same of commands that stand among other keys.
+/// The same for commands that are keys among others.
 void check_switch_commands(Reader& r, const Switch& s);
 /// [pump], [[fan]], [[limit_switch]], [door], [emergency_line].
 void read_switches(Reader& root, Printer& p);
-/// That no output is switched by two devices, and that limit switches are all listed, or none.
+/// Checks that no output is used by two devices, and that either all limit switches are listed or none.
 void check_switches(Reader& root, const Printer& p);
 
 /// [cleaning]; `clearance_um` is the platform's.
 [[nodiscard]] Cleaning read_cleaning(Reader r, Store store, int clearance_um);
 /// [solution]
 [[nodiscard]] Solution read_solution(Reader r);
-/// [[sprinkler]]; needs what read_cleaning() gives.
+/// [[sprinkler]]; needs the result of read_cleaning().
 void read_sprinklers(Reader& root, Printer& p);
 
 }  // namespace pliant::machine::reading

@@ -1,4 +1,4 @@
-// Slips in what a printer file says of magnets and walls: one clear line each.
+// Mistakes in a printer file about magnets and walls: one clear line each.
 #include <doctest/doctest.h>
 
 #include "base/core/files.hpp"
@@ -13,7 +13,7 @@ using pliant::test::holds;
 
 namespace {
 
-/// What the file says with `from` replaced by `to`; "" if it is still accepted.
+/// The error with `from` replaced by `to` in the file; "" if it is accepted.
 std::string message_with(const char* name, const std::string& from, const std::string& to) {
     std::string text = read_file(std::string("examples/printers/") + name + ".toml").value();
     const auto at = text.find(from);
@@ -31,14 +31,14 @@ void check_slips(const char* name, std::initializer_list<Slip> slips) {
     for (const Slip& slip : slips) {
         const std::string message = message_with(name, slip.from, slip.to);
         INFO(std::string(slip.to));
-        // What follows from the slip may stand behind it.
+        // Consequential errors may follow on further lines.
         CHECK_MESSAGE(holds(message.substr(0, message.find('\n')), slip.message), message);
     }
 }
 
 }  // namespace
 
-TEST_CASE("a magnet in the place of hooks is read, and what it must hold is checked") {
+TEST_CASE("a magnet instead of hooks is read, and its force is checked") {
     const Printer p = load_printer("examples/printers/tower_magnet.toml").value();
     CHECK(p.hooks.travel_um == 0);
     CHECK(p.hooks.magnet.engage_s == near(0.2, {.relative = 1e-12}));
@@ -54,7 +54,7 @@ TEST_CASE("a magnet in the place of hooks is read, and what it must hold is chec
               .empty());
 }
 
-TEST_CASE("slips in the table of a magnet are named") {
+TEST_CASE("mistakes in the table of a magnet are named") {
     check_slips("tower_magnet",
                 {{"\"electromagnet\"", "\"magnet\"", "hooks.kind"},
                  {"on = \"M42 P11 S255\"", "on = \"G1 X5\"", "must be an M106, M107 or M42 command"},
@@ -83,7 +83,7 @@ TEST_CASE("a wall of vats has its places in rows and columns") {
     CHECK(axis_name(Axis::tower, p.store()) == "lift");
 }
 
-TEST_CASE("slips in the table of a wall are named") {
+TEST_CASE("mistakes in the table of a wall are named") {
     check_slips("wall",
                 {{"rows = 4", "rows = 0", "wall.rows: is 0, must be from 1 to 100"},
                  {"bay = [\"480 mm\", \"300 mm\"]", "bay = [\"480 mm\"]", "wall.bay"},

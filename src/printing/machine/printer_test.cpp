@@ -22,7 +22,7 @@ std::string tower_text() {
     return read_file(tower_file).value();
 }
 
-/// The message that the tower's file gives with `from` replaced by `to`; "" if it is still accepted.
+/// The error with `from` replaced by `to` in the tower's file; "" if it is accepted.
 std::string message_with(const std::string& from, const std::string& to) {
     std::string text = tower_text();
     const auto at = text.find(from);

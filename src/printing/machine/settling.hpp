@@ -1,5 +1,4 @@
-// Magnet and fork take their time after they are switched: until then nothing may move that they hold, or that is in
-// their way.
+// Magnet and fork need time to switch: until then nothing that they hold, or that is in their way, may move.
 #pragma once
 
 #include "base/core/error.hpp"
@@ -8,14 +7,14 @@
 
 namespace pliant::machine {
 
-/// Watches a program on its clock. The printer must outlive it.
+/// Follows a program on its clock. The printer must outlive it.
 class Settling {
 public:
     explicit Settling(const Printer& printer) : printer_(&printer) {}
 
-    /// A command that was carried out at `at_s`; only those that switch magnet or fork matter.
+    /// Records a command that was carried out at `at_s`; only those that switch magnet or fork matter.
     void note(const Command& command, double at_s);
-    /// Whether a move may begin at `start_s`.
+    /// Error if a move must not begin at `start_s`.
     [[nodiscard]] Status check(const Position& from, const Position& to, double start_s) const;
 
 private:

@@ -21,7 +21,7 @@ SolutionCircuit::SolutionCircuit(const Printer& printer)
       liquid_ml_(printer.solution.fill_ml),
       resin_ml_(printer.solution.fill_ml * printer.solution.resin_share) {}
 
-/// Resin stays behind.
+/// The resin stays behind.
 void SolutionCircuit::evaporate(double ml) {
     const double gone = std::clamp(ml, 0.0, liquid_ml_ - resin_ml_);
     liquid_ml_ -= gone;

@@ -50,7 +50,7 @@ TEST_CASE("solution goes round: what evaporates is gone, what is washed off gath
     CHECK(c.used_ml() == near(46 * 3 + in_it, {.relative = 1e-12}));
 }
 
-TEST_CASE("what evaporates leaves its resin behind; a reservoir that has run low is topped up") {
+TEST_CASE("evaporation leaves the resin behind; a low reservoir is topped up") {
     Printer p = printer_with_reservoir();
     p.solution.resin_share = 0.01;
     p.solution.evaporation_ml_h = 90;
@@ -60,14 +60,14 @@ TEST_CASE("what evaporates leaves its resin behind; a reservoir that has run low
     CHECK(c.resin_share() / (10.0 / 910) == near(1, {.relative = 1e-12}));
     c.wait(9 * 3600.0 + 60);
     CHECK(c.draws_air());
-    CHECK(c.needs() == SolutionCare::change);  // it has become too strong as well, which is worse
+    CHECK(c.needs() == SolutionCare::change);  // it also has too much resin, which is more urgent
     p.solution.spent_share = 1;
     CHECK(SolutionCircuit(c).needs() == SolutionCare::top_up);
     c.care(SolutionCare::top_up);
     CHECK(c.liquid_ml() == 1000);
     CHECK(c.resin_ml() == near(10, {.relative = 1e-12}));
     c.wait(1e9);
-    CHECK(c.liquid_ml() == near(10, {.relative = 1e-12}));  // never below its resin
+    CHECK(c.liquid_ml() == near(10, {.relative = 1e-12}));  // never less than its resin
 }
 
 TEST_CASE("a filter keeps its share until it is full") {

@@ -33,7 +33,7 @@ Status check_pressed(const Printer& printer, const Interlock& state, const Limit
         end_name(s), axis_name(s.axis), axis_name(s.axis), at_um / 1000.0);
 }
 
-/// Both ends at once cannot be.
+/// Both ends cannot be pressed at once.
 Status check_both(const Printer& printer, const std::vector<LimitSwitch>& pressed) {
     for (const LimitSwitch& low : pressed) {
         for (const LimitSwitch& high : pressed) {

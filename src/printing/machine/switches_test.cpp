@@ -16,7 +16,7 @@ using pliant::test::replaced;
 
 namespace {
 
-/// The tower of the thesis with more text at the end of its file.
+/// The tower of the thesis with text appended to its file.
 Result<Printer> tower_with(const std::string& text) {
     return parse_printer(read_file("examples/printers/tower.toml").value() + text, "p.toml");
 }
@@ -26,7 +26,7 @@ std::string wrong(const std::string& text) {
     return printer ? "" : printer.error().message;
 }
 
-/// Homed, as after G28, then the platform where it is asked for.
+/// Homed, as after G28, then the platform at the given height.
 Interlock homed(const Printer& printer, int platform_um) {
     Interlock lock(printer);
     for (const Axis axis : homing_order(printer)) REQUIRE(lock.home(axis));
@@ -120,7 +120,7 @@ TEST_CASE("a switch that is pressed where it must not be, both ends at once, a s
     CHECK(problem(p, high, with(1, true)).empty());
     CHECK(holds(problem(p, low, with(1, true)), "the max limit switch of the platform is pressed"));
     CHECK(holds(problem(p, low, with(1, true)), "stands at 200.000 mm"));
-    CHECK(problem(p, lost, with(1, true)).empty());  // it may stand there
+    CHECK(problem(p, lost, with(1, true)).empty());  // it may be there
     auto both = with(1, true);
     both[2].pressed = true;
     CHECK(holds(problem(p, lost, both), "both limit switches of the platform"));

@@ -1,6 +1,6 @@
-// What three releases of Marlin know and insist on, as far as our lists use it: read in their Configuration.h,
-// Configuration_adv.h and SanityCheck.h (2.1.3: the branch bugfix-2.1.x of 2024, in whose Changes.h the names that went
-// are errors), and written down here in our own words, apart from the code that writes the lists.
+// Names and rules of three releases of Marlin, as far as our settings use them: taken from their Configuration.h,
+// Configuration_adv.h and SanityCheck.h (2.1.3: the branch bugfix-2.1.x of 2024, whose Changes.h rejects removed
+// names), and written down in our own words, independent of the code that writes the settings.
 #pragma once
 
 #include <fmt/format.h>
@@ -17,8 +17,8 @@
 
 namespace pliant::machine::test {
 
-/// The names that a release knows, of all that may stand in a list: of its two configuration files, and of pins that
-/// may be set there. A name that is not here is an error in that release, or does nothing.
+/// The names that a release knows, among all that may be in a list: of its two configuration files, and of pins that
+/// can be set there. Any other name is an error in that release, or has no effect.
 inline std::set<std::string> marlin_names(MarlinRelease release) {
     std::set<std::string> names = {
         // Configuration.h
@@ -59,7 +59,7 @@ inline std::set<std::string> marlin_names(MarlinRelease release) {
     return names;
 }
 
-/// Holds a list against the rules of a release; a line for each that it breaks.
+/// Checks a list against the rules of a release; one line per violation.
 class MarlinRules {
 public:
     MarlinRules(const std::vector<FirmwareSetting>& list, MarlinRelease release) : release_(release) {
@@ -118,7 +118,7 @@ private:
         }
     }
 
-    /// "{ a, b }" must have an entry for every axis, and none beside: there is no extruder.
+    /// "{ a, b }" must have an entry for every axis and no more: there is no extruder.
     void check_rows() {
         const std::map<std::string, double> least = {
             {"AXIS_RELATIVE_MODES", -1},        {"DEFAULT_AXIS_STEPS_PER_UNIT", 1e-9}, {"DEFAULT_MAX_FEEDRATE", 1e-9},
@@ -146,14 +146,14 @@ private:
             }
             const std::string level = value(axis + "_" + end + "_ENDSTOP_HIT_STATE");
             if (level != "HIGH" && level != "LOW") problem("{} homes to {} at no level", axis, end);
-            // On by default, it makes the firmware look at Z_MIN, where nothing is plugged in.
+            // It is on by default and makes the firmware check Z_MIN, where nothing is connected.
             if (axis == "Z" && end == "MAX" && !has("Z_SAFETY_STOP") &&
                 value("Z_MIN_PROBE_USES_Z_MIN_ENDSTOP_PIN") != "off")
                 problem("Z_MIN is looked at, as if a probe were there");
         }
     }
 
-    /// RAMPS 1.4: what X, Y and Z have of their own, and what no two settings may share.
+    /// RAMPS 1.4: the dedicated pins of X, Y and Z, and pins that no two settings may share.
     void check_pins() {
         std::map<std::string, std::string> owner = {
             {"54", "X"}, {"55", "X"}, {"38", "X"},   {"60", "Y"},  {"61", "Y"},     {"56", "Y"},    {"46", "Z"},

@@ -8,7 +8,7 @@
 namespace pliant::operate {
 namespace {
 
-/// Reads until a line is `wanted`, or nothing more has come for `silence_s`.
+/// Reads until `wanted` is received, or nothing more has come for `silence_s`.
 Status listen(host::SerialWire& wire, std::string_view wanted, double silence_s, std::string& heard) {
     constexpr double most_s = 20;
     const host::SteadyClock clock;
@@ -31,7 +31,7 @@ Result<std::string> ask_board(const std::string& port, int baud_rate) {
     Result<host::SerialWire> wire = host::SerialWire::open(port, baud_rate);
     if (!wire) return tl::unexpected(wire.error());
     std::string heard;
-    constexpr double boot_s = 3;  // of silence, in which a board that was reset by opening its port starts
+    constexpr double boot_s = 3;  // of silence; a board that opening its port has reset starts within this time
     constexpr double answer_s = 2;
     if (Status status = listen(*wire, "start", boot_s, heard); !status) return tl::unexpected(status.error());
     std::string ignored;

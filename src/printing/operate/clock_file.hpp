@@ -1,5 +1,5 @@
-// The clock of a virtual printer, shared with its host through a file: however slow the computer is, both agree on how
-// long the light was on.
+// The clock of a virtual printer, shared with its host through a file: however slow the computer is, both agree on the
+// length of every exposure.
 #pragma once
 
 #include <filesystem>
@@ -11,9 +11,9 @@ namespace pliant::operate {
 
 class ClockFile final : public host::Clock {
 public:
-    /// For the printer: makes the file.
+    /// For the printer: creates the file.
     [[nodiscard]] static Result<ClockFile> create(const std::filesystem::path& path);
-    /// For the host. Errors: no such file, or no clock.
+    /// For the host. Errors: no such file, or not a clock.
     [[nodiscard]] static Result<ClockFile> open(const std::filesystem::path& path);
     ClockFile(ClockFile&& other) noexcept;
     ClockFile& operator=(ClockFile&&) = delete;

@@ -16,10 +16,10 @@ struct OpenJob {
     machine::Printer printer;  ///< from the job's own printer.toml
 };
 
-/// The mask that the projector names, beside the printer file `printer_path`; nullopt where it names none.
+/// The projector's mask, from a file beside the printer file `printer_path`; nullopt if the printer has none.
 [[nodiscard]] Result<std::optional<job::Image>> load_mask(const machine::Projector& projector,
                                                           const std::filesystem::path& printer_path);
-/// The same from the job. Errors: the job has none though its printer names one.
+/// The same from the job. Errors: the job has none although its printer names one.
 [[nodiscard]] Result<std::optional<job::Image>> mask_of(const job::Archive& archive,
                                                         const machine::Projector& projector);
 

@@ -1,4 +1,4 @@
-// Jobs on their way from a file to the host: opened, proved, made ready.
+// Jobs from a file to the host: opened, verified, prepared.
 #include "printing/operate/job_file.hpp"
 
 #include <doctest/doctest.h>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr int width_px = 8, height_px = 6;
 
-/// The left half of the projector in one material, the right half in the other.
+/// One half of the projector for each material, the left for the first.
 job::Image image_of_half(int material) {
     job::Image image{width_px, height_px, std::vector<std::uint8_t>(width_px * height_px)};
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
@@ -137,7 +137,7 @@ TEST_CASE("a proved job is made ready: images, materials, journal beside it, vat
     }
 }
 
-TEST_CASE("what a person has to do before one layer is asked for once, in the order of the layers") {
+TEST_CASE("operator tasks before a layer are requested once, in the order of layers") {
     Job job;
     const double uses_ml = plan::make_plan(job.manifest, job.printer)->vats.front().resin_ml;
     job.set("fill", fmt::format("\"{} ml\"", 0.6 * uses_ml));

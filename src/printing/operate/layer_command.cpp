@@ -14,7 +14,7 @@
 namespace pliant::operate {
 namespace {
 
-/// Starts `sh -c text` at the head of a process group of its own, so that all that it starts can be ended with it.
+/// Starts `sh -c text` in a process group of its own, so that it can be killed with all its child processes.
 Result<pid_t> start_shell(std::string text, std::vector<char*> environment) {
     std::string shell = "sh", option = "-c";
     std::array<char*, 4> arguments{shell.data(), option.data(), text.data(), nullptr};

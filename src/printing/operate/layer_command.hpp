@@ -1,4 +1,4 @@
-// A command of the shell after every layer, for a picture of it.
+// A shell command after every layer, for example to take a picture.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace pliant::operate {
 
-/// Runs `command` in a shell with the layer's number (from 0) in PLIANT_LAYER and waits until it ends, at most for
-/// `most_s`; then it is ended with all that it has started. Errors: it could not be started, failed, or took too long.
+/// Runs `command` in a shell with the layer's number (from 0) in PLIANT_LAYER and waits for it, at most `most_s`; then
+/// it is killed with all its child processes. Errors: it could not be started, failed, or took too long.
 [[nodiscard]] Status run_layer_command(const std::string& command, int layer, double most_s = 10);
 
 }  // namespace pliant::operate

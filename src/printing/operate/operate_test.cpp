@@ -40,7 +40,7 @@ TEST_CASE("the command after a layer knows the layer; one that fails or hangs is
     CHECK(run_layer_command("sleep 60", 0, 0.05).error().message.find("took over") != std::string::npos);
 }
 
-TEST_CASE("what a command has started is ended with it") {
+TEST_CASE("child processes of a command are killed with it") {
     const pliant::test::Folder folder;
     const auto late = folder.path() / "late";
     const Status status = run_layer_command("(sleep 0.3; touch " + late.string() + ") & wait", 0, 0.05);
@@ -60,7 +60,7 @@ TEST_CASE("host and virtual printer share a clock through a file") {
     CHECK(host->now() == 0);
     printer->set(12.5);
     CHECK(host->now() == 12.5);
-    // The host sleeps for as long as the printer's time takes, however long that is.
+    // The host sleeps for the printer's time, however long that is.
     std::thread time([&] {
         for (int i = 1; i <= 20; ++i, ::usleep(1000)) printer->set(12.5 + 0.1 * i);
     });
@@ -71,7 +71,7 @@ TEST_CASE("host and virtual printer share a clock through a file") {
     CHECK(moved.now() == 14.5);
 }
 
-TEST_CASE("a file that is no clock is refused, and stays as it is") {
+TEST_CASE("a file that is not a clock is refused, and not changed") {
     const pliant::test::Folder folder;
     const auto path = folder.path() / "clock";
     for (const std::string text : {"", "1234567", "123456789"}) {

@@ -1,4 +1,4 @@
-// A projector that is a folder: light is what its `shown.png` holds, no such file is dark. For `pliant twin
+// A projector that is a folder: it shows the image `shown.png`; without that file it is dark. For `pliant twin
 // --projector`.
 #pragma once
 

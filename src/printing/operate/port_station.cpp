@@ -10,8 +10,8 @@
 namespace pliant::operate {
 namespace {
 
-/// A display or a folder with a process that keeps the time of every light; for a virtual printer with another time a
-/// plain folder.
+/// A display or a folder with a process that times every exposure; for a virtual printer with its own clock a plain
+/// folder.
 Result<std::unique_ptr<host::Projector>> open_projector(const PortOptions& options, const machine::Printer& printer) {
     const bool real_time = options.speed == 1 && options.clock_file.empty();
     if (real_time) {
@@ -29,7 +29,7 @@ Result<std::unique_ptr<host::Projector>> open_projector(const PortOptions& optio
     return std::make_unique<PictureProjector>(options.projector);
 }
 
-/// That of the options, or of the printer file.
+/// The one in the options, else that of the printer file.
 Result<std::unique_ptr<host::EmergencyLine>> open_emergency_line(const PortOptions& options,
                                                                  const machine::Printer& printer) {
     if (options.emergency_line.empty()) return host::open_emergency_line(printer.emergency_line);
@@ -57,7 +57,7 @@ Result<std::unique_ptr<PortStation>> PortStation::open(PortOptions options, Read
     }
     std::unique_ptr<PortStation> station(new PortStation(std::move(options), std::move(file)));
     const PortOptions& o = station->options_;
-    // The guard first: what this program opens later must not live on in it.
+    // Start the guard first: it must not inherit what this program opens later.
     auto guard =
         ProcessGuard::start({ready.job.journal.string() + ".guard", std::filesystem::path(o.projector) / "shown.png",
                              o.speed, station->file_ ? &*station->file_ : nullptr});

@@ -1,5 +1,5 @@
-// The machine at a serial port, with all that a print on it needs: wire, projector, clock, emergency line, and a guard
-// that outlives the host. Whoever prints, the command line or a page, does it with this.
+// The machine at a serial port with everything a print needs: wire, projector, clock, emergency line, and a guard that
+// outlives the host. Used by both the command line and the web page.
 #pragma once
 
 #include <filesystem>
@@ -21,17 +21,17 @@ namespace pliant::operate {
 
 struct PortOptions {
     std::string device;
-    std::string projector;             ///< number of a display, or a folder
+    std::string projector;             ///< number of a display, or path of a folder
     double speed = 1;                  ///< speed-up factor of its clock: above 1 for virtual printers only
-    std::filesystem::path clock_file;  ///< of a virtual printer; "": the wall's clock
-    std::string emergency_line;        ///< as host::parse_emergency_line() reads it; "": the printer file's
+    std::filesystem::path clock_file;  ///< of a virtual printer; "": real time
+    std::string emergency_line;        ///< as parsed by host::parse_emergency_line(); "": the printer file's
 };
 
 class PortStation {
 public:
-    /// Opens the projector (dark) and starts the guard beside the job's journal; the port itself is opened by the
-    /// control. The images of `ready` are decoded ahead from now on: the station must outlive the control. Errors: a
-    /// speed out of range, no such projector, no such clock, an emergency line that cannot be pulled.
+    /// Opens the projector (dark) and starts the guard beside the job's journal; the control opens the port. Images of
+    /// `ready` are decoded ahead from then on: the station must outlive the control. Errors: a speed out of range, no
+    /// such projector, no such clock, an emergency line that cannot be operated.
     [[nodiscard]] static Result<std::unique_ptr<PortStation>> open(PortOptions options, ReadyJob& ready);
     PortStation(const PortStation&) = delete;
     PortStation& operator=(const PortStation&) = delete;
@@ -52,7 +52,7 @@ private:
     std::unique_ptr<host::ImageAhead> ahead_;
 };
 
-/// What a control needs to print at `device`, a serial port or a pseudo-terminal.
+/// What a control needs to print on `device`, a serial port or a pseudo-terminal.
 [[nodiscard]] host::ControlSetup port_setup(const std::string& device, double speed, const machine::Printer& printer,
                                             host::Projector& projector, host::Clock& clock, host::Guard* guard);
 

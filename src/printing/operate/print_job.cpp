@@ -12,7 +12,7 @@
 namespace pliant::operate {
 namespace {
 
-/// What a person has to do before layers. The host asks once before a layer: all that is to be done there is one text.
+/// Operator tasks before layers. The host prompts once per layer: all tasks there are combined into one text.
 std::vector<host::Refill> refills_of(const plan::Plan& plan) {
     std::vector<host::Refill> refills;
     for (const plan::RefillBefore& refill : plan.refills) {

@@ -1,4 +1,4 @@
-// A job archive made ready to print.
+// A job archive prepared for printing.
 #pragma once
 
 #include <filesystem>
@@ -15,14 +15,14 @@
 namespace pliant::operate {
 
 struct ReadyJob {
-    std::shared_ptr<job::Archive> archive;  ///< the images come from it; one thread at a time
-    machine::Printer printer;               ///< from the job's own printer.toml, its vats filled as the plan asks
+    std::shared_ptr<job::Archive> archive;  ///< source of the images; not thread-safe
+    machine::Printer printer;               ///< from the job's own printer.toml, its vats filled as the plan requires
     plan::Plan plan;
     host::PrintJob job;                 ///< its journal is JOB.zip.journal beside the job
-    std::vector<std::string> warnings;  ///< of the proof
+    std::vector<std::string> warnings;  ///< of prove_job()
 };
 
-/// Errors: no job, or one that does not hold what it says (prove_job).
+/// Errors: not a job, or one whose content is wrong (prove_job).
 [[nodiscard]] Result<ReadyJob> load_job(const std::filesystem::path& path);
 
 }  // namespace pliant::operate

@@ -25,7 +25,7 @@ struct Message {
     double at_s = 0;
 };
 
-/// The last light that the guard has heard of.
+/// The last exposure reported to the guard.
 struct LastLight {
     long number = 0;  ///< 0: none yet
     GuardWord word = GuardWord::dark;
@@ -50,7 +50,7 @@ double now_of(const ProcessGuard::Options& options) {
     return options.clock != nullptr ? options.clock->now() : monotonic_s() * options.clock_speed;
 }
 
-/// What the guard does when the host has died. The picture goes first.
+/// The guard's actions when the host has died. The image is removed first.
 void host_died(const ProcessGuard::Options& options, const std::string& boot, const LastLight& last) {
     double on_s = last.on_s;
     if (last.word == GuardWord::lit) {
@@ -66,13 +66,13 @@ void host_died(const ProcessGuard::Options& options, const std::string& boot, co
     ::close(file);
 }
 
-/// What else this program has open (sockets, the journal, other guards' pipes) must not stay open in the guard.
+/// The guard must not keep open what this program has open (sockets, the journal, other guards' pipes).
 void close_all_but(int kept) {
     if (kept > 3) ::close_range(3, static_cast<unsigned>(kept) - 1, 0);
     ::close_range(static_cast<unsigned>(kept) + 1, ~0U, 0);
 }
 
-/// The guard's life. Nothing here waits for another thread: of those the guard has none, whatever they held.
+/// The main loop of the guard. It must not wait for locks: those of other threads stay locked in this process.
 [[noreturn]] void stand_guard(int pipe, const ProcessGuard::Options& options, const std::string& boot) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_IGN);
     ::setsid();
@@ -116,7 +116,7 @@ ProcessGuard::~ProcessGuard() {
     ::waitpid(process_, nullptr, 0);
 }
 
-/// Short enough to arrive whole or not at all.
+/// Short enough to be written atomically.
 void ProcessGuard::tell(GuardWord word, long light, double at_s) const {
     const Message message{word, light, at_s};
     ssize_t put = 0;

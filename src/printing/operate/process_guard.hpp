@@ -1,5 +1,5 @@
-// The guard as a process: it waits at the end of a pipe whose other end is the host's, and when that falls silent it
-// takes away the projector's picture and writes down for how long the last light was on.
+// The guard as a process: it reads a pipe from the host and, when the host dies, removes the projector's image and
+// records how long the last exposure was on.
 #pragma once
 
 #include <filesystem>
@@ -12,22 +12,22 @@
 
 namespace pliant::operate {
 
-/// What a host tells its guard.
+/// Messages from a host to its guard.
 enum class GuardWord : long { announced, lit, dark, farewell };
 
 class ProcessGuard final : public host::Guard {
 public:
     struct Options {
-        std::filesystem::path witness;       ///< file for what it has seen, beside the journal
-        std::filesystem::path shown;         ///< picture that a projector shows as long as it is there; "": none
-        double clock_speed = 1;              ///< seconds of the devices' clock in one of CLOCK_MONOTONIC
-        const host::Clock* clock = nullptr;  ///< or that clock itself; must outlive the guard
+        std::filesystem::path witness;       ///< file for its observations, beside the journal
+        std::filesystem::path shown;         ///< image that a projector shows while the file exists; "": none
+        double clock_speed = 1;              ///< seconds of the devices' clock per second of CLOCK_MONOTONIC
+        const host::Clock* clock = nullptr;  ///< the devices' clock itself, if given; must outlive the guard
     };
-    /// Starts the process; nothing that the program has open stays open in it.
+    /// Starts the process; it inherits no open files of this program.
     [[nodiscard]] static Result<ProcessGuard> start(const Options& options);
     ProcessGuard(ProcessGuard&& other) noexcept = default;
     ProcessGuard& operator=(ProcessGuard&&) = delete;
-    ~ProcessGuard() override;  ///< the process ends in peace
+    ~ProcessGuard() override;  ///< the process ends normally
 
     void announced(long light) override;
     void lit(double now_s) override;
@@ -39,7 +39,7 @@ private:
         : pipe_(std::move(pipe)), process_(process), options_(std::move(options)) {}
     void tell(GuardWord word, long light = 0, double at_s = 0) const;
 
-    FileHandle pipe_;  ///< none where the guard has been moved from
+    FileHandle pipe_;  ///< closed in a moved-from guard
     int process_ = -1;
     Options options_;
 };

@@ -18,7 +18,7 @@ using namespace pliant::operate;
 
 namespace {
 
-/// A host that does so much with light 17 and is killed.
+/// A host that goes so far with exposure 17 and is then killed.
 void die(const ProcessGuard::Options& options, const std::function<void(ProcessGuard&)>& deeds) {
     const pid_t host = ::fork();
     if (host == 0) {
@@ -37,7 +37,7 @@ double now_s() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// What the next host hears of light 17; the guard of the last one may still be writing.
+/// What the next host learns of exposure 17; the guard of the previous one may still be writing.
 std::optional<double> heard(const ProcessGuard::Options& options) {
     auto guard = ProcessGuard::start(options);
     REQUIRE(guard);
@@ -49,7 +49,7 @@ std::optional<double> heard(const ProcessGuard::Options& options) {
 
 }  // namespace
 
-TEST_CASE("when the host is killed in the light, the guard makes dark and says how long it was on") {
+TEST_CASE("if the host is killed during an exposure, the guard turns it off and reports its length") {
     const pliant::test::Folder folder;
     const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
     const double before_s = now_s();
@@ -64,7 +64,7 @@ TEST_CASE("when the host is killed in the light, the guard makes dark and says h
     CHECK(*on_s <= now_s() - before_s);
 }
 
-TEST_CASE("a host that is killed between its note and the light has given none") {
+TEST_CASE("a host killed between its note and the exposure has given none") {
     const pliant::test::Folder folder;
     const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
     die(options, [](ProcessGuard&) {});
@@ -72,7 +72,7 @@ TEST_CASE("a host that is killed between its note and the light has given none")
     CHECK(std::filesystem::exists(options.shown));
 }
 
-TEST_CASE("a host that is killed between the end of the light and its note: it was on until then") {
+TEST_CASE("a host killed between exposure and note: it was on until then") {
     const pliant::test::Folder folder;
     const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
     die(options, [&](ProcessGuard& guard) {
@@ -84,7 +84,7 @@ TEST_CASE("a host that is killed between the end of the light and its note: it w
     CHECK(*on_s == near(2.5, {.relative = 1e-12}));
 }
 
-TEST_CASE("a host that ends in peace leaves no witness") {
+TEST_CASE("a host that ends normally leaves no record of the guard") {
     const pliant::test::Folder folder;
     const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
     {
@@ -97,7 +97,7 @@ TEST_CASE("a host that ends in peace leaves no witness") {
     CHECK_FALSE(std::filesystem::exists(options.witness));
 }
 
-TEST_CASE("the guard keeps nothing open that the program had open") {
+TEST_CASE("the guard inherits no open files of the program") {
     const pliant::test::Folder folder;
     std::array<int, 2> ends{};
     REQUIRE(::pipe(ends.data()) == 0);
@@ -105,6 +105,6 @@ TEST_CASE("the guard keeps nothing open that the program had open") {
     REQUIRE(guard);
     ::close(ends[1]);
     char byte = 0;
-    CHECK(::read(ends[0], &byte, 1) == 0);  // would wait for good if the guard held the other end
+    CHECK(::read(ends[0], &byte, 1) == 0);  // would block forever if the guard held the other end
     ::close(ends[0]);
 }

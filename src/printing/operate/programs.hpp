@@ -1,4 +1,4 @@
-// The plan's programs and the printer file's limits as the host takes them.
+// The plan's programs and the printer file's limits in the form that the host needs.
 #pragma once
 
 #include "printing/host/control_types.hpp"
@@ -9,7 +9,7 @@ namespace pliant::operate {
 /// The programs keep a copy of the printer.
 [[nodiscard]] host::Programs programs_of(const machine::Printer& printer);
 
-/// What the host may have under way, as the printer file says.
+/// Limits on lines in flight, from the printer file.
 [[nodiscard]] host::LinkOptions link_options(const machine::Controller& controller);
 
 }  // namespace pliant::operate

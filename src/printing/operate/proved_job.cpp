@@ -9,7 +9,7 @@
 namespace pliant::operate {
 namespace {
 
-/// Reading an entry compares it with its fingerprint.
+/// Reading an entry verifies its hash.
 Status check_fingerprints(const job::Archive& archive) {
     for (const auto& [file, hash] : archive.manifest().sha256) {
         if (const auto bytes = archive.file(file); !bytes) return tl::unexpected(bytes.error());

@@ -1,4 +1,4 @@
-// A job that has been proved: what stands between a job file and everything that prints it.
+// A verified job: the gate between a job file and everything that prints it.
 #pragma once
 
 #include <filesystem>
@@ -14,22 +14,22 @@ namespace pliant::operate {
 
 struct ProvedJob {
     job::Archive archive;
-    machine::Printer printer;  ///< from the job's own printer.toml, or the other one
+    machine::Printer printer;  ///< from the job's own printer.toml, or the other printer
     plan::Plan plan;
     std::string gcode;
-    std::vector<std::string> warnings;  ///< what could not be proved
+    std::vector<std::string> warnings;  ///< what could not be verified
 };
 
-/// How closely images are looked at.
+/// How thoroughly images are checked.
 enum class Pixels {
-    fingerprints,  ///< every byte is that of the manifest's fingerprint; of a job without any, as `areas`
-    areas          ///< each is decoded too: it has the manifest's area, and no two light the same pixel
+    fingerprints,  ///< every entry matches the manifest's SHA-256; for a job without hashes, as `areas`
+    areas          ///< also decodes each: it has the manifest's area, and no two light the same pixel
 };
 
-/// Opens a job and proves it: every entry against its fingerprint, the images as `pixels` says, the program against
-/// manifest and printer (plan::prove_program). Nothing is printed that has not come through here. Errors: one line that
-/// names file, entry or G-code line, and layer. A job of format 1 has no fingerprints: that is a warning. With an
-/// `other` printer the program must print the job on that one.
+/// Opens a job and verifies it: every entry against its hash, the images as `pixels` says, the program against manifest
+/// and printer (plan::prove_program). Nothing is printed without this check. Errors: one line that names file, entry or
+/// G-code line, and layer. A job of format 1 has no hashes, which gives a warning. With an `other` printer, the program
+/// must print the job on that one.
 [[nodiscard]] Result<ProvedJob> prove_job(const std::filesystem::path& path, Pixels pixels = Pixels::fingerprints,
                                           const machine::Printer* other = nullptr);
 

@@ -27,7 +27,7 @@ std::vector<bool> printed_materials(const job::Manifest& job) {
     return printed;
 }
 
-/// The resins of the printed materials, each once, in the order of the materials.
+/// The resins of the printed materials, without duplicates, in the order of the materials.
 std::vector<Supply> needed_resins(const job::Manifest& job, const std::vector<bool>& printed) {
     std::vector<Supply> supplies;
     for (std::size_t m = 0; m < job.materials.size(); ++m) {
@@ -55,7 +55,7 @@ bool is_taken(const std::vector<Supply>& supplies, int vat) {
                        [vat](const Supply& s) { return std::find(s.vats.begin(), s.vats.end(), vat) != s.vats.end(); });
 }
 
-/// The next vat that no resin has taken: an empty one, else the first. -1 if there is none.
+/// The next vat without a resin of this job: an empty one, else the first. -1 if there is none.
 int free_vat(const std::vector<Supply>& supplies, const Printer& printer) {
     int best = -1;
     for (int v = 0; v < static_cast<int>(printer.vats.size()); ++v) {
@@ -66,7 +66,7 @@ int free_vat(const std::vector<Supply>& supplies, const Printer& printer) {
     return best;
 }
 
-/// Duplicates give way where another resin has no vat at all.
+/// A resin with several vats gives one up if another resin has none.
 int give_up_duplicate(std::vector<Supply>& supplies) {
     for (Supply& supply : supplies) {
         if (supply.vats.size() < 2) continue;
@@ -82,7 +82,7 @@ std::string fill_warning(const std::string& resin, const machine::Vat& vat) {
     return fmt::format("no vat holds \"{}\": fill it into the vat of slot {}, which {}", resin, vat.slot, holds);
 }
 
-/// "no vat of tower holds "semiflex", ...": with the name that was meant, where one is near.
+/// "no vat of tower holds "semiflex", ...": with the nearest known name, if any.
 Error no_vat_holds(const std::string& resin, const std::vector<job::Material>& job, const Printer& printer) {
     std::vector<std::string> held, materials;
     for (const machine::Vat& vat : printer.vats) {
@@ -106,7 +106,7 @@ double usable_ml(const Printer& printer, int vat) {
     return std::max(0.0, vat_at(printer, vat).fill_ml - printer.vat_shape.least_ml);
 }
 
-/// Follows a job from layer to layer: whose resin runs out when.
+/// Tracks consumption from layer to layer, and which resin runs out when.
 class Consumption {
 public:
     Consumption(const job::Manifest& job, const Printer& printer, std::vector<Supply> supplies, Assignment& assignment)

@@ -1,4 +1,4 @@
-// Which vat holds which resin of a job, and from which layer on where one vat does not hold enough.
+// Assigns vats to the resins of a job and, where one vat does not hold enough, from which layer on each is used.
 #pragma once
 
 #include <string>
@@ -13,17 +13,17 @@ namespace pliant::plan {
 
 struct Assignment {
     std::vector<VatUse> vats;
-    std::vector<int> vat_of_material;            ///< the first one; -1 for a material without images
+    std::vector<int> vat_of_material;            ///< the first vat used; -1 for a material without images
     std::vector<std::vector<int>> vat_of_image;  ///< for each layer, in the order of its images
     std::vector<RefillBefore> refills;           ///< by layer
     std::vector<std::string> warnings;
 };
 
-/// Whether some vat holds the resin of each of these materials; the error names the resin and the one that was meant.
+/// Checks that some vat holds the resin of each material; the error names the resin and the nearest known one.
 [[nodiscard]] Status check_resins(const std::vector<job::Material>& materials, const machine::Printer& printer);
 
-/// See make_plan. Materials of the same resin share a vat; where the printer holds a resin in several vats, the next
-/// one takes over on the layer that the one before cannot fill.
+/// See make_plan. Materials of the same resin share a vat; if several vats hold a resin, the next one takes over at the
+/// layer for which the previous one has too little left.
 [[nodiscard]] Result<Assignment> assign_vats(const job::Manifest& job, const machine::Printer& printer);
 
 }  // namespace pliant::plan

@@ -12,12 +12,12 @@ namespace {
 
 using machine::Command;
 
-/// The machine as far as the text has been read.
+/// The machine's state after the lines read so far.
 struct Reading {
     const machine::Printer& printer;
     machine::Interlock interlock;
     bool absolute = false;
-    bool moving = false;  ///< a move may still be under way: no fence since
+    bool moving = false;  ///< no fence since the last move
     double feed_mm_s = 0;
     double clock_s = 0;
     double pump_since_s = 0;
@@ -26,7 +26,7 @@ struct Reading {
     int line = 0;
 };
 
-/// Tells the watch what the line has done, since the machine stood at `from` and its clock at `clock_s`.
+/// Reports the line's effect to the watch, given position `from` and time `clock_s` before it.
 Status tell(const Reading& r, const machine::Position& from, double clock_s, const Command* command,
             const machine::Directive* directive) {
     if (!r.watch) return {};
@@ -35,7 +35,7 @@ Status tell(const Reading& r, const machine::Position& from, double clock_s, con
                     r.clock_s - clock_s, &r.interlock});
 }
 
-/// The pump's longest stretch, looked at after every command that takes time.
+/// Checks the pump's continuous run; called after every command that takes time.
 Status check_pump_time(const Reading& r) {
     if (!r.interlock.pump_runs() || r.clock_s - r.pump_since_s <= r.printer.limits.cleaning_s) return {};
     return input_error("the pump runs for over {:g} s, the limit of {}", r.printer.limits.cleaning_s, r.printer.name);
@@ -64,7 +64,7 @@ Status run_home(Reading& r, const Command& command) {
     return {};
 }
 
-/// G92 stands for homing, and only for an axis that a person stands at its home.
+/// G92 replaces homing, only for an axis that a person places at its home position.
 Status run_set(Reading& r, const Command& command) {
     for (const machine::Word& word : command.words) {
         const auto axis = machine::axis_of_letter(r.printer, word.letter);
@@ -93,14 +93,14 @@ Status run_latch(Reading& r, const Command& command) {
     return r.interlock.output(command);
 }
 
-/// Motors that let go: where the axes are is not known any more.
+/// Motors are disabled: the positions of the axes are unknown.
 Status run_release(Reading& r, const Command& command) {
     if (command.has('S')) return {};
     r.interlock.stopped_at(r.interlock.position());
     return {};
 }
 
-/// What moves nothing that matters: units, messages, reports, fences.
+/// Commands without effect on the machine: units, messages, reports, fences.
 Status run_other(Reading& r, const Command& command) {
     if (command.is('M', 84) || command.is('M', 18)) return run_release(r, command);
     if (command.is('G', 91)) {
@@ -117,7 +117,7 @@ Status run_other(Reading& r, const Command& command) {
     return known ? Status{} : input_error("{}{} is not a command that a job may hold", command.letter, command.number);
 }
 
-/// `N12 G1 X3*77` as it stands on the wire: only what it commands.
+/// `N12 G1 X3*77` as on the wire: only the command.
 std::string_view without_number(std::string_view line) {
     if (line.empty() || line.front() != 'N') return line;
     const std::size_t blank = line.find(' ');

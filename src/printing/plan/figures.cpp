@@ -15,7 +15,7 @@ using machine::Axis;
 using machine::Printer;
 using machine::Store;
 
-/// Beginning and end of the pump's work tell the steps apart.
+/// The steps are separated by the start and end of the pump.
 SwapSteps swap_steps(const Printer& p, int from_slot, int to_slot) {
     SwapSteps steps;
     Sequence s = standing_at(p, from_slot);
@@ -58,7 +58,7 @@ double short_side_mm(const Printer& p) {
     return std::min(p.platform.width_um, p.platform.depth_um) / 1000.0;
 }
 
-/// Vats of a wall, with the bed's side along the wall; the retriever before them takes as much room as they do.
+/// Vats of a wall, with one side of the bed along the wall; the retriever in front takes as much room as they do.
 void measure_wall(const Printer& p, PrinterFigures& f) {
     const machine::Wall& w = p.wall;
     const double wide_mm = (p.carriage.along_y ? p.platform.width_um : p.platform.depth_um) / 1000.0;
@@ -91,7 +91,7 @@ void fit_vats(Printer& p, int vats) {
     for (vat.slot = 1; vat.slot <= vats; ++vat.slot) p.vats.push_back(vat);
 }
 
-/// Stations evenly round the circle, the cleaning station one of them; rim and drive stay as fast, so a wider table
+/// Stations evenly spaced on the circle, including the cleaning station; the rim speed is constant, so a wider table
 /// turns more slowly.
 void widen_turntable(Printer& p, int vats) {
     const double before = ring_diameter_mm(long_side_mm(p), short_side_mm(p), static_cast<int>(p.vats.size()) + 1);
@@ -117,7 +117,7 @@ double tower_packing(const Printer& printer, int vats) {
 }
 
 double ring_diameter_mm(double long_mm, double short_mm, int vats) {
-    // The short sides touch at their corners and leave a polygon free in the middle.
+    // Neighbouring short sides touch at their corners and leave a polygon free in the middle.
     const double inner = vats > 2 ? short_mm / 2 / std::tan(std::numbers::pi / vats) : 0;
     return 2 * std::hypot(inner + long_mm, short_mm / 2);
 }

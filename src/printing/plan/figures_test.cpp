@@ -64,12 +64,12 @@ TEST_CASE("a swap follows the bed's length one to one, and the motors") {
     const machine::Printer tower = machine_of("tower");
     const auto swap_s = [&](double bed, double motors) { return figures(with_bed(tower, bed, motors)).swap.total_s; };
     CHECK(swap_s(1, 1) == near(figures(tower).swap.total_s, {.relative = 1e-12}));
-    // Push and pull go 355.6 mm further each, at 15.2 mm/s; and half as far.
+    // Push and pull go 355.6 mm farther each, at 15.2 mm/s; and half as far.
     CHECK(swap_s(2, 1) - swap_s(1, 1) == near(2 * 355.6 / 15.2, {.relative = 1e-12}));
     CHECK(swap_s(1, 1) - swap_s(0.5, 1) == near(355.6 / 15.2, {.relative = 1e-12}));
     // At twice the speed: 355.6 / 30.4 s each way and a ramp of 30.4 / 50 s; the spray still takes its 15 s.
     CHECK(swap_s(1, 2) == near(2 * (355.6 / 30.4 + 30.4 / 50) + 15, {.relative = 1e-3}));
-    CHECK(swap_s(1, 1000) > 15);  // with motors as fast as one likes, ramps and cleaning stay
+    CHECK(swap_s(1, 1000) > 15);  // with arbitrarily fast motors, ramps and cleaning remain
     const machine::Printer linear = machine_of("linear");
     CHECK(figures(with_bed(linear, 2, 1)).swap.total_s > figures(linear).swap.total_s);
 }
@@ -79,7 +79,7 @@ TEST_CASE("a wall grows by columns; half of its room is the retriever's; a large
     const PrinterFigures f = figures(wall);
     CHECK(f.places == 16);
     CHECK(f.swap.hooks_s == near(3, {.relative = 0.01}));
-    // Four vats of 12 in over 3 x 14 + 12 in, four of 4 in over 3 x 6 + 4 in, and as much before them.
+    // Four vats of 12 in at a pitch of 14 in, four of 4 in at a pitch of 6 in, and as much in front of them.
     CHECK(f.store_mm == near(54 * 25.4, {.relative = 1e-12}));
     CHECK(f.packing == near(48.0 / 54 * 16 / 22 / 2, {.relative = 1e-12}));
     const std::vector<SwapTimes> grown = swap_over_vats(wall, {4, 16, 32});

@@ -10,9 +10,9 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t most_exact = 12;
-constexpr double most_work = 2e9;  // elementary steps of all sets together
+constexpr double most_work = 2e9;  // elementary steps for all sets together
 
-/// The cheapest ways through one set of vats.
+/// The cheapest paths through one set of vats.
 class SetPaths {
 public:
     SetPaths(const VatList& vats, const ChangeCosts& costs, bool may_try_all)
@@ -58,7 +58,8 @@ private:
         return true;
     }
 
-    /// Costs of the paths from `first` to every last vat; `before`, if given, gets who precedes whom in which subset.
+    /// Costs of the paths from `first` to every last vat; `before`, if not null, gets the predecessor of each vat in
+    /// each subset.
     void held_karp(std::size_t first, std::vector<std::uint8_t>* before) {
         const std::size_t sets = std::size_t{1} << n_;
         std::vector<double> best(sets * n_, infinite);
@@ -130,7 +131,7 @@ private:
     std::map<std::size_t, VatList> paths_;
 };
 
-/// Every set of vats that layers have, with its paths.
+/// The sets of vats that occur in layers, each with its paths.
 class PathBook {
 public:
     explicit PathBook(const ChangeCosts& costs) : costs_(costs) {}
@@ -156,20 +157,20 @@ private:
     double work_ = 0;
 };
 
-/// The cheapest way to have done all layers up to this one and end with a certain vat of it.
+/// The cheapest order of all layers up to this one that ends with a certain vat.
 struct Stop {
     double cost = infinite;
-    std::size_t first = 0;     ///< the vat this layer begins with
-    std::size_t previous = 0;  ///< the vat the layer before ends with
+    std::size_t first = 0;     ///< the first vat of this layer
+    std::size_t previous = 0;  ///< the last vat of the previous layer
 };
 
 struct Step {
     SetPaths* paths = nullptr;
     std::size_t layer = 0;
-    std::vector<Stop> stops;  ///< by last vat, as the set lists them
+    std::vector<Stop> stops;  ///< by last vat, in the order of the set
 };
 
-/// Cheapest arrival at each vat of `now` from the stops of the layer before; nullptr: nothing is loaded yet.
+/// Cheapest arrival at each vat of `now` from the stops of the previous layer; nullptr: nothing is loaded yet.
 std::vector<Stop> arrivals(const Step* before, const VatList& now, const ChangeCosts& costs) {
     std::vector<Stop> arrive(now.size());
     for (std::size_t f = 0; f < now.size(); ++f) {

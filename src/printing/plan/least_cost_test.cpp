@@ -87,7 +87,7 @@ TEST_CASE("with even costs the least cost is the least number of swaps") {
     }
 }
 
-TEST_CASE("a dear pair is avoided even if that takes the store farther") {
+TEST_CASE("an expensive pair is avoided even if the store moves farther") {
     ChangeCosts costs = even_costs(3, 60);
     costs.swap[costs.at(0, 2)] = 500;
     costs.load = {0, 100, 100};

@@ -1,4 +1,4 @@
-// One planner for every machine: whatever store holds the vats, what is planned keeps the interlocks.
+// One planner for every machine: with every kind of store, plans obey the interlocks.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -208,8 +208,9 @@ TEST_CASE("solution that goes round: a die of 340 cleanings takes little of it, 
     REQUIRE(plate.solution.care.size() == 1);
     CHECK(plate.solution.care[0].care == machine::SolutionCare::change);
     CHECK(plate.solvent_ml > 4500);
-    // By hand: 1.44 ml of film less what brush and spray leave, and less what the solution brings back (2.5 % in the
-    // mean), are 0.944 ml of resin at each of two cleanings a layer; 0.4 ml evaporate. n 1.889 / (5000 + n 1.04) = 5 %.
+    // Calculated by hand: 1.44 ml of film less what brush and spray leave, and less what the solution brings back (2.5
+    // % on average), are 0.944 ml of resin at each of two cleanings per layer; 0.4 ml evaporate. n 1.889 / (5000 + n
+    // 1.04) = 5 %.
     CHECK(plate.solution.care[0].layer == near(136, {.relative = 1e-12}));
     CHECK(plate.solution.resin_share < 0.05);
     const std::string text = plan_text(plate);
@@ -234,6 +235,6 @@ TEST_CASE("a program that has lost a line that the interlocks depend on is refus
     const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
     int refused = 0;
     for (std::size_t n = 0; n < lines; ++n) refused += check_gcode(without_line(text, n), printer) ? 0 : 1;
-    // Comments, fences and half of an oscillation may go unnoticed here; the twin's oracle sees the rest.
+    // Comments, fences and half of an oscillation may go unnoticed here; the twin's inspection detects the rest.
     CHECK(refused > 15);
 }

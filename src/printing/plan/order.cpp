@@ -8,15 +8,15 @@
 namespace pliant::plan {
 namespace {
 
-/// The best way to end a layer with vat `last`: begin with `first`.
+/// The best order of a layer that ends with vat `last`: begins with `first`.
 struct Ending {
     int last = 0;
     int swaps = 0;
     int first = 0;
-    bool joined = false;  ///< the layer before ends with `first`: no swap at the boundary
+    bool joined = false;  ///< the previous layer ends with `first`: no swap at the boundary
 };
 
-/// The cheapest two ways to begin a layer: one of them differs from any given last vat.
+/// The two cheapest ways to begin a layer: at least one of them differs from any given last vat.
 struct Beginning {
     int vat = -1;
     int swaps = std::numeric_limits<int>::max();
@@ -33,7 +33,7 @@ Ending best_ending(int last, std::span<const Beginning> beginnings, std::size_t 
     return best;
 }
 
-/// `before` empty: nothing has been printed yet, any vat may be the first one loaded.
+/// `before` is empty if nothing has been printed yet: any vat may then be loaded first.
 std::vector<Ending> endings(const VatList& layer, const std::vector<Ending>& before) {
     std::map<int, int> ended;
     int cheapest = 0;
@@ -86,7 +86,7 @@ std::vector<VatList> thesis_order(std::span<const VatList> layers) {
     return order;
 }
 
-/// Walks the table backwards: each layer's beginning says which ending the layer before must have.
+/// Backtracks through the table: each layer's beginning determines the ending of the layer before.
 std::vector<VatList> cheapest_order(std::span<const VatList> layers) {
     const auto table = all_endings(layers);
     std::vector<VatList> order(layers.begin(), layers.end());

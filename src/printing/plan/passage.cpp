@@ -14,20 +14,20 @@ using machine::Position;
 using machine::Printer;
 using machine::Store;
 
-// Feed rates are written in tenths of a millimetre a minute, dwells in whole milliseconds.
+// Feed rates are written in tenths of a millimetre per minute, dwells in whole milliseconds.
 constexpr double speed_tolerance = 0.02;
 constexpr double share_tolerance = 0.005;
 constexpr double time_tolerance_s = 0.005;
-// Cleaning may last longer than asked for, as another program's does; not so long that the part swells.
+// Cleaning by other programs may last longer than required, but not so long that the part swells.
 constexpr double most_cleaning_share = 1.5;
 constexpr double most_cleaning_more_s = 10;
-constexpr int many_strokes = 1000;  // as many as the planner makes; it rests after them
+constexpr int many_strokes = 1000;  // the planner makes at most this many, and rests afterwards
 
 bool enough(double seconds, double asked_s) {
     return seconds >= asked_s * (1 - share_tolerance) - time_tolerance_s;
 }
 
-/// Speed of one axis on the way.
+/// Speed of one axis during the move.
 double axis_mm_s(const machine::Profile& profile, const Step& step, Axis axis) {
     if (!(profile.length_mm > 0)) return 0;
     return profile.speed_mm_s * std::abs(step.to[axis] - step.from[axis]) / 1000.0 / profile.length_mm;
@@ -37,7 +37,7 @@ Axis stroke_axis(const Printer& p) {
     return p.has_carriage() ? Axis::carriage : Axis::platform;
 }
 
-/// The speed that the stroke axis can reach on this way, at most that of cleaning.
+/// The speed that the stroke axis can reach in this move, at most the cleaning speed.
 double stroke_mm_s(const Printer& p, const Step& step) {
     const Axis lead = stroke_axis(p);
     const machine::Profile fastest = machine::profile(p, step.from, step.to, 0);
@@ -103,7 +103,7 @@ void Passage::add_vat_move(const Step& step, double platform_mm_s) {
     }
 }
 
-/// The part is where it is cleaned, and the pump runs where there is one.
+/// The part is at its cleaning position, and the pump, if any, runs.
 bool Passage::cleans(const Step& step) const {
     if (!printer_->pump.on.empty() && !step.machine->pump_runs()) return false;
     if (!step.machine->over_drain(step.from) || !step.machine->over_drain(step.to)) return false;
@@ -162,7 +162,7 @@ Status Passage::check_peel(int z_um) const {
     return {};
 }
 
-/// All of the cleaning but a rest shorter than two strokes is spent moving.
+/// Apart from a rest shorter than two strokes, all of the cleaning is motion.
 Status Passage::check_strokes() const {
     if (!asks_for_strokes() || strokes_ >= many_strokes) return {};
     const double pair_s = strokes_ > 0 ? 2 * stroke_s_ / strokes_ : 0;

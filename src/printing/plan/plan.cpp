@@ -88,7 +88,7 @@ std::vector<VatList> vats_by_layer(const std::vector<std::vector<int>>& vat_of_i
     return layers;
 }
 
-/// Seconds of every change between vats that the job uses, with what avoiding a pair is worth.
+/// Duration of every change between vats that the job uses, plus the penalty of the pair.
 ChangeCosts change_costs(const Plan& plan, const Printer& printer) {
     ChangeCosts costs(static_cast<int>(printer.vats.size()));
     for (const VatUse& from : plan.vats) {
@@ -105,7 +105,7 @@ ChangeCosts change_costs(const Plan& plan, const Printer& printer) {
     return costs;
 }
 
-/// The printer with the resins that the plan fills in: cleaning goes by pairs of them.
+/// The printer with the resins that the plan fills in: cleaning depends on pairs of them.
 Printer with_resins(const Plan& plan, Printer printer) {
     for (const VatUse& use : plan.vats) printer.vats[static_cast<std::size_t>(use.vat)].resin = use.resin;
     return printer;
@@ -129,7 +129,7 @@ void choose_order(Plan& plan, const std::vector<VatList>& layers, const Printer&
     plan.swap_lower_bound = fewest_swaps(layers);
 }
 
-/// A blank layer below a printed one leaves a gap that the light must bridge.
+/// A blank layer below a printed one leaves a gap that curing must bridge.
 void warn_of_gaps(const job::Manifest& job, const Printer& printer, Plan& plan) {
     int below_um = 0;
     int gaps = 0;
@@ -188,7 +188,7 @@ machine::Printer filled_printer(const Plan& plan, const job::Manifest& job, Prin
     for (const VatUse& use : plan.vats) {
         if (printer.find_resin(use.resin) != nullptr) continue;
         const job::Material& m = job.materials[static_cast<std::size_t>(use.materials.front())];
-        // A resin like most: its light cures two layers, and two depths of penetration.
+        // A typical resin: an exposure cures two layers, which is two depths of penetration.
         const int cure_depth_um = 2 * printer.layer_um;
         const double critical_J_m2 = machine::irradiance_W_m2(printer) * m.exposure_s * std::exp(-2);
         printer.resins.push_back({use.resin, m.exposure_s, m.bottom_exposure_s, job.bottom_layers, cure_depth_um, 0.8,

@@ -73,7 +73,7 @@ TEST_CASE("a resin that no vat holds takes the next free vat, with a warning") {
     CHECK(filled_printer(plan, job, printer).vats[3].resin == "rubber");
     const machine::Printer filled = filled_printer(plan, job, printer);
     CHECK(filled.find_resin("rubber")->exposure_s == 2.5);
-    // Its light is taken to cure two layers, and twice as deep as it comes before it is e times weaker.
+    // Its light is assumed to cure two layers, and Dp is half of that depth.
     const machine::WorkingCurve curve = machine::working_curve(filled, *filled.find_resin("rubber"));
     CHECK(curve.depth_um(2.5 * machine::irradiance_W_m2(filled)) == near(2 * printer.layer_um, {.relative = 1e-12}));
     CHECK(curve.penetration_um == printer.layer_um);

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Thousandths are enough for seconds and millilitres, and keep the text the same everywhere.
+/// Three decimals are enough for seconds and millilitres, and keep the text identical everywhere.
 double rounded(double value) {
     return std::round(value * 1000) / 1000;
 }
@@ -91,7 +91,7 @@ Json solution_json(const SolutionUse& s) {
             {"care", std::move(care)}};
 }
 
-/// What becomes of the solution, and when somebody must look after it.
+/// The consumption of solution, and when it must be serviced.
 std::string solution_text(const SolutionUse& s) {
     if (s.pumped_ml <= 0) return "";
     if (!s.goes_round) return fmt::format("  {:<10}{:>7.0f} ml\n", "solution", s.used_ml);

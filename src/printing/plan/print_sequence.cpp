@@ -16,7 +16,7 @@ namespace {
 using machine::Axis;
 using machine::Printer;
 
-/// What the machine must know before anything moves.
+/// Commands that must come before any motion.
 void begin(Sequence& s, const Plan& plan) {
     const Printer& p = s.printer();
     s.comment(fmt::format("{} on {}: {}, {}, {}", plan.job, plan.printer,
@@ -35,7 +35,7 @@ void begin(Sequence& s, const Plan& plan) {
     s.fence();
 }
 
-/// Down into the resin: fast, then slowly for the last stretch, and a rest.
+/// Down into the resin: fast, then slowly over the last part, then a rest.
 void approach(Sequence& s, int z_um) {
     const machine::Platform& platform = s.printer().platform;
     if (s.position()[Axis::platform] > z_um + platform.approach_um) s.move(Axis::platform, z_um + platform.approach_um);
@@ -43,7 +43,7 @@ void approach(Sequence& s, int z_um) {
     s.dwell(platform.settle_s);
 }
 
-/// Sideways to loosen the layer, then up to peel it and let resin flow back.
+/// Sideways to shear the layer off, then up to peel it and let resin flow back.
 void loosen(Sequence& s, int z_um) {
     const Printer& p = s.printer();
     s.dwell(p.projector.delay_s);
@@ -54,7 +54,7 @@ void loosen(Sequence& s, int z_um) {
     s.move(Axis::platform, z_um + p.platform.lift_um, p.platform.lift_speed_mm_s);
 }
 
-/// What a print is made of, in order. `Steps` does it, or reckons what it takes.
+/// The parts of a print, in order. `Steps` executes them or computes their duration.
 template <class Steps>
 void walk(const Plan& plan, const job::Manifest& job, const Printer& p, Steps& steps) {
     const auto slot = [&](int vat) { return p.vats[static_cast<std::size_t>(vat)].slot; };
@@ -76,7 +76,7 @@ void walk(const Plan& plan, const job::Manifest& job, const Printer& p, Steps& s
     if (loaded) steps.store(slot(*loaded), part_um);
 }
 
-/// Whether image k of a layer is printed from `vat`, and how long it is lit.
+/// Whether image k of a layer is printed from `vat`, and its exposure.
 double light_s(const Plan& plan, const job::Manifest& job, int layer, std::size_t k, int vat) {
     const auto index = static_cast<std::size_t>(layer);
     if (plan.vat_of_image[index][k] != vat) return 0;
@@ -120,7 +120,7 @@ struct Writing {
     }
 };
 
-/// Reckons the time, and remembers what it has reckoned.
+/// Computes durations, and caches them.
 class Reckoning {
 public:
     Reckoning(const Sequence& homed, const Plan& plan, const job::Manifest& job)
@@ -179,7 +179,7 @@ private:
     struct Known {
         bool valid = false;
         Seconds seconds;
-        machine::Position end;  ///< of a swap the platform's is by how much it rises
+        machine::Position end;  ///< for a swap, the platform's entry is the height it rises by
     };
 
     Sequence muted() const {
@@ -215,7 +215,7 @@ private:
     PrintTimes times_;
     std::map<std::tuple<int, int, int>, Known> swaps_;  ///< by slots and the table's position
     std::map<int, Known> prints_;                       ///< by the platform's height above the layer
-    std::map<int, Known> rises_;                        ///< by the way
+    std::map<int, Known> rises_;                        ///< by distance
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The whole print as a sequence of commands: homing, the first vat, every layer, the last vat put away; and the time of
-// it, without writing a single command.
+// The whole print as a sequence of commands: homing, the first vat, every layer, storing the last vat; and its
+// duration, without writing any command.
 #pragma once
 
 #include "printing/job/job.hpp"
@@ -9,18 +9,18 @@
 
 namespace pliant::plan {
 
-/// Needs `order`, `vats` and `vat_of_image` of the plan. The printer must outlive the result. With `timeline`, no text
-/// is written, and its stretches and visits are filled in.
+/// Needs `order`, `vats` and `vat_of_image` of the plan. The printer must outlive the result. If `timeline` is given,
+/// no text is written, and its stretches and visits are filled in.
 [[nodiscard]] Sequence print_sequence(const Plan& plan, const job::Manifest& job, const machine::Printer& printer,
                                       JobTimeline* timeline = nullptr);
 
 struct PrintTimes {
-    Seconds all;                  ///< with homing and the way up at the end
-    std::vector<Seconds> layers;  ///< what each layer takes, the changes of vat before and within it included
+    Seconds all;                  ///< including homing and the final way up
+    std::vector<Seconds> layers;  ///< of each layer, including vat changes before and within it
 };
 
-/// The seconds of print_sequence() up to rounding. What repeats (the swaps of a pair, the strokes of a layer) is
-/// reckoned once: some 100 ns for every vat of every layer.
+/// The durations of print_sequence() up to rounding. Repetitions (the swaps of a pair, the strokes of a layer) are
+/// computed once: about 100 ns per vat and layer.
 [[nodiscard]] PrintTimes print_times(const Plan& plan, const job::Manifest& job, const machine::Printer& printer);
 
 }  // namespace pliant::plan

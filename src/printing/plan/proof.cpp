@@ -19,14 +19,14 @@ using machine::Axis;
 using machine::Expose;
 using machine::Printer;
 
-constexpr double light_tolerance_s = 1e-3;  // lights are written in whole milliseconds
+constexpr double light_tolerance_s = 1e-3;  // exposures are written in whole milliseconds
 
 Status in_layer(std::size_t layer, const Status& status) {
     if (status) return status;
     return tl::unexpected(Error{status.error().cause, fmt::format("layer {}: {}", layer, status.error().message)});
 }
 
-/// What is left in every vat, as the plan's refills fill them.
+/// The content of every vat, including the plan's refills.
 class Fillings {
 public:
     Fillings(const Plan& plan, const job::Manifest& job, const Printer& printer) : job_(job), printer_(printer) {
@@ -67,13 +67,13 @@ private:
     std::set<std::pair<int, int>> refills_;  ///< layer and slot
 };
 
-/// The light before the one that comes.
+/// The previous exposure.
 struct LastLight {
     std::size_t layer = 0;
     int vat = 0;
 };
 
-/// Follows a program from light to light. `printer` holds the resins that the plan fills in.
+/// Checks a program from exposure to exposure. `printer` has the resins that the plan fills in.
 class Proof {
 public:
     Proof(const Plan& plan, const job::Manifest& job, const Printer& printer)
@@ -99,7 +99,7 @@ public:
         return {};
     }
 
-    /// After the last line.
+    /// Call after the last line.
     Status finish(const machine::Interlock& end) {
         if (Status status = check_complete(job_.layers.size()); !status) return status;
         if (last_) {
@@ -121,14 +121,14 @@ private:
         return job_.materials[static_cast<std::size_t>(material)].name;
     }
 
-    /// Where in its layer the material's image is; as many as the layer has if it has none.
+    /// Index of the material's image in its layer; the number of images if it has none.
     [[nodiscard]] static std::size_t index_of(const job::Layer& layer, int material) {
         const auto found = std::find_if(layer.images.begin(), layer.images.end(),
                                         [&](const job::LayerImage& image) { return image.material == material; });
         return static_cast<std::size_t>(found - layer.images.begin());
     }
 
-    /// The manifest has such a light.
+    /// The exposure is in the manifest.
     [[nodiscard]] Status check_image(const Expose& light) const {
         if (static_cast<std::size_t>(light.layer) >= job_.layers.size())
             return input_error("the job has {} layers, counted from 0", job_.layers.size());
@@ -151,7 +151,7 @@ private:
         return {};
     }
 
-    /// It comes once, and after all of the layers below.
+    /// The exposure occurs once, and after all of the layers below.
     Status check_turn(const Expose& light) {
         const auto layer = static_cast<std::size_t>(light.layer);
         const std::string& name = material_name(light.material);
@@ -167,7 +167,7 @@ private:
         return {};
     }
 
-    /// All lights from the open layer to the one before `end` have been given.
+    /// All exposures from the open layer to the one before `end` have been given.
     [[nodiscard]] Status check_complete(std::size_t end) const {
         for (std::size_t layer = open_layer_; layer < end; ++layer) {
             for (const job::LayerImage& image : job_.layers[layer].images) {
@@ -179,7 +179,7 @@ private:
         return {};
     }
 
-    /// The platform's height and the vat below it.
+    /// The platform's height and the vat below it are right.
     Status check_place(const Expose& light, const machine::Interlock& machine) {
         const job::Layer& layer = layer_of(light);
         const std::string& name = material_name(light.material);
@@ -201,14 +201,15 @@ private:
             motors_stay_ = command.value('S').value_or(0) == 0;
     }
 
-    /// What must not happen during a light: idle motors would let the platform sink, a fan would move the resin.
+    /// Forbidden during an exposure: idle motors, which would let the platform sink, and fans, which would move the
+    /// resin.
     [[nodiscard]] Status check_rest() const {
         if (!motors_stay_) return input_error("motors may switch off during the exposure: M84 S0 before it is missing");
         if (passage_.fans_run()) return input_error("a fan runs during the exposure");
         return {};
     }
 
-    /// What the machine has done since the light before.
+    /// Checks the machine's actions since the previous exposure.
     [[nodiscard]] Status check_way(const Expose& light, const machine::Interlock& machine) const {
         const auto layer = static_cast<std::size_t>(light.layer);
         const int vat = *machine.hooked_vat();
@@ -231,15 +232,15 @@ private:
         return all;
     }
 
-    /// A device that is switched on gets what the printer file says.
+    /// A device is switched on with the value in the printer file.
     [[nodiscard]] static Status check_value(const machine::Switch& device, const machine::Command& command) {
         const auto own = machine::parse_command(device.on);
-        constexpr double full = 255;  // where no value is given
+        constexpr double full = 255;  // if no value is given
         if (!own || own->value('S').value_or(full) == command.value('S').value_or(full)) return {};
         return input_error("a switch is not set as the printer file says, {}", device.on);
     }
 
-    /// What runs can be stopped, and runs as hard as the printer file says.
+    /// A device that is switched on can be stopped, and its value is that of the printer file.
     [[nodiscard]] Status check_switch(const machine::Command& command) const {
         for (const machine::Switch& device : {printer_.hooks.magnet.coil, printer_.wall.fork}) {
             if (machine::switched(device, command) != true) continue;
@@ -259,7 +260,7 @@ private:
         });
     }
 
-    /// What the host does when it must stop may only switch something off.
+    /// Commands for a stop may only switch something off.
     Status add_stop(const std::string& text) {
         const auto command = machine::parse_command(text);
         if (!command) return tl::unexpected(command.error());
@@ -294,7 +295,7 @@ private:
     Fillings fillings_;
     Passage passage_;
     std::optional<LastLight> last_;
-    bool motors_stay_ = false;  ///< M84 S0: also when they idle
+    bool motors_stay_ = false;  ///< M84 S0: even when idle
     std::size_t open_layer_ = 0;
     std::set<int> lit_;  ///< materials of the open layer
     std::vector<machine::Command> stops_;

@@ -14,7 +14,7 @@ using pliant::test::holds;
 
 namespace {
 
-/// A job, its plan and its program, to be changed.
+/// A job, its plan and its program, for the tests to modify.
 struct Case {
     machine::Printer printer;
     job::Manifest job;
@@ -48,7 +48,7 @@ Case two_materials() {
     return case_of(tower, {{0}, {0, 1}, {0, 1}, {1}, {0}}, {tower.vats[0].resin, tower.vats[1].resin});
 }
 
-/// The program with the `nth` line that begins with `begin` changed; the whole line is given without its end.
+/// Changes the `nth` line that begins with `begin`; `change` gets the whole line without its end.
 void change_line(std::string& gcode, const std::string& begin, int nth,
                  const std::function<std::string(std::string)>& change) {
     std::size_t at = 0;
@@ -128,7 +128,7 @@ TEST_CASE("a vat that is put away without its brush reaching the part is found")
     CHECK(holds(c.error(), "layer 1: "));
     Case bare = two_materials();
     bare.printer.cleaning.brush = false;
-    CHECK(holds(bare.error(), "the platform is down"));  // without a brush nothing may pass so low
+    CHECK(holds(bare.error(), "the platform is down"));  // without a brush the part must not pass this low
 }
 
 TEST_CASE("a wrong height, a missing lift, rest, stroke or approach is found") {
@@ -224,7 +224,7 @@ TEST_CASE("other vats than the job's resins are in, and vats that run dry, are f
     c.plan = make_plan(c.job, c.printer).value();
     CHECK(holds(c.error(), "layer 0: exposure of \"m0\": over the vat of slot 1"));
     c = two_materials();
-    c.printer.vats[2].resin = c.printer.vats[0].resin;  // the plan goes over to the second vat, the program does not
+    c.printer.vats[2].resin = c.printer.vats[0].resin;  // the plan changes to the second vat, the program does not
     for (job::Layer& layer : c.job.layers) layer.images.front().area_mm2 = 5e6;
     c.plan = make_plan(c.job, c.printer).value();
     CHECK(holds(c.error(), "has run dry"));
@@ -251,5 +251,5 @@ TEST_CASE("a job of 2,000 layers and 4,000 swaps is proved in well under a secon
     CHECK(c.error() == "");
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     MESSAGE(std::count(c.gcode.begin(), c.gcode.end(), '\n') << " lines in " << seconds << " s");
-    CHECK(seconds < 10);  // so that a busy machine does not fail it
+    CHECK(seconds < 10);  // generous, for a busy machine
 }

@@ -19,7 +19,7 @@ int slot_of(const Printer& p, int vat) {
     return p.vats[static_cast<std::size_t>(vat)].slot;
 }
 
-/// The outputs of a controller that has restarted are off; a vat before its magnet must be held again.
+/// After a restart of the controller all outputs are off; a vat before the magnet must be held again.
 void wake(Sequence& s, const Interlock& state) {
     for (const std::string& line : machine::preamble(s.printer())) s.command(line);
     s.pump(false);
@@ -27,7 +27,7 @@ void wake(Sequence& s, const Interlock& state) {
     s.magnet(state.hooked_vat().has_value());
 }
 
-/// Off the vat's floor as gently as a layer is peeled, as far as it is known where that is.
+/// Off the vat's floor as gently as in a peel, as far as the position is known.
 void rise(Sequence& s, const Interlock& state) {
     const Printer& p = s.printer();
     const int at_um = state.position()[Axis::platform];
@@ -37,12 +37,13 @@ void rise(Sequence& s, const Interlock& state) {
     s.move(Axis::platform, p.axis(Axis::platform).home_um());
 }
 
-/// The carriage of a tower comes out of wherever it is, with the vat if it has one. All axes are homed.
+/// The carriage of a tower comes out from any position, with its vat if it has one. All axes are homed.
 void carriage_out(Sequence& s, const Interlock& state) {
     const Printer& p = s.printer();
     if (!p.has_carriage()) return;
     if (state.in_hooks_stroke()) {
-        // The level above the tower: on the hooks the vat is at that level, off them it stays in its slot.
+        // The next level above the tower's position: a vat on the hooks is at that level, one off the hooks stays in
+        // its slot.
         for (int slot = 1; slot <= p.slot_count(); ++slot) {
             const int below_um = p.level_um(slot) - state.position()[Axis::tower];
             const bool here = p.table_at(state.position()[Axis::table], p.station_um(slot));
@@ -66,7 +67,7 @@ Status home_all(Sequence& s, const Interlock& state) {
     return {};
 }
 
-/// From a machine that is homed, with the platform clear of a part of `part_um`: the right vat under a clean part.
+/// From a homed machine with the platform clear of a part of `part_um`: brings the right vat under a clean part.
 void bring_right_vat(Sequence& s, const Interrupted& from, std::optional<int> wanted, int part_um) {
     const Printer& p = s.printer();
     std::optional<int> hooked;
@@ -92,7 +93,7 @@ void approach(Sequence& s, int z_um) {
     s.dwell(platform.settle_s);
 }
 
-/// A sequence that stands as the machine does, the platform clear of everything.
+/// A sequence in the machine's present state, with the platform clear of everything.
 Result<Sequence> by_hand(const Interlock& state, const Printer& p) {
     if (!state.all_homed()) return failure("the axes must be homed first");
     if (p.has_carriage() && state.position()[Axis::carriage] != p.carriage.print_um)
@@ -102,7 +103,7 @@ Result<Sequence> by_hand(const Interlock& state, const Printer& p) {
     s.command("G90");
     clear_retriever(s, state);
     const int clear_um = p.clear_um(state.part_height_um());
-    // The strokes of cleaning go up from where the platform is.
+    // The strokes of cleaning go upwards from the platform's position.
     if (state.position()[Axis::platform] < clear_um ||
         state.position()[Axis::platform] > clear_um + p.cleaning.stroke_z_um)
         s.move(Axis::platform, clear_um);

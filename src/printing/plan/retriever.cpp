@@ -48,7 +48,7 @@ void ride(Sequence& s, const RetrieverTrip& trip) {
 void clear_retriever(Sequence& s, const machine::Interlock& state) {
     const Printer& p = s.printer();
     if (p.store() != machine::Store::wall) return;
-    s.dwell(p.wall.fork_s);  // the fork may be on its way
+    s.dwell(p.wall.fork_s);  // the fork may still be moving
     if (!state.fork_out()) {
         if (const auto vat = state.tray_vat()) ride(s, put_trip(p, p.vats[static_cast<std::size_t>(*vat)].slot));
         return;

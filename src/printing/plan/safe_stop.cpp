@@ -19,7 +19,7 @@ Sequence from(const Interlock& state, const Printer& p) {
     return s;
 }
 
-/// The slot that the tower stands level with, or a part of the hooks' stroke below it.
+/// The slot that the tower is level with, or a part of the hooks' stroke below.
 int slot_before_carriage(const Interlock& state, const Printer& p) {
     for (int slot = 1; slot <= p.slot_count(); ++slot) {
         const int below = p.level_um(slot) - state.position()[Axis::tower];
@@ -29,16 +29,16 @@ int slot_before_carriage(const Interlock& state, const Printer& p) {
     return 0;
 }
 
-/// The retriever of a wall puts away what it has; for a vat under the platform it comes to the bay.
+/// The retriever of a wall puts away its vat; for a vat under the platform it goes to the bay.
 void ready_retriever(Sequence& s, const Interlock& state) {
     const Printer& p = s.printer();
     const bool near = state.position()[Axis::carriage] > p.carriage.tower_um - p.carriage.back_off_um;
-    if (near) return;  // it stands at the bay, with an empty fork
+    if (near) return;  // it is at the bay, with an empty fork
     clear_retriever(s, state);
     if (state.hooked_vat()) meet_vat(s, 1);
 }
 
-/// The vat that an emptied carriage has left on the tray, or that stood there before it.
+/// Stores the vat on the tray, whether an emptied carriage has left it there or it was there before.
 void put_from_tray(Sequence& s, const Interlock& state) {
     const Printer& p = s.printer();
     const bool near = state.position()[Axis::carriage] > p.carriage.tower_um - p.carriage.back_off_um;
@@ -46,8 +46,8 @@ void put_from_tray(Sequence& s, const Interlock& state) {
     if (vat) ride(s, put_trip(p, p.vats[static_cast<std::size_t>(*vat)].slot));
 }
 
-/// A vat on the hooks goes back into the slot that it came from: the tower has not moved since. An empty carriage only
-/// comes out.
+/// A vat on the hooks goes back into the slot that it came from: the tower has not moved since. A carriage without a
+/// vat only comes out.
 void empty_carriage(Sequence& s, const Interlock& state) {
     const Printer& p = s.printer();
     const bool wall = p.store() == machine::Store::wall;

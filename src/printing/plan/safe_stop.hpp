@@ -1,4 +1,4 @@
-// How to leave a program in the middle without harm, whatever line it is at.
+// Leaving a program safely at any line.
 #pragma once
 
 #include <string>
@@ -11,16 +11,16 @@
 namespace pliant::plan {
 
 /// G-code that ends a print from this state: pump and fans off, platform up, the vat back in its slot, carriage back.
-/// Empty if the platform has not been homed: then nothing has moved that would have to be put right. `printer` must be
-/// that of the interlock.
+/// Empty if the platform has not been homed: nothing has moved yet that would need it. `printer` must be that of the
+/// interlock.
 [[nodiscard]] std::string cancel_program(const machine::Interlock& state, const machine::Printer& printer);
 
 struct Pause {
     std::string begin;  ///< pump off, platform clear of the vat so that nothing cures or sticks
-    std::string end;    ///< the platform back to where it was, the pump on again if it ran
+    std::string end;    ///< platform back to its position, pump on again if it was
 };
 
-/// Everything off and nothing moves, not even the platform: the door is open.
+/// Everything off and no motion, not even of the platform: the door is open.
 [[nodiscard]] Pause hold_program(const machine::Interlock& state, const machine::Printer& printer);
 
 /// The vat stays where it is.

@@ -120,7 +120,7 @@ TEST_CASE("property: whatever the interlocks let somebody do by hand can be ende
             }
             const std::string end = cancel_program(state, p);
             CAPTURE(end);
-            // The program continues from here: its moves are made on a copy of the state.
+            // The program continues from here: its moves are tried on a copy of the state.
             machine::Interlock copy = state;
             for (std::size_t begin = 0; begin < end.size();) {
                 const std::size_t stop = end.find('\n', begin);
@@ -134,7 +134,7 @@ TEST_CASE("property: whatever the interlocks let somebody do by hand can be ende
                 REQUIRE_MESSAGE(moved, (moved ? "" : moved.error().message));
             }
             if (!p.has_carriage()) continue;
-            // By hand a vat may have been brought into another slot.
+            // A manual operation may have put a vat into another slot.
             std::size_t stored = 0;
             for (int slot = 1; slot <= p.slot_count(); ++slot) stored += copy.vat_in_slot(slot) ? 1 : 0;
             CHECK(stored == p.vats.size());

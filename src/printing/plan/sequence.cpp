@@ -46,7 +46,7 @@ void Sequence::record(std::vector<Stretch>* stretches) {
     last_stretch_.fill(SIZE_MAX);
 }
 
-/// Moves that follow each other at once are one stretch.
+/// Consecutive moves without a pause are one stretch.
 void Sequence::note(Device device, double begin_s, double end_s) {
     if (stretches_ == nullptr) return;
     std::size_t& last = last_stretch_[static_cast<std::size_t>(device)];

@@ -1,5 +1,5 @@
-// Writes the machine's commands one after the other and keeps the books: where the axes are and what time is spent on
-// what. The planner's times and its G-code come from the same calls and cannot disagree.
+// Writes the machine's commands and keeps track of axis positions and of the time spent on each activity. The planner's
+// times and its G-code come from the same calls, so they agree.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace pliant::plan {
 
-/// What a stretch of time counts as. Cleaning is the time that the pump runs; the rest of a change of vats is `swap`.
+/// What time is counted as. Cleaning is the time that the pump runs; the rest of a vat change is `swap`.
 enum class Activity { swap, clean, expose, move };
 
 struct Seconds {
@@ -29,31 +29,31 @@ class Sequence {
 public:
     explicit Sequence(const machine::Printer& printer) : printer_(&printer) {}
 
-    /// Writes no text: for times alone.
+    /// Writes no text: for times only.
     void mute() { muted_ = true; }
-    /// As if something had brought the axes here that took no time.
+    /// Sets the position without spending time.
     void stand_at(const machine::Position& position) { position_ = position; }
 
-    /// From here on every stretch of work of a device is appended to `stretches`, which must outlive the recording;
-    /// nullptr: no more.
+    /// From here on every stretch of a device's work is appended to `stretches`, which must outlive the recording;
+    /// nullptr: stop recording.
     void record(std::vector<Stretch>* stretches);
 
     void activity(Activity activity) { activity_ = activity; }
     void comment(std::string_view text);
-    void command(std::string_view line);  ///< one that takes no time; nothing if empty
-    /// Time as if from the far end of the travel: where the axes are is not known yet.
+    void command(std::string_view line);  ///< takes no time; nothing if empty
+    /// Counts the time from the far end of the travel, since the position is not known yet.
     void home(machine::Axis axis);
-    void move(machine::Axis axis, int um, double feed_mm_s = 0);  ///< feed 0: as fast as the axis goes
+    void move(machine::Axis axis, int um, double feed_mm_s = 0);  ///< feed 0: as fast as the axis can
     void move_to(const machine::Position& to, double feed_mm_s = 0);
     void dwell(double seconds);
-    void fence();  ///< everything before is done
-    /// Switches the pump behind a fence: a switch travels with the move queue otherwise.
+    void fence();  ///< waits until everything before is finished
+    /// Switches the pump behind a fence; otherwise switching would be queued with the moves.
     void pump(bool on);
-    /// Switches all fans of the machine, in the same way.
+    /// Switches all fans of the machine, likewise.
     void fans(bool on);
-    /// Switches the magnet, if there is one, and waits until it holds or lets go.
+    /// Switches the magnet, if there is one, and waits until it holds or releases.
     void magnet(bool holds);
-    /// Puts the fork of a wall's retriever out, or back; who calls must wait `Wall::fork_s` before the next way.
+    /// Extends or retracts the fork of a wall's retriever; the caller must wait `Wall::fork_s` before the next move.
     void fork(bool out);
     void expose(const machine::Expose& expose);
 
@@ -62,7 +62,7 @@ public:
     [[nodiscard]] const Seconds& seconds() const { return seconds_; }
     [[nodiscard]] const std::string& text() const { return text_; }
 
-    /// Of a device that has no command of its own, while others are recorded: it works from `begin_s` to `end_s`.
+    /// Records work from `begin_s` to `end_s` of a device that has no command of its own.
     void note(Device device, double begin_s, double end_s);
 
 private:
@@ -77,7 +77,7 @@ private:
     std::string text_;
     std::vector<Stretch>* stretches_ = nullptr;
     std::array<std::size_t, device_count> last_stretch_{};  ///< of each device; SIZE_MAX: none
-    double pump_on_s_ = -1;                                 ///< since when; below 0: off
+    double pump_on_s_ = -1;                                 ///< time when it was switched on; below 0: off
     double fans_on_s_ = -1;
 };
 

@@ -20,17 +20,17 @@ using machine::SolutionCircuit;
 /// The part leaves a vat and is cleaned.
 struct Cleaning {
     int vat = 0;
-    double film_ml = 0;  ///< on the part before anything is done about it
+    double film_ml = 0;  ///< on the part before wiping or cleaning
     double seconds = 0;
 };
 
-/// What resin clings to when the part leaves a vat: its lower end. That is what has cured in the layer that is under
-/// way, or, while that is less, the layer before. The virtual printer reckons in the same way (printing/twin/cure.hpp).
+/// The area that resin adheres to when the part leaves a vat: its lower end. It is the area cured in the current layer
+/// or, while that is smaller, in the layer before. The virtual printer uses the same rule (printing/twin/cure.hpp).
 class LowerEnd {
 public:
     LowerEnd(const Plan& plan, const job::Manifest& job) : plan_(plan), job_(job) {}
 
-    /// `vat` is done with its part of a layer.
+    /// `vat` has finished its part of a layer.
     void print(std::size_t layer, int vat) {
         if (layer != layer_) before_mm2_ = std::exchange(now_mm2_, 0);
         layer_ = layer;
@@ -50,8 +50,8 @@ private:
     double now_mm2_ = 0, before_mm2_ = 0;
 };
 
-/// How long the pump runs in a swap, or while the last vat is stored (`to` is -1): as long as is asked for, or longer
-/// where the store takes longer to bring the vat.
+/// How long the pump runs in a swap, or while the last vat is stored (`to` is -1): the required time, or longer if the
+/// store takes longer to bring the vat.
 class PumpTimes {
 public:
     explicit PumpTimes(const Printer& printer) : printer_(printer) {}
@@ -75,7 +75,7 @@ private:
     std::map<std::pair<int, int>, double> known_;
 };
 
-/// The cleanings before and within each layer; that at the end belongs to the last layer that is printed.
+/// The cleanings before and within each layer; the one at the end counts with the last printed layer.
 std::vector<std::vector<Cleaning>> cleanings(const Plan& plan, const job::Manifest& job, const Printer& printer) {
     std::vector<std::vector<Cleaning>> all(plan.order.size());
     PumpTimes pump(printer);
@@ -105,7 +105,7 @@ void add_waste(Plan& plan, const Cleaning& c, const Printer& printer) {
     plan.waste_ml += c.film_ml - brushed_ml;
 }
 
-/// The cleanings of one layer, and the time that it takes.
+/// Applies the cleanings and the duration of one layer.
 void pass_layer(SolutionCircuit& circuit, const std::vector<Cleaning>& layer, double seconds, const Printer& printer) {
     const machine::CleaningLaw law = machine::cleaning_law(printer.cleaning.method);
     for (const Cleaning& c : layer) {
@@ -115,7 +115,7 @@ void pass_layer(SolutionCircuit& circuit, const std::vector<Cleaning>& layer, do
     circuit.wait(seconds);
 }
 
-/// What must be done before a layer so that the circuit lasts through it.
+/// Determines the service needed before a layer so that the circuit lasts through it.
 void look_after(SolutionCircuit& circuit, const std::vector<Cleaning>& layer, double seconds, int index,
                 const Printer& printer, std::vector<CareBefore>& care) {
     SolutionCircuit ahead = circuit;
@@ -125,7 +125,7 @@ void look_after(SolutionCircuit& circuit, const std::vector<Cleaning>& layer, do
         const auto needed = circuit.needs() ? circuit.needs() : ahead.needs();
         if (!needed) return;
         const bool again = !care.empty() && care.back().layer == index && care.back().care == *needed;
-        if (again) return;  // one layer is more than a fresh circuit lasts
+        if (again) return;  // one layer needs more than a fresh circuit can give
         care.push_back({index, *needed});
         circuit.care(*needed);
         ahead = circuit;

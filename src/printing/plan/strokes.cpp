@@ -15,7 +15,7 @@ using machine::Printer;
 
 constexpr int most_strokes = 1000;
 
-/// Position after stroke i of n: out and up on odd strokes, back on even ones, the store evenly on its way.
+/// Position after stroke i of n: out and up on odd strokes, back on even ones, with the store moving evenly.
 Position stroke_end(const Printer& p, const Position& start, const StoreEnd& store, int i, int n) {
     Position end = start;
     if (i % 2 == 1) {
@@ -29,7 +29,7 @@ Position stroke_end(const Printer& p, const Position& start, const StoreEnd& sto
     return end;
 }
 
-/// Feed along the path at which the carriage runs at cleaning speed; without one, the platform.
+/// Feed along the path at which the carriage moves at cleaning speed; without a carriage, the platform.
 double stroke_feed(const Printer& p, const Position& from, const Position& to) {
     const Axis lead = p.has_carriage() ? Axis::carriage : Axis::platform;
     const double way_mm = std::abs(to[lead] - from[lead]) / 1000.0;
@@ -56,7 +56,7 @@ void make_strokes(Sequence& s, const StoreEnd& store, int n) {
     }
 }
 
-/// As many pairs of strokes as fit into `seconds`, or with `fill` as it takes to last so long.
+/// As many pairs of strokes as fit into `seconds` or, with `fill`, as needed to last that long.
 void oscillate_for(Sequence& s, const StoreEnd& store, double seconds, bool fill) {
     const Printer& p = s.printer();
     const Position start = s.position();

@@ -30,12 +30,12 @@ void pump_off(Sequence& s) {
     s.activity(Activity::swap);
 }
 
-/// The table brings a station, by the shorter way round.
+/// The table brings a station, by the shorter direction.
 void table_to(Sequence& s, int station_um) {
     s.move(Axis::table, s.printer().nearest_um(station_um, s.position()[Axis::table]));
 }
 
-/// All fans and whatever `bring` moves, then a rest under the fans.
+/// Fans on during the moves of `bring`, and during a rest afterwards.
 template <class Bring>
 void dry_while(Sequence& s, Bring bring) {
     const Printer& p = s.printer();
@@ -46,18 +46,17 @@ void dry_while(Sequence& s, Bring bring) {
     s.activity(Activity::move);
 }
 
-// --- towers, and what a wall has in common with them
-// --------------------------------------------------------------------------------------------------------
+// Towers, and what a wall has in common with them.
 
-/// When, in seconds of a push, the brush comes under the platform and has passed it. It stands on the far wall of a vat
-/// that is as long as the way into the tower, in the middle of which the platform is.
+/// The times, in seconds of a push, at which the brush starts and ends passing the platform. The brush is on the far
+/// wall of a vat as long as the travel into the tower, with the platform at the vat's middle.
 std::pair<double, double> brush_seconds(const Printer& p, const machine::Profile& push) {
     const double bed_mm = (p.carriage.along_y ? p.platform.depth_um : p.platform.width_um) / 1000.0;
     const double reach = std::min(1.0, bed_mm / push.length_mm);
     return {push.seconds_to((1 - reach) / 2), push.seconds_to((1 + reach) / 2)};
 }
 
-/// The vat goes into the tower; its brush, if it has one, wipes the part on the way.
+/// The vat goes into the tower; its brush, if any, wipes the part on the way.
 void push_vat(Sequence& s) {
     const Printer& p = s.printer();
     Position in = s.position();
@@ -70,8 +69,8 @@ void push_vat(Sequence& s) {
     s.move_to(in);
 }
 
-/// The tower lowers the vat off the hooks, or the magnet lets it go; the platform rises from the brush to where it is
-/// clear.
+/// The tower lowers the vat off the hooks, or the magnet releases it; the platform rises from the brush to the clear
+/// height.
 void let_go(Sequence& s, int slot) {
     const Printer& p = s.printer();
     s.magnet(false);
@@ -83,7 +82,8 @@ void let_go(Sequence& s, int slot) {
     s.move_to(to, way_um > 0 ? p.hooks.speed_mm_s * std::hypot(way_um, rise_um) / way_um : 0);
 }
 
-/// Steps 1 and 2, up to the carriage standing back with the pump running. Since when it runs, by the sequence's clock.
+/// Steps 1 and 2, until the carriage is back with the pump running. Returns when the pump started, on the sequence's
+/// clock.
 double push_away(Sequence& s, int slot) {
     const Printer& p = s.printer();
     s.activity(Activity::swap);
@@ -99,7 +99,7 @@ double push_away(Sequence& s, int slot) {
     return since_s;
 }
 
-/// Step 3 for `spray_s` less what has passed of it since `sprayed_since_s` and what step 4 will take.
+/// Step 3: sprays for `spray_s` minus the time since `since_s` and the duration of step 4.
 void spray(Sequence& s, int to_slot, double since_s, double spray_s, double rest_s) {
     const Printer& p = s.printer();
     s.comment("3 oscillate over the drain while the store brings the next slot");
@@ -107,14 +107,14 @@ void spray(Sequence& s, int to_slot, double since_s, double spray_s, double rest
     oscillate(s, {lowered_um(p, to_slot), s.position()[Axis::table]}, spray_s - (s.seconds().total - since_s) - rest_s);
 }
 
-/// The next vat is latched: the tower raises it onto the hooks, or the magnet takes it.
+/// Latches the next vat: the tower raises it onto the hooks, or the magnet takes it.
 void take(Sequence& s, int slot) {
     const Printer& p = s.printer();
     s.move(Axis::tower, p.level_um(slot), p.hooks.speed_mm_s);
     s.magnet(true);
 }
 
-/// What take() takes.
+/// The duration of take().
 double take_seconds(const Printer& p) {
     if (p.hooks.magnet.present()) return p.hooks.magnet.engage_s;
     return machine::move_seconds(p, {}, {{0, 0, p.hooks.travel_um}}, p.hooks.speed_mm_s);
@@ -158,9 +158,9 @@ void store_in_tower(Sequence& s, int slot) {
     dry_while(s, [&] { s.move(Axis::carriage, p.carriage.print_um); });
 }
 
-// --- walls ---------------------------------------------------------------------------------------------------------
+// Walls.
 
-/// A way of the retriever while the part is sprayed: in pieces, so that the spray can end on time.
+/// A move of the retriever during the spray, in pieces, so that the spray can end on time.
 void ride_way_in_strokes(Sequence& s, const RetrieverStep& way, double end_s) {
     constexpr double longest_s = 5;
     const Printer& p = s.printer();
@@ -178,7 +178,7 @@ void ride_way_in_strokes(Sequence& s, const RetrieverStep& way, double end_s) {
     }
 }
 
-/// As much of the trip as begins before the spray ends at `end_s`; what is left of it.
+/// The part of the trip that begins before the spray ends at `end_s`; returns the rest.
 RetrieverTrip ride_in_strokes(Sequence& s, const RetrieverTrip& trip, double end_s) {
     const Printer& p = s.printer();
     auto step = trip.begin();
@@ -196,8 +196,8 @@ RetrieverTrip ride_in_strokes(Sequence& s, const RetrieverTrip& trip, double end
     return {step, trip.end()};
 }
 
-/// Step 3 for `spray_s` since `since_s`, less what step 4 takes if the retriever is done by then; what it still has to
-/// do otherwise, with the pump off.
+/// Step 3: sprays for `spray_s` from `since_s`. If the retriever is done by then, the spray ends earlier by the
+/// duration of step 4; otherwise returns the rest of its trip, to be done with the pump off.
 RetrieverTrip spray_by_wall(Sequence& s, const RetrieverTrip& trip, double since_s, double spray_s, double rest_s) {
     s.comment("3 oscillate over the drain, the retriever is on its way");
     const double end_s = since_s + spray_s;
@@ -251,13 +251,13 @@ void store_in_wall(Sequence& s, int slot) {
     });
 }
 
-// --- tables --------------------------------------------------------------------------------------------------------
+// Tables.
 
-/// To the cleaning station, down into it, and out again after `seconds` of bath, ultrasound or spray.
+/// Moves to the cleaning station, down into it, and up again after `seconds` of bath, ultrasound or spray.
 void clean_on_table(Sequence& s, double seconds) {
     const Printer& p = s.printer();
     const int clear_um = s.position()[Axis::platform];
-    // The part ends where the platform stands clear of the vats.
+    // The lower end of the part follows from the height at which the platform is clear of the vats.
     const int part_um = clear_um - p.clear_um(0);
     s.activity(Activity::swap);
     s.comment("to the cleaning station, down into it");

@@ -15,7 +15,7 @@ using machine::Axis;
 
 namespace {
 
-/// A sequence that stands with the vat of slot 1 under a platform that is clear.
+/// A sequence with the vat of slot 1 under a platform that is clear.
 Sequence loaded(const machine::Printer& printer) {
     Sequence s(printer);
     s.move(Axis::platform, printer.clear_um(1000));
@@ -99,7 +99,7 @@ TEST_CASE("every fan of the machine dries the part while the next vat comes, non
     const std::string swap = s.text().substr(before);
     const std::string on = "M106 P0 S255\nM106 P2 S255\n", off = "M107 P0\nM107 P2\n";
     REQUIRE(swap.find(on) != std::string::npos);
-    CHECK(swap.find(on) > swap.find("M107 P1\n"));  // behind the spray
+    CHECK(swap.find(on) > swap.find("M107 P1\n"));  // after the spray
     CHECK(swap.find("X0.000") > swap.find(on));
     CHECK(swap.find(off) > swap.find("X0.000"));
     CHECK(swap.rfind("M106 P0") == swap.find(on));
@@ -111,7 +111,7 @@ machine::Printer machine_of(const char* name) {
     return machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value();
 }
 
-/// From rest to rest along a line of lift and rail, in mm: 200 mm/s and 400 mm/s^2, 300 mm/s and 600 mm/s^2.
+/// From rest to rest along a straight line of lift and rail, in mm: 200 mm/s and 400 mm/s^2, 300 mm/s and 600 mm/s^2.
 double retriever_seconds(double lift_mm, double rail_mm) {
     const double way = std::hypot(lift_mm, rail_mm);
     const double speed = std::min(lift_mm > 0 ? 200 * way / lift_mm : 1e9, rail_mm > 0 ? 300 * way / rail_mm : 1e9);

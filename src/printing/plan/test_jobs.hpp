@@ -1,4 +1,4 @@
-// Jobs made in memory, for tests: which materials print on which layer is all that a plan depends on.
+// In-memory jobs for tests: a plan depends only on which materials print on which layer.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ inline job::Manifest make_job(const std::vector<std::vector<int>>& layers, const
     job.height_px = 1080;
     job.pixel_um = 158.75;
     job.bottom_layers = 3;
-    job.any_vat = true;  // most tests care for orders and times, not for names of resins
+    job.any_vat = true;  // most tests are about orders and times, not names of resins
     for (std::size_t m = 0; m < resins.size(); ++m) {
         job.materials.push_back({fmt::format("m{}", m), resins[m], 0, 0, 2.5, 12});
     }
@@ -36,7 +36,7 @@ inline job::Manifest make_job(const std::vector<std::vector<int>>& layers, const
     return job;
 }
 
-/// For the projector of that machine.
+/// For that machine's projector.
 inline job::Manifest make_job_for(const machine::Printer& printer, const std::vector<std::vector<int>>& layers,
                                   const std::vector<std::string>& resins) {
     job::Manifest job = make_job(layers, resins);
@@ -46,7 +46,7 @@ inline job::Manifest make_job_for(const machine::Printer& printer, const std::ve
     return job;
 }
 
-/// Every machine that is shipped.
+/// All machines in examples/printers.
 inline std::vector<machine::Printer> machines() {
     std::vector<machine::Printer> all;
     for (const char* name :

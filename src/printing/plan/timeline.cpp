@@ -11,7 +11,7 @@
 namespace pliant::plan {
 namespace {
 
-/// The changes of vats of a plan in order, as indices into Printer::vats.
+/// The swaps of a plan in order, as indices into Printer::vats.
 std::vector<std::pair<int, int>> changes(const Plan& plan) {
     std::vector<std::pair<int, int>> all;
     int loaded = -1;
@@ -70,7 +70,7 @@ SwapTimeline longest_swap(const Plan& plan, const machine::Printer& printer) {
         double& took = seconds[change];
         if (took == 0) took = swap_seconds(printer, slot(change.first), slot(change.second)).total;
     }
-    constexpr double same = 1e-9;  // of seconds that were added up differently
+    constexpr double same = 1e-9;  // tolerance for sums of seconds in different orders
     const auto found =
         std::max_element(all.begin(), all.end(), [&](auto& a, auto& b) { return seconds[a] + same < seconds[b]; });
     if (found == all.end()) return {};

@@ -44,7 +44,7 @@ TEST_CASE("one swap as the thesis draws it: push, spray over the tower's way, pu
     CHECK(fans[0].begin_s == near(spray[0].end_s, {.relative = 1e-12}));
     CHECK(fans[0].end_s == near(swap.seconds, {.relative = 1e-12}));
     const auto tower = of(swap, Device::tower);
-    REQUIRE(tower.size() == 3);  // hooks down, on its way, hooks up
+    REQUIRE(tower.size() == 3);  // hooks down, travel, hooks up
     CHECK(tower.front().begin_s == near(spray[0].begin_s, {.relative = 1e-12}));
     CHECK(tower.back().end_s == near(spray[0].end_s, {.relative = 1e-12}));
     const auto platform = of(swap, Device::platform);

@@ -1,4 +1,4 @@
-// Where the part stands, and what stands under it.
+// Placement of the part, and supports under it.
 #include "printing/slice/arrange.hpp"
 
 #include <cmath>
@@ -46,7 +46,7 @@ Result<slice::SupportSettings> support_settings(const Order& order) {
     return s;
 }
 
-/// Where the middle is to stand, from that of the platform.
+/// The wanted position of the centre, relative to the platform's.
 Result<Vec3> shift_of(const Order& order) {
     if (order.at.empty()) return Vec3{};
     constexpr double um = 1000, most_mm = 1000;
@@ -76,8 +76,8 @@ Status place(const Order& order, const slice::Raster& raster, Drawing& drawing) 
     return {};
 }
 
-/// Painted places go with the part: as points of bodies without a triangle, of no material, one for each copy. Behind
-/// each place stands one a millimetre outwards.
+/// Makes painted places follow the part: adds them as points of a body without triangles or material, which is copied
+/// with the part. After each place comes a point one millimetre outwards.
 Status add_paint(const Order& order, Drawing& drawing, std::vector<slice::SupportTouch>& touches) {
     if (order.support_paint.empty()) return {};
     if (order.support.empty()) return input_error("--support-paint: needs --support MATERIAL");
@@ -93,8 +93,8 @@ Status add_paint(const Order& order, Drawing& drawing, std::vector<slice::Suppor
     return {};
 }
 
-/// Back from those bodies, which go, to touches on every copy; a later touch comes after earlier ones of all copies,
-/// which may reach over to it.
+/// Converts those bodies back to strokes on every copy and removes them; a later stroke comes after earlier ones of all
+/// copies, which its ball may reach.
 std::vector<slice::SupportTouch> take_paint(Drawing& drawing, const std::vector<slice::SupportTouch>& touches,
                                             double scale) {
     std::vector<slice::SupportTouch> placed;
@@ -110,7 +110,7 @@ std::vector<slice::SupportTouch> take_paint(Drawing& drawing, const std::vector<
     return placed;
 }
 
-/// With a raft the part must be off it, or there is nothing to break away.
+/// With a raft the part must be above it, or there is nothing to break away.
 Status lift(const Order& order, double raft_um, Drawing& drawing) {
     constexpr double usual_um = 5000, most_um = 100000;
     double lift_um = raft_um > 0 ? raft_um + usual_um : 0;

@@ -182,7 +182,7 @@ Arranged table_with(const std::function<void(Order&)>& change) {
     return arranged(on_supports, std::move(drawing));
 }
 
-/// Middles of all supports.
+/// Centres of all supports.
 std::vector<Vec3> supports_of(const Arranged& a) {
     std::vector<Vec3> middles;
     for (const slice::Body& body : a.drawing.bodies) {
@@ -196,7 +196,7 @@ const std::string table_head = "wish,x (mm),y (mm),z (mm),nx,ny,nz,radius (mm)\n
 }  // namespace
 
 TEST_CASE("--support-paint goes with the part: turned, scaled and on every copy") {
-    // Drawn coordinates: blocked everywhere, wanted at the corner x = 5.5, y = 3.5 under the top.
+    // In drawn coordinates: blocked everywhere, enforced at the corner x = 5.5, y = 3.5 under the top.
     const std::string paint = table_head + "block,3,2,3,0,0,-1,9\nenforce,5.5,3.5,3,0,0,-1,0.4\n";
     const Arranged plain = table_with([&](Order& o) { o.support_paint = paint; });
     REQUIRE_MESSAGE(plain.status.has_value(), (plain.status ? "" : plain.status.error().message));
@@ -205,7 +205,7 @@ TEST_CASE("--support-paint goes with the part: turned, scaled and on every copy"
     CHECK(at[0].x == near(2500, {.absolute = 450}));
     CHECK(at[0].y == near(1500, {.absolute = 450}));
     CHECK(plain.notes.back() == "painted supports: 1 of the tips");
-    // Turned by half a turn about z it lies at the opposite corner; twice as large, twice as far out.
+    // After half a turn about z it is at the opposite corner; at twice the scale, twice as far out.
     const Arranged turned = table_with([&](Order& o) {
         o.support_paint = paint;
         o.turn = {0, 0, 180};
@@ -225,7 +225,7 @@ TEST_CASE("--support-paint goes with the part: turned, scaled and on every copy"
     CHECK(two.notes.back() == "painted supports: 2 of the tips");
     CHECK(supports_of(two).size() == 2);
     CHECK(two.drawing.bodies.size() == 6);
-    // Upside down nothing of it looks down.
+    // Upside down, no part of it faces down.
     const Arranged over = table_with([&](Order& o) {
         o.support_paint = table_head + "enforce,5.5,3.5,3,0,0,-1,0.4\n";
         o.turn = {180, 0, 0};

@@ -14,7 +14,7 @@ namespace pliant::prepare {
 namespace {
 
 constexpr double um_per_mm = 1e3;
-constexpr double printable_um = 10;  // chords may leave a curve by a fraction of a pixel
+constexpr double printable_um = 10;  // maximum deviation of chords from a curve, a fraction of a pixel
 
 void add_resin(Drawing& drawing, const std::string& material, const std::string& resin) {
     const auto known = [&](const auto& pair) { return pair.first == material; };
@@ -27,7 +27,7 @@ const robot::BodySpec& body_named(const robot::Robot& robot, const std::string& 
                          [&](const robot::BodySpec& body) { return body.name == name; });
 }
 
-/// Squares of a length become whole pixels once the printer is known.
+/// Squares with a length become whole pixels once the printer is known.
 slice::Blend blend_of(const robot::Robot& robot, const robot::PrintBlend& blend) {
     const double um = robot.unit_m * 1e6;
     slice::Blend result{robot.materials[static_cast<std::size_t>(blend.material)].name, um * blend.from, um * blend.to,
@@ -50,7 +50,7 @@ std::vector<slice::OutlineSlice> in_um(const std::vector<threemf::Slice>& slices
     return result;
 }
 
-/// `material`: of all bodies; where empty, the file's own.
+/// `material`: of all bodies; if empty, the file's materials.
 Status add_3mf(threemf::ThreeMf file, const std::string& material, Drawing& drawing) {
     drawing.warnings.insert(drawing.warnings.end(), file.warnings.begin(), file.warnings.end());
     for (threemf::Body& body : file.bodies)
@@ -131,7 +131,7 @@ Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress) {
         const robot::MaterialSpec& material = robot.materials[static_cast<std::size_t>(body.material)];
         const robot::BodySpec& spec = body_named(robot, body.body);
         std::string name = material.name;
-        // A body with light of its own is a material of its own in the same resin.
+        // A body with an exposure of its own becomes a separate material in the same resin.
         if (spec.exposure_s > 0) {
             name += " of " + spec.name;
             add_resin(drawing, name, material.resin);

@@ -1,4 +1,4 @@
-// What is printed: bodies from robot files, 3MF files, surfaces and tet meshes.
+// Input of a print: bodies from robot files, 3MF files, surfaces and tet meshes.
 #pragma once
 
 #include <map>
@@ -14,17 +14,18 @@
 
 namespace pliant::prepare {
 
-/// Bodies in micrometres, where they were drawn, and the resin of each material.
+/// Bodies in micrometres, at their drawn positions, and the resin of each material.
 struct Drawing {
     std::string name;
     std::vector<slice::Body> bodies;
-    std::vector<job::MaterialStack> stacks;  ///< in place of bodies: images that exist
+    std::vector<job::MaterialStack> stacks;  ///< instead of bodies: existing layer images
     std::vector<std::pair<std::string, std::string>> resin_of_material;
-    std::map<std::string, std::pair<double, double>> exposure_of_material;  ///< seconds, first layers; 0: not said
+    std::map<std::string, std::pair<double, double>> exposure_of_material;  ///< seconds, of the first layers second; 0:
+                                                                            ///< not given
     std::vector<std::string> warnings;
 };
 
-/// One robot file (.toml), with `assignments` as --set gives them; or any number of
+/// One robot file (.toml), with `assignments` as given by --set; or any number of
 ///   FILE.3mf            bodies of the materials that the file names
 ///   FILE.vtk|vtu|msh    a tet mesh: each region is a body of the material of its name
 ///   MATERIAL=FILE       a surface, a STEP file or any of these, all of one material
@@ -33,10 +34,10 @@ struct Drawing {
 [[nodiscard]] Result<Drawing> read_drawing(const std::vector<std::string>& inputs,
                                            const std::vector<std::string>& assignments, Progress& progress);
 
-/// The bodies of a robot. Errors: of their geometry.
+/// The bodies of a robot. Errors: those of its geometry.
 [[nodiscard]] Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress);
 
-/// MATERIAL=RESIN: changes the resin of a material. Errors: no such material.
+/// MATERIAL=RESIN: sets the resin of a material. Errors: no such material.
 [[nodiscard]] Status set_resins(const std::vector<std::string>& choices, Drawing& drawing);
 
 }  // namespace pliant::prepare

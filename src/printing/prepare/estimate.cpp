@@ -10,7 +10,7 @@
 namespace pliant::prepare {
 namespace {
 
-/// What is left out of an estimate.
+/// Removes what an estimate does not include.
 void leave_out_slow(Order& order) {
     for (std::string* text : {&order.support, &order.support_angle, &order.support_spacing, &order.support_tip,
                               &order.support_pillar, &order.support_paint, &order.lift, &order.raft, &order.hollow,
@@ -24,7 +24,7 @@ int material_of(const job::Manifest& manifest, const std::string& name) {
     return found == manifest.materials.end() ? -1 : static_cast<int>(found - manifest.materials.begin());
 }
 
-/// So many mm² of a material in each layer whose middle is between two heights.
+/// Adds an area in mm² of a material to each layer whose middle is between two heights.
 void fill(job::Manifest& manifest, int material, double bottom_um, double top_um, double area_mm2) {
     for (job::Layer& layer : manifest.layers) {
         const double middle_um = layer.z_um - 0.5 * layer.thickness_um;
@@ -53,7 +53,7 @@ Status add_body(const slice::Body& body, std::size_t index, job::Manifest& manif
     return {};
 }
 
-/// Images in order of their material, each with its own exposure where its material has a rule.
+/// Sorts images by material, and gives each its own exposure if its material has a rule.
 void finish(const job::JobSettings& settings, job::Manifest& manifest) {
     for (std::size_t k = 0; k < manifest.layers.size(); ++k) {
         job::Layer& layer = manifest.layers[k];

@@ -70,7 +70,7 @@ TEST_CASE("the estimate of a real robot is near what slicing it tells") {
     CHECK(guess->seconds.total == near(made->plan.seconds.total, {.relative = 0.02}));
 }
 
-TEST_CASE("what slicing refuses has no estimate") {
+TEST_CASE("parts that slicing refuses have no estimate") {
     Order order;
     order.copies = 100000;
     CHECK_FALSE(estimate(order, tower().printer, blocks()));

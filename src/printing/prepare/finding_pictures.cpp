@@ -11,7 +11,7 @@ constexpr int side_px = 240;
 constexpr std::uint8_t below_grey = 70, layer_grey = 150, mark_grey = 255;
 constexpr int solid_value = 128;
 
-/// The worst, and of those the largest.
+/// The most severe first, then the largest.
 std::vector<Finding> worst(std::vector<Finding> findings) {
     const auto rank = [](const Finding& f) { return f.severity == "high" ? 2 : f.severity == "medium" ? 1 : 0; };
     std::stable_sort(findings.begin(), findings.end(), [&](const Finding& l, const Finding& r) {
@@ -21,7 +21,7 @@ std::vector<Finding> worst(std::vector<Finding> findings) {
     return findings;
 }
 
-/// Of islands each group is a finding, but those of low severity are one, with a picture of the largest.
+/// One finding per group of islands, except that all groups of low severity are one, with a picture of the largest.
 std::vector<Finding> island_findings(std::span<const slice::IslandGroup> groups, double pixel_mm2) {
     std::vector<Finding> findings;
     std::optional<Finding> grain;
@@ -49,7 +49,7 @@ std::vector<Finding> island_findings(std::span<const slice::IslandGroup> groups,
     return findings;
 }
 
-/// A large cavity tears the part off, or keeps resin that never cures.
+/// A large cavity tears the part off by suction, or keeps resin that never cures.
 Finding cavity_finding(const slice::Cavity& c, double pixel_mm2) {
     constexpr double large_mm3 = 1;
     const double volume_mm3 = static_cast<double>(c.volume) / 1000 * pixel_mm2;
@@ -90,7 +90,7 @@ public:
             }
         }
     }
-    /// The piece that holds a pixel.
+    /// Draws the component that contains a pixel.
     void draw_piece(const slice::PieceMap& map, int row, int column, std::uint8_t grey) {
         const auto stretches = map.row(row);
         const auto found = std::find_if(stretches.begin(), stretches.end(),

@@ -1,4 +1,4 @@
-// Findings of the checks as entries of the manifest, each with a small picture.
+// Findings of the checks as manifest entries, each with a small picture.
 #pragma once
 
 #include <functional>
@@ -10,19 +10,19 @@
 
 namespace pliant::job {
 
-/// At most so many of a kind, the largest: a picture is for looking.
+/// Maximum number of each kind, the largest first.
 inline constexpr std::size_t most_findings = 20;
 
 /// Islands, traps, cups and thin features, largest first within each kind.
 [[nodiscard]] std::vector<Finding> listed(const slice::Findings& findings, const std::vector<slice::ThinSpot>& thin,
                                           const slice::Raster& raster);
 
-/// A square of 240 pixels around the finding: the layer below dark grey, the finding's first layer light grey, the
-/// connected piece that the finding is (solid or void) white. Its sides are those of the image where that is smaller.
+/// A square of 240 pixels around the finding (smaller if the image is): the layer below dark grey, the finding's first
+/// layer light grey, the connected component of the finding (solid or void) white.
 [[nodiscard]] EncodedImage picture(const Finding& finding, const slice::ComposedLayer& layer,
                                    const slice::ComposedLayer& below, const slice::Raster& raster);
 
-/// Adds a picture of each finding to `writer` as findings/00_island.png and so on. `layer` gives a layer again.
+/// Adds a picture of each finding to `writer` as findings/00_island.png and so on. `layer` returns a layer again.
 [[nodiscard]] Status add_pictures(std::vector<Finding>& findings, const slice::Raster& raster,
                                   const std::function<Result<slice::ComposedLayer>(int)>& layer, Writer& writer);
 

@@ -41,7 +41,7 @@ TEST_CASE("an island is listed, and white in its picture") {
     CHECK(png.height_px == 240);
     const auto image = decode_png(png.png, {240, 240}, "picture");
     REQUIRE(image.has_value());
-    // The finding's pixel lies in the middle; the legs 3.5 mm to both sides of the part's middle.
+    // The finding's pixel is in the middle; the legs are 3.5 mm to both sides of the part's centre.
     CHECK(image->at(120, 120) == 255);
     CHECK(image->at(120, 125) == 255);
     CHECK(image->at(120, 126) == 0);

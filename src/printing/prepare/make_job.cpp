@@ -18,15 +18,15 @@ namespace {
 
 /// One layer on its way from the slicer to the archive.
 struct Prepared {
-    slice::SlicedLayer sliced;         ///< its images without their runs, which are encoded
+    slice::SlicedLayer sliced;         ///< its images without their runs, which are already encoded
     std::vector<EncodedImage> images;  ///< parallel to sliced.images
     slice::LayerShape shape;
     std::vector<slice::ThinSpot> thin;
-    std::vector<Thumbnail::Spot> seen;       ///< in the thumbnail
-    std::map<int, std::int64_t> drawn_sums;  ///< of pixel values, by drawn material
+    std::vector<Thumbnail::Spot> seen;       ///< for the thumbnail
+    std::map<int, std::int64_t> drawn_sums;  ///< sum of pixel values, by drawn material
 };
 
-/// Where layers come from, with an image per drawn material. `layer` is called from any thread; layers in [0, count).
+/// The source of layers, with an image per drawn material. `layer` is called from any thread; layers in [0, count).
 struct LayerSource {
     int count = 0;
     std::function<Result<slice::SlicedLayer>(int)> layer;
@@ -62,7 +62,7 @@ Result<std::vector<Material>> used_materials(const slice::Slicer& slicer, const 
     return used;
 }
 
-/// Adds to a material, and to the part of it that was drawn under this name.
+/// Adds to a material, and to its part that was drawn under this name.
 void add_drawn(const std::string& name, double volume_mm3, double area_mm2, std::vector<Material>& materials) {
     for (Material& m : materials) {
         const auto part =
@@ -76,7 +76,7 @@ void add_drawn(const std::string& name, double volume_mm3, double area_mm2, std:
     }
 }
 
-/// What was drawn of each material: volumes less what other bodies keep, those of a blend as it was dealt out.
+/// The drawn amount of each material: volumes minus what other bodies keep, those of a blend as divided.
 void measure(std::span<const slice::Body> bodies, const slice::Slicer& slicer, const slice::Summary& summary,
              std::vector<Material>& materials) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -88,7 +88,7 @@ void measure(std::span<const slice::Body> bodies, const slice::Slicer& slicer, c
     }
 }
 
-/// What the materials are called in file names: different even where only odd characters tell them apart.
+/// The materials' names in file names: unique even if they differ only in replaced characters.
 std::vector<std::string> file_words(const std::vector<Material>& materials) {
     std::vector<std::string> words;
     std::set<std::string> taken;
@@ -101,7 +101,7 @@ std::vector<std::string> file_words(const std::vector<Material>& materials) {
     return words;
 }
 
-/// What an image is lit for, where that is not what its material says of all layers; else 0.
+/// The exposure of an image if it differs from its material's; else 0.
 double own_exposure_s(const JobSettings& settings, const Material& material, int k, int thickness_um) {
     const auto rule = settings.exposures.find(material.parts.empty() ? material.name : material.parts.front().name);
     if (rule == settings.exposures.end()) return 0;
@@ -126,7 +126,7 @@ Result<Layer> store(Prepared& prepared, int k, const Manifest& manifest, const s
     return layer;
 }
 
-/// One layer of several stacks. A pixel goes whole to the material that lights it most, the later one on a tie.
+/// One layer of several stacks. A pixel goes entirely to the brightest material, on a tie to the later one.
 Result<slice::SlicedLayer> stacked_layer(std::span<const MaterialStack> stacks, int k) {
     std::vector<slice::Image> images(stacks.size());
     slice::SlicedLayer layer;
@@ -169,7 +169,7 @@ std::vector<std::size_t> layers_of(const Manifest& manifest, int material) {
     return layers;
 }
 
-/// Materials that cost swaps for next to nothing.
+/// Notes materials that cost swaps for very little volume.
 void note_rare_materials(Manifest& manifest) {
     constexpr std::size_t few = 3;
     for (std::size_t m = 0; manifest.materials.size() > 1 && m < manifest.materials.size(); ++m) {
@@ -181,7 +181,7 @@ void note_rare_materials(Manifest& manifest) {
     }
 }
 
-/// The images must hold the volume that was drawn, unless outlines were moved on purpose.
+/// The images must contain the drawn volume, unless outlines were compensated.
 void note_volume(Manifest& manifest) {
     if (manifest.compensated) return;
     double drawn = 0, lit = 0;
@@ -213,7 +213,7 @@ void note_findings(const slice::Findings& findings, const std::vector<slice::Thi
     note_volume(manifest);
 }
 
-/// Findings as warnings, and with their pictures.
+/// Records findings as warnings, and adds their pictures.
 Status keep_findings(const slice::Findings& findings, const std::vector<slice::ThinSpot>& thin,
                      const LayerSource& source, const JobSettings& settings, Manifest& manifest, Writer& writer) {
     note_findings(findings, thin, settings, manifest);
@@ -239,7 +239,7 @@ Manifest empty_manifest(const JobSettings& settings, std::vector<Material> mater
             settings.any_vat};
 }
 
-/// What becomes of layers once they are made, in order: told to `note`, stored, listed in the manifest.
+/// Handles finished layers, in order: passed to `note`, stored, listed in the manifest.
 class LayerKeeper {
 public:
     using Note = std::function<void(int, Prepared&)>;
@@ -262,7 +262,7 @@ public:
             note_(k, *made);
             thumbnail_.add(made->seen);
             const std::vector<EncodedImage> seen =
-                settings_.watch ? made->images : std::vector<EncodedImage>{};  // storing takes them
+                settings_.watch ? made->images : std::vector<EncodedImage>{};  // storing moves them
             auto layer = store(*made, k, manifest_, words_, settings_, heights_, writer_);
             if (!layer) return tl::unexpected(layer.error());
             manifest_.layers.push_back(std::move(*layer));
@@ -284,7 +284,7 @@ private:
     const Note& note_;
 };
 
-/// Makes layers in parallel batches and keeps them in order. One core keeps a batch while the others make the next.
+/// Makes layers in parallel batches and stores them in order. One core stores a batch while the others make the next.
 Status make_layers(const LayerSource& source, const JobSettings& settings, Manifest& manifest, Writer& writer,
                    Progress& progress, const LayerKeeper::Note& note) {
     for (const auto& [name, rule] : settings.exposures) {

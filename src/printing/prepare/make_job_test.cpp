@@ -59,7 +59,7 @@ TEST_CASE("two materials become a job with the right layers, areas and volumes")
     CHECK(m.layers[0].images.size() == 2);
     CHECK(m.layers[13].images.size() == 2);
     CHECK(m.layers[14].images.size() == 1);
-    // The interface runs through the middle of a column, which goes whole to the later material.
+    // The interface is in the middle of a column, which goes entirely to the later material.
     CHECK(m.layers[0].images[0].area_mm2 == near(2.0, {.relative = 1e-12}));
     CHECK(m.layers[0].images[1].area_mm2 == near(2.0, {.relative = 1e-12}));
     CHECK(m.layers[12].images[0].area_mm2 == near(1.0, {.relative = 1e-12}));

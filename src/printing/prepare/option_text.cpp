@@ -8,10 +8,10 @@
 namespace pliant::prepare {
 namespace {
 
-/// What is left of the rounding of a quantity to metres, in micrometres.
+/// Rounding error of a quantity in metres, in micrometres.
 constexpr double rounding_um = 1e-6;
 
-/// Whether the whole text is a number of the type of `number`.
+/// Whether the whole text is a number of `number`'s type.
 template <class Number>
 bool reads(const std::string& text, Number& number) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);

@@ -25,7 +25,7 @@ TEST_CASE("lengths have a unit and come out in micrometres") {
 TEST_CASE("lengths within limits, the limits included") {
     CHECK(*length_um("--x", "1 um", 7, 1, 10000) == near(1, {.relative = 1e-12}));
     CHECK(*length_um("--x", "10 mm", 7, 1, 10000) == near(10000, {.relative = 1e-12}));
-    CHECK(*length_um("--x", "", 0, 1, 10000) == 0);  // what is not given is not judged
+    CHECK(*length_um("--x", "", 0, 1, 10000) == 0);  // missing values are not checked
     CHECK(length_um("--x", "0.99 um", 7, 1, 10000).error().message == "--x 0.99 um: must be 0.001 to 10 mm");
     CHECK(!length_um("--x", "10.001 mm", 7, 1, 10000).has_value());
     CHECK(!length_um("--x", "-5 mm", 7, 1, 10000).has_value());

@@ -1,4 +1,4 @@
-// Supports painted by hand, as a table that a job keeps and `pliant slice --support-paint` reads again.
+// Hand-painted supports, as a table that a job keeps and `pliant slice --support-paint` reads.
 #pragma once
 
 #include <string>
@@ -10,13 +10,12 @@
 
 namespace pliant::prepare {
 
-/// What a job calls the table.
+/// Name of the table in a job.
 inline constexpr const char* paint_entry = "supports.csv";
 
-/// A touch of the brush in a line, in their order: `wish` (enforce, block or usual), `x (mm)`, `y (mm)`, `z (mm)` on
-/// the surface of the part as it was drawn, the outward normal `nx`, `ny`, `nz` there, and `radius (mm)`. Further
-/// columns are passed over. Errors name file and line: a missing column, another wish, what slice::check() refuses,
-/// more than 100000 touches.
+/// One brush stroke per line, in order: `wish` (enforce, block or usual), `x (mm)`, `y (mm)`, `z (mm)` on the surface
+/// of the part as drawn, the outward normal `nx`, `ny`, `nz` there, and `radius (mm)`. Further columns are ignored.
+/// Errors name file and line: a missing column, another wish, what slice::check() rejects, more than 100000 strokes.
 [[nodiscard]] Result<std::vector<slice::SupportTouch>> read_paint(std::string_view text, const std::string& file);
 
 }  // namespace pliant::prepare

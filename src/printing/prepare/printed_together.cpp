@@ -27,7 +27,7 @@ bool lit_alike(const Material& a, const Material& b, const JobSettings& settings
            !bonded(b.name, settings);
 }
 
-/// "a+b", "a+b+c+4 more"; never what another material is called.
+/// "a+b", "a+b+c+4 more"; never the name of another material.
 std::string joint_name(const std::vector<MaterialPart>& parts, std::set<std::string>& taken) {
     constexpr std::size_t most_names = 3;
     std::string name;
@@ -41,7 +41,7 @@ std::string joint_name(const std::vector<MaterialPart>& parts, std::set<std::str
 
 PrintedTogether printed_together(std::span<const Material> drawn, const JobSettings& settings) {
     PrintedTogether result;
-    std::vector<Material> first;  // per printed material: the first of its parts
+    std::vector<Material> first;  // per printed material, the first of its parts
     for (const Material& material : drawn) {
         const auto like = std::find_if(first.begin(), first.end(),
                                        [&](const Material& known) { return lit_alike(known, material, settings); });

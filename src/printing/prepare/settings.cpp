@@ -14,8 +14,7 @@
 namespace pliant::prepare {
 namespace {
 
-/// A material with what the printer file says of its resin; for one that it does not know, the longest exposures that
-/// it has are taken.
+/// A material with the printer file's settings for its resin; for an unknown resin, the longest exposures in the file.
 job::Material with_exposure(const std::string& name, const std::string& resin, const machine::Printer& printer,
                             std::vector<std::string>& warnings) {
     job::Material entry;
@@ -52,7 +51,7 @@ std::vector<job::Material> with_exposures(Drawing& drawing, const machine::Print
     return materials;
 }
 
-/// Of every material, as the resin that it is printed in asks for.
+/// For every material, the settings of its resin.
 std::map<std::string, slice::Compensation> compensations(const Drawing& drawing, const machine::Printer& printer) {
     std::map<std::string, slice::Compensation> result;
     for (const auto& [material, name] : drawing.resin_of_material) {
@@ -66,7 +65,7 @@ std::map<std::string, slice::Compensation> compensations(const Drawing& drawing,
     return result;
 }
 
-/// How layers of each material are lit where they are not all alike.
+/// Exposure rules of the materials whose layers are not all exposed alike.
 std::map<std::string, job::ExposureRule> exposure_rules(const Drawing& drawing, const machine::Printer& printer,
                                                         int bottom_layers, bool many_heights) {
     std::map<std::string, job::ExposureRule> rules;
@@ -124,7 +123,7 @@ Result<double> seconds_of(const std::string& option, const std::string& text) {
     return *seconds;
 }
 
-/// An exposure that is far from what the printer file gives the resin is more often a slip than a wish.
+/// An exposure far from the printer file's value for the resin is more often a mistake than intended.
 void note_far_exposure(const std::string& option, double seconds, double usual_s, const machine::Printer& printer,
                        const machine::Resin& resin, double layer_um, std::vector<std::string>& warnings) {
     constexpr double far = 2;
@@ -188,7 +187,7 @@ Status set_exposure(const std::string& text, const machine::Printer& printer, jo
     return {};
 }
 
-/// A misspelt resin is told before anything is sliced: of the materials that something is made of.
+/// Reports a misspelt resin before anything is sliced; checks only materials in use.
 Status check_resins(const Drawing& drawing, const std::vector<job::Material>& materials,
                     const machine::Printer& printer) {
     std::vector<job::Material> used;
@@ -214,7 +213,7 @@ slice::Raster raster_of(const machine::Projector& p) {
     return {p.width_px, p.height_px, p.pixel_um, p.mirror_x, p.mirror_y, p.rotation_deg, p.offset_x_um, p.offset_y_um};
 }
 
-/// The material of supports, in the resin of its name, or of --resin, where no body has it.
+/// Adds the material of supports, in the resin of its name or of --resin, unless a body has it already.
 Status add_support_material(const Order& order, const machine::Printer& printer, Drawing& drawing) {
     if (order.support.empty()) return {};
     const auto known = [&](const auto& pair) { return pair.first == order.support; };
@@ -237,7 +236,7 @@ Status add_support_material(const Order& order, const machine::Printer& printer,
         order.support, join_names(names));
 }
 
-/// What layer images cannot be asked for.
+/// Options that do not apply to layer images.
 Status check_stacks(const Order& order, const Drawing& drawing) {
     if (drawing.stacks.empty()) return {};
     const std::pair<const char*, bool> given[] = {{"--copies", order.copies != 1},
@@ -257,7 +256,7 @@ std::string um_text(double um) {
     return fmt::format("{:g} um", um);
 }
 
-/// What the stacks say of their layers' height, if they do; all must say the same.
+/// The layer height stated by the stacks, if any; all must agree.
 Result<std::optional<double>> stacked_layer_um(const Drawing& drawing) {
     constexpr double same_um = 1e-3;
     const job::MaterialStack* first = nullptr;
@@ -273,8 +272,8 @@ Result<std::optional<double>> stacked_layer_um(const Drawing& drawing) {
     return first->stack.layer_um();
 }
 
-/// --layer, else the height that layer images were made for, else the printer's. Images printed in layers of another
-/// height would give a part that is too high or too low.
+/// --layer, else the height that layer images were made for, else the printer's. Images printed at another layer height
+/// would give a part that is too tall or too short.
 Result<int> layer_of(const Order& order, const machine::Printer& printer, Drawing& drawing) {
     const Result<std::optional<double>> stacked = stacked_layer_um(drawing);
     if (!stacked) return tl::unexpected(stacked.error());

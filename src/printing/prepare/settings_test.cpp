@@ -38,7 +38,7 @@ std::string refused(const Change& change) {
     return settings.error().message;
 }
 
-/// Two dark images in a folder, with what stands beside them in a .sl1 that was sliced so high ("": nothing).
+/// Two dark images in a folder, with the metadata of a .sl1 file of this layer height ("": none).
 void write_stack(const std::filesystem::path& folder, const std::string& layer_height_mm) {
     std::filesystem::create_directories(folder);
     const std::string png = job::encode_png(slice::RunImage(200, 100));
@@ -47,7 +47,7 @@ void write_stack(const std::filesystem::path& folder, const std::string& layer_h
         REQUIRE(write_file(folder / "config.ini", "layerHeight = " + layer_height_mm + "\n").has_value());
 }
 
-/// The drawing of a stack of each material, sliced at these heights.
+/// The drawing of one stack per material, with these layer heights.
 Drawing stacks(const pliant::test::Folder& folder, const std::string& soft_mm, const std::string& firm_mm = "none") {
     std::vector<std::string> inputs;
     for (const auto& [name, height_mm] : {std::pair("soft", soft_mm), std::pair("firm", firm_mm)}) {
@@ -62,7 +62,7 @@ Drawing stacks(const pliant::test::Folder& folder, const std::string& soft_mm, c
     return std::move(*drawing);
 }
 
-/// The layers' height, or what is said against it.
+/// The layer height, or the error.
 std::string layer_or_error(const std::string& layer, Drawing drawing) {
     Order order;
     order.layer = layer;
@@ -78,7 +78,7 @@ TEST_CASE("layer images are printed as high as they were sliced") {
     CHECK(layer_or_error("", stacks(folder, "0.1")) == "100");  // not the printer's 50
     CHECK(layer_or_error("100 um", stacks(folder, "0.1")) == "100");
     CHECK(layer_or_error("0.1 mm", stacks(folder, "0.1", "0.100")) == "100");
-    CHECK(layer_or_error("", stacks(folder, "", "0.025")) == "25");  // one of them says it
+    CHECK(layer_or_error("", stacks(folder, "", "0.025")) == "25");  // given by one of them
     CHECK(layer_or_error("50 um", stacks(folder, "0.1")) ==
           "--layer 50 um: the layer images are for layers of 100 um, the part would come out 0.5 times as high: leave "
           "--layer out, or slice again");
@@ -95,7 +95,7 @@ TEST_CASE("images that do not say how high their layers are take --layer, or the
     CHECK(layer_or_error("", stacks(folder, "")) == "50 assumed");
 }
 
-TEST_CASE("what is not asked for is the printer's") {
+TEST_CASE("options not given are the printer's") {
     const job::JobSettings s = settings_of([](Order&) {});
     CHECK(s.name == "blocks");
     CHECK(s.slicing.layer_um == 50);
@@ -223,7 +223,7 @@ TEST_CASE("--resin: another resin with its exposures; one that no vat holds is a
     s = job_settings(order, printer(), {}, drawing);
     REQUIRE(s.has_value());
     CHECK(s->any_vat);
-    CHECK(s->materials[0].exposure_s == 4);  // the longest that is known
+    CHECK(s->materials[0].exposure_s == 4);  // the longest known one
     CHECK(s->materials[0].bottom_exposure_s == 9);
     REQUIRE(drawing.warnings.size() == 1);
     CHECK(drawing.warnings[0].find("resin \"glue\" is not in the printer file") == 0);

@@ -8,7 +8,7 @@
 namespace pliant::prepare {
 namespace {
 
-/// All files of the job beside its images.
+/// Adds all files of the job other than its images.
 Status add_files(const Order& order, const PrinterFile& printer, const job::JobSettings& settings,
                  const job::Manifest& manifest, const plan::Plan& plan, job::Writer& writer) {
     const std::string gcode = plan::write_gcode(plan, manifest, printer.printer);

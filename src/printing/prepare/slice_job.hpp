@@ -13,18 +13,18 @@ namespace pliant::prepare {
 
 struct PrinterFile {
     machine::Printer printer;
-    std::string text;                  ///< the job keeps it
+    std::string text;                  ///< content of the printer file, kept in the job
     std::optional<job::Image> mask{};  ///< of its projector
 };
 
 struct SlicedJob {
     job::Manifest manifest;
     plan::Plan plan;
-    std::vector<std::string> notes;  ///< lines of what was made: supports, cavities
+    std::vector<std::string> notes;  ///< remarks on what was added: supports, cavities
 };
 
-/// Writes `file` whole or not at all. `watch` hears of its layers as they are made. Errors: of the order, the slicer,
-/// the planner, the disk; cancelled.
+/// Writes `file` atomically. `watch` is called for each layer as it is made. Errors: in the order, from the slicer, the
+/// planner, the disk; cancelled.
 [[nodiscard]] Result<SlicedJob> slice_job(const Order& order, const PrinterFile& printer, Drawing drawing,
                                           const std::filesystem::path& file, Progress& progress,
                                           job::LayerWatch watch = {});

@@ -34,7 +34,7 @@ inline mesh::TriMesh box_um(const Vec3& low, const Vec3& high) {
     return mesh;
 }
 
-/// Two blocks of 4 x 4 x 3 mm side by side, drawn somewhere else than on the platform.
+/// Two blocks of 4 x 4 x 3 mm side by side, not drawn on the platform.
 inline Drawing two_blocks() {
     Drawing d;
     d.name = "blocks";

@@ -1,5 +1,5 @@
-// Every closed model of the reference data, sliced: its images hold its volume, as it is and with corners off by a step
-// of its 32-bit numbers.
+// Slices every closed model of the reference data: the images contain its volume, for the original and with corners
+// moved by one step of its 32-bit numbers.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ std::vector<fs::path> surface_files() {
     return files;
 }
 
-/// What the files hold that is closed. Those that cannot be read are the matter of other tests.
+/// The closed models in the files. Unreadable files are left to other tests.
 std::vector<Model> closed_models() {
     std::vector<Model> models;
     for (const fs::path& file : surface_files()) {
@@ -54,9 +54,9 @@ std::vector<Model> closed_models() {
     return models;
 }
 
-/// Turned so that no face is level or upright: then the areas of cuts change steadily with their height, and the sum
-/// over the middles of layers is the volume but for a term with the square of their thickness. 200 layers of 50 um,
-/// around the origin, where 32-bit numbers hold it best.
+/// Rotated so that no face is horizontal or vertical: then the area of sections varies continuously with height, and
+/// the sum over the middles of layers is the volume with a second-order error in their thickness. 200 layers of 50 um,
+/// around the origin, where 32-bit numbers are most accurate.
 mesh::TriMesh turned(mesh::TriMesh surface) {
     const Vec3 x = unit(Vec3{0.61, 0.53, 0.37});
     const Vec3 y = unit(cross(Vec3{0.2, -0.3, 0.9}, x));
@@ -67,7 +67,7 @@ mesh::TriMesh turned(mesh::TriMesh surface) {
     return mesh::scaled(std::move(surface), 200 * 50 / box.size().z);
 }
 
-/// Sum of all light times the thickness of layers, um^3; negative where slicing fails.
+/// Sum of all light times the thickness of layers, um^3; negative if slicing fails.
 double printed_um3(const std::string& name, mesh::TriMesh surface) {
     const Vec3 size = mesh::bounds(surface).size();
     const double pixel_um = std::max(size.x, size.y) / 300;
@@ -87,7 +87,7 @@ double printed_um3(const std::string& name, mesh::TriMesh surface) {
     return summary ? light / 255 * pixel_um * pixel_um * 50 : -1;
 }
 
-/// Every tenth corner, at random, off by one 32-bit number along some axes; written and read as STL.
+/// Every tenth corner, at random, is moved by one 32-bit step along some axes; written to STL and read back.
 mesh::TriMesh jittered(const mesh::TriMesh& surface, const fs::path& file) {
     std::mt19937 random(1);
     mesh::TriMesh soup;

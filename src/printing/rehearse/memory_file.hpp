@@ -1,4 +1,4 @@
-// A file without a place on a disk: it has a path while it lives, and is gone with the program, however that ends.
+// A file in memory only: it has a path while it exists, and vanishes with the program, however that ends.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,10 @@
 
 namespace pliant::rehearse {
 
-/// Movable. Its path is of this process alone.
+/// Movable. Its path is valid in this process only.
 class MemoryFile {
 public:
-    /// Empty. Errors: the system has no such files, or no more of them.
+    /// Makes an empty file. Errors: the system does not support such files, or has no more of them.
     [[nodiscard]] static Result<MemoryFile> make();
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }

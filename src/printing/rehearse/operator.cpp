@@ -14,8 +14,8 @@ void WillingOperator::look(host::Control& control) {
     if (!now.door_open.value_or(false)) (void)control.resume();
 }
 
-/// A prompt is all that is asked for before one layer. Each is answered once: what is still to be done begins behind
-/// what was asked for last, and one that asks for something else (a door to be shut) is found nowhere.
+/// A prompt contains everything requested before one layer. Each request is met once: the search begins after the last
+/// one met, and a prompt for something else (a door to be shut) matches none.
 void WillingOperator::do_as_asked(const std::string& prompt) {
     for (std::size_t first = done_; first < refills_.size(); ++first) {
         if (refills_[first].text != prompt) continue;

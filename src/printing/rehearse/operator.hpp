@@ -1,4 +1,4 @@
-// Who stands at the virtual printer while it prints: does at once what the print asks of a person, and resumes it.
+// The operator at the virtual printer: does at once what the print requests, and resumes it.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,10 @@ namespace pliant::rehearse {
 /// The twin must outlive it.
 class WillingOperator {
 public:
-    /// `refills`: what the job will ask for, by layer, as host::PrintJob has it.
+    /// `refills`: the requests of the job, by layer, as in host::PrintJob.
     WillingOperator(twin::Twin& twin, std::vector<host::Refill> refills);
-    /// Looks at the print. If it is paused: fills vats and looks after the solution as its prompt asks, then resumes.
-    /// While the door is open that is refused, and tried again at the next look.
+    /// Checks the print. If it is paused: fills vats and services the solution as its prompt requests, then resumes.
+    /// While the door is open that is refused, and retried at the next call.
     void look(host::Control& control);
 
 private:
@@ -24,7 +24,7 @@ private:
 
     twin::Twin& twin_;
     std::vector<host::Refill> refills_;
-    std::size_t done_ = 0;  ///< of them
+    std::size_t done_ = 0;  ///< number of refills done
 };
 
 }  // namespace pliant::rehearse

@@ -1,4 +1,4 @@
-// A job file printed on the virtual printer, and what the part is like: all that is between the two.
+// Prints a job file on the virtual printer and inspects the part.
 #pragma once
 
 #include <map>
@@ -14,21 +14,22 @@
 
 namespace pliant::rehearse {
 
-/// With everything in place: the projector's mask, and what the plan asks for before the print.
+/// Everything set up: the projector's mask, and what the plan requires before the print.
 class Rehearsal {
 public:
-    /// `options.printer.mask` is that of the job. Errors: the mask is not in the job; no memory for the journal.
+    /// `options.printer.mask` is replaced by the job's. Errors: the mask is missing from the job; no memory for the
+    /// journal.
     [[nodiscard]] static Result<Rehearsal> make(operate::ReadyJob ready, Options options);
 
     [[nodiscard]] VirtualPrint& print() { return *print_; }
     [[nodiscard]] const operate::ReadyJob& job() const { return *ready_; }
-    /// The images of the job as they were shown.
+    /// The images of the job as shown.
     [[nodiscard]] twin::RunSource runs() const;
-    /// After the print.
+    /// Call after the print.
     [[nodiscard]] Result<twin::Report> inspect(const twin::Judgement& judgement = {});
 
 private:
-    /// What has been shown is remembered: decoding is most of the work.
+    /// Caches decoded images: decoding is most of the work.
     class Images;
     Rehearsal(std::shared_ptr<const operate::ReadyJob> ready, std::shared_ptr<Images> images,
               std::unique_ptr<VirtualPrint> print);

@@ -15,7 +15,7 @@ namespace {
 
 using host::JournalRecord;
 
-/// Whether the machine is where a record says. Axes of which that knows nothing may be anywhere.
+/// Whether the machine is where a record says. Axes whose position the record does not know may be anywhere.
 bool same_place(const machine::Interlock::State& a, const machine::Interlock::State& b) {
     for (const machine::Axis axis : machine::all_axes) {
         const auto i = static_cast<std::size_t>(axis);
@@ -25,7 +25,7 @@ bool same_place(const machine::Interlock::State& a, const machine::Interlock::St
            a.fork_out == b.fork_out;
 }
 
-/// Commands beside those of the job.
+/// Commands outside the job.
 struct Program {
     long number = 0;  ///< of its record
     std::vector<std::string> commands;
@@ -47,7 +47,7 @@ public:
     }
 
 private:
-    /// How long each light was on, by the number of its record.
+    /// Notes how long each exposure lasted, by the number of its record.
     void note_end_of_light(const JournalRecord& record) {
         if (record.kind != "dark") return;
         const auto light = record.whole("light");
@@ -60,7 +60,7 @@ private:
         if (record.kind == "go") return go(record);
         if (record.kind == "program") return begin_program(record);
         if (record.kind == "session") {
-            // What was under way when the host ended stays undone: the machine stands where the journal proves it.
+            // What was in progress when the host died stays undone: the machine is where the journal proves it to be.
             programs_.clear();
             return {};
         }
@@ -77,8 +77,8 @@ private:
         return {};
     }
 
-    /// One that begins may stand in the middle of another, as a look at a switch does where an axis is homed: that goes
-    /// on behind it. Nothing runs before a record proves it.
+    /// A program may begin in the middle of another, as a check of a switch does during homing; the outer one continues
+    /// afterwards. Nothing is executed before a record proves it.
     Status begin_program(const JournalRecord& record) {
         const auto text = record.text("text");
         if (!text) return tl::unexpected(text.error());
@@ -86,7 +86,7 @@ private:
         return {};
     }
 
-    /// The rest of all programs, behind which the journal goes on.
+    /// Executes the rest of all programs, after which the journal continues.
     Status end_programs() {
         while (!programs_.empty()) {
             if (Status status = run_program(programs_.back(), programs_.back().commands.size()); !status) return status;
@@ -121,7 +121,7 @@ private:
         return {};
     }
 
-    /// Behind a program that has led to a light the job goes on there; else from where it was.
+    /// After a program that led to an exposure the job continues there; otherwise from where it was.
     Status go_in_job(std::size_t step) {
         const bool led = !programs_.empty();
         if (Status status = end_programs(); !status) return status;
@@ -141,8 +141,8 @@ private:
         return run_program(programs_.back(), step);
     }
 
-    /// To where the last program begins: by what is left of the one before it, or of the job. One that is then at its
-    /// end is done with.
+    /// Executes the rest of the previous program, or of the job, up to the place where the last program begins. A
+    /// program that is then at its end is finished.
     Status come_to(const machine::Interlock::State& state) {
         if (programs_.size() < 2) return run_job_to(state);
         Program& before = programs_[programs_.size() - 2];
@@ -159,7 +159,7 @@ private:
         return {};
     }
 
-    /// The commands of the job up to a step; lights on the way were left out.
+    /// Executes the commands of the job up to a step, without the exposures on the way.
     Status run_job(std::size_t to) {
         if (to > script_.steps.size()) return failure("there is no step {} in this job", to);
         for (; step_ < to; ++step_) {
@@ -170,7 +170,7 @@ private:
         return {};
     }
 
-    /// The commands of the job up to the next light, as far as it takes to come to a place.
+    /// Executes commands of the job, up to the next exposure, until the machine is at a place.
     Status run_job_to(const machine::Interlock::State& state) {
         while (step_ < script_.steps.size() && !same_place(twin_.interlock().state(), state)) {
             if (script_.light(step_) != nullptr) break;
@@ -199,7 +199,7 @@ private:
         return {};
     }
 
-    /// Whoever resumes has done what the pause asked for.
+    /// Before a resume, the operator has done what the pause asked for.
     void pour() {
         for (const host::Refill& refill : job_.refills) {
             if (asked_.empty() || refill.text != asked_) continue;
@@ -216,7 +216,7 @@ private:
         return talk(command);
     }
 
-    /// Until the twin has taken it.
+    /// Repeats until the twin has accepted the line.
     Status talk(const std::string& line) {
         twin_.receive(line + "\n");
         std::string said = twin_.take_output();
@@ -239,9 +239,9 @@ private:
     const host::Script script_;
     twin::Twin& twin_;
     std::map<long, double> lit_s_;
-    std::size_t step_ = 0;           ///< of the job, the next
-    std::vector<Program> programs_;  ///< that have begun and not ended, each in the middle of the one before it
-    long line_ = 0;                  ///< that the next command would have had; 0: none was sent
+    std::size_t step_ = 0;           ///< next step of the job
+    std::vector<Program> programs_;  ///< begun and not ended, each in the middle of the previous one
+    long line_ = 0;                  ///< line number of the next command; 0: none was sent
     std::string asked_;
 };
 

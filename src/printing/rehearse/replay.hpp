@@ -1,5 +1,5 @@
-// A virtual printer brought to where the journal of an interrupted print says that one has been left: its part, its
-// vats, its axes. A real machine keeps them; a virtual one is gone with the program that it was in.
+// Brings a new virtual printer to the state that the journal of an interrupted print describes: part, vats, axes. A
+// real machine keeps its state; a virtual one is lost with its program.
 #pragma once
 
 #include <vector>
@@ -11,12 +11,12 @@
 
 namespace pliant::rehearse {
 
-/// Carries out again, in the order of the journal, what it proves to have been done: commands of the job and of other
-/// programs up to the last place where the machine stood still, every light for as long as it was on (of a light whose
-/// end is not in the journal nothing), refills. The twin's controller then has the line number that belongs to it, so
-/// that a host that asks for it knows where the machine stands. A journal in which nothing has begun changes nothing.
-/// Precondition: the twin stands at its beginning, with its vats filled. Errors: a journal of another job, one whose
-/// places the machine does not come by; an image that cannot be read. Cost: that of the virtual print, without waiting.
+/// Repeats in order what the journal proves to have been done: commands of the job and of other programs up to the last
+/// point where the machine stood still, every exposure for its actual duration (one without an end in the journal: not
+/// at all), refills. The twin's controller then has the matching line number, so that a host that asks for it knows
+/// where the machine is. A journal in which nothing has begun changes nothing. Precondition: the twin is in its initial
+/// state, with its vats filled. Errors: a journal of another job, or one with points that the machine does not pass; an
+/// image that cannot be read. Cost: that of the virtual print, without waiting.
 [[nodiscard]] Status replay(const std::vector<host::JournalRecord>& records, const host::PrintJob& job,
                             twin::Twin& twin);
 

@@ -1,5 +1,5 @@
-// A virtual printer as the devices of a running print: the host's wire ends in the twin, its projector lights the
-// twin's resin, its clock is the twin's. Nothing takes wall time: waiting moves the virtual clock on. All refer to the
+// A virtual printer as the devices of a running print: the host's wire leads to the twin, its projector exposes the
+// twin's resin, its clock is the twin's. No wall time passes: waiting advances the virtual clock. All refer to the
 // twin, which must outlive them.
 #pragma once
 
@@ -15,11 +15,11 @@ namespace pliant::rehearse {
 
 class TwinWire final : public host::Wire {
 public:
-    /// `look` is called whenever the host listens, before the clock moves: the moment for what people do meanwhile; may
-    /// be empty.
+    /// `look` is called whenever the host listens, before the clock advances, so that operator actions can be
+    /// simulated; may be empty.
     explicit TwinWire(twin::Twin& twin, std::function<void()> look = {}) : twin_(twin), look_(std::move(look)) {}
     [[nodiscard]] Status write(std::string_view bytes) override;
-    /// Runs the virtual clock until the twin says something, at most for `timeout_s`.
+    /// Advances the virtual clock until the twin sends something, at most by `timeout_s`.
     [[nodiscard]] Result<std::string> read(double timeout_s) override;
 
 private:
@@ -47,7 +47,7 @@ private:
     twin::Twin& twin_;
 };
 
-/// Sees of every light what the guard's process sees, and like it answers only when the host has died.
+/// Receives the same messages as the guard process, and like it reports only once the host has died.
 class TwinGuard final : public host::Guard {
 public:
     explicit TwinGuard(const twin::Twin& twin) : twin_(twin) {}
@@ -55,14 +55,14 @@ public:
     void lit(double now_s) override;
     void dark(double now_s) override;
     [[nodiscard]] std::optional<double> lit_s(long light) override;
-    /// Now; the light goes out with it.
+    /// Simulates the host's death at this moment; the light goes off.
     void host_died();
 
 private:
     const twin::Twin& twin_;
     long light_ = 0, seen_ = -1;
     double lit_at_s_ = 0;
-    std::optional<double> on_s_;  ///< of that light; nullopt: it is on
+    std::optional<double> on_s_;  ///< duration of that exposure; nullopt: still on
     double seen_on_s_ = 0;
 };
 

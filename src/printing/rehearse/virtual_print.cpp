@@ -27,7 +27,7 @@ VirtualPrint::VirtualPrint(const machine::Printer& printer, host::PrintJob job, 
 }
 
 host::ControlSetup VirtualPrint::setup(const machine::Printer& printer) {
-    constexpr double whenever_it_listens_s = 1e9;  // nobody asks for anything while this thread does not look
+    constexpr double whenever_it_listens_s = 1e9;  // no requests arrive except while listening
     host::ControlSetup setup{
         .printer = printer,
         .open_wire = [this]() -> Result<std::unique_ptr<host::Wire>> { return open_wire(); },

@@ -1,5 +1,5 @@
-// A whole print on the virtual printer, by the engine that prints on machines: the same control, interlocks, journal,
-// prompts and guard, with the virtual printer's wire, light and clock as devices. Hours of the machine take a second.
+// A whole print on the virtual printer, by the same engine that prints on machines: control, interlocks, journal,
+// prompts and guard, with the virtual printer's wire, light and clock as devices. Hours of machine time take a second.
 //
 //     auto print = VirtualPrint::make(ready->printer, ready->job, {});
 //     if (Status done = (*print)->print(progress); done) twin::inspect((*print)->twin(), manifest, images);
@@ -25,36 +25,36 @@
 namespace pliant::rehearse {
 
 struct Options {
-    twin::Options printer{};  ///< which Marlin it is, and what goes wrong
-    /// Makes of the wire to the virtual printer the one that the host gets: one that damages lines. May be empty.
+    twin::Options printer{};  ///< release of Marlin, and faults
+    /// Wraps the wire to the virtual printer, for example to damage lines. May be empty.
     std::function<std::unique_ptr<host::Wire>(std::unique_ptr<host::Wire>)> wire{};
-    std::optional<host::LinkOptions> link{};  ///< nullopt: as the printer file says
+    std::optional<host::LinkOptions> link{};  ///< nullopt: from the printer file
     host::LayerHook after_layer{};            ///< may be empty
-    /// Called whenever the host listens, with what may be asked of the print then: somebody who pauses it, cancels it,
-    /// changes a light. May be empty.
+    /// Called whenever the host listens, so that the print can be paused, cancelled or given another exposure. May be
+    /// empty.
     std::function<void(host::Control&)> meanwhile{};
 };
 
 class VirtualPrint {
 public:
-    /// The vats hold what `printer` says: give it plan::filled_printer. `job.journal` is not used: the journal lives in
-    /// memory, and what interrupts the program leaves nothing behind. Errors: no memory for it.
+    /// The vats hold what `printer` says: pass plan::filled_printer. `job.journal` is not used: the journal is in
+    /// memory, and an interruption of the program leaves nothing behind. Errors: no memory for it.
     [[nodiscard]] static Result<std::unique_ptr<VirtualPrint>> make(const machine::Printer& printer, host::PrintJob job,
                                                                     Options options);
     VirtualPrint(const VirtualPrint&) = delete;
     VirtualPrint& operator=(const VirtualPrint&) = delete;
 
-    /// From the first line to the last; once. Prompts are answered by a WillingOperator. If `progress` says so, the
-    /// print is cancelled as at a machine: dark, parked. Errors: input (the job), failed (the engine's line),
-    /// cancelled. What happened up to there can be asked for afterwards.
+    /// Prints the whole job; call once. Prompts are answered by a WillingOperator. If `progress` is cancelled, so is
+    /// the print, as on a machine: dark, parked. Errors: input (the job), failed (the engine's message), cancelled.
+    /// Results up to that point remain available.
     [[nodiscard]] Status print(Progress& progress);
 
     [[nodiscard]] twin::Twin& twin() { return twin_; }
-    /// As it was when the print ended.
+    /// State at the end of the print.
     [[nodiscard]] host::Snapshot snapshot() const { return control_.snapshot(); }
-    /// Every piece of light that has ended, in order.
+    /// All pieces of exposures that have ended, in order.
     [[nodiscard]] const std::vector<host::Given>& lights() const { return lights_; }
-    /// The journal as it stands, as text and read.
+    /// The journal so far, as text and parsed.
     [[nodiscard]] Result<std::string> journal() const;
     [[nodiscard]] Result<std::vector<host::JournalRecord>> records() const;
 

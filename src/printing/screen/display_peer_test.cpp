@@ -1,4 +1,4 @@
-// The projector on a display: an X server without a screen (Xvfb), and what is really on it.
+// The projector on a display: an X server without a screen (Xvfb), and what it really shows.
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -18,7 +18,7 @@
 #include "printing/job/job.hpp"
 #include "printing/screen/projector.hpp"
 
-// After ours: it defines Status and other words as macros.
+// After our headers: it defines Status and other words as macros.
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 
@@ -33,7 +33,7 @@ namespace {
 constexpr int width_px = 320;
 constexpr int height_px = 200;
 
-/// An X server with two screens whose grounds are white: black there is our own.
+/// An X server with two screens with a white background: anything black is ours.
 class Server {
 public:
     Server() {
@@ -76,7 +76,7 @@ public:
 
     [[nodiscard]] bool runs() const { return display_ != nullptr; }
 
-    /// What is on the screen; coloured pixels count as 1.
+    /// The content of the screen; coloured pixels count as 1.
     [[nodiscard]] job::Image screenshot(int screen = 0) const {
         ::XSync(display_, False);
         const int width = DisplayWidth(display_, screen);
@@ -106,7 +106,7 @@ private:
     ::Display* display_ = nullptr;
 };
 
-/// Gives the displays back at the end, so that no process stays behind.
+/// Releases the displays at the end, so that no process remains.
 struct Session {
     Server server;
     ~Session() {
@@ -186,7 +186,7 @@ TEST_CASE("the display shows a job's images pixel by pixel, and black before, be
             }
         }
     }
-    // The host is gone in good order: what is below the window stays hidden.
+    // The host has ended normally: what is below the window stays hidden.
     for (int i = 0; i < 20; ++i) {
         CHECK(x.all(0));
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -211,7 +211,7 @@ TEST_CASE("lights end by themselves and are as long as asked, to a frame of 60 H
         CAPTURE(seconds);
         CAPTURE((*light)->frames);
         CAPTURE((*light)->longest_frame_s);
-        // To half a frame; longer only by as much as the last two frames were late on a busy machine.
+        // To half a frame; longer only by the delay of the last two frames on a busy machine.
         CHECK((*light)->on_s >= seconds - 0.5 / 60 - 1e-9);
         CHECK((*light)->on_s <= seconds - 1.5 / 60 + 2 * (*light)->longest_frame_s + 1e-9);
         CHECK((*light)->frames <= std::lround(seconds * 60));
@@ -288,6 +288,6 @@ TEST_CASE("a display of another size, or one that is not there, is an error with
     REQUIRE(displays->size() == 2);
     CHECK((*displays)[0].width_px == width_px);
     CHECK((*displays)[1].height_px == 120);
-    // Screens of X itself, other than displays of one screen, all begin at 0, 0.
+    // Separate X screens all begin at 0, 0, unlike displays of one screen.
     CHECK(ScreenProjector::open("1", options(0, 0)).error().message.find("cannot be told from") != std::string::npos);
 }

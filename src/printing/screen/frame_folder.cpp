@@ -35,7 +35,7 @@ FrameFolder::~FrameFolder() {
     if (lit_ != nullptr) (void)put_out();
 }
 
-/// The renaming is what makes it dark.
+/// Renaming `shown.png` makes the panel dark.
 Status FrameFolder::put_out() {
     std::error_code error;
     std::filesystem::rename(folder_ / shown_name, folder_ / fmt::format("{:05}.png", shown_), error);

@@ -1,5 +1,5 @@
-// A panel that is a folder: the light is what its `shown.png` holds, no such file is dark. What the virtual printer of
-// `pliant twin --projector` looks at, and a record of what was shown.
+// A panel that is a folder: it shows the image `shown.png`; without that file it is dark. The virtual printer of
+// `pliant twin --projector` watches it, and it keeps a record of what was shown.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,11 @@
 
 namespace pliant::host {
 
-/// 60 frames a second. A light that ends leaves its image as 00001.png, 00002.png, ... in the folder, which is made if
-/// it does not exist; images of an earlier time are overwritten. At its end there is no `shown.png`.
+/// 60 frames per second. At the end of an exposure its image is kept as 00001.png, 00002.png, ... in the folder, which
+/// is created if missing; older images are overwritten. The destructor removes `shown.png`.
 class FrameFolder final : public Panel {
 public:
-    /// Errors: the folder cannot be made or written to.
+    /// Errors: the folder cannot be created or written to.
     [[nodiscard]] static Result<FrameFolder> open(const std::filesystem::path& folder, int width_px, int height_px);
     FrameFolder(FrameFolder&& other) noexcept;
     FrameFolder& operator=(FrameFolder&&) = delete;
@@ -32,8 +32,8 @@ private:
 
     std::filesystem::path folder_;
     int width_px_ = 0, height_px_ = 0;
-    int shown_ = 0;                    ///< lights so far
-    const job::Image* lit_ = nullptr;  ///< what `shown.png` holds
+    int shown_ = 0;                    ///< number of exposures so far
+    const job::Image* lit_ = nullptr;  ///< image in `shown.png`
     Pacer pacer_{1.0 / 60};
 };
 

@@ -22,7 +22,7 @@ void ImageAhead::begin(std::size_t place) {
 
 Result<job::Image> ImageAhead::get(int layer, int material) {
     const std::pair<int, int> wanted{layer, material};
-    // What was fetched for nothing must be done, too, before the source is asked again.
+    // An unused fetch must be finished, too, before the source is called again.
     if (fetching_.valid()) fetching_.get();
     const bool ready = image_.has_value() && coming_ == wanted;
     if (ready) ++fetched_ahead_;
@@ -32,7 +32,7 @@ Result<job::Image> ImageAhead::get(int layer, int material) {
     return image;
 }
 
-/// What comes after the next place in the order where `layer` and `material` stand.
+/// Fetches the image that follows the next occurrence of `layer` and `material` in the order.
 void ImageAhead::begin_next(int layer, int material) {
     const auto from = order_.begin() + static_cast<std::ptrdiff_t>(std::min(next_, order_.size()));
     auto at = std::find(from, order_.end(), std::pair{layer, material});

@@ -1,4 +1,4 @@
-// Images decoded one exposure ahead: while the light of one is on, or the vats change, a thread fetches the next.
+// Decodes images one exposure ahead: during an exposure or a vat change, a thread fetches the next image.
 #pragma once
 
 #include <functional>
@@ -13,8 +13,8 @@
 
 namespace pliant::host {
 
-/// Asks `source` for what it is asked for, and then, in a thread, for what comes next in `order`. `source` is called by
-/// one thread at a time; it must outlive this. Any other order works too, without the gain.
+/// Gets the requested image from `source` and then, in a thread, the next one in `order`. `source` is never called
+/// concurrently; it must outlive this object. Requests in another order work too, without the gain.
 class ImageAhead {
 public:
     using Source = std::function<Result<job::Image>(int layer, int material)>;
@@ -26,7 +26,7 @@ public:
     ImageAhead& operator=(const ImageAhead&) = delete;
 
     [[nodiscard]] Result<job::Image> get(int layer, int material);
-    [[nodiscard]] int fetched_ahead() const { return fetched_ahead_; }  ///< images that were there when asked for
+    [[nodiscard]] int fetched_ahead() const { return fetched_ahead_; }  ///< images that were ready when requested
 
 private:
     void begin(std::size_t place);
@@ -34,14 +34,14 @@ private:
 
     Source source_;
     Order order_;
-    std::size_t next_ = 0;  ///< in order_, after what was asked for last
+    std::size_t next_ = 0;  ///< in order_, after the last request
     std::pair<int, int> coming_{};
     std::future<void> fetching_;
-    std::optional<Result<job::Image>> image_;  ///< of `coming_`, once fetched
+    std::optional<Result<job::Image>> image_;  ///< number `coming_`, once fetched
     int fetched_ahead_ = 0;
 };
 
-/// The exposures of a job's G-code, in order; lines that are no `;@expose` are passed over.
+/// The exposures of a job's G-code, in order; lines other than `;@expose` are skipped.
 [[nodiscard]] ImageAhead::Order order_of_exposures(std::string_view gcode);
 
 }  // namespace pliant::host

@@ -9,7 +9,7 @@ using namespace pliant::host;
 
 namespace {
 
-/// Remembers what it was asked for, and whether two asked at once.
+/// Records requests, and whether two were concurrent.
 struct Source {
     std::atomic<int> inside = 0;
     std::atomic<bool> together = false;
@@ -29,7 +29,7 @@ struct Source {
 
 }  // namespace
 
-TEST_CASE("what comes next is there when it is asked for, and every image is fetched once") {
+TEST_CASE("the next image is ready when requested, and every image is fetched once") {
     Source source;
     const ImageAhead::Order order = {{0, 0}, {0, 1}, {1, 1}, {1, 0}, {9, 0}, {2, 0}};
     {

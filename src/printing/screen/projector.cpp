@@ -30,13 +30,13 @@ std::filesystem::path screen_program(const std::filesystem::path& given) {
     return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "pliant-screen";
 }
 
-/// A program at work, and what it says.
+/// A running program and its output.
 struct Speaker {
     pid_t process = -1;
     FileHandle output;
 };
 
-/// No key that ends the host may end the program: it runs in a session of its own.
+/// In a session of its own, so that a key that ends the host does not end the program.
 Result<Speaker> start(const std::filesystem::path& program, const std::vector<std::string>& words) {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) return failure("no pipe: {}", std::strerror(errno));
@@ -47,7 +47,7 @@ Result<Speaker> start(const std::filesystem::path& program, const std::vector<st
     return Speaker{*process, std::move(output)};
 }
 
-/// What a program says until it closes its output, or has said a line and `line_is_enough`.
+/// Reads a program's output until it closes it or, with `line_is_enough`, until the first line.
 std::string hear(int file, bool line_is_enough) {
     std::string heard;
     for (;;) {
@@ -62,12 +62,12 @@ std::string hear(int file, bool line_is_enough) {
     }
 }
 
-/// A child that nobody waits for would stay as a zombie for as long as the host lives.
+/// A child process that is not waited for would remain a zombie as long as the host lives.
 void reap_later(pid_t process) {
     std::thread([process] { ::waitpid(process, nullptr, 0); }).detach();
 }
 
-/// Starts the holder of a panel. Returns when it listens.
+/// Starts the holder of a panel. Returns once it listens.
 Status start_screen(const std::filesystem::path& program, const std::vector<std::string>& words) {
     const Result<Speaker> screen = start(program, words);
     if (!screen) return tl::unexpected(screen.error());
@@ -124,7 +124,7 @@ Result<ScreenProjector> ScreenProjector::open(const std::string& where, const Sc
     return ScreenProjector(std::move(*socket), std::move(panel), options.longest_light_s);
 }
 
-/// Reads up to the message that is waited for; the end of a light may come before it.
+/// Reads messages up to the one awaited; the end of an exposure may come before it.
 Status ScreenProjector::wait_for(Say wanted, double timeout_s) {
     for (;;) {
         const auto message = socket_.receive(timeout_s);

@@ -1,4 +1,4 @@
-// The projector with a folder for its panel: what a host can do to it, and what happens when the host ends.
+// The projector with a folder as its panel: what a host can do with it, and what happens when the host ends.
 #include "printing/screen/projector.hpp"
 
 #include <doctest/doctest.h>
@@ -29,7 +29,7 @@ job::Image noise(int seed) {
     return image;
 }
 
-/// The panel's folder: the projector makes it.
+/// The panel's folder, created by the projector.
 struct Folder {
     explicit Folder(const std::string& name) : place(name) {}
     pliant::test::Folder place;
@@ -49,7 +49,7 @@ ScreenOptions options() {
     return {64, 48, 3600, PLIANT_SCREEN_PROGRAM};
 }
 
-/// Waits for what must come sooner or later; the test's own limit ends it otherwise.
+/// Waits for a condition; the test's own time limit ends it otherwise.
 bool comes(const std::function<bool()>& true_at_last) {
     for (int i = 0; i < 2000; ++i) {
         if (true_at_last()) return true;
@@ -73,7 +73,7 @@ TEST_CASE("lights appear in the folder, end by themselves, are measured, and lea
             REQUIRE(light);
             REQUIRE(*light);
             CHECK((*light)->asked_s == near(0.1 * i, {.relative = 1e-12}));
-            // To half a frame; longer only by as much as the last two frames were late.
+            // To half a frame; longer only by the delay of the last two frames.
             CHECK((*light)->on_s <= 0.1 * i - 1.5 / 60 + 2 * (*light)->longest_frame_s + 1e-9);
             CHECK((*light)->on_s >= 0.1 * i - 0.5 / 60 - 1e-9);
         }
@@ -150,7 +150,7 @@ TEST_CASE("one folder has one host; images of another size and lights of no leng
     CHECK(projector->finish());
 }
 
-TEST_CASE("what cannot be opened says why") {
+TEST_CASE("failures to open are explained") {
     ScreenOptions other = options();
     other.program = "/nowhere/pliant-screen";
     CHECK(ScreenProjector::open("/tmp", other).error().message.find("/nowhere/pliant-screen") != std::string::npos);

@@ -5,12 +5,12 @@
 namespace pliant::host {
 namespace {
 
-/// Black frames that bring the panel into step with its vertical blanking before the light, which is then measured
-/// between equal frames.
+/// Black frames that synchronise with the panel's vertical blanking before the exposure, which is then timed between
+/// equal frames.
 constexpr int lead_frames = 2;
-constexpr double tie_s = 1e-6;  // what lies in the middle between two frames becomes the shorter light
+constexpr double tie_s = 1e-6;  // a duration midway between two frames becomes the shorter exposure
 
-/// Presents and measures the lit frames. The light goes on until something else is presented.
+/// Presents and times the lit frames. The light stays on until something else is presented.
 Status light_frames(Panel& panel, const job::Image& image, const std::function<void()>& lit,
                     const std::function<bool()>& keep_on, Light& light, double& first_s, double& last_s) {
     for (;;) {
@@ -23,7 +23,7 @@ Status light_frames(Panel& panel, const job::Image& image, const std::function<v
             light.longest_frame_s = std::max(light.longest_frame_s, *at - last_s);
         }
         last_s = *at;
-        // Black now lands a frame later; another lit frame would put it off by one more.
+        // A black frame presented now appears one frame later; another lit frame would delay it by one more.
         const double dark_s = last_s + panel.frame_s() - first_s;
         if (dark_s >= light.asked_s - panel.frame_s() / 2 - tie_s || !keep_on()) return {};
     }

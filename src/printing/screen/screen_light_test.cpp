@@ -13,7 +13,7 @@ using namespace pliant::host;
 
 namespace {
 
-/// A panel of a given rate whose presents land on its vertical blankings; some frames are late by some blankings.
+/// A panel of a given rate that presents at its vertical blankings; some frames are delayed by some blankings.
 struct CountingPanel final : Panel {
     int rate_hz = 60;
     std::map<int, int> late;  ///< present (from 0) -> blankings missed
@@ -54,7 +54,7 @@ TEST_CASE("a light has as many frames as its time has, to the nearest, at any ra
             panel.rate_hz = rate;
             const Result<Light> got = light(panel, seconds);
             REQUIRE(got);
-            // To the nearest frame; what lies in the middle is rounded down.
+            // To the nearest frame; ties are rounded down.
             const int frames = std::max(1, static_cast<int>(std::ceil(seconds * rate - 0.5 - 1e-9)));
             CHECK(got->frames == frames);
             CHECK(got->on_s == near(static_cast<double>(frames) / rate, {.relative = 1e-12}));
@@ -81,7 +81,7 @@ TEST_CASE("frames that come late do not make the light longer, unless the last o
     CHECK(late->longest_frame_s == near(6.0 / 60, {.relative = 1e-12}));
 }
 
-TEST_CASE("a light that is no longer wanted ends with the next frame") {
+TEST_CASE("a cancelled exposure ends with the next frame") {
     CountingPanel panel;
     int asked = 0;
     const Result<Light> got = light(panel, 10, [&] { return ++asked < 30; });

@@ -1,11 +1,11 @@
-// pliant-screen: holds a panel for a host. Started by the host itself; what it says on standard output is for it.
+// pliant-screen: holds a panel for a host, which starts it and reads its standard output.
 //
 //     pliant-screen --list
 //     pliant-screen NAME display NUMBER
 //     pliant-screen NAME folder DIR WIDTH HEIGHT
 //
-// NAME is that of the socket it serves. Light is in a process of its own, so that it ends when the host does, however
-// that ends. If that process itself dies, its parent puts another one in its place.
+// NAME is that of the socket it serves. The light is controlled by a separate process, so that it ends when the host
+// does, however that ends. If that process itself dies, its parent starts another one.
 #include <fmt/core.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -28,10 +28,10 @@
 namespace pliant::host {
 namespace {
 
-// A signal handler can reach nothing but globals.
+// A signal handler can access only globals.
 volatile sig_atomic_t asked_to_stop = 0;
 volatile sig_atomic_t server_process = 0;
-volatile int* in_good_order = nullptr;  ///< of both processes: the panel has been given back
+volatile int* in_good_order = nullptr;  ///< shared by both processes: the panel has been released
 
 void on_stop(int) {
     asked_to_stop = 1;
@@ -41,18 +41,18 @@ void on_stop(int) {
 struct Wanted {
     std::string name;
     bool folder = false;
-    std::string place;  ///< number of a display, or a folder
+    std::string place;  ///< number of a display, or path of a folder
     int width_px = 0, height_px = 0;
 };
 
-/// The host waits for one line: "ready", or what is wrong. Nothing is said a second time.
+/// The host waits for one line: "ready", or an error. Later lines are dropped.
 void answer_host(const std::string& line) {
     fmt::print("{}\n", line);
     std::fflush(stdout);
     if (std::freopen("/dev/null", "w", stdout) == nullptr) std::fclose(stdout);
 }
 
-/// The screen of a host that has just ended takes a moment to make room.
+/// Retries, because the screen of a host that has just ended takes a moment to release its name.
 Result<ScreenSocket> listen_patiently(const std::string& name) {
     constexpr int tries = 40;
     auto listener = ScreenSocket::listen(name);
@@ -91,7 +91,7 @@ Status serve_display(const Wanted& wanted, bool again) {
     return serve(**panel, wanted, video->driver(), again);
 }
 
-/// What the process that holds the panel returns: 0 if it gave it back in good order, 1 if it never had it.
+/// Exit status of the process that holds the panel: 0 if it released it properly, 1 if it never had it.
 int server(const Wanted& wanted, bool again) {
     const Status status = wanted.folder ? serve_folder(wanted, again) : serve_display(wanted, again);
     if (status) return 0;
@@ -99,7 +99,7 @@ int server(const Wanted& wanted, bool again) {
     return 1;
 }
 
-/// Keeps one server running until it ends in good order or could not begin.
+/// Keeps a server running until it ends properly or could not start.
 int supervise(const Wanted& wanted) {
     constexpr int most_restarts = 20;
     void* shared = ::mmap(nullptr, sizeof(int), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -113,11 +113,11 @@ int supervise(const Wanted& wanted) {
             std::exit(server(wanted, start > 0));
         }
         server_process = process;
-        // Only the server may still hold the pipe to the host.
+        // Only the server may keep the pipe to the host open.
         if (start == 0 && std::freopen("/dev/null", "w", stdout) == nullptr) std::fclose(stdout);
         int how = 0;
         while (::waitpid(process, &how, 0) < 0 && errno == EINTR) continue;
-        // What fails after the end, such as a display that has gone meanwhile, starts nothing again.
+        // After a proper end, later failures (such as a display disconnected meanwhile) restart nothing.
         if (*in_good_order != 0) return 0;
         if (start == 0 && WIFEXITED(how)) return WEXITSTATUS(how);
         if (start > 0) ::usleep(100000);

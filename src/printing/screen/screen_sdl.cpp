@@ -18,7 +18,7 @@ tl::unexpected<Error> sdl_failure(std::string_view what) {
     return failure("{}: {}", what, SDL_GetError());
 }
 
-/// Grey as ARGB.
+/// Converts grey to ARGB.
 std::vector<Uint32> argb(const job::Image& image) {
     std::vector<Uint32> colours(image.pixels.size());
     for (std::size_t i = 0; i < colours.size(); ++i) colours[i] = 0xff000000U | image.pixels[i] * 0x010101U;
@@ -42,7 +42,7 @@ public:
     [[nodiscard]] double frame_s() const override { return frame_s_; }
 
     Status open(int display, const SDL_Rect& place) {
-        // A desktop's window manager would place, decorate, minimise or cover the window; X11 windows can do without.
+        // A desktop's window manager would move, decorate, minimise or cover the window; on X11 it can be bypassed.
         const bool x11 = std::strcmp(SDL_GetCurrentVideoDriver(), "x11") == 0;
         const Uint32 flags = x11 ? SDL_WINDOW_BORDERLESS | SDL_WINDOW_ALWAYS_ON_TOP : SDL_WINDOW_FULLSCREEN_DESKTOP;
         window_ = SDL_CreateWindow("Pliant projector", place.x, place.y, place.w, place.h, flags);
@@ -84,7 +84,7 @@ public:
             }
             exposed = exposed || what == SDL_WINDOWEVENT_EXPOSED;
         }
-        // While an image is shown every frame is drawn anyway.
+        // While an image is shown every frame is redrawn anyway.
         if (exposed && shown_ == nullptr) {
             if (const auto at = present(nullptr); !at) return tl::unexpected(at.error());
         }
@@ -112,7 +112,7 @@ private:
         return good ? Status{} : Status(sdl_failure("no frame"));
     }
 
-    /// Draws noise where nobody sees it and reads it back: a driver that filters, scales or dithers is found out here.
+    /// Draws noise into a hidden buffer and reads it back: reveals a driver that filters, scales or dithers.
     Status check_exact() {
         job::Image noise{width_px_, height_px_, {}};
         const std::size_t pixels = static_cast<std::size_t>(width_px_) * static_cast<std::size_t>(height_px_);
@@ -149,8 +149,8 @@ private:
         return check_exact();
     }
 
-    /// Does presenting wait for the display, at its rate? Where it does not (no driver for it, or SDL only sleeps some
-    /// milliseconds) frames are kept apart by the clock.
+    /// Whether presenting waits for the display at its refresh rate. If not (no driver, or SDL only sleeps some
+    /// milliseconds), frames are paced by the clock.
     Result<bool> keeps_step() {
         constexpr int lead = 5;
         constexpr int frames = 30;

@@ -1,4 +1,4 @@
-// A display as a panel, through SDL2: KMSDRM where there is no desktop, X11 where there is one.
+// A display as a panel, through SDL2: KMSDRM without a desktop, X11 with one.
 #pragma once
 
 #include <memory>
@@ -13,10 +13,10 @@ struct Display {
     int number = 0;
     std::string name;
     int width_px = 0, height_px = 0;
-    double refresh_hz = 0;  ///< 0: not known
+    double refresh_hz = 0;  ///< 0: unknown
 };
 
-/// SDL's video for as long as it lives; one at a time in a process.
+/// SDL's video subsystem, for the lifetime of the object; only one per process.
 class SdlVideo {
 public:
     /// X11 if DISPLAY is set, else KMSDRM; SDL_VIDEODRIVER overrides. Errors: no display, or it is in use.
@@ -26,8 +26,8 @@ public:
     ~SdlVideo();
 
     [[nodiscard]] std::vector<Display> displays() const;
-    /// Covers the display with black, without cursor, above everything, in its own resolution. Errors: no such display,
-    /// or it does not show exactly the pixels that it is given (tried with a picture that is never shown).
+    /// Covers the display with black, without cursor, above everything, in its native resolution. Errors: no such
+    /// display, or it does not show exactly the given pixels (tested with a picture that is never shown).
     [[nodiscard]] Result<std::unique_ptr<Panel>> open_panel(int display) const;
     /// "x11", "KMSDRM".
     [[nodiscard]] std::string driver() const;

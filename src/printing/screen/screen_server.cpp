@@ -12,8 +12,8 @@
 namespace pliant::host {
 namespace {
 
-constexpr double idle_s = 0.02;  // between two looks at the panel's own events
-constexpr double message_s = 2;  // for the rest of a message that has begun
+constexpr double idle_s = 0.02;  // interval of checks for the panel's own events
+constexpr double message_s = 2;  // timeout for the rest of a message
 constexpr double longest_s = 1e6;
 
 class Server {
@@ -80,7 +80,7 @@ private:
                 return light(*message);
             case Say::leave:
                 left_ = true;
-                listener_.close();  // who comes from now on starts another one
+                listener_.close();  // a host that connects from now on starts another server
                 [[fallthrough]];
             case Say::dark: {
                 const Status status = black();
@@ -121,7 +121,7 @@ private:
         std::memcpy(image.pixels.data(), message.bytes.data(), pixels);
         const auto lit = [&] { tell({Say::lit, 0, 0, {}, {}}); };
         const Result<Light> light = keep_light(panel_, image, seconds, lit, [&] {
-            // Whatever the host says now, and its end too, means that the light is not wanted any more.
+            // Any message from the host, or the end of its connection, ends the exposure.
             if (!host_.is_open() || host_.has_news(0) || options_.stop()) return false;
             turn_others_away();
             return panel_.idle().has_value();
@@ -144,7 +144,7 @@ private:
 }  // namespace
 
 Status serve_screen(Panel& panel, ScreenSocket& listener, const ScreenServerOptions& options) {
-    // The host, which may end the display itself, hears of the end when all is done.
+    // The host may turn the display off itself, so it is told of the end only when everything is done.
     Server server(panel, listener, options);
     const Status status = server.run();
     const Result<double> dark = panel.present(nullptr);

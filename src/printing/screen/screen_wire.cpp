@@ -17,7 +17,7 @@
 namespace pliant::host {
 namespace {
 
-constexpr std::uint32_t protocol = 0x504c5331;  // "PLS1": both ends are of one version of Pliant
+constexpr std::uint32_t protocol = 0x504c5331;  // "PLS1": both ends must be of the same version
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 28;
 constexpr double send_timeout_s = 5;
 
@@ -83,7 +83,7 @@ Status receive_all(int file, char* bytes, std::size_t count, const Deadline& dea
     return {};
 }
 
-/// A name in the abstract space: it vanishes with its owner, and no file is ever stale.
+/// A name in the abstract namespace: it vanishes with its owner, so there are no stale socket files.
 socklen_t abstract_address(const std::string& name, sockaddr_un& address) {
     address = {};
     address.sun_family = AF_UNIX;
@@ -178,7 +178,7 @@ bool ScreenSocket::has_news(double timeout_s) const {
 }
 
 std::string screen_socket_name(std::string_view panel) {
-    std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a: names may be longer than a socket's
+    std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a hash, because panel names may be longer than a socket name
     for (const char c : panel) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
     return fmt::format("pliant-screen-{}-{:016x}", ::getuid(), hash);
 }

@@ -6,7 +6,7 @@
 namespace pliant::slice {
 namespace {
 
-/// The greatest thickness at every height, in bins.
+/// The maximum thickness at every height, in bins.
 class Limits {
 public:
     Limits(const AdaptiveHeights& heights, double top_um)
@@ -22,7 +22,7 @@ public:
             most_um_[i] = std::min(most_um_[i], static_cast<float>(thickness_um));
     }
 
-    /// The least of [low, high).
+    /// The minimum over [low, high).
     [[nodiscard]] double least(double low_um, double high_um) const {
         const auto first = std::min(most_um_.size() - 1, static_cast<std::size_t>(low_um / bin_um_));
         const auto end = std::min(most_um_.size(), static_cast<std::size_t>(std::ceil(high_um / bin_um_)));
@@ -44,13 +44,13 @@ void limit_by(const Body& body, const AdaptiveHeights& heights, Limits& limits) 
                    &c = body.surface_um.points[t[2]];
         const Vec3 normal = cross(b - a, c - a);
         const double length = norm(normal), low = std::min({a.z, b.z, c.z}), high = std::max({a.z, b.z, c.z});
-        // Flat faces leave no steps.
+        // Horizontal faces cause no steps.
         if (!(length > 0) || high - low < 1e-3) continue;
         limits.limit(low, high, heights.least_um * length / std::max(1e-9 * length, std::fabs(normal.z)));
     }
 }
 
-/// The last layer ends where the part does, as far as that leaves no layer thinner than the least.
+/// The last layer ends at the top of the part, unless that would make a layer thinner than the minimum.
 int to_the_top(int thickness_um, int rest_um, const AdaptiveHeights& heights) {
     if (rest_um <= thickness_um) return std::max(rest_um, heights.least_um);
     if (rest_um - thickness_um >= heights.least_um) return thickness_um;
@@ -79,7 +79,7 @@ Result<std::vector<int>> adaptive_tops(std::span<const Body> bodies, const Adapt
     std::vector<int> tops{};
     for (int z_um = 0; z_um < top_um;) {
         int thickness_um = heights.most_um;
-        // A thinner layer may end below what asked for it.
+        // A thinner layer may end below the place that required it.
         while (thickness_um > heights.least_um && limits.least(z_um, z_um + thickness_um) < thickness_um)
             thickness_um -= step_um;
         z_um +=

@@ -13,7 +13,7 @@ using namespace pliant::slice::test;
 
 namespace {
 
-/// A pyramid over a square, of height 3 mm: its faces lean so that their normals are `n` vertical.
+/// A pyramid on a square, of height 3 mm: `n` is the vertical component of its faces' normals.
 mesh::TriMesh pyramid(double half_base) {
     mesh::TriMesh m;
     const std::array<Vec3, 4> base{Vec3{-half_base, -half_base, 0}, Vec3{half_base, -half_base, 0},
@@ -27,7 +27,7 @@ mesh::TriMesh pyramid(double half_base) {
 
 }  // namespace
 
-TEST_CASE("layers alike and layers of their own are counted the same way") {
+TEST_CASE("uniform and individual layers are counted alike") {
     const Layers alike(50), own(std::vector<int>{50, 100, 150});
     for (int z = -100; z < 400; ++z) {
         CHECK(alike.middles_up_to(z, 1) == own.middles_up_to(z, 1));
@@ -55,7 +55,7 @@ TEST_CASE("upright walls get thick layers, slanted ones as thin as their steps a
 }
 
 TEST_CASE("the volume of layers of many heights is that of the pyramid") {
-    // Upright below, slanted above: both limits occur.
+    // Upright below, slanted above: both limits are reached.
     std::vector<Body> bodies{{"soft", pyramid(2000), ""}, {"firm", box({-3000, 2100, 0}, {3000, 2300, 3000}), ""}};
     Settings settings{{160, 120, 50}, 100, {}};
     settings.tops_um = adaptive_tops(std::span(bodies).first(1), {20, 60}).value();

@@ -9,7 +9,7 @@
 namespace pliant::slice {
 namespace {
 
-/// Turns (a, b) counter-clockwise.
+/// Rotates (a, b) counter-clockwise.
 void turn_pair(double& a, double& b, double degrees) {
     const double turned = std::remainder(degrees, 360.0);
     double c = std::cos(turned * std::numbers::pi / 180), s = std::sin(turned * std::numbers::pi / 180);
@@ -24,7 +24,7 @@ void turn_pair(double& a, double& b, double degrees) {
 
 constexpr int most_copies = 10000;
 
-/// So many find room in a row; endlessly many would of what has no size.
+/// Number of copies that fit in a row; unlimited for a part without extent.
 int fitting(double room, double size, double spacing) {
     return static_cast<int>(std::clamp(std::floor((room + spacing + 1) / (size + spacing)), 0.0, 1.0 * most_copies));
 }

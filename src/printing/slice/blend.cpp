@@ -10,7 +10,7 @@
 namespace pliant::slice {
 namespace {
 
-/// A number in [0, 1) that looks like chance and is always the same.
+/// A reproducible pseudo-random number in [0, 1).
 double hash(int layer, int row, int column) {
     auto h = static_cast<std::uint64_t>(layer) * 0x9E3779B97F4A7C15ULL;
     h ^= (static_cast<std::uint64_t>(row) << 32) + static_cast<std::uint64_t>(column) + 0x7F4A7C15U + (h << 6);
@@ -19,7 +19,7 @@ double hash(int layer, int row, int column) {
     return static_cast<double>((h ^ (h >> 31)) >> 11) * 0x1p-53;
 }
 
-/// Which cells of an image the second material gets.
+/// Decides which cells of an image the second material gets.
 class Dealer {
 public:
     Dealer(const RunImage& image, const Blend& blend, const Raster& raster, double z_um, int layer)
@@ -122,9 +122,9 @@ private:
     RasterFrame frame_;
     double z_um_;
     int layer_, columns_;
-    std::vector<double> light_, next_light_, error_, next_error_;  ///< of the row of cells, and of the one after
+    std::vector<double> light_, next_light_, error_, next_error_;  ///< of the current row of cells, and of the next one
     std::vector<bool> second_;
-    double rest_ = 0;  ///< what the cells so far owe, or are owed, and no neighbour took
+    double rest_ = 0;  ///< accumulated error that no neighbour took
 };
 
 }  // namespace

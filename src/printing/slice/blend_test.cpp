@@ -57,7 +57,7 @@ TEST_CASE("a ramp deals out its integral, in every layer, whole pixels, none twi
             }
         }
     }
-    // Along the way too: six columns of 400 pixels in ten layers hold their share to a few percent.
+    // Also along the line: six columns of 400 pixels in ten layers have their fraction to a few percent.
     for (int i = 0; i < 10; ++i) {
         double sum = 0;
         for (int c = 0; c < 6; ++c) sum += of_column[static_cast<std::size_t>(6 * i + c)];

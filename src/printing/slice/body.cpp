@@ -5,7 +5,7 @@
 namespace pliant::slice {
 
 Status check(const Raster& raster) {
-    constexpr int max_side_px = 65535;  // what the cells of a coverage map can address
+    constexpr int max_side_px = 65535;  // limit of the cells of a coverage map
     if (raster.width_px < 1 || raster.height_px < 1 || raster.width_px > max_side_px || raster.height_px > max_side_px)
         return input_error("raster of {} x {} pixels: each side must be 1 to {}", raster.width_px, raster.height_px,
                            max_side_px);

@@ -1,4 +1,4 @@
-// What the slicer is given: bodies on the platform, and the raster that they are drawn on.
+// Input of the slicer: bodies on the platform, and the raster.
 #pragma once
 
 #include <array>
@@ -11,37 +11,37 @@
 
 namespace pliant::slice {
 
-/// What a body fills from `bottom_um` up to `top_um`: closed outlines, counter-clockwise around material, whose last
+/// The region of a body from `bottom_um` to `top_um`: closed outlines, counter-clockwise around material, whose last
 /// point joins the first.
 struct OutlineSlice {
     double bottom_um = 0, top_um = 0;
     std::vector<std::vector<std::array<double, 2>>> outlines_um;
 };
 
-/// A body that is one material at `from_um` and more and more another on the way to `to_um`: `shares` of the second are
-/// evenly spaced on that way, straight lines between them, and go on unchanged before and after it.
+/// A body that grades from one material at `from_um` to another at `to_um`: `shares` are evenly spaced fractions of the
+/// second material along that line, linear in between and constant beyond the ends.
 struct Blend {
     std::string second;
     Vec3 from_um, to_um;
     std::vector<double> shares{0, 1};
-    int cell_px = 1;     ///< edge of the squares that are one material or the other
-    double cell_um = 0;  ///< the same as a length, rounded to pixels; 0: `cell_px` counts
+    int cell_px = 1;     ///< edge of the squares that consist of one material
+    double cell_um = 0;  ///< the same as a length, rounded to pixels; 0: `cell_px` is used
 };
 
-/// A solid of one material, or of two where it has a blend. Points are in micrometres on the platform: z up, z = 0 is
-/// the platform, the image's centre is the origin of x and y.
+/// A solid of one material, or of two if it has a blend. Points are in micrometres on the platform: z up, z = 0 is the
+/// platform, the image's centre is the origin of x and y.
 struct Body {
     std::string material;
     mesh::TriMesh surface_um;
-    std::string name;  ///< for messages; where empty, the body's number is used
+    std::string name;  ///< for messages; if empty, the body's number is used
     std::vector<OutlineSlice>
-        slices{};  ///< from the bottom up; where there are any, they are the body, not the surface
+        slices{};  ///< from the bottom up; if present, they define the body instead of the surface
     std::optional<Blend> blend{};
-    bool filler = false;  ///< gives way to the part (put it first), and nobody needs to hear of it
+    bool filler = false;  ///< yields to the part without a warning (put it first)
 };
 
-/// The projector's picture on the platform. x runs to the right and row 0 lies at the greatest y, unless mirrored. The
-/// part is turned about the platform's centre, moved, then mirrored.
+/// The projector's image on the platform. x runs to the right and row 0 is at the greatest y, unless mirrored. The part
+/// is rotated about the platform's centre, moved, then mirrored.
 struct Raster {
     int width_px = 0;
     int height_px = 0;
@@ -49,21 +49,21 @@ struct Raster {
     bool mirror_x = false;
     bool mirror_y = false;
     double rotation_deg = 0;  ///< counter-clockwise, seen from above
-    double offset_x_um = 0;   ///< of the platform's centre from the image's
+    double offset_x_um = 0;   ///< platform's centre from the image's centre
     double offset_y_um = 0;
 
     [[nodiscard]] double width_um() const { return width_px * pixel_um; }
     [[nodiscard]] double height_um() const { return height_px * pixel_um; }
 };
 
-/// Refuses a raster of no pixels, of more than 2^28, with a pixel that is not in (0, 10] mm, or a turn or an offset
-/// that is no number of reasonable size.
+/// Errors: a raster of no pixels or more than 2^28, a pixel outside (0, 10] mm, a rotation or offset that is not finite
+/// or unreasonably large.
 [[nodiscard]] Status check(const Raster& raster);
 
 void move(Body& body, const Vec3& shift_um);
 
-/// Around the points that triangles use, or the outlines of slices. Errors name the body: a corner that does not exist,
-/// a number that is not finite.
+/// Bounds of the points used by triangles, or of the slices' outlines. Errors name the body: a missing corner, a number
+/// that is not finite.
 [[nodiscard]] Result<Box3> bounds(const Body& body, const std::string& label);
 
 /// "body 'finger' (soft)" or "body 3 (soft)", counted from 1.

@@ -44,7 +44,7 @@ void add_bond(ComposedLayer& layer, const ComposedLayer& owned, std::span<const 
     RunImage added = inside(into, near);
     if (added.blank()) return;
     MaterialImage& image = of_material(layer, first, into);
-    // What another bond has added already.
+    // Without what another bond has added already.
     added = outside(added, RunSet::lit(image.image));
     const std::int64_t sum = added.value_sum();
     image.image = together(image.image, added);

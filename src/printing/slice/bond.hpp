@@ -1,4 +1,4 @@
-// Interfaces at which two materials are lit in the same place, so that they hold on to each other.
+// Interfaces where two materials are exposed in the same place, so that they bond.
 #pragma once
 
 #include <span>
@@ -8,19 +8,20 @@
 
 namespace pliant::slice {
 
-/// `first` also lights what belongs to `second` within `depth_px` of it in its layer, and what has it right above or
-/// below within `layers`. Whose a pixel is does not change: such pixels are lit twice.
+/// `first` is also exposed where `second` is within `depth_px` of it in the same layer, or directly above or below it
+/// within `layers`. Pixel ownership does not change: such pixels are exposed twice.
 struct Bond {
     std::string first, second;  ///< materials
     int depth_px = 0;
     int layers = 0;
 };
 
-/// Refuses a material with itself, a depth that is not 0 to 1000 pixels, layers that are not 0 to 1000, and both 0.
+/// Errors: a material with itself, a depth outside 0 to 1000 pixels, layers outside 0 to 1000, and both 0.
 [[nodiscard]] Status check(const Bond& bond);
 
-/// Adds the light of one bond (materials of the layer's images), from the pixels that each owns. `around`: the same
-/// layer and its neighbours up to Bond::layers, before any bond. What is added counts in MaterialImage::shared_sum.
+/// Adds the exposure of one bond (materials of the layer's images), from the pixels that each owns. `around`: the same
+/// layer and its neighbours up to Bond::layers, before any bond. The added area is counted in
+/// MaterialImage::shared_sum.
 void add_bond(ComposedLayer& layer, const ComposedLayer& owned, std::span<const ComposedLayer> around, int first,
               int second, int depth_px);
 

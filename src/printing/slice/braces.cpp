@@ -12,7 +12,8 @@ double apart(const Pillar& a, const Pillar& b) {
     return std::hypot(a.x_um - b.x_um, a.y_um - b.y_um);
 }
 
-/// Struts between two pillars, from the lower end of what both have up; they start from either in turn.
+/// Struts between two pillars, from the lower end of their common height upwards; they start alternately from each
+/// pillar.
 std::vector<Strut> between(const Pillar& a, const Pillar& b, double radius_um) {
     const double low = std::max(a.low_um, b.low_um), high = std::min(a.high_um, b.high_um);
     const double rise = apart(a, b), step = std::max(slender * (a.radius_um + b.radius_um), rise);
@@ -25,7 +26,7 @@ std::vector<Strut> between(const Pillar& a, const Pillar& b, double radius_um) {
     return struts;
 }
 
-/// Pillars to which a strut may lead, the nearest first. Those that share an axis are one.
+/// Pillars that a strut may lead to, the nearest first. Pillars on the same axis count as one.
 std::vector<std::size_t> neighbours(const std::vector<Pillar>& pillars, std::size_t i) {
     const double reach_um = 2 * slender * pillars[i].radius_um;
     std::vector<std::pair<double, std::size_t>> found;
@@ -45,7 +46,7 @@ std::vector<std::size_t> neighbours(const std::vector<Pillar>& pillars, std::siz
 
 Braces braces(const std::vector<Pillar>& pillars, double least_radius_um,
               const std::function<bool(const Strut&)>& barred) {
-    constexpr int wanted = 2;  // in two directions it cannot bend
+    constexpr int wanted = 2;  // held in two directions, a pillar cannot bend
     Braces made{{}, std::vector<bool>(pillars.size(), false)};
     std::set<std::pair<std::size_t, std::size_t>> tied;
     std::vector<int> ties(pillars.size(), 0);

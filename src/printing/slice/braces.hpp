@@ -1,4 +1,4 @@
-// Struts between pillars that would fall over alone.
+// Struts between pillars that are too slender to stand alone.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ struct Pillar {
     [[nodiscard]] double slenderness() const { return (high_um - low_um) / (2 * radius_um); }
 };
 
-/// A rod that rises by 45 degrees from one pillar's axis to another's, which a printer builds without support.
+/// A rod that rises at 45 degrees from one pillar's axis to another's, which prints without support.
 struct Strut {
     Vec3 from_um, to_um;
     double radius_um = 0;
@@ -25,17 +25,16 @@ struct Strut {
 
 struct Braces {
     std::vector<Strut> struts;
-    std::vector<bool> held;  ///< (pillars) whether a strut ends at it, or it is not slender
+    std::vector<bool> held;  ///< (pillars) true if a strut ends at it, or it is not slender
 };
 
-/// A pillar that is longer than so many of its diameters is slender: the pull of a layer that peels bends it aside. In
-/// a bar clamped at one end the tip gives way with the cube of its length: at ten diameters it is a tenth as stiff as
-/// at under five.
+/// A pillar longer than this many diameters is slender: the peel force bends it. The tip deflection of a cantilever
+/// grows with the cube of its length: at ten diameters it is a tenth as stiff as at under five.
 inline constexpr double slender = 10;
 
-/// Every slender pillar is tied to its two nearest neighbours that stand at most `slender` diameters away, by struts to
-/// and fro, one in every `slender` diameters of height that both have. `barred` tells of a rod that the part is in the
-/// way of; such are left out. Struts are half as thick as their pillars, but not below `least_radius_um`.
+/// Every slender pillar is tied to its two nearest neighbours within `slender` diameters by struts in alternating
+/// directions, one per `slender` diameters of their common height. `barred` says whether the part blocks a rod; such
+/// rods are left out. Struts are half as thick as their pillars, but not thinner than `least_radius_um`.
 [[nodiscard]] Braces braces(const std::vector<Pillar>& pillars, double least_radius_um,
                             const std::function<bool(const Strut&)>& barred);
 

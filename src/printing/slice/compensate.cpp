@@ -11,7 +11,7 @@
 namespace pliant::slice {
 namespace {
 
-/// Fine pixels of `place` in a gap of at most `width` between a and b, in their row or their column.
+/// Fine pixels of `place` in a gap of at most `width` between a and b, along their row or column.
 RunSet gap_between(const RunSet& a, const RunSet& b, const RunSet& place, int width) {
     const auto between = [&](const Reach& to_a, const Reach& to_b) {
         return common(common(reaching(a, to_a), reaching(b, to_b)), place);
@@ -33,7 +33,7 @@ public:
         free_ = complement(solid);
     }
 
-    /// Returns the number of fine pixels.
+    /// Returns the number of fine pixels filled.
     std::int64_t close_gaps(int width) {
         std::int64_t closed = 0;
         for (std::size_t a = 0; a < sets_.size() && width > 0; ++a) {
@@ -67,7 +67,7 @@ private:
     RunSet free_;
 };
 
-/// Fine pixels to pixels.
+/// Converts fine pixels to pixels.
 class Reducer {
 public:
     Reducer(const std::vector<RunSet>& sets, int factor, const Raster& raster, const ComposeRules& rules)
@@ -124,7 +124,7 @@ private:
     int factor_;
     const ComposeRules& rules_;
     int width_px_;
-    std::vector<std::vector<int>> counts_;  ///< per material and column: fine pixels in the row being added
+    std::vector<std::vector<int>> counts_;  ///< per material and column: number of fine pixels in the row being summed
     std::vector<RunImage> images_;
 };
 

@@ -96,7 +96,7 @@ TEST_CASE("without anti-aliasing pixels stay full or dark") {
     CHECK(area(cut(square, {{"soft", {-60}}}, 0, {false, 0.5, 20}), 0) == 18 * 18);
 }
 
-TEST_CASE("senseless offsets are refused with the material's name") {
+TEST_CASE("invalid offsets are refused with the material's name") {
     Settings settings{raster, 50, {}};
     settings.compensation["soft"] = {0, -5, 2};
     CHECK(Slicer::prepare(square, settings).error().message ==

@@ -26,7 +26,7 @@ std::int64_t covered(std::int64_t winding) {
     return std::min(full_coverage, std::abs(winding));
 }
 
-/// The grey values of coverages.
+/// Converts coverage to grey values.
 class Greys {
 public:
     explicit Greys(const ComposeRules& rules)
@@ -56,7 +56,7 @@ public:
         images_[owner.material].append(row, begin, end, owner.value);
     }
 
-    /// The material and value of a pixel; material -1 where it is dark or outside.
+    /// The material and value of a pixel; material -1 if it is dark or outside.
     [[nodiscard]] std::pair<int, int> look(Pixel p) const {
         for (std::size_t m = 0; m < images_.size(); ++m) {
             if (const int value = images_[m].at(p.row, p.column); value > 0) return {static_cast<int>(m), value};
@@ -68,7 +68,7 @@ public:
         return std::count_if(images_.begin(), images_.end(), [](const RunImage& i) { return !i.blank(); }) > 1;
     }
 
-    /// Gives full light to pixels, ordered by row and column.
+    /// Sets pixels, ordered by row and column, to full light.
     void brighten(const std::vector<Pixel>& pixels) {
         std::vector<std::vector<Pixel>> of_material(images_.size());
         for (const Pixel& p : pixels) of_material[look(p).first].push_back(p);
@@ -101,7 +101,7 @@ private:
     std::vector<RunImage> images_;
 };
 
-/// What bodies that only touch may overlap by in a pixel.
+/// Overlap in a pixel up to which bodies count as only touching.
 constexpr std::int64_t rounding = full_coverage >> 16;
 
 class Composer {
@@ -140,7 +140,7 @@ public:
     }
 
 private:
-    /// A layer of one body has no owner to find and no gap to close.
+    /// A layer of one body needs no ownership test and has no gaps.
     void sweep_row_of_one(std::span<const Cell> cells) {
         const int material = material_of_[cells[0].body()], row = cells[0].row();
         std::int64_t winding = 0;
@@ -171,7 +171,7 @@ private:
             cursor = column + 1;
             i = end;
         }
-        // A closed outline leaves nothing active at the end of a row.
+        // With closed outlines nothing is active at the end of a row.
     }
 
     /// Sets `here_` to the windings inside the pixel of these cells and `active_` to those to its right.
@@ -206,7 +206,7 @@ private:
         return covered(winding);
     }
 
-    /// Serves the bodies from the last to the first until the pixel is full.
+    /// Allocates the pixel to the bodies from the last to the first until it is full.
     Owner resolve(const std::vector<Share>& shares) {
         std::int64_t used = 0;
         int winner = -1;
@@ -247,7 +247,7 @@ private:
     int width_px_;
     Greys grey_;
     std::vector<std::int64_t> share_of_;  ///< per material, of the pixel being resolved
-    std::vector<int> served_;             ///< the materials that share_of_ is valid for, latest body first
+    std::vector<int> served_;             ///< the materials with a valid entry in share_of_, latest body first
     std::vector<Share> active_, here_;
     std::vector<Pixel> nearly_full_;
     int least_gap_value_ = 255;

@@ -1,4 +1,4 @@
-// Who owns a pixel: from the coverage of all bodies to one image per material.
+// Ownership of pixels: from the coverage of all bodies to one image per material.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace pliant::slice {
 
 struct ComposeRules {
     bool anti_alias = true;
-    double threshold = 0.5;    ///< without anti-aliasing: pixels covered at least so much get full light
+    double threshold = 0.5;    ///< without anti-aliasing: pixels covered at least this much get full light
     double close_gap_um = 20;  ///< see compose()
 };
 
@@ -20,42 +20,43 @@ struct MaterialImage {
     int material = 0;
     RunImage image;
     std::int64_t value_sum = 0;   ///< of all pixels, for the area
-    std::int64_t shared_sum = 0;  ///< of those that another material's image lights too, on purpose
+    std::int64_t shared_sum = 0;  ///< of the pixels that another material's image exposes too, on purpose
 };
 
-/// How a blended body was dealt out, in whole pixels of light.
+/// How a blended body was divided, in whole pixels of light.
 struct DealtBody {
     int body = 0;
     double first_px = 0, second_px = 0;
 };
 
 struct ComposedLayer {
-    std::vector<MaterialImage> images;  ///< ordered by material; blank ones are left out
-    std::vector<double> lost_px;        ///< (bodies), area that later bodies of other materials took from each, pixels
+    std::vector<MaterialImage> images;  ///< ordered by material; without blank ones
+    std::vector<double> lost_px;        ///< (bodies) area that later bodies of other materials took from each, pixels
     std::int64_t closed_gap_pixels = 0;
-    bool overlapping = false;          ///< there are pixels of which outlines cover more than there is
-    std::vector<double> doubled_px{};  ///< (bodies), area that later bodies of the same material, or itself, cover too
+    bool overlapping = false;          ///< some pixels are covered by more than their area
+    std::vector<double> doubled_px{};  ///< (bodies) area also covered by later bodies of the same material or by the
+                                       ///< body itself
     std::vector<DealtBody> dealt{};    ///< of bodies that have a blend
 };
 
-/// The images (materials) that are not blank.
+/// The non-blank ones of the images (one per material).
 [[nodiscard]] std::vector<MaterialImage> lit_images(std::vector<RunImage> images);
 
-/// The image of a material; null where the layer has none.
+/// The image of a material; null if the layer has none.
 [[nodiscard]] const MaterialImage* find(const ComposedLayer& layer, int material);
 [[nodiscard]] MaterialImage* find(ComposedLayer& layer, int material);
 
-/// Paints one layer. `cells` as CellBuffer::sorted() gives them; `material_of` names each body's material.
+/// Composes one layer. `cells` as returned by CellBuffer::sorted(); `material_of` names each body's material.
 ///
-/// A body covers |winding| of a pixel, at most 1 (the nonzero rule). Where outlines cover more than a pixel they
-/// overlap: `overlapping` says so, later bodies are served first, and a pixel that outer borders of both pass through
-/// gets too much; divided() makes outlines that do not overlap, which is exact. `lost_px` and `doubled_px` are 0 here.
-/// The pixel goes whole to the material with the largest share (the one with the latest body on a tie), at the light
-/// of all shares together: an interface between materials has neither a dark line nor a pixel in two images.
+/// A body covers |winding| of a pixel, at most 1 (the nonzero rule). Where outlines cover more than a pixel's area they
+/// overlap: `overlapping` says so, later bodies have priority, and a pixel crossed by outer borders of both gets too
+/// much; divided() makes outlines that do not overlap, which is exact. `lost_px` and `doubled_px` are 0 here. The pixel
+/// goes entirely to the material with the largest share (on a tie, that of the latest body), with the light of all
+/// shares together: an interface between materials has neither a dark line nor a pixel in two images.
 ///
 /// Where a gap of up to `close_gap_um` between different materials runs through a pixel or along its border, the pixel
-/// gets full light: one that misses at most that width and lies, in its row or its column, between two pixels of
-/// different materials, one of them full and the other missing no more than that either.
+/// gets full light. Condition: it lacks at most that width and is, in its row or its column, between two pixels of
+/// different materials, one of them full and the other lacking no more than that.
 [[nodiscard]] ComposedLayer compose(const std::vector<Cell>& cells, std::span<const int> material_of,
                                     const Raster& raster, const ComposeRules& rules);
 

@@ -18,7 +18,7 @@ bool before(const Cell& l, const Cell& r) {
     return l.key < r.key;
 }
 
-/// Rows hold a handful of cells, nearly in order.
+/// Rows have only a few cells, nearly sorted.
 void sort_row(Cell* begin, Cell* end) {
     constexpr int few = 40;
     if (end - begin > few) return std::sort(begin, end, before);
@@ -52,7 +52,7 @@ void CellBuffer::add(int body, const std::vector<Segment>& lines) {
     for (const auto& [u0, v0, u1, v1] : lines) add_line(u0, v0, u1, v1);
 }
 
-/// Cuts a line where it passes from row to row. Heights are whole steps from here on, so that they add up exactly.
+/// Splits a line at row boundaries. Heights are whole steps from here on, so that they add up exactly.
 void CellBuffer::add_line(double u0, double v0, double u1, double v1) {
     const std::int64_t from = to_steps(v0 * steps), to = to_steps(v1 * steps);
     if (from == to) return;
@@ -74,16 +74,16 @@ void CellBuffer::add_line(double u0, double v0, double u1, double v1) {
     add_in_row(row, u, u1, to - v);
 }
 
-/// A piece inside one row of pixels, cut where it passes from column to column.
+/// Splits a piece inside one row of pixels at column boundaries.
 void CellBuffer::add_in_row(int row, double u0, double u1, std::int64_t height) {
     const double low_u = std::min(u0, u1), high_u = std::max(u0, u1);
     const int first = static_cast<int>(low_u);
     const int last = static_cast<int>(std::ceil(high_u)) - 1;
-    // The solid lies to the left of an outline seen from above, so to the right of one that runs down the image.
+    // Seen from above the solid is to the left of an outline, so in the image it is to the right of one that runs down.
     if (last <= first) return add_cell(row, first, height, (u0 + u1) / 2 - first);
     const double per_column = static_cast<double>(height) / (high_u - low_u);
     double left = low_u;
-    std::int64_t done = 0;  // rounded as a sum, so that what rounding leaves does not add up
+    std::int64_t done = 0;  // rounds the running sum, so that rounding errors do not accumulate
     for (int column = first; column < last; ++column) {
         const double right = column + 1;
         const std::int64_t so_far = to_steps((right - low_u) * per_column);
@@ -94,7 +94,7 @@ void CellBuffer::add_in_row(int row, double u0, double u1, std::int64_t height) 
     add_cell(row, last, height - done, (left + high_u) / 2 - last);
 }
 
-/// `middle`: where in the pixel the piece passes, 0 to 1 from its left side.
+/// `middle`: mean position of the piece in the pixel, 0 to 1 from its left side.
 void CellBuffer::add_cell(int row, int column, std::int64_t cover, double middle) {
     const std::uint64_t key =
         (static_cast<std::uint64_t>(row) << 48) | (static_cast<std::uint64_t>(column) << 31) | body_;
@@ -107,7 +107,7 @@ void CellBuffer::add_cell(int row, int column, std::int64_t cover, double middle
     }
 }
 
-/// By counting into rows, then within each row.
+/// Counting sort by rows, then sorting within each row.
 const std::vector<Cell>& CellBuffer::sorted() {
     sorted_.resize(cells_.size());
     if (cells_.empty()) return sorted_;

@@ -9,18 +9,18 @@
 
 namespace pliant::slice {
 
-/// Coverage is counted in steps of 2^-40 of a pixel. In whole numbers sums do not depend on their order, a closed
-/// outline adds up to exactly nothing at the end of a row, and a tie is a tie.
+/// Coverage is an integer in steps of 2^-40 of a pixel. So sums do not depend on their order, a closed outline sums to
+/// exactly zero at the end of a row, and ties are exact.
 inline constexpr int coverage_bits = 40;
 inline constexpr std::int64_t full_coverage = std::int64_t{1} << coverage_bits;
 
-/// What the outline of one body contributes to one pixel. With `cover` the signed height of outline inside the pixel
-/// (positive where the body lies to its right) and `area` its signed area between the outline and the pixel's right
-/// side, the coverage of a pixel is: sum of `cover` of all cells to its left in the row, plus the sum of its own
-/// `area`. This is the accumulation rule of exact-area font rasterisers (R. Levien's font-rs, D. Turner's FreeType);
-/// cost: one cell per pixel that an outline passes through, whatever the area inside.
+/// The contribution of one body's outline to one pixel. With `cover` the signed height of outline inside the pixel
+/// (positive where the body is to its right) and `area` the signed area between the outline and the pixel's right side,
+/// the coverage of a pixel is the sum of `cover` of all cells to its left in the row, plus the sum of its own `area`.
+/// This is the accumulation rule of exact-area font rasterisers (R. Levien's font-rs, D. Turner's FreeType); cost: one
+/// cell per pixel that an outline passes through, whatever the area inside.
 struct Cell {
-    std::uint64_t key;         ///< row, column and body, so that cells sort in the order they are swept
+    std::uint64_t key;         ///< row, column and body, so that cells sort in sweep order
     std::int64_t cover, area;  ///< in steps of 1 / full_coverage
 
     [[nodiscard]] int row() const { return static_cast<int>(key >> 48); }
@@ -28,17 +28,17 @@ struct Cell {
     [[nodiscard]] int body() const { return static_cast<int>(key & 0x7FFFFFFF); }
 };
 
-/// Outlines from the platform to the image (x: columns, y: rows), the solid to the right of those that run to higher
-/// rows. They must lie inside the raster but for rounding (they are clamped to it).
+/// Transforms outlines from the platform to the image (x: columns, y: rows), with the solid to the right of those that
+/// run to higher rows. They must be inside the raster up to rounding (they are clamped to it).
 [[nodiscard]] std::vector<Segment> in_image(const std::vector<Segment>& segments, const Raster& raster);
 
 /// Collects the cells of one layer.
 class CellBuffer {
 public:
-    /// Adds outlines of a body as in_image() gives them.
+    /// Adds outlines of a body as returned by in_image().
     void add(int body, const std::vector<Segment>& lines);
 
-    /// All cells, ordered by row, then column, then body; several may name the same pixel and body. Columns reach from
+    /// All cells, ordered by row, then column, then body; several may have the same pixel and body. Columns range from
     /// 0 to width_px (the right border).
     [[nodiscard]] const std::vector<Cell>& sorted();
 

@@ -13,7 +13,7 @@ using pliant::near;
 
 namespace {
 
-/// The part of a polygon where `inside(p)` >= 0 (Sutherland and Hodgman's clipping), an independent way to the area.
+/// The part of a polygon where `inside(p)` >= 0 (Sutherland-Hodgman clipping): an independent way to compute areas.
 template <class Distance>
 std::vector<Point2> clip(const std::vector<Point2>& polygon, const Distance& inside) {
     std::vector<Point2> kept;
@@ -44,7 +44,7 @@ double clipped_area(std::vector<Point2> polygon, double x0, double x1, double y0
     return polygon.empty() ? 0 : area(polygon);
 }
 
-/// Dense coverage from the cells, by the rule that Cell states.
+/// Dense coverage from the cells, by the rule in Cell's comment.
 std::vector<double> dense(const std::vector<Cell>& cells, const Raster& raster) {
     std::vector<double> own(raster.width_px * raster.height_px, 0.0), passed = own;
     const double step = 1.0 / static_cast<double>(full_coverage);

@@ -1,4 +1,4 @@
-// The slicer against the plainest of all: is this point inside?
+// The slicer against the simplest method: a point-in-solid test.
 #include <doctest/doctest.h>
 
 #include "printing/slice/slicer.hpp"
@@ -23,7 +23,7 @@ private:
     std::uint32_t state_;
 };
 
-/// A closed surface around `centre`, every ray from which meets it once; between 0.5 and 1 of `radius`.
+/// A closed surface around `centre` that every ray from there meets once; between 0.5 and 1 times `radius`.
 mesh::TriMesh boulder(const Vec3& centre, double radius, Random& random) {
     constexpr int around = 9, down = 6;
     std::vector<Vec3> ring;
@@ -49,7 +49,7 @@ mesh::TriMesh boulder(const Vec3& centre, double radius, Random& random) {
     return mesh;
 }
 
-/// How often the surface winds around a point: signed crossings of the ray straight up.
+/// The winding number of a point: signed crossings of the vertical upward ray.
 int winding(const mesh::TriMesh& mesh, const Vec3& p) {
     int count = 0;
     for (const auto& t : mesh.triangles) {
@@ -64,7 +64,7 @@ int winding(const mesh::TriMesh& mesh, const Vec3& p) {
 
 const Raster raster{40, 36, 100};
 
-/// Share of sample points of a pixel that lie in the body.
+/// Fraction of a pixel's sample points inside the body.
 double sampled(const mesh::TriMesh& mesh, int row, int column, double z) {
     constexpr int n = 12;
     int inside = 0;
@@ -131,7 +131,7 @@ TEST_CASE("two materials: every pixel is lit by at most one, and together they a
             const double z = (layer + 0.5) * 100;
             const double in_a = sampled(a, row, column, z), in_b = sampled(b, row, column, z);
             if (in_a + in_b == 0) CHECK(value < 26);
-            if (in_b == 1) CHECK(owner == 1);  // the later body keeps what both claim
+            if (in_b == 1) CHECK(owner == 1);  // the later body keeps the overlap
             if (in_a == 1 && in_b == 0) CHECK(owner == 0);
             if (in_a == 1 || in_b == 1) CHECK(value > 229);
         }

@@ -47,7 +47,7 @@ public:
     }
 
 private:
-    /// Where the parabolas of two cells meet.
+    /// The intersection of the parabolas of two cells.
     [[nodiscard]] double meet(int q, int v) const {
         const double fq = f_[static_cast<std::size_t>(q)], fv = f_[static_cast<std::size_t>(v)];
         return ((fq + square_ * q * q) - (fv + square_ * v * v)) / (2 * square_ * (q - v));

@@ -1,4 +1,4 @@
-// Distances on a grid of cells.
+// Distance transform on a grid of cells.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace pliant::slice {
 
-/// Cells of a box, x fastest.
+/// Cells of a box; x varies fastest.
 struct CellGrid {
     int nx = 0, ny = 0, nz = 0;
     [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(nx) * ny * nz; }
@@ -18,8 +18,8 @@ struct CellGrid {
 };
 
 /// For every cell the squared distance between its centre and that of the nearest cell that is not `solid`, in units of
-/// the cells' edge; cells outside the grid are not solid. `height`: of a cell, in the same unit. Exact; cost: the
-/// cells.
+/// the cells' edge; cells outside the grid are not solid. `height`: of a cell, in the same unit. Exact; cost: linear in
+/// the cells.
 [[nodiscard]] std::vector<float> squared_distances(const CellGrid& grid, const std::vector<std::uint8_t>& solid,
                                                    double height);
 

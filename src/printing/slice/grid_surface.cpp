@@ -36,11 +36,11 @@ Status check_points(const mesh::TriMesh& surface, std::string_view label) {
     return {};
 }
 
-/// Fills `surface.points` with the different points and returns the new index of each old one.
+/// Fills `surface.points` with the distinct points and returns the new index of each old one.
 std::vector<int> weld(const std::vector<GridPoint>& points, GridSurface& surface) {
     std::vector<int> order(points.size());
     std::iota(order.begin(), order.end(), 0);
-    // By height, so that what one layer needs lies together.
+    // Sorted by height, so that the data of one layer are close together.
     std::sort(order.begin(), order.end(), [&](int a, int b) {
         if (points[a].z != points[b].z) return points[a].z < points[b].z;
         return points[a] != points[b] ? points[a] < points[b] : a < b;
@@ -54,7 +54,7 @@ std::vector<int> weld(const std::vector<GridPoint>& points, GridSurface& surface
 }
 
 void drop_repetitions(std::vector<Triangle>& triangles) {
-    // The smallest corner first: two triangles with the same corners in the same sense become the same bits.
+    // The smallest corner first: triangles with the same corners and orientation become identical.
     for (Triangle& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     std::sort(triangles.begin(), triangles.end());
     triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
@@ -78,7 +78,7 @@ Result<GridSurface> snap_to_grid(const mesh::TriMesh& surface_um, std::string_vi
     return surface;
 }
 
-/// Whole numbers of 32 bits come back from doubles as they were, and the order of the points stays.
+/// 32-bit integers are exact in double precision, and the order of the points is unchanged.
 std::size_t join_near_points(GridSurface& surface, double reach_um) {
     mesh::TriMesh mesh{{}, surface.triangles};
     for (const GridPoint& p : surface.points) mesh.points.push_back(vector_of(p));

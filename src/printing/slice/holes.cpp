@@ -13,7 +13,7 @@ struct RimEdge {
     bool operator<(const RimEdge& o) const { return from != o.from ? from < o.from : to < o.to; }
 };
 
-/// The directed edges that are missing, ordered by their start.
+/// The directed edges without opposite, ordered by their start.
 std::vector<RimEdge> missing_edges(const std::vector<Triangle>& triangles) {
     const std::vector<EdgeUse> uses = edge_uses(triangles);
     std::vector<RimEdge> rim;
@@ -30,8 +30,8 @@ std::vector<RimEdge> missing_edges(const std::vector<Triangle>& triangles) {
     return rim;
 }
 
-/// Splits the rim into simple loops of point indices. As many rim edges leave a point as reach it (the rim is the
-/// boundary of a sum of triangles), so a walk can only end where it began.
+/// Splits the rim into simple loops of point indices. Every point has as many outgoing as incoming rim edges (the rim
+/// is the boundary of a sum of triangles), so a walk can only end where it began.
 class RimWalker {
 public:
     RimWalker(const std::vector<RimEdge>& rim, std::size_t point_count)
@@ -69,8 +69,8 @@ private:
     }
 
     const std::vector<RimEdge>& rim_;
-    std::vector<std::size_t> next_, end_;  ///< per point: the rim edges that leave it and are not walked yet
-    std::vector<int> place_;               ///< per point: where it lies in the current path, or -1
+    std::vector<std::size_t> next_, end_;  ///< per point: range of outgoing rim edges not walked yet
+    std::vector<int> place_;               ///< per point: position in the current path, or -1
 };
 
 GridPoint middle(const GridSurface& surface, const std::vector<int>& loop) {
@@ -86,7 +86,7 @@ GridPoint middle(const GridSurface& surface, const std::vector<int>& loop) {
     return {mean(x), mean(y), mean(z)};
 }
 
-/// Fans the loop and returns the area of the fan (sum of absolute triangle areas).
+/// Closes the loop with a fan and returns its area (sum of absolute triangle areas).
 double fill(GridSurface& surface, const std::vector<int>& loop) {
     double area2 = 0;
     const auto add = [&](const Triangle& t) {

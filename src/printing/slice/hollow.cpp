@@ -12,11 +12,11 @@ namespace {
 
 constexpr int solid_value = 128;
 
-/// How cells lie on pixels and layers.
+/// The grid of cells over pixels and layers.
 struct Cells {
     CellGrid grid;
     int edge_px = 1;
-    int left_px = 0, top_px = 0;  ///< of the first cell
+    int left_px = 0, top_px = 0;  ///< position of the first cell
     double height_um = 0;
     int layer_count = 0;
 
@@ -28,7 +28,7 @@ struct Cells {
 /// A hole along a row or a column of the image.
 struct Drain {
     double z_um = 0;       ///< of its axis
-    double across_px = 0;  ///< of its axis: a row if it runs along rows, else a column
+    double across_px = 0;  ///< of its axis: the row of a hole along a row, else the column
     int begin_px = 0, end_px = 0;
     bool along_rows = false;
 };
@@ -163,7 +163,7 @@ private:
         cells_.top_px = std::min(top, bottom);
     }
 
-    /// A cell is solid where every pixel of every layer in it is.
+    /// A cell is solid if every pixel of every layer in it is.
     void fill_solid() {
         const CellGrid& g = cells_.grid;
         solid_.assign(g.size(), 0);
@@ -197,7 +197,8 @@ private:
         });
     }
 
-    /// A wall ends somewhere in the cell that is not solid, and a cavity at the border of its own.
+    /// Half a cell because a cavity extends to the border of its cells, and one more because a wall may end anywhere in
+    /// its last cell.
     void mark_hollow() {
         const double edge_um = cells_.edge_px * raster_.pixel_um;
         const double least = wanted_.wall_um / edge_um + 1.5;
@@ -262,8 +263,8 @@ private:
         }
     }
 
-    /// The shortest way, at slab `z`, from above or below the cavity's cells in slab `end` to where nothing is solid:
-    /// so the hole reaches the cavity's very end, however narrow that is.
+    /// The shortest way out, at slab `z`, from directly above or below the cavity's cells in slab `end`, so that the
+    /// hole reaches the end of the cavity however narrow that is.
     [[nodiscard]] std::optional<Drain> shortest(const std::vector<Cell>& cavity, int end, int z, double z_um) const {
         const CellGrid& g = cells_.grid;
         std::optional<Drain> best;

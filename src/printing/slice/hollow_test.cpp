@@ -97,7 +97,7 @@ TEST_CASE("drains open the box: no trap is left, and holes are as large as their
     CHECK(drilled < 2 * hole * 1.3);
 }
 
-TEST_CASE("what is nowhere thick enough is refused") {
+TEST_CASE("a part that is nowhere thick enough is refused") {
     Progress progress;
     const auto made = hollow_out(block, settings, {6000, 0}, progress);
     REQUIRE(!made.has_value());

@@ -10,7 +10,7 @@
 namespace pliant::slice {
 namespace {
 
-/// Calls `meet(a, b)` for stretches of two rows that share a column.
+/// Calls `meet(a, b)` for stretches of two rows with a common column.
 template <class Meet>
 void overlaps(std::span<const Stretch> above, std::span<const Stretch> below, const Meet& meet) {
     for (auto a = above.begin(), b = below.begin(); a != above.end() && b != below.end();) {
@@ -23,14 +23,14 @@ void overlaps(std::span<const Stretch> above, std::span<const Stretch> below, co
     }
 }
 
-/// Where a pixel's centre lies on the platform, without turns, offsets and mirrors: in the image as it is seen.
+/// Position of a pixel's centre on the platform in image orientation, without rotation, offset and mirroring.
 std::string place(const Raster& raster, int row, int column) {
     return fmt::format("row {}, column {} ({:.2f} mm, {:.2f} mm from the image's centre)", row, column,
                        (column + 0.5 - raster.width_px / 2.0) * raster.pixel_um / 1000,
                        (raster.height_px / 2.0 - row - 0.5) * raster.pixel_um / 1000);
 }
 
-/// Two groups that have grown together.
+/// Combines two groups that have merged.
 IslandGroup joined(const IslandGroup& a, const IslandGroup& b) {
     if (a.islands == 0 || b.islands == 0) return a.islands == 0 ? b : a;
     IslandGroup both = a.largest.pixels >= b.largest.pixels ? a : b;
@@ -42,8 +42,8 @@ IslandGroup joined(const IslandGroup& a, const IslandGroup& b) {
     return both;
 }
 
-/// Light of the next layers reaches down into the last one or two: what they hold will mostly do. What is lost of a
-/// few voxels nobody will find missing.
+/// Light of the next layers reaches down into the last one or two, so what these support mostly holds. The loss of a
+/// few voxels goes unnoticed.
 Severity severity_of(const IslandGroup& group, std::int64_t few_voxels) {
     constexpr int soon_layers = 2;
     if (group.held_layer < 0 || group.held_layer - group.first_layer > soon_layers) return Severity::high;
@@ -65,7 +65,7 @@ std::string group_text(const IslandGroup& g, const Raster& raster) {
         area_text(g.most_pixels, raster), place(raster, g.largest.row, g.largest.column));
 }
 
-/// What the groups have in common, in a line: how many, where the first and where the largest is.
+/// Summary of groups in one line: their number, the place of the first and of the largest.
 std::string summary_text(std::span<const IslandGroup> groups, std::string_view what, const Raster& raster) {
     const auto by_area = [](const IslandGroup& l, const IslandGroup& r) { return l.most_pixels < r.most_pixels; };
     const auto by_layer = [](const IslandGroup& l, const IslandGroup& r) { return l.first_layer < r.first_layer; };
@@ -79,7 +79,7 @@ std::string summary_text(std::span<const IslandGroup> groups, std::string_view w
                        place(raster, largest.largest.row, largest.largest.column));
 }
 
-/// The worst of them one by one, the others of each severity in a line.
+/// The worst groups one by one, the others of each severity in one line.
 void describe_islands(std::span<const IslandGroup> groups, const Raster& raster, std::vector<std::string>& lines) {
     const auto below = [&](Severity severity) {
         const auto end =
@@ -120,7 +120,7 @@ std::uint32_t Inspector::root(std::vector<Thing>& things, std::uint32_t i) {
     return i;
 }
 
-/// The smaller root stays.
+/// The smaller root is kept.
 std::uint32_t Inspector::join(std::vector<Thing>& things, std::uint32_t a, std::uint32_t b) {
     a = root(things, a);
     b = root(things, b);
@@ -174,7 +174,7 @@ void Inspector::link_solid(const LayerShape& shape, const std::vector<std::uint3
     add_islands(shape, ids, on_solid);
 }
 
-/// A group ends where what is held meets it.
+/// A group ends when it meets something held.
 void Inspector::join_solids(std::uint32_t a, std::uint32_t b) {
     a = root(solids_, a);
     b = root(solids_, b);
@@ -231,7 +231,7 @@ void Inspector::link_voids(const LayerShape& shape, const std::vector<std::uint3
     }
 }
 
-/// A void that was closed until this layer and opens in it was a suction cup.
+/// A void that was closed up to this layer and now opens was a suction cup.
 void Inspector::join_voids(std::uint32_t a, std::uint32_t b) {
     a = root(voids_, a);
     b = root(voids_, b);

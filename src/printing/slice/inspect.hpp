@@ -1,4 +1,4 @@
-// What will not print well: islands, cavities, pieces that hang together nowhere.
+// Detects printing problems: islands, cavities, separate pieces.
 #pragma once
 
 #include <cstdint>
@@ -17,33 +17,33 @@ struct Island {
     std::int64_t pixels = 0;
 };
 
-/// How much a finding matters. `low`: the grain of the raster; `medium`: look at it; `high`: it will fail.
+/// How serious a finding is. `low`: an effect of the raster; `medium`: should be looked at; `high`: will fail.
 enum class Severity { low, medium, high };
 [[nodiscard]] const char* severity_name(Severity severity);
 
-/// Islands that grow together before anything holds them: what hangs in mid-air as one.
+/// Islands that merge before anything supports them: one object in mid-air.
 struct IslandGroup {
     int islands = 0;
-    int first_layer = 0, last_layer = 0;  ///< in mid-air
-    int held_layer = -1;           ///< the first in which it hangs together with what stands on the platform; -1: never
-    Island largest{};              ///< where to look
-    std::int64_t most_pixels = 0;  ///< of a layer, while nothing holds it
-    std::int64_t voxels = 0;       ///< of all those layers
+    int first_layer = 0, last_layer = 0;  ///< layers in mid-air
+    int held_layer = -1;                  ///< the first layer in which it is connected to the platform; -1: never
+    Island largest{};                     ///< where to look
+    std::int64_t most_pixels = 0;         ///< in one layer, while unsupported
+    std::int64_t voxels = 0;              ///< total over those layers
     Severity severity = Severity::high;
 };
 
-/// Void that solid closes off from the outside while layers [first_layer, last_layer] are made.
+/// Void that is enclosed by solid while layers [first_layer, last_layer] are made.
 struct Cavity {
     enum class End { closed, opened, last_layer };
     int first_layer = 0, last_layer = 0;
     std::int64_t voxels = 0;
     std::int64_t volume = 0;  ///< in pixels times micrometres
     int row = 0, column = 0;  ///< of one of its pixels, in the first layer
-    End end = End::closed;    ///< closed for good: a resin trap; opened later, or open at the part's last layer only: a
+    End end = End::closed;    ///< closed for good: a resin trap; opened later, or open only at the part's last layer: a
                               ///< suction cup until then
 };
 
-/// Solid that hangs together, through all layers.
+/// A connected component of the solid, through all layers.
 struct Piece {
     int first_layer = 0, last_layer = 0;
     std::int64_t voxels = 0;
@@ -51,20 +51,20 @@ struct Piece {
 
 struct Findings {
     std::vector<Island> islands;
-    std::vector<IslandGroup> groups;  ///< of the islands, the worst first
+    std::vector<IslandGroup> groups;  ///< groups of islands, the worst first
     std::vector<Cavity> cavities;
     std::vector<Piece> pieces;
-    std::vector<int> faint_layers;  ///< with light, but no pixel of half light
+    std::vector<int> faint_layers;  ///< layers with light, but without a pixel of at least half light
 };
 
-/// Follows solid and void from layer to layer. Layers come in order, from 0; cost: their stretches.
+/// Tracks solid and void from layer to layer. Layers come in order, from 0; cost: their stretches.
 class Inspector {
 public:
     explicit Inspector(Layers layers = 1) : layers_(std::move(layers)) {}
     void add(LayerShape shape);
-    /// After the last layer. Cavities below `least_voxels` are left out: surfaces that touch each other obliquely make
-    /// many of a pixel or two. Groups of islands of at most so many voxels, held within two layers, are of low
-    /// severity; others are high if nothing holds them for more than two layers, medium else.
+    /// Call after the last layer. Cavities below `least_voxels` are left out: surfaces that touch at a small angle
+    /// create many of a pixel or two. Groups of islands of at most that many voxels, supported within two layers, are
+    /// of low severity; the others are high if unsupported for more than two layers, otherwise medium.
     [[nodiscard]] Findings finish(std::int64_t least_voxels = 8);
 
 private:
@@ -74,8 +74,8 @@ private:
         std::int64_t voxels = 0;
         std::int64_t volume = 0;
         int row = 0, column = 0;
-        bool held = false;    ///< of solid: hangs together with what stands on the platform
-        IslandGroup group{};  ///< of solid that is not held
+        bool held = false;    ///< for solid: connected to the platform
+        IslandGroup group{};  ///< for solid that is not held
     };
     static std::uint32_t root(std::vector<Thing>& things, std::uint32_t i);
     static std::uint32_t join(std::vector<Thing>& things, std::uint32_t a, std::uint32_t b);
@@ -88,12 +88,12 @@ private:
     Layers layers_;
     int layer_ = 0;
     LayerShape below_;
-    std::vector<std::uint32_t> solid_below_, voids_below_;  ///< per piece of the layer below: its thing
+    std::vector<std::uint32_t> solid_below_, voids_below_;  ///< per piece of the layer below: index of its thing
     std::vector<Thing> solids_, voids_{Thing{}};            ///< voids_[0] is the outside
     Findings findings_;
 };
 
-/// Lines of at most five groups of islands and five cavities each, and one for all others of a severity, with layers,
+/// At most five lines for groups of islands and five for cavities, and one for all others of a severity, with layers,
 /// places in millimetres on the platform, areas and volumes.
 [[nodiscard]] std::vector<std::string> describe(const Findings& findings, const Raster& raster);
 

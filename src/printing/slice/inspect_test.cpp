@@ -74,10 +74,10 @@ TEST_CASE("closed cavities, cups and tunnels are told apart") {
     REQUIRE(f.cavities.size() == 1);
     CHECK(f.cavities[0].end == Cavity::End::last_layer);
     CHECK(f.cavities[0].voxels == 144 * 8);
-    // With a slit under one wall it is vented from the start.
+    // With a slit under one wall it is vented from the beginning.
     f = findings_of(pot(150));
     CHECK(f.cavities.empty());
-    // A tunnel from the platform to the top is a cup too: the platform closes it.
+    // A tunnel from the platform to the top is a cup, too: the platform closes it.
     f = findings_of({solid({-1000, -1000, 0}, {-600, 1000, 200}), solid({600, -1000, 0}, {1000, 1000, 200}),
                      solid({-600, -1000, 0}, {600, -600, 200}), solid({-600, 600, 0}, {600, 1000, 200})});
     REQUIRE(f.cavities.size() == 1);
@@ -100,15 +100,15 @@ TEST_CASE("pieces that touch nowhere are counted") {
     CHECK(f.islands.empty());
 }
 
-TEST_CASE("layers of hairs are called faint") {
+TEST_CASE("layers of faint lines are reported") {
     const Findings f =
         findings_of({solid({-1000, -1000, 0}, {1000, 1000, 200}), solid({10, -1000, 200}, {40, 1000, 300})});
     CHECK(f.faint_layers == std::vector<int>{4, 5});
 }
 
 TEST_CASE("islands that grow together before anything holds them are one group") {
-    // A table whose plate lies at layer 8; below it hangs a comb: three teeth in layers 2 and 3, joined by a bar in
-    // layers 4 to 7. Nothing holds it before layer 8. A second plate that nothing ever holds floats beside it.
+    // A table with its plate at layer 8; below hangs a comb: three teeth in layers 2 and 3, joined by a bar in layers 4
+    // to 7, unsupported before layer 8. A second plate, never supported, floats beside it.
     const Findings f =
         findings_of({solid({-2000, -500, 0}, {-1500, 500, 400}), solid({1500, -500, 0}, {2000, 500, 400}),
                      solid({-2000, -500, 400}, {2000, 500, 500}), solid({-600, -100, 100}, {-400, 100, 200}),

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int solid_value = 128;
 
-/// Sets of numbered things, joined over and over.
+/// Union-find over numbers.
 class Sets {
 public:
     explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
@@ -16,7 +16,7 @@ public:
         while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
         return i;
     }
-    /// The smaller number stays the root.
+    /// The smaller number remains the root.
     void join(std::uint32_t a, std::uint32_t b) {
         a = root(a);
         b = root(b);
@@ -27,7 +27,7 @@ private:
     std::vector<std::uint32_t> parent_;
 };
 
-/// The solid stretches of a row: runs of all images, joined where they touch or, lit twice, overlap.
+/// The solid stretches of a row: runs of all images, merged where they touch or, if exposed twice, overlap.
 void solid_row(const ComposedLayer& layer, int row, std::vector<Stretch>& stretches) {
     const std::size_t first = stretches.size();
     for (const MaterialImage& m : layer.images) {
@@ -50,7 +50,7 @@ void solid_row(const ComposedLayer& layer, int row, std::vector<Stretch>& stretc
     if (begin != stretches.end()) stretches.erase(last + 1, stretches.end());
 }
 
-/// What a row leaves between its stretches.
+/// The gaps between the solid stretches of a row.
 void void_row(std::span<const Stretch> solid, int width, std::vector<Stretch>& stretches) {
     int at = 0;
     for (const Stretch& s : solid) {
@@ -60,7 +60,7 @@ void void_row(std::span<const Stretch> solid, int width, std::vector<Stretch>& s
     if (at < width) stretches.push_back({static_cast<std::uint16_t>(at), static_cast<std::uint16_t>(width), 0});
 }
 
-/// Calls `meet(i, j)` for stretches of two rows that share a column.
+/// Calls `meet(i, j)` for stretches of two rows with a common column.
 template <class Meet>
 void overlaps(const PieceMap& map, int upper, const Meet& meet) {
     std::uint32_t i = map.starts[upper], j = map.starts[upper + 1];
@@ -76,11 +76,11 @@ void overlaps(const PieceMap& map, int upper, const Meet& meet) {
     }
 }
 
-/// Numbers the pieces by their first stretch. With `outside`, piece 0 is what touches the borders of the image or the
-/// first or last row.
+/// Numbers the components by their first stretch. With `outside`, component 0 is everything connected to the image
+/// borders or the first or last row.
 void number_pieces(PieceMap& map, bool outside, int width) {
     const auto count = static_cast<std::uint32_t>(map.stretches.size());
-    Sets sets(count + 1);  // stretch i is i + 1; 0 is the outside
+    Sets sets(count + 1);  // stretch i has number i + 1; 0 is the outside
     for (int r = 0; r + 1 < map.rows(); ++r)
         overlaps(map, r, [&](std::uint32_t i, std::uint32_t j) { sets.join(i + 1, j + 1); });
     if (outside && map.rows() > 0) {
@@ -104,7 +104,7 @@ void number_pieces(PieceMap& map, bool outside, int width) {
     }
 }
 
-/// The first pixel of each piece.
+/// The first pixel of each component.
 void first_pixels(const PieceMap& map, std::vector<int>& rows, std::vector<int>& columns) {
     rows.assign(map.pixels.size(), -1);
     columns = rows;

@@ -1,4 +1,4 @@
-// A layer as connected pieces of solid and of void, whatever the material.
+// Connected components of solid and void in a layer, whatever the material.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace pliant::slice {
 
-/// Pixels [begin, end) of a row that belong to one piece.
+/// Pixels [begin, end) of a row that belong to one component.
 struct Stretch {
     std::uint16_t begin = 0, end = 0;
     std::uint32_t piece = 0;
@@ -26,12 +26,12 @@ struct PieceMap {
     [[nodiscard]] std::span<const Stretch> row(int row) const;
 };
 
-/// Pixels of at least half light are solid, all others void. Pieces hang together through the sides of pixels.
+/// Pixels of at least half light are solid, all others void. Components are 4-connected.
 struct LayerShape {
     PieceMap solid;
-    PieceMap voids;  ///< in the rows of `solid`; piece 0 is the outside, to which all other rows belong
-    std::vector<int> solid_row, solid_column;  ///< per piece of solid: its first pixel
-    std::vector<int> void_row, void_column;    ///< the same of voids
+    PieceMap voids;  ///< in the rows of `solid`; piece 0 is the outside, which includes all other rows
+    std::vector<int> solid_row, solid_column;  ///< first pixel of each piece of solid
+    std::vector<int> void_row, void_column;    ///< the same for voids
     bool faint = false;                        ///< there is light, but no pixel is solid
 };
 

@@ -1,4 +1,4 @@
-// The heights of layers, all alike or each its own.
+// The heights of layers, uniform or individual.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +6,12 @@
 
 namespace pliant::slice {
 
-/// Layer k lies between bottom_um(k) and top_um(k) above the platform and is cut half way up. Whole micrometres.
+/// Layer k extends from bottom_um(k) to top_um(k) above the platform and is cut at half its height. Whole micrometres.
 class Layers {
 public:
     /// All of one thickness. Precondition: above 0.
-    Layers(int layer_um) : layer_um_(layer_um) {}  // NOLINT: a thickness is a kind of layers
-    /// Tops that rise from above 0; higher layers are as thick as the last of them. Precondition: at least one.
+    Layers(int layer_um) : layer_um_(layer_um) {}  // NOLINT: implicit on purpose, a thickness means uniform layers
+    /// Ascending tops, above 0; higher layers are as thick as the last one. Precondition: at least one.
     explicit Layers(std::vector<int> tops_um)
         : layer_um_(tops_um.back() - (tops_um.size() > 1 ? tops_um[tops_um.size() - 2] : 0)),
           tops_um_(std::move(tops_um)) {}
@@ -23,12 +23,12 @@ public:
     }
     [[nodiscard]] int bottom_um(int k) const { return k == 0 ? 0 : top_um(k - 1); }
     [[nodiscard]] int thickness_um(int k) const { return top_um(k) - bottom_um(k); }
-    /// Twice the height of the middle, which so is whole too.
+    /// Twice the height of the middle, which is an integer too.
     [[nodiscard]] int middle2_um(int k) const { return bottom_um(k) + top_um(k); }
     [[nodiscard]] bool alike() const { return tops_um_.empty(); }
 
-    /// The number of layers whose middle lies at or below a height of `z` / `units_per_um`; cost: the logarithm of the
-    /// layers' number where they are not alike.
+    /// The number of layers whose middle is at or below the height `z` / `units_per_um`; cost: logarithmic in the
+    /// number of layers if they are not uniform.
     [[nodiscard]] int middles_up_to(std::int64_t z, std::int64_t units_per_um) const {
         const std::int64_t twice = 2 * z;
         const int known = static_cast<int>(tops_um_.size());
@@ -49,7 +49,7 @@ public:
 
 private:
     int layer_um_;
-    std::vector<int> tops_um_;  ///< empty: all alike
+    std::vector<int> tops_um_;  ///< empty: uniform
 };
 
 }  // namespace pliant::slice

@@ -1,4 +1,4 @@
-// What a projector must show so that every pixel gets the light that its coverage asks for.
+// Converts coverage to the values that a projector must show.
 #pragma once
 
 #include <array>
@@ -10,18 +10,18 @@
 namespace pliant::slice {
 
 struct LightCorrection {
-    std::optional<std::array<std::uint8_t, 256>> grey;  ///< value to show for each grey value; 0 stays 0
-    std::optional<Image> mask;  ///< share of light that each pixel may get, in 1/255; of the images' size
+    std::optional<std::array<std::uint8_t, 256>> grey;  ///< value to show for each grey value; 0 remains 0
+    std::optional<Image> mask;  ///< fraction of light that each pixel may get, in 1/255; of the images' size
 
     [[nodiscard]] bool none() const { return !grey && !mask; }
 };
 
-/// Values for 0 to 255 from the light at evenly spaced coverages (shares of full light, two or more, rising from 0),
-/// with straight lines between them.
+/// Values for 0 to 255 from the light at evenly spaced coverages (fractions of full light, at least two, ascending from
+/// 0), interpolated linearly.
 [[nodiscard]] std::array<std::uint8_t, 256> grey_values(std::span<const double> light);
 
-/// First the grey values, then the mask. Cost: the runs, and with a mask every lit pixel. Precondition: the mask has
-/// the image's size.
+/// Applies first the grey values, then the mask. Cost: the runs, and with a mask every lit pixel. Precondition: the
+/// mask has the image's size.
 [[nodiscard]] RunImage corrected(const RunImage& image, const LightCorrection& correction);
 
 }  // namespace pliant::slice

@@ -1,4 +1,4 @@
-// Parts of images, and images put together.
+// Restricting and combining images.
 #pragma once
 
 #include "printing/slice/run_image.hpp"
@@ -6,11 +6,11 @@
 
 namespace pliant::slice {
 
-/// The pixels of an image that lie inside a set, or outside of it. Precondition: both of the same size.
+/// The pixels of an image that are inside a set, or outside of it. Precondition: both of the same size.
 [[nodiscard]] RunImage inside(const RunImage& image, const RunSet& set);
 [[nodiscard]] RunImage outside(const RunImage& image, const RunSet& set);
 
-/// Both images. Precondition: no pixel is lit in both.
+/// The union of two images. Precondition: no pixel is lit in both.
 [[nodiscard]] RunImage together(const RunImage& a, const RunImage& b);
 
 }  // namespace pliant::slice

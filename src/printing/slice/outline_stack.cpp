@@ -42,7 +42,7 @@ Result<OutlineStack> OutlineStack::from(std::vector<OutlineSlice> slices, const 
                 slice.bottom_um, slice.top_um);
         below = slice.top_um;
         if (slice.outlines_um.empty()) continue;
-        // The layers whose middle lies below the slice's top.
+        // The layers whose middle is below the slice's top.
         const auto units = static_cast<std::int64_t>(std::ceil(slice.top_um * grid_per_um));
         stack.layer_count_ = std::max(stack.layer_count_, layers.middles_up_to(units - 1, grid_per_um));
     }

@@ -1,4 +1,4 @@
-// Bodies that come as outlines in layers.
+// Bodies given as outlines in layers.
 #pragma once
 
 #include <string>
@@ -9,21 +9,21 @@
 
 namespace pliant::slice {
 
-/// Gives the outlines of the slice that holds the middle of a layer; heights that no slice covers are empty.
+/// Returns the outlines of the slice that contains the middle of a layer; heights without a slice are empty.
 class OutlineStack {
 public:
-    /// Errors name the body: slices that do not rise or lie beyond 2 m.
+    /// Errors name the body: slices that do not ascend or are beyond 2 m.
     [[nodiscard]] static Result<OutlineStack> from(std::vector<OutlineSlice> slices, const Layers& layers,
                                                    const std::string& label);
 
     /// Layers [0, layer_count()) may have outlines.
     [[nodiscard]] int layer_count() const { return layer_count_; }
-    /// Appends the outlines at the middle of `layer`. Safe to call from several threads.
+    /// Appends the outlines at the middle of `layer`. Thread-safe.
     void section(int layer, std::vector<Segment>& segments) const;
 
     /// Area of the outlines times the height of their slices.
     [[nodiscard]] double volume_mm3() const;
-    /// Of the upright walls, and of the first bottom and the last top.
+    /// Area of the upright walls, the first bottom and the last top.
     [[nodiscard]] double area_mm2() const;
 
 private:

@@ -10,7 +10,7 @@ namespace {
 /// A piece of outline from its lower end to its upper one.
 struct Edge {
     double y0, y1, x0, x1;
-    int body, winding;  ///< `winding`: what passing it from left to right adds
+    int body, winding;  ///< `winding`: change of the winding number from left to right
 
     [[nodiscard]] double at(double y) const {
         return y <= y0 ? x0 : y >= y1 ? x1 : x0 + (x1 - x0) * (y - y0) / (y1 - y0);
@@ -41,7 +41,7 @@ std::vector<double> heights_of(const std::vector<Edge>& edges) {
     return heights;
 }
 
-/// An edge with the bodies to its sides from a height on; -1: none.
+/// An edge with the bodies on both sides, from a height on; -1: none.
 struct Border {
     double from, to;
     int left, right;
@@ -73,7 +73,7 @@ private:
         std::size_t edge;
     };
 
-    /// Cuts the band where edges cross.
+    /// Splits the band where edges cross.
     void band(double bottom, double top) {
         passing_.clear();
         for (const std::size_t e : active_) passing_.push_back({edges_[e].at(bottom), edges_[e].at(top), e});
@@ -81,7 +81,7 @@ private:
             return std::pair(l.low, l.high) < std::pair(r.low, r.high);
         });
         cuts_.assign(1, bottom);
-        // Sorting by the other end, each exchange is a crossing.
+        // While sorting by the upper end, every exchange is a crossing.
         for (std::size_t i = 1; i < passing_.size(); ++i) {
             const Passing p = passing_[i];
             std::size_t j = i;
@@ -99,7 +99,7 @@ private:
         }
     }
 
-    /// A band without crossings: trapezoids between neighbours, as wide as in their middle.
+    /// A band without crossings: trapezoids between neighbouring edges, with areas from their widths at mid-height.
     void add(double bottom, double top) {
         const double middle = (bottom + top) / 2, height = top - bottom;
         crossed_.clear();
@@ -138,7 +138,7 @@ private:
         }
     }
 
-    /// Pieces of an edge that divide the same bodies are one, so that a line stays a line.
+    /// Pieces of an edge between the same bodies are merged, so that a straight line stays one segment.
     void border(std::size_t edge, const Border& piece) {
         Border& known = borders_[edge];
         if (known.to == piece.from && known.left == piece.left && known.right == piece.right) {
@@ -159,13 +159,13 @@ private:
 
     const std::vector<Edge>& edges_;
     std::span<const int> material_of_;
-    std::vector<Border> borders_;  ///< per edge, what of it is not in `layer_` yet
+    std::vector<Border> borders_;  ///< per edge, the part that is not in `layer_` yet
     DividedLayer layer_;
     std::vector<std::size_t> active_;
     std::vector<Passing> passing_;
     std::vector<double> cuts_;
     std::vector<std::pair<double, std::size_t>> crossed_;
-    std::vector<std::pair<int, int>> inside_;  ///< bodies, with their winding, which is not zero
+    std::vector<std::pair<int, int>> inside_;  ///< bodies with non-zero winding, and that winding
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Bodies that overlap: who keeps which place, and how much of each others cover, exactly.
+// Overlapping bodies: which one keeps each place, and exact overlap areas.
 #pragma once
 
 #include <span>
@@ -10,21 +10,22 @@ namespace pliant::slice {
 
 /// Areas of one body in one layer, in square units of the outlines.
 struct Overlap {
-    double others = 0;  ///< inside a later body, the last of which is of another material
-    double own = 0;     ///< inside a later body, the last of which is of the same material, or wound around once more
+    double others = 0;  ///< inside later bodies, the last of which is of another material
+    double own = 0;     ///< inside later bodies, the last of which is of the same material, or inside the body itself a
+                        ///< second time
 };
 
-/// A layer cut into the places that the last body in each keeps.
+/// A layer divided among its bodies: each place belongs to the last body there.
 struct DividedLayer {
     std::vector<Overlap> areas;              ///< per body
-    std::vector<std::vector<Segment>> kept;  ///< per body: closed outlines around what it keeps, but for level pieces
+    std::vector<std::vector<Segment>> kept;  ///< per body: closed outlines of what it keeps, without horizontal pieces
 };
 
-/// Divides a layer, to rounding. `outlines` per body, in an image (x: columns, y: rows): closed, either way round,
-/// solid where the winding is not zero; they may cross themselves and each other. Kept outlines have their solid to
-/// the right where they run to higher rows, and meet those of neighbours in the same numbers. The plane is cut into
-/// bands between the heights of all corners and crossings; in a band outlines are straight and do not cross, so areas
-/// are sums of trapezoids. Cost: bands times the outlines in each.
+/// Divides a layer, exactly up to rounding. `outlines` per body, in an image (x: columns, y: rows): closed, in either
+/// orientation, solid where the winding number is not zero; they may intersect themselves and each other. Kept outlines
+/// have their solid to the right where they run to higher rows, and share exact coordinates with those of neighbours.
+/// The plane is cut into bands between the heights of all corners and intersections; within a band outlines are
+/// straight and do not cross, so areas are sums of trapezoids. Cost: bands times the outlines in each.
 [[nodiscard]] DividedLayer divided(std::span<const std::vector<Segment>> outlines, std::span<const int> material_of);
 
 }  // namespace pliant::slice

@@ -79,7 +79,7 @@ TEST_CASE("an overlap in pixels that neither body fills counts whole") {
 
 namespace {
 
-/// Area that the images of a layer light, in square micrometres.
+/// Lit area of the images of a layer, in square micrometres.
 double lit_um2(const std::vector<Body>& bodies, const Raster& raster, double& overlap_mm3) {
     double sum = 0;
     pliant::Progress progress;
@@ -99,7 +99,7 @@ double lit_um2(const std::vector<Body>& bodies, const Raster& raster, double& ov
 
 TEST_CASE("pixels that the outlines of overlapping bodies share hold what both cover together, not their sum") {
     double overlap_mm3 = 0;
-    // All outer borders run at a quarter of a pixel of 100 um, those of both bodies along the same lines.
+    // All outer borders are at a quarter of a pixel of 100 um, those of both bodies on the same lines.
     const std::vector<Body> boxes{{"soft", box({-975, -475, 0}, {325, 425, 50}), ""},
                                   {"firm", box({-275, -475, 0}, {1075, 425, 50}), ""},
                                   {"hard", box({-75, -475, 0}, {125, 425, 50}), ""}};
@@ -112,7 +112,7 @@ TEST_CASE("pixels that the outlines of overlapping bodies share hold what both c
     CHECK(overlap_mm3 == 0);
     const std::vector<Body> shells{{"soft", together(boxes[0].surface_um, boxes[1].surface_um), ""}};
     CHECK(lit_um2(shells, {64, 48, 100}, overlap_mm3) == near(2050 * 900, {.relative = 1e-4}));
-    // Two discs of the same 97 corners, one turned by a third of a side: every border pixel belongs to both.
+    // Two discs with the same 97 corners, one rotated by a third of a side: every border pixel belongs to both.
     const double radius = 1500, turn = 2 * std::numbers::pi / 97;
     const std::vector<Body> discs{{"soft", prism(regular_polygon(97, radius), 0, 50), ""},
                                   {"firm", prism(regular_polygon(97, radius, turn / 3), 0, 50), ""}};

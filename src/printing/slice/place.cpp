@@ -27,7 +27,7 @@ Result<std::vector<std::string>> place_on_platform(std::span<Body> bodies, const
                            size.y / 1000, raster.width_um() / 1000, raster.height_um() / 1000);
     std::vector<std::string> warnings;
     const double far_um = std::fmax(norm(box->low), norm(box->high));
-    // Mesh files commonly keep 24 bits: say so where that is coarser than a tenth of a pixel.
+    // Mesh files commonly have 24-bit mantissas: warn if that is coarser than a tenth of a pixel.
     const double spacing_um = std::exp2(std::floor(std::log2(far_um)) - 23);
     if (far_um > 0 && spacing_um > raster.pixel_um / 10)
         warnings.push_back(

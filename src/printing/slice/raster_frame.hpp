@@ -1,4 +1,4 @@
-// Where a place on the platform lies in the image.
+// The transformation from the platform to the image.
 #pragma once
 
 #include <array>
@@ -7,20 +7,21 @@
 
 namespace pliant::slice {
 
-/// Turns platform coordinates into columns and rows: turn, move, mirror, in pixels. Exact for quarter turns.
+/// Converts platform coordinates to columns and rows: rotation, translation, mirroring, in pixels. Exact for quarter
+/// turns.
 class RasterFrame {
 public:
-    /// `um_per_unit`: of the coordinates that column() and row() are given.
+    /// `um_per_unit`: for the coordinates passed to column() and row().
     RasterFrame(const Raster& raster, double um_per_unit);
 
     [[nodiscard]] double column(double x, double y) const { return xx_ * x + xy_ * y + x0_; }
     [[nodiscard]] double row(double x, double y) const { return yx_ * x + yy_ * y + y0_; }
-    /// The way back: x and y of a place in the image.
+    /// The inverse: x and y of a point in the image.
     [[nodiscard]] std::array<double, 2> place(double column, double row) const {
         const double c = column - x0_, r = row - y0_, det = xx_ * yy_ - xy_ * yx_;
         return {(yy_ * c - xy_ * r) / det, (xx_ * r - yx_ * c) / det};
     }
-    /// Whether the image is seen from behind: left and right of an outline change places.
+    /// Whether the image is mirrored: left and right of an outline are swapped.
     [[nodiscard]] bool mirrored() const { return mirrored_; }
 
 private:

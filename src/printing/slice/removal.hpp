@@ -1,11 +1,11 @@
-// What is taken out of a part, layer by layer.
+// What is removed from the inside of a part, layer by layer.
 #pragma once
 
 #include "printing/slice/run_set.hpp"
 
 namespace pliant::slice {
 
-/// Pixels that stay dark whatever the bodies say. Immutable; safe to ask from several threads.
+/// Pixels that stay dark whatever the bodies say. Immutable; thread-safe.
 class Removal {
 public:
     virtual ~Removal() = default;

@@ -10,7 +10,7 @@ namespace pliant::slice {
 namespace {
 
 int layer_at(std::int32_t z, const Layers& layers) {
-    // The layer whose top is the first above z.
+    // The first layer with its top above z.
     const int k = layers.middles_up_to(z, grid_per_um);
     return k > 0 && std::int64_t{layers.top_um(k - 1)} * grid_per_um > z ? k - 1 : k;
 }
@@ -64,7 +64,7 @@ Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& labe
         result.warnings.push_back(fmt::format("{}: flipped {} that {} inside out", label,
                                               counted(static_cast<std::size_t>(turned), "shell"),
                                               turned == 1 ? "was" : "were"));
-    // A solid thinner than a grid unit everywhere is a sheet that was drawn twice.
+    // A solid thinner than a grid unit everywhere is a sheet drawn twice.
     if (volume_mm3(surface) < 0.5e-3 / grid_per_um * area)
         return input_error("{}: the surface encloses no volume; a closed surface is needed", label);
     return result;

@@ -1,4 +1,4 @@
-// From a surface as it comes to one that can be cut: closed, outwards, on the grid.
+// Makes any surface ready for slicing: closed, oriented outwards, on the grid.
 #pragma once
 
 #include <string>
@@ -12,13 +12,12 @@ namespace pliant::slice {
 
 struct Repaired {
     GridSurface surface;                ///< closed: every directed edge has its opposite
-    std::vector<std::string> warnings;  ///< each starts with `label`
+    std::vector<std::string> warnings;  ///< each begins with `label`
 };
 
-/// Snaps, joins points at open edges that are no farther apart than `join_um`, orients and closes. Holes up to a
-/// quarter of the surface are closed with a warning that names their layers (counted from 0, as `layers` has them).
-/// Errors: what snap_to_grid refuses, a surface without triangles, one that is more open than that, one that encloses
-/// nothing.
+/// Snaps, merges points at open edges that are at most `join_um` apart, orients and closes. Holes up to a quarter of
+/// the surface are closed with a warning that names their layers (counted from 0, as in `layers`). Errors: what
+/// snap_to_grid rejects, a surface without triangles, larger holes, a surface that encloses nothing.
 [[nodiscard]] Result<Repaired> repair(const mesh::TriMesh& surface_um, const std::string& label, const Layers& layers,
                                       double join_um = 0);
 

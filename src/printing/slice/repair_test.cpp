@@ -66,9 +66,9 @@ TEST_CASE("any missing triangle is put back, with a warning that names body and 
     CHECK(r.warnings[0] == "body 'b' (soft): 1 hole (4 open edges, 1 mm^2) closed in layers 0 to 20");
 }
 
-TEST_CASE("a T-junction is closed without a word") {
+TEST_CASE("a T-junction is closed without a warning") {
     TriMesh mesh = cube;
-    // One of the last side's triangles is split at the middle of its diagonal, which its neighbour does not split.
+    // One triangle of the last side is split at the middle of its diagonal; its neighbour is not.
     const auto [a, b, c] = mesh.triangles.back();
     const Vec3 pa = mesh.points[a], pb = mesh.points[b], pc = mesh.points[c];
     mesh.triangles.pop_back();
@@ -91,7 +91,7 @@ TEST_CASE("points at open edges that no pixel tells apart are joined, with a not
     CHECK(volume_um3(result->surface) == near(2e7, {.relative = 1e-12}));
     REQUIRE(result->warnings.size() == 1);
     CHECK(result->warnings[0].find(" at open edges to another one within 5 um") != std::string::npos);
-    // What is closed is not touched, however thin it is.
+    // Closed surfaces are not changed, however thin.
     const auto thin = repair(box({0, 0, 0}, {1000, 1000, 2}), "body 'b' (soft)", 50, 5);
     REQUIRE(thin);
     CHECK(volume_um3(thin->surface) == near(2e6, {.relative = 1e-12}));
@@ -138,7 +138,7 @@ TEST_CASE("two cubes that share an edge are two shells") {
     CHECK(volume_um3(r.surface) == near(2e9, {.relative = 1e-12}));
 }
 
-TEST_CASE("what is no solid is refused with the reason") {
+TEST_CASE("invalid solids are refused with the reason") {
     TriMesh sheet;
     add_triangle(sheet, {0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0});
     add_triangle(sheet, {0, 0, 0}, {1000, 1000, 0}, {0, 1000, 0});

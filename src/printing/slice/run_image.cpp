@@ -6,7 +6,7 @@
 namespace pliant::slice {
 namespace {
 
-/// The end of the pixels from `begin` on that have the value of the first.
+/// The end of the pixels from `begin` on with the same value as the first.
 int run_end(const std::uint8_t* row, int begin, int width) {
     const std::uint64_t eight = 0x0101010101010101ULL * row[begin];
     int end = begin + 1;
@@ -37,7 +37,7 @@ RunImage RunImage::from_image(const Image& image) {
 void RunImage::append(int row, int begin, int end, std::uint8_t value) {
     if (value == 0) return;
     if (runs_.empty()) first_row_ = row;
-    if (row < end_row()) {  // the last row, which has a run already
+    if (row < end_row()) {  // the last row already has a run
         Run& last = runs_.back();
         if (last.end == begin && last.value == value) {
             last.end = static_cast<std::uint16_t>(end);

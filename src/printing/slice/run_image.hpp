@@ -1,4 +1,4 @@
-// A grey image as runs of equal pixels: what a layer is on its way from outlines to a file.
+// A grey image as runs of equal pixels: the form of a layer between outlines and file.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct Run {
     bool operator==(const Run&) const = default;
 };
 
-/// An image of which only lit pixels are kept. Its memory and every walk over it go with the number of runs, about two
+/// An image that stores only lit pixels. Memory and traversal cost are proportional to the number of runs, about two
 /// for each pixel that an outline passes through, whatever the size of the image.
 class RunImage {
 public:
@@ -29,14 +29,14 @@ public:
     [[nodiscard]] int height_px() const { return height_px_; }
     [[nodiscard]] bool blank() const { return runs_.empty(); }
 
-    /// Adds pixels to the right of, or below, all that are there. Neighbours of equal value become one run; value 0
-    /// adds nothing. Precondition: 0 <= row < height_px, 0 <= begin < end <= width_px.
+    /// Adds pixels to the right of, or below, all present ones. Neighbours of equal value are merged into one run;
+    /// value 0 adds nothing. Precondition: 0 <= row < height_px, 0 <= begin < end <= width_px.
     void append(int row, int begin, int end, std::uint8_t value);
 
-    /// The rows that hold runs lie in [first_row, end_row); 0, 0 for a blank image.
+    /// The rows with runs are within [first_row, end_row); 0, 0 for a blank image.
     [[nodiscard]] int first_row() const { return first_row_; }
     [[nodiscard]] int end_row() const { return first_row_ + static_cast<int>(starts_.size()); }
-    /// From left to right, never touching with equal values; empty for any row outside.
+    /// From left to right; adjacent runs differ in value; empty for any row outside.
     [[nodiscard]] std::span<const Run> row(int row) const;
 
     /// 0 outside the image.
@@ -47,7 +47,7 @@ public:
 
 private:
     int width_px_ = 0, height_px_ = 0, first_row_ = 0;
-    std::vector<std::uint32_t> starts_;  ///< per row from first_row_ on: its first run
+    std::vector<std::uint32_t> starts_;  ///< per row from first_row_ on: index of its first run
     std::vector<Run> runs_;
 };
 

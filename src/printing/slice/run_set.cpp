@@ -7,7 +7,7 @@
 namespace pliant::slice {
 namespace {
 
-/// Sorts spans and joins those that touch.
+/// Sorts spans and merges adjacent ones.
 void merge(std::vector<PixelSpan>& spans) {
     std::sort(spans.begin(), spans.end(), [](const PixelSpan& l, const PixelSpan& r) { return l.begin < r.begin; });
     std::size_t count = 0;
@@ -49,7 +49,7 @@ std::vector<PixelSpan> without_row(std::span<const PixelSpan> a, std::span<const
     return result;
 }
 
-/// Every pixel becomes the spans of `brush`: entry i lies `i - above` rows below it and reaches from -left to +right.
+/// Dilates by `brush`: entry i is `i - above` rows below a pixel and extends from -left to +right.
 struct Brush {
     struct Row {
         int left, right;
@@ -160,7 +160,7 @@ RunSet shrunk(const RunSet& set, int radius_px) {
 }
 
 RunSet reaching(const RunSet& set, const Reach& reach) {
-    // A pixel with the set to its left lies to the right of the set: the brush is the reach turned around.
+    // A pixel with the set to its left is to the right of the set, so the brush is the reach mirrored.
     const auto rows = static_cast<std::size_t>(reach.up + reach.down + 1);
     return painted(set, {reach.down, std::vector<Brush::Row>(rows, {reach.right, reach.left})});
 }

@@ -1,4 +1,4 @@
-// Sets of pixels as runs, and what sets are made of each other: union, intersection, difference, offset.
+// Sets of pixels as runs, with union, intersection, difference and offset.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +15,25 @@ struct PixelSpan {
     bool operator==(const PixelSpan&) const = default;
 };
 
-/// Pixels of an image. Memory and cost go with runs, never with areas.
+/// Pixels of an image. Memory and cost are proportional to the runs, not the area.
 class RunSet {
 public:
     RunSet() = default;
     RunSet(int width_px, int height_px) : width_px_(width_px), height_px_(height_px) {}
-    /// The pixels of an image that have any light.
+    /// The lit pixels of an image.
     [[nodiscard]] static RunSet lit(const RunImage& image);
 
     [[nodiscard]] int width_px() const { return width_px_; }
     [[nodiscard]] int height_px() const { return height_px_; }
     [[nodiscard]] bool empty() const { return pixels() == 0; }
-    /// All pixels lie in rows [first_row, end_row).
+    /// All pixels are in rows [first_row, end_row).
     [[nodiscard]] int first_row() const { return first_row_; }
     [[nodiscard]] int end_row() const { return first_row_ + static_cast<int>(rows_.size()); }
-    /// From left to right, never touching; empty for any row outside.
+    /// From left to right, not adjacent; empty for any row outside.
     [[nodiscard]] std::span<const PixelSpan> row(int row) const;
     [[nodiscard]] std::int64_t pixels() const;
 
-    /// Replaces a row. Rows come in rising order; spans from left to right, never touching, inside the image.
+    /// Replaces a row. Rows must ascend; spans go from left to right, are not adjacent, and are inside the image.
     void append_row(int row, std::vector<PixelSpan> spans);
 
 private:
@@ -41,20 +41,20 @@ private:
     std::vector<std::vector<PixelSpan>> rows_;
 };
 
-/// Precondition of all: sets of the same image size.
+/// Precondition of all three: sets of the same image size.
 [[nodiscard]] RunSet united(const RunSet& a, const RunSet& b);
 [[nodiscard]] RunSet common(const RunSet& a, const RunSet& b);
 [[nodiscard]] RunSet without(const RunSet& a, const RunSet& b);
 /// The image's pixels that are not in the set.
 [[nodiscard]] RunSet complement(const RunSet& set);
 
-/// Pixels whose centres lie no farther than `radius_px` from one of the set's: its offset outwards, corners rounded.
-/// Straight sides move by exactly `radius_px`. Cost: spans times (2 radius + 1).
+/// Pixels whose centres are at most `radius_px` from that of a pixel of the set: the outward offset, with rounded
+/// corners. Straight sides move by exactly `radius_px`. Cost: spans times (2 radius + 1).
 [[nodiscard]] RunSet grown(const RunSet& set, int radius_px);
-/// The set without what lies within `radius_px` of a pixel that is not in it; beyond the image's border nothing does.
+/// The set without the pixels within `radius_px` of a pixel outside it; pixels beyond the image's border do not count.
 [[nodiscard]] RunSet shrunk(const RunSet& set, int radius_px);
 
-/// Pixels from which one of the set's lies at most `left`, `right` columns and `up`, `down` rows away (a rectangle).
+/// Pixels for which the set has one at most `left`, `right` columns and `up`, `down` rows away (a rectangle).
 struct Reach {
     int left = 0, right = 0, up = 0, down = 0;
 };

@@ -28,7 +28,7 @@ bool has(const RunSet& set, int row, int column) {
     return false;
 }
 
-/// Whether a lit pixel lies within r of (row, column).
+/// Whether there is a lit pixel within r of (row, column).
 bool near(const Image& image, int row, int column, int r) {
     for (int y = std::max(0, row - r); y <= std::min(height - 1, row + r); ++y) {
         for (int x = std::max(0, column - r); x <= std::min(width - 1, column + r); ++x) {

@@ -9,7 +9,7 @@ struct Crossing {
     double x, y;
 };
 
-/// Where the edge meets the plane; `below.z < plane <= above.z`.
+/// Intersection of the edge with the plane; `below.z < plane <= above.z`.
 Crossing cross_edge(const GridPoint& below, const GridPoint& above, std::int64_t plane) {
     const double up = static_cast<double>(plane - below.z);
     const double height = static_cast<double>(std::int64_t{above.z} - below.z);
@@ -64,7 +64,8 @@ void Sectioner::cut(const Triangle& t, std::int64_t plane, std::vector<Segment>&
     std::array<bool, 3> above{};
     for (std::size_t i = 0; i < 3; ++i) above[i] = surface_.points[t[i]].z >= plane;
     if (above[0] == above[1] && above[1] == above[2]) return;
-    // Seen with the solid behind it, the triangle is crossed downwards at the segment's start and upwards at its end.
+    // With the solid behind the triangle, its boundary crosses the plane downwards at the segment's start and upwards
+    // at its end.
     Crossing start{}, end{};
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = (i + 1) % 3;

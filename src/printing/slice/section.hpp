@@ -10,24 +10,24 @@
 
 namespace pliant::slice {
 
-/// A directed piece of outline, in grid units; the solid lies on its left, seen from above.
+/// A directed piece of outline, in grid units; the solid is on its left, seen from above.
 struct Segment {
     double x0, y0, x1, y1;
 };
 
 /// Cuts one surface at the middle of layers. A point exactly on the plane counts as above it, so a plane never runs
-/// along a face or through a corner: each triangle that has corners on both sides gives one segment, and since both
-/// users of an edge compute its intersection from the same two points, the segments of a closed surface form closed
-/// loops to the last bit. A slab between two planes' heights, faces on the planes, appears in exactly one of them.
+/// along a face or through a corner. Each triangle with corners on both sides gives one segment; both triangles at an
+/// edge compute its intersection from the same two points, so the segments of a closed surface form exactly closed
+/// loops. A slab between the heights of two planes, with faces on the planes, appears in exactly one of them.
 class Sectioner {
 public:
-    /// Takes the surface over. Cost: triangles times the logarithm of the layers that each crosses.
+    /// Takes ownership of the surface. Cost: triangles times the logarithm of the layers that each crosses.
     Sectioner(GridSurface surface, Layers layers);
 
     /// Layers [0, layer_count()) may have sections.
     [[nodiscard]] int layer_count() const { return layer_count_; }
 
-    /// Appends the outline at the middle of `layer`. Safe to call from several threads.
+    /// Appends the outline at the middle of `layer`. Thread-safe.
     void section(int layer, std::vector<Segment>& segments) const;
 
 private:
@@ -41,11 +41,11 @@ private:
     GridSurface surface_;
     Layers layers_;
     int layer_count_ = 0;
-    /// A segment tree over layers: node n covers those of nodes 2n and 2n + 1, the leaves are the nodes from leaves_
-    /// on. A triangle is listed at the fewest nodes that together cover the layers that it crosses, so that a layer
-    /// finds all its triangles, and no others, on the way from its leaf to the root.
+    /// A segment tree over layers: node n covers the layers of nodes 2n and 2n + 1, the leaves are the nodes from
+    /// leaves_ on. A triangle is listed at the fewest nodes that together cover the layers it crosses, so that a layer
+    /// finds exactly its triangles on the path from its leaf to the root.
     std::size_t leaves_ = 1;
-    std::vector<std::uint32_t> node_starts_;  ///< per node: where its triangles begin in listed_
+    std::vector<std::uint32_t> node_starts_;  ///< per node: start of its triangles in listed_
     std::vector<int> listed_;
 };
 

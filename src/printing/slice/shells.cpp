@@ -7,8 +7,8 @@
 namespace pliant::slice {
 namespace {
 
-/// The triangle across each edge, or -1 where the edge is not shared by exactly two; `agrees` where both run along it
-/// in opposite directions, as neighbours of one orientation do.
+/// The triangle across each edge, or -1 if the edge is not shared by exactly two; `agrees` if both run along it in
+/// opposite directions, as consistently oriented neighbours do.
 struct Neighbour {
     int triangle = -1;
     bool agrees = true;
@@ -38,7 +38,7 @@ Neighbours find_neighbours(std::size_t triangles, const std::vector<EdgeUse>& us
 
 struct Walk {
     Shells shells;
-    std::vector<std::uint8_t> turned;  ///< (m), relative to the first triangle of the piece
+    std::vector<std::uint8_t> turned;  ///< (m) relative to the first triangle of the component
 };
 
 Walk walk_pieces(std::size_t count, const Neighbours& neighbours) {
@@ -100,7 +100,7 @@ bool is_cavity(const std::vector<Piece>& pieces, const Piece& piece) {
 
 }  // namespace
 
-/// By counting into the smaller ends, then within each: an end has a handful of edges.
+/// Counting sort by the smaller ends, then within each: an end has only a few edges.
 std::vector<EdgeUse> edge_uses(const std::vector<Triangle>& triangles) {
     int points = 0;
     for (const Triangle& t : triangles) points = std::max({points, t[0] + 1, t[1] + 1, t[2] + 1});
@@ -118,7 +118,7 @@ std::vector<EdgeUse> edge_uses(const std::vector<Triangle>& triangles) {
         uses[ends[a]++] = {a, std::max(from, to), static_cast<int>(t), from < to};
     });
     std::uint32_t begin = 0;
-    for (int p = 0; p < points; ++p) {  // each place was moved on to the end of its uses
+    for (int p = 0; p < points; ++p) {  // each start was advanced to the end of its uses
         std::sort(uses.begin() + begin, uses.begin() + ends[p],
                   [](const EdgeUse& l, const EdgeUse& r) { return l.b != r.b ? l.b < r.b : l.triangle < r.triangle; });
         begin = ends[p];

@@ -15,7 +15,7 @@
 namespace pliant::slice {
 namespace {
 
-/// Points of open edges as near as this are one, in pixels: no image shows the difference.
+/// Points of open edges within this distance are merged, in pixels: invisible in any image.
 constexpr double join_px = 0.1;
 
 Status check(const Settings& settings) {
@@ -38,7 +38,7 @@ Status check(const Settings& settings) {
     return {};
 }
 
-/// Where the body's points lie in the image; only x and y mean anything.
+/// Bounds of the body's points in the image; only x and y are used.
 Box3 image_box(const Body& body, const RasterFrame& frame) {
     Box3 box;
     const auto add = [&](double x, double y) { box.add({frame.column(x, y), frame.row(x, y), 0}); };
@@ -54,7 +54,7 @@ Box3 image_box(const Body& body, const RasterFrame& frame) {
     return box;
 }
 
-/// Bodies may pass the raster's border by what rounding does to them, no more.
+/// Bodies may exceed the raster's border by rounding errors only.
 Status check_place(const Body& body, const Box3& box, const Raster& raster, const std::string& label) {
     constexpr double rounding_um = 1;
     if (box.low.z < -rounding_um)
@@ -71,7 +71,7 @@ Status check_place(const Body& body, const Box3& box, const Raster& raster, cons
     return {};
 }
 
-/// All pixels that have any light.
+/// All lit pixels.
 RunSet lit(const ComposedLayer& layer, const Raster& raster) {
     RunSet all(raster.width_px, raster.height_px);
     for (const MaterialImage& m : layer.images) all = united(all, RunSet::lit(m.image));
@@ -125,7 +125,7 @@ Status Slicer::add_body(const Body& body, const std::string& label) {
     return {};
 }
 
-/// What is noted of the shape that was added last.
+/// Adds remarks on the shape added last.
 void Slicer::add_shape(const Body& body, const Vec3& size_um) {
     material_of_.push_back(add_material(body.material));
     zone_of_.push_back(add_zone(body));
@@ -166,8 +166,8 @@ void Slicer::section(std::size_t body, int layer, std::vector<Segment>& segments
     std::visit([&](const auto& shape) { shape.section(layer, segments); }, shapes_[body]);
 }
 
-/// Where bodies overlap, the layer is divided among them before it is seen as pixels: a pixel tells how much of it
-/// outlines cover, not whether they cover the same.
+/// Overlapping bodies are separated as outlines before rasterisation: the coverage of a pixel does not tell whether two
+/// outlines cover the same part of it.
 ComposedLayer Slicer::composed(int k, const Raster& raster, const ComposeRules& rules) const {
     std::vector<std::vector<Segment>> lines(shapes_.size());
     std::vector<Segment> segments;
@@ -191,7 +191,7 @@ ComposedLayer Slicer::composed(int k, const Raster& raster, const ComposeRules& 
     return layer;
 }
 
-/// Per zone; empty where no border of the layer moves.
+/// Per zone; empty if no border of the layer moves.
 std::vector<double> Slicer::offsets_um(int layer) const {
     std::vector<double> offsets;
     for (const Zone& zone : zones_) {
@@ -202,7 +202,7 @@ std::vector<double> Slicer::offsets_um(int layer) const {
     return offsets;
 }
 
-/// With outer borders moved.
+/// The layer with outer borders moved.
 ComposedLayer Slicer::outlined(int k) const {
     const std::vector<double> offsets = offsets_um(k);
     if (offsets.empty()) return composed(k, settings_.raster, settings_.rules);
@@ -211,7 +211,7 @@ ComposedLayer Slicer::outlined(int k) const {
     return compensated(fine, factor, offsets, settings_.raster, settings_.rules);
 }
 
-/// From zones to materials.
+/// Converts zones to materials.
 void Slicer::deal_out(int k, ComposedLayer& layer) const {
     std::vector<RunImage> images(materials_.size());
     const double z_um = layers_.middle2_um(k) / 2.0;
@@ -245,7 +245,7 @@ void Slicer::take_out(int k, ComposedLayer& layer) const {
     std::erase_if(layer.images, [](const MaterialImage& m) { return m.image.blank(); });
 }
 
-/// Every pixel with one owner, before light is added or left out.
+/// The layer with one owner per pixel, before light is added or left out.
 ComposedLayer Slicer::owned(int k) const {
     ComposedLayer layer = outlined(k);
     if (settings_.removed) take_out(k, layer);
@@ -259,8 +259,8 @@ ComposedLayer Slicer::owned(int k) const {
     return layer;
 }
 
-/// How many layers below a layer must be solid where a material is lit: those whose middle light would reach that goes
-/// too deep by the material's bleed.
+/// The number of layers below a layer that must be solid where a material is exposed: those whose middle would be
+/// reached by light that goes deeper by the material's bleed.
 int Slicer::bleed_layers(int material, int k) const {
     const auto known = settings_.compensation.find(materials_[material]);
     if (known == settings_.compensation.end() || known->second.bleed_um <= 0) return 0;
@@ -270,10 +270,10 @@ int Slicer::bleed_layers(int material, int k) const {
     return count;
 }
 
-/// Without the light that would go too deep.
+/// The layer without the light that would go too deep.
 ComposedLayer Slicer::bled(int k) const {
     ComposedLayer layer = owned(k);
-    std::vector<RunSet> held;  // by how many layers below are solid
+    std::vector<RunSet> held;  // by the number of solid layers required below
     for (MaterialImage& m : layer.images) {
         const auto count = static_cast<std::size_t>(bleed_layers(m.material, k));
         if (count == 0) continue;
@@ -305,7 +305,7 @@ SlicedLayer Slicer::layer(int k) const {
     return layer;
 }
 
-/// Its index; -1 if no body names it.
+/// Index of a material; -1 if no body names it.
 int Slicer::material(const std::string& name) const {
     const auto found = std::find(materials_.begin(), materials_.end(), name);
     return found == materials_.end() ? -1 : static_cast<int>(found - materials_.begin());

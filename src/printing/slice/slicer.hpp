@@ -35,38 +35,38 @@ struct Settings {
     Raster raster;
     int layer_um = 50;
     ComposeRules rules;
-    std::map<std::string, Compensation> compensation{};  ///< by material; others stay as drawn
-    std::vector<Teeth> teeth{};                          ///< cut one after the other, after compensation
-    std::vector<Bond> bonds{};                           ///< after teeth
-    std::vector<int> tops_um{};  ///< of layers that are not alike, rising; where empty, all are `layer_um` thick
-    std::shared_ptr<const Removal> removed{};  ///< from the inside of the part; none: nothing
+    std::map<std::string, Compensation> compensation{};  ///< by material; others are not compensated
+    std::vector<Teeth> teeth{};                          ///< applied in order, after compensation
+    std::vector<Bond> bonds{};                           ///< applied after teeth
+    std::vector<int> tops_um{};                ///< of non-uniform layers, ascending; if empty, all are `layer_um` thick
+    std::shared_ptr<const Removal> removed{};  ///< inside the part; null: nothing
 
     [[nodiscard]] Layers layers() const { return tops_um.empty() ? Layers(layer_um) : Layers(tops_um); }
 };
 
-/// One layer: its images ordered by material, blank ones left out, and what was noticed on the way.
+/// One layer: its non-blank images, ordered by material, and remarks on it.
 using SlicedLayer = ComposedLayer;
 
-/// Of a repaired body as drawn, before it became pixels.
+/// Of a repaired body as drawn, before rasterisation.
 struct Measures {
     double volume_mm3 = 0;
     double area_mm2 = 0;
 };
 
-/// Repaired bodies, ready to be cut; immutable.
+/// Repaired bodies, ready for slicing; immutable.
 class Slicer {
 public:
-    /// `bodies` in the order of priority: where bodies overlap, the later one keeps the place. Errors name the body:
-    /// what repair() refuses, bodies outside the raster or more than 1 um below the platform, nothing to print.
+    /// `bodies` in order of priority: where bodies overlap, the later one keeps the place. Errors name the body: what
+    /// repair() rejects, bodies outside the raster or more than 1 um below the platform, nothing to print.
     [[nodiscard]] static Result<Slicer> prepare(std::span<const Body> bodies, const Settings& settings);
 
     [[nodiscard]] int layer_count() const { return layer_count_; }
     [[nodiscard]] const Settings& settings() const { return settings_; }
     /// In the order in which the bodies first name them.
     [[nodiscard]] const std::vector<std::string>& materials() const { return materials_; }
-    /// What was repaired, and bodies too small to appear.
+    /// Repairs made, and bodies too small to appear.
     [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
-    /// As messages name them, "body 'finger' (soft)".
+    /// Names in messages, "body 'finger' (soft)".
     [[nodiscard]] const std::vector<std::string>& body_labels() const { return labels_; }
 
     /// Per body.
@@ -75,8 +75,8 @@ public:
 
     [[nodiscard]] const Layers& layers() const { return layers_; }
 
-    /// Layer k is cut in its middle; 0 <= k < layer_count(). Safe to call from several threads. Cost: the pixels that
-    /// outlines pass through; with bleed compensation or bonds over layers, those of the layers around it too.
+    /// Layer k is cut in its middle; 0 <= k < layer_count(). Thread-safe. Cost: the pixels that outlines pass through;
+    /// with bleed compensation or bonds over layers, those of neighbouring layers too.
     [[nodiscard]] SlicedLayer layer(int k) const;
 
 private:
@@ -101,11 +101,11 @@ private:
     Settings settings_;
     Layers layers_ = 1;
     std::vector<std::variant<Sectioner, OutlineStack>> shapes_;  ///< per body
-    /// Bodies whose pixels are dealt out in the same way: all of one material, or one that has a blend.
+    /// Bodies rasterised together: all of one material without blend, or a single one with a blend.
     struct Zone {
         int material = 0;
-        int second = -1;  ///< of the blend
-        int body = 0;     ///< the first
+        int second = -1;  ///< second material of the blend
+        int body = 0;     ///< the first body
         std::optional<Blend> blend;
     };
     std::vector<Zone> zones_;
@@ -119,15 +119,17 @@ private:
 struct Summary {
     int layer_count = 0;
     std::vector<std::string> materials;
-    double overlap_mm3 = 0;              ///< volume that bodies of different materials both claimed
-    std::int64_t closed_gap_pixels = 0;  ///< pixels that gaps between materials would have dimmed
+    double overlap_mm3 = 0;              ///< volume claimed by bodies of different materials
+    std::int64_t closed_gap_pixels = 0;  ///< pixels that gaps between materials would have darkened
     std::vector<std::string> warnings;
-    std::vector<double> lost_mm3{};      ///< per body: its share of overlap_mm3, which a later body keeps
-    std::vector<double> second_share{};  ///< per body: of its light that the second material of its blend got
-    std::vector<double> doubled_mm3{};   ///< per body: what a later one of the same material, or itself, fills too
+    std::vector<double> lost_mm3{};      ///< per body: its share of overlap_mm3, kept by a later body
+    std::vector<double> second_share{};  ///< per body: fraction of its light that went to the second material of its
+                                         ///< blend
+    std::vector<double> doubled_mm3{};   ///< per body: volume also filled by a later one of the same material, or by
+                                         ///< itself again
 };
 
-/// Collects the remarks of all layers, added in order.
+/// Collects the remarks of all layers, which are added in order.
 class Tally {
 public:
     explicit Tally(const Slicer& slicer);
@@ -141,12 +143,12 @@ private:
     int first_filled_ = -1, last_filled_ = -1, empty_between_ = 0, first_empty_ = -1, pending_empty_ = 0;
 };
 
-/// Enough layers for all cores to work on, few enough for their runs to stay small.
+/// Enough layers to keep all cores busy, few enough to limit memory for their runs.
 inline constexpr int layers_at_once = 64;
 
-/// Calls `emit(layer, material, image)` for every image that is not blank, by layer and then by material, from the
-/// calling thread; layers are made in parallel batches, never all in memory. Stops at the first error of `emit`, or
-/// when `progress` is cancelled.
+/// Calls `emit(layer, material, image)` for every non-blank image, by layer and then by material, from the calling
+/// thread; layers are made in parallel batches, never all in memory. Stops at the first error of `emit`, or when
+/// `progress` is cancelled.
 [[nodiscard]] Result<Summary> slice_bodies(std::span<const Body> bodies, const Settings& settings,
                                            const std::function<Status(int layer, int material, const RunImage&)>& emit,
                                            Progress& progress);

@@ -1,4 +1,4 @@
-// Cubes of 10 mm, each broken in one way, at 0.1 mm pixels and 0.05 mm layers.
+// Cubes of 10 mm, each damaged in one way, at 0.1 mm pixels and 0.05 mm layers.
 #include <doctest/doctest.h>
 
 #include <cstdlib>

@@ -56,7 +56,7 @@ long value_sum(const Image& image) {
     return sum;
 }
 
-/// Pixels that more than one image of a layer lights.
+/// Number of pixels lit by more than one image of a layer.
 int shared_pixels(const Sliced& sliced, int layer) {
     std::vector<int> uses(static_cast<std::size_t>(raster.width_px * raster.height_px), 0);
     for (const Shot& s : sliced.shots) {
@@ -198,8 +198,8 @@ TEST_CASE("gaps far below a pixel between materials leave no dark line") {
     }
 }
 
-TEST_CASE("outer borders are not taken for gaps") {
-    // Both materials end 10 um short of a pixel's border, at the top and at the sides.
+TEST_CASE("outer borders do not count as gaps") {
+    // Both materials end 10 um before a pixel's border, at the top and at the sides.
     const Sliced s = slice_all(
         {{"soft", box({-990, -1000, 0}, {0, 990, 50}), ""}, {"rigid", box({0, -1000, 0}, {990, 990, 50}), ""}});
     CHECK(s.summary.closed_gap_pixels == 0);
@@ -268,7 +268,7 @@ TEST_CASE("a cone's layers have the polygon's area at mid height") {
     }
 }
 
-TEST_CASE("what cannot be printed is refused with numbers") {
+TEST_CASE("unprintable parts are refused with numbers") {
     const Settings settings{raster, 50, {}};
     const Body cube{"soft", box({-1000, -1000, 0}, {1000, 1000, 500}), "cube"};
     CHECK(refused({{"soft", box({-1000, -1000, 0}, {4000, 1000, 500}), ""}}, settings).find("x -1.000 to 4.000 mm") !=

@@ -7,7 +7,7 @@ namespace pliant::slice {
 namespace {
 
 constexpr int cell_px = 32;
-constexpr double looks_down = -0.01;  // of the normal's z: flatter than a vertical wall by half a degree
+constexpr double looks_down = -0.01;  // limit of the normal's z: half a degree below a vertical wall
 
 }  // namespace
 
@@ -67,7 +67,7 @@ SupportWish SupportPaint::at(int layer, int row, int column) const {
     const double z_um = layers_.bottom_um(layer), slack_um = layers_.thickness_um(layer);
     for (auto i = cell.rbegin(); i != cell.rend(); ++i) {
         const Spot& s = spots_[static_cast<std::size_t>(*i)];
-        // What is drawn between two layers is seen at one of them.
+        // A surface between two layers is visible at one of them.
         const double up = std::max(0.0, std::fabs(z_um - s.z_um) - slack_um);
         const double across = std::hypot(row + 0.5 - s.row, column + 0.5 - s.column) * pixel_um_;
         if (std::hypot(across, up) <= s.radius_um) return s.wish;

@@ -1,4 +1,4 @@
-// Where a person wants supports and where none: painted on the part by hand, one touch of the brush after the other.
+// Hand-painted support regions: where supports are wanted or forbidden, as a list of brush strokes.
 #pragma once
 
 #include <span>
@@ -12,35 +12,35 @@
 namespace pliant::slice {
 
 enum class SupportWish {
-    usual,    ///< as angle and islands say; rubs out what was painted before
-    enforce,  ///< tips, however steep it is
+    usual,    ///< as angle and islands say; erases earlier paint
+    enforce,  ///< tips, whatever the angle
     block,    ///< no tip
 };
 
-/// One touch of the brush: what it says counts for the undersides inside a ball around a point of the surface. Where
-/// touches overlap, the later one counts. A touch on a face that does not look down changes nothing: the ball may reach
-/// through a thin wall to an underside that nobody has touched.
+/// One brush stroke: applies to the undersides inside a ball around a point of the surface. Where strokes overlap, the
+/// later one counts. A stroke on a face that does not look down changes nothing, because the ball may reach through a
+/// thin wall to an underside that was not painted.
 struct SupportTouch {
     SupportWish wish = SupportWish::enforce;
     Vec3 at_um;
-    Vec3 normal;  ///< outward, of length 1
+    Vec3 normal;  ///< outward unit normal
     double radius_um = 0;
 };
 
-/// Refuses numbers that are not finite, a normal without a length, and a radius that is not above 0 and at most 100 mm.
+/// Errors: numbers that are not finite, a zero normal, a radius outside (0, 100] mm.
 [[nodiscard]] Status check(const SupportTouch& touch);
 
-/// Answers what is wanted at a pixel of an underside. Layers must outlive it.
+/// Looks up the painted wish at a pixel of an underside. Layers must outlive it.
 class SupportPaint {
 public:
     SupportPaint(std::span<const SupportTouch> touches, const Raster& raster, const Layers& layers);
 
-    /// Nothing was painted on any face that looks down.
+    /// No face that looks down was painted.
     [[nodiscard]] bool empty() const { return spots_.empty(); }
-    /// Of the underside that layer `layer` shows at this pixel. Cost: a few spots.
+    /// For the underside that layer `layer` shows at this pixel. Cost: a few spots.
     [[nodiscard]] SupportWish at(int layer, int row, int column) const;
 
-    /// Pixels (row, column) in the middle of the touches that reach this layer from where they lie, in their order.
+    /// Pixels (row, column) at the centres of the strokes that reach this layer, in order.
     [[nodiscard]] std::vector<std::pair<int, int>> middles(int layer) const;
 
 private:
@@ -53,9 +53,9 @@ private:
 
     const Layers& layers_;
     double pixel_um_;
-    int rows_, columns_;  ///< of cells
+    int rows_, columns_;  ///< number of cells
     std::vector<Spot> spots_;
-    std::vector<std::vector<int>> cells_;  ///< (rows_ * columns_), spots in their order
+    std::vector<std::vector<int>> cells_;  ///< (rows_ * columns_) spots of each cell, in order
 };
 
 }  // namespace pliant::slice

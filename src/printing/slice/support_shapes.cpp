@@ -10,7 +10,7 @@ namespace {
 constexpr int sides = 16;
 using Point = std::array<double, 2>;
 
-/// Positive where c lies to the left of the way from a to b.
+/// Positive if c is to the left of the direction from a to b.
 double turn(const Point& a, const Point& b, const Point& c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
@@ -34,7 +34,7 @@ std::vector<Point> convex_hull(std::vector<Point> points) {
     return hull;
 }
 
-/// A level polygon with the area of a circle.
+/// A horizontal polygon with the area of a circle.
 std::vector<Vec3> circle(const Vec3& centre, double radius_um) {
     constexpr double angle = 2 * std::numbers::pi / sides;
     const double equal_area = std::sqrt(angle / std::sin(angle)) * radius_um;
@@ -45,7 +45,7 @@ std::vector<Vec3> circle(const Vec3& centre, double radius_um) {
     return around;
 }
 
-/// Walls between rings of `n` points, with a fan at both ends.
+/// Walls between rings of `n` points, closed by a fan at both ends.
 mesh::TriMesh closed_tube(const std::vector<std::vector<Vec3>>& rings) {
     mesh::TriMesh mesh;
     const int n = static_cast<int>(rings[0].size());

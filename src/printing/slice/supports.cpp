@@ -38,12 +38,12 @@ bool holds(const RunSet& set, int row, int column) {
     return found != spans.end() && found->begin <= column;
 }
 
-/// Where a tip touches: the middle of a pixel, and the layer that it holds.
+/// The contact of a tip: the centre of a pixel, and the layer that it supports.
 struct Tip {
     int layer, row, column;
 };
 
-/// Tips, found by where they are.
+/// Tips by position, for fast lookup.
 class TipMap {
 public:
     TipMap(double spacing_px, double pixel_um, const Layers& layers)
@@ -92,7 +92,8 @@ public:
           frame_(settings.raster, 1),
           paint_(wanted.paint, settings.raster, layers_),
           tips_(wanted.spacing_um / settings.raster.pixel_um, settings.raster.pixel_um, layers_) {
-        // Tips stand under what is drawn; light is corrected, and the inside taken out, when all is sliced together.
+        // Tips are placed under the drawn shape; light correction and hollowing are applied when everything is sliced
+        // together.
         settings_.bonds.clear();
         settings_.compensation.clear();
     }
@@ -129,7 +130,7 @@ private:
         return {};
     }
 
-    /// One tip near the middle of each piece that nothing below touches.
+    /// One tip near the middle of each component that touches nothing below.
     void hold_islands(int k) {
         const PieceMap& pieces = shapes_[static_cast<std::size_t>(k)].solid;
         const RunSet& below = solids_[static_cast<std::size_t>(k - 1)];
@@ -146,7 +147,7 @@ private:
         }
     }
 
-    /// The pixel of a piece that lies nearest to its centroid.
+    /// The pixel of a component nearest to its centroid.
     static Tip middle_of(const PieceMap& pieces, std::uint32_t piece, int k) {
         double rows = 0, columns = 0;
         const auto each = [&](const auto& visit) {
@@ -175,7 +176,7 @@ private:
         return best;
     }
 
-    /// What sticks out farther over the layers below than the angle allows.
+    /// Supports what extends beyond the layers below by more than the angle allows.
     void hold_undersides(int k) {
         const double slope = std::tan(wanted_.angle_deg * std::numbers::pi / 180);
         const double pixel_um = settings_.raster.pixel_um;
@@ -214,8 +215,8 @@ private:
         tips_.add(tip);
     }
 
-    /// Undersides on which somebody has painted that they are to be held, however steep: first where the brush was put
-    /// down, then where that leaves too wide a gap.
+    /// Supports undersides painted to be supported, whatever their angle: first at the centres of the strokes, then
+    /// where the gaps are still too wide.
     void hold_painted(int k) {
         const RunSet open = without(solids_[static_cast<std::size_t>(k)], solids_[static_cast<std::size_t>(k - 1)]);
         for (const auto& [row, column] : paint_.middles(k)) {
@@ -228,7 +229,7 @@ private:
         }
     }
 
-    /// Slices part and supports together until no island is left.
+    /// Slices part and supports together until no island remains.
     Result<Supports> settle(Progress& progress) {
         for (int round = 0;; ++round) {
             Supports supports = built();
@@ -304,10 +305,10 @@ private:
         return supports;
     }
 
-    /// Twice the slenderness of a braced one.
+    /// Allows twice the slenderness of a braced pillar.
     static double lone_foot_um(const Pillar& p) { return (p.high_um - p.low_um) / (2 * slender); }
 
-    /// Whether the part fills a place in or right beside a strut.
+    /// Whether the part is in a strut or directly beside it.
     [[nodiscard]] bool meets_part(const Strut& s) const {
         const double margin_px = s.radius_um / settings_.raster.pixel_um + 1;
         for (int k = 0; k < static_cast<int>(solids_.size()); ++k) {
@@ -333,7 +334,7 @@ private:
         return body;
     }
 
-    /// Height of the part under a tip; 0: the platform.
+    /// Top of the part below a tip; 0: the platform.
     [[nodiscard]] int top_of_part_below(const Tip& tip) const {
         for (int k = std::min(tip.layer, static_cast<int>(solids_.size())) - 1; k >= 0; --k) {
             if (holds(solids_[static_cast<std::size_t>(k)], tip.row, tip.column)) return layers_.top_um(k);
@@ -345,19 +346,20 @@ private:
     struct Column {
         Pillar pillar;
         bool on_part = false;
-        double base_um = 0, held_um = 0, end_um = 0;  ///< where it stands; where it meets the part; its end inside
+        double base_um = 0, held_um = 0, end_um = 0;  ///< base of the support; contact with the part; end inside the
+                                                      ///< part
         double tip_r = 0, foot_r = 0;
-        double cone_um = 0;  ///< from the pillar to a tip
+        double cone_um = 0;  ///< height from the pillar to a tip
     };
 
-    /// Cones are twice as long as the pillar is wide, where there is room.
+    /// Cones are twice as long as the pillar is wide, if there is room.
     [[nodiscard]] Column column_of(const Tip& tip) const {
         const auto [x, y] = frame_.place(tip.column + 0.5, tip.row + 0.5);
         const int standing_um = top_of_part_below(tip);
         Column c;
         c.on_part = standing_um > 0;
         c.tip_r = std::max(wanted_.tip_um, 2 * settings_.raster.pixel_um) / 2;
-        c.end_um = layers_.top_um(tip.layer);  // one layer deep in the part
+        c.end_um = layers_.top_um(tip.layer);  // one layer deep into the part
         c.held_um = layers_.bottom_um(tip.layer);
         c.base_um = c.on_part ? standing_um : std::min<double>(wanted_.raft_um, c.held_um / 2);
         const double pillar_r = std::max(wanted_.pillar_um / 2, c.tip_r), room = c.held_um - c.base_um;
@@ -384,7 +386,7 @@ private:
             rings.push_back({c.pillar.low_um, wide});
         } else {
             rings.push_back({c.base_um, c.foot_r});
-            // A pillar that stands alone tapers all the way up.
+            // A pillar that stands alone tapers over its whole height.
             if (c.pillar.low_um > c.base_um && c.foot_r <= 1.5 * wide) rings.push_back({c.pillar.low_um, wide});
         }
         if (c.pillar.high_um > rings.back().z_um) rings.push_back({c.pillar.high_um, wide});

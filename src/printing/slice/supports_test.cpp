@@ -86,7 +86,7 @@ TEST_CASE("a table in mid-air stands on tips, no island is left, and the part ke
     CHECK(o.islands == 0);
     CHECK(o.supports.islands_left == 0);
     CHECK(o.supports.on_part == 0);
-    // Tips 3 mm apart at most over 12 x 8 mm: more than area / (pi 3^2), fewer than area / (pi 1.5^2) and a rim.
+    // Tips at most 3 mm apart over 12 x 8 mm: more than area / (pi 3^2), fewer than area / (pi 1.5^2) plus a rim.
     CHECK(o.supports.tips > 4);
     CHECK(o.supports.tips < 30);
     CHECK(o.part_mm3 == near(12 * 8 * 1, {.relative = 1e-9}));
@@ -100,7 +100,7 @@ TEST_CASE("a table in mid-air stands on tips, no island is left, and the part ke
 }
 
 TEST_CASE("only flat undersides get tips, and a barred pillar stands on the part") {
-    // A column with a roof that leans by 60 degrees needs none; a floor below a ledge is stood upon.
+    // A column with a roof at 60 degrees needs none; a floor below a ledge carries supports.
     const std::vector<Body> steep{
         {"soft", prism({{-1000, -1000}, {1000, -1000}, {1000, 1000}, {-1000, 1000}}, 0, 4000), ""}};
     CHECK(supported(steep, in_wax()).supports.tips == 0);
@@ -134,7 +134,7 @@ TEST_CASE("a sphere in mid-air, on a raft, in a material of its own") {
     CHECK(o.islands == 0);
     CHECK(o.supports.tips > 3);
     CHECK(o.part_mm3 == near(4.0 / 3 * std::numbers::pi * 27, {.relative = 0.02}));
-    // The raft reaches 2 mm beyond the outermost pillar on all sides.
+    // The raft extends 2 mm beyond the outermost pillar on all sides.
     CHECK(o.support_mm3 > 0.8 * 16);
 }
 
@@ -144,7 +144,7 @@ SupportTouch touch(SupportWish wish, const Vec3& at_um, double radius_um, const 
     return {wish, at_um, normal, radius_um};
 }
 
-/// Whether any filler stands under this place.
+/// Whether there is any filler under this place.
 bool stands_under(const Supports& supports, double x_um, double y_um) {
     return std::any_of(supports.bodies.begin(), supports.bodies.end(), [&](const Body& b) {
         const Box3 box = mesh::bounds(b.surface_um);
@@ -152,7 +152,7 @@ bool stands_under(const Supports& supports, double x_um, double y_um) {
     });
 }
 
-/// Right of an upright wall a roof that leans by 60 degrees: steeper than needs a tip.
+/// To the right of an upright wall a roof at 60 degrees: too steep to need a tip.
 std::vector<Body> steep_roof() {
     const mesh::TriMesh wedge = prism({{-1000, -3000}, {1000, -3000}, {1000, 3000}, {-1000, 3000}}, 0, 8000);
     mesh::TriMesh leaning = wedge;
@@ -165,7 +165,7 @@ std::vector<Body> steep_roof() {
 TEST_CASE("painted by hand: a steep underside is held where it is wanted, and nowhere else") {
     SupportSettings wanted = in_wax();
     CHECK(supported(steep_roof(), wanted).supports.tips == 0);
-    // On its underside, 4 mm up: x = 1000 + 4000 / tan 60, looking down and to the right.
+    // On its underside, 4 mm up: x = 1000 + 4000 / tan 60, normal down and to the right.
     const double lean = std::tan(60 * std::numbers::pi / 180);
     const Vec3 under{1000 + 4000 / lean, 0, 4000};
     const Vec3 down{std::sin(60 * std::numbers::pi / 180), 0, -0.5};
@@ -177,7 +177,7 @@ TEST_CASE("painted by hand: a steep underside is held where it is wanted, and no
         const Vec3 middle = mesh::bounds(b.surface_um).center();
         CHECK(std::hypot(middle.x - under.x, middle.y - under.y) < 1200 + 500);
     }
-    // Rubbed out again, or painted on the face above, where nothing hangs.
+    // Erased again, or painted on the upper face, which does not overhang.
     wanted.paint.push_back(touch(SupportWish::usual, under, 1300, down));
     CHECK(supported(steep_roof(), wanted).supports.tips == 0);
     wanted.paint = {touch(SupportWish::enforce, under, 1200, {0, 0, 1})};
@@ -192,7 +192,7 @@ TEST_CASE("painted by hand: no tip where it is blocked, not even under an island
     CHECK(half.supports.tips > 3);
     CHECK_FALSE(stands_under(half.supports, 4000, 0));
     CHECK(stands_under(half.supports, 0, 0));
-    // All of it, then one place given back.
+    // Everything blocked, then one place restored.
     wanted.paint = {touch(SupportWish::block, {0, 0, 5000}, 10000)};
     const Outcome none = supported(plate, wanted);
     CHECK(none.supports.tips == 0);
@@ -205,7 +205,7 @@ TEST_CASE("painted by hand: no tip where it is blocked, not even under an island
     CHECK(one.islands == 0);
 }
 
-TEST_CASE("supports that make no sense are refused") {
+TEST_CASE("invalid supports are refused") {
     const std::vector<Body> plate{{"soft", box({-600, -400, 500}, {600, 400, 600}), ""}};
     Progress progress;
     const auto refused = [&](const SupportSettings& s) {
@@ -244,7 +244,7 @@ TEST_CASE("tall supports are braced, the braces need no support themselves, and 
     CHECK(lone.struts == 0);
     const Box3 around = mesh::bounds(lone.bodies[0].surface_um);
     CHECK(around.size().x == near((32500 - 2000 - 500) / 20.0, {.relative = 0.05}));
-    // A wall between two pillars bars their struts.
+    // A wall between two pillars blocks their struts.
     const std::vector<Body> walled{{"soft", box({-5000, -100, 0}, {5000, 100, 24000}), ""},
                                    {"soft", box({-2000, -2000, 24000}, {2000, 2000, 25000}), ""}};
     const Supports apart = made_for(walled);

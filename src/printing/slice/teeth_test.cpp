@@ -64,7 +64,7 @@ TEST_CASE("what is thinner than the teeth is missing in every other layer; what 
     CHECK(slicer.layer(1).images[1].value_sum == 5 * 20 * 255);
 }
 
-TEST_CASE("senseless teeth are refused") {
+TEST_CASE("invalid teeth are refused") {
     CHECK(refused({"soft", "soft", 3, 1}) == "interlock 'soft' with 'soft': two different materials are needed");
     CHECK(refused({"soft", "rigid", 0, 1}) == "interlock 'soft' with 'rigid': depth of 0 pixels: must be 1 to 1000");
     CHECK(refused({"soft", "rigid", 2, 0}) == "interlock 'soft' with 'rigid': 0 layers: must be 1 to 10000");

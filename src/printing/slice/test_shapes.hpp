@@ -1,4 +1,4 @@
-// Solids for the tests: every triangle carries three points of its own, as in an STL file.
+// Solids for tests: as a triangle soup without shared points, as in an STL file.
 #pragma once
 
 #include <cmath>

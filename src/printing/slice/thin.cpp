@@ -25,7 +25,7 @@ RunSet solid(const RunImage& image) {
 
 std::vector<ThinSpot> thin_spots(const ComposedLayer& layer, int k, double least_um, const Raster& raster) {
     std::vector<ThinSpot> spots;
-    // Shrunk by r, walls of 2 r pixels vanish and such of 2 r + 1 do not.
+    // Shrinking by r removes walls of 2 r pixels but not those of 2 r + 1.
     const int radius = static_cast<int>(std::ceil(least_um / raster.pixel_um - 1e-9)) / 2;
     if (radius < 1) return spots;
     for (const MaterialImage& m : layer.images) {

@@ -37,7 +37,7 @@ float& CoarsePart::filled(int material, int row, int column) {
     return cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)];
 }
 
-/// One row of pixels, [begin, end), of so much weight each.
+/// Adds the pixels [begin, end) of one row, each with the given weight.
 void CoarsePart::cover(int row, int begin, int end, int material, float weight) {
     begin = std::max(begin, 0);
     end = std::min(end, width_px_);
@@ -65,7 +65,7 @@ void CoarsePart::add(int bottom_um, int top_um, int material, const Runs& runs) 
     write_open();
 }
 
-/// The runs of the slab that still fills, anew.
+/// Writes the runs of the open slab anew.
 void CoarsePart::write_open() {
     const Slab& slab = slabs_[closed_];
     runs_.resize(slab.first);
@@ -74,7 +74,7 @@ void CoarsePart::write_open() {
     for (int row = first_row_; row < end_row_; ++row) write_row(row, least);
 }
 
-/// A cell belongs to the material that has most of it, if all of them together have `least`.
+/// A cell gets the material with the largest share if all of them together reach `least`.
 void CoarsePart::write_row(int row, float least) {
     int owner_before = -1;
     for (int column = 0; column < columns_; ++column) {
@@ -117,7 +117,7 @@ void CoarsePart::close_open() {
     while (runs_.size() > most_runs && cell_px_ < std::max(width_px_, height_px_)) coarsen();
 }
 
-/// Larger cells; thicker slabs too where a cell is wider than a slab is thick.
+/// Enlarges the cells; makes slabs thicker, too, if a cell is wider than a slab is thick.
 void CoarsePart::coarsen() {
     const std::vector<Slab> slabs = std::exchange(slabs_, {});
     const std::vector<CellRun> runs = std::exchange(runs_, {});
@@ -139,7 +139,7 @@ void CoarsePart::coarsen() {
         for (std::size_t m = 0; m < parts.size(); ++m)
             add(slabs[s].bottom_um, slabs[s].top_um, static_cast<int>(m), parts[m]);
     }
-    // What comes next has pixels of its own: it does not go into a slab that was made of cells.
+    // New layers are added as pixels, so they cannot go into a slab that was made from cells.
     if (slabs_.size() > closed_) {
         empty_open();
         ++closed_;

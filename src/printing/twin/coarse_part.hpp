@@ -1,6 +1,6 @@
-// A part as it grows layer by layer, coarse enough to be sent to a page and drawn: slabs of cells, each of one material
-// or empty. However large the print, it stays within `most_runs` runs of cells: where there are more, the cells grow
-// and everything is told anew.
+// A coarse model of a part as it grows, small enough to be sent to a page and drawn: slabs of cells, each of one
+// material or empty. It never exceeds `most_runs` runs of cells: when there are more, the cells grow and everything is
+// sent anew.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +14,15 @@ namespace pliant::twin {
 class CoarsePart {
 public:
     static constexpr std::size_t most_runs = 40000;
-    /// A wall thinner than a cell still shows.
+    /// A wall thinner than a cell remains visible.
     static constexpr double usual_share = 0.3;
 
-    /// A frame of so many pixels, a part of that height. `least_share`: of a cell that must be solid before it counts.
+    /// For a frame of this many pixels, a part of that height. `least_share`: fraction of a cell that must be solid for
+    /// it to count.
     CoarsePart(int width_px, int height_px, double pixel_um, int part_um, double least_share = usual_share);
 
-    /// What has become solid between two heights; from low to high, the materials (0 to 254) of one layer one after the
-    /// other.
+    /// Adds what has become solid between two heights; from low to high, within a layer material (0 to 254) by
+    /// material.
     void add(int bottom_um, int top_um, int material, const Runs& runs);
 
     /// Cells [begin, end) of one row of a slab.
@@ -32,19 +33,19 @@ public:
     };
     struct Slab {
         int bottom_um, top_um;
-        std::size_t first;  ///< of its runs; they end where those of the next slab begin
+        std::size_t first;  ///< index of its first run; they end where those of the next slab begin
     };
     /// The last one may still change.
     [[nodiscard]] const std::vector<Slab>& slabs() const { return slabs_; }
     [[nodiscard]] const std::vector<CellRun>& runs() const { return runs_; }
-    /// Slabs that will not change any more.
+    /// Number of slabs that are final.
     [[nodiscard]] std::size_t closed() const { return closed_; }
-    /// Rises when the cells grow: what was told before is void.
+    /// Increases when the cells grow: everything sent before is then invalid.
     [[nodiscard]] int revision() const { return revision_; }
     [[nodiscard]] int cell_px() const { return cell_px_; }
     [[nodiscard]] int columns() const { return columns_; }
     [[nodiscard]] int rows() const { return rows_; }
-    /// Height that is reached.
+    /// Height reached so far.
     [[nodiscard]] int top_um() const { return top_um_; }
 
 private:
@@ -68,7 +69,7 @@ private:
     std::size_t closed_ = 0;
     std::vector<Slab> slabs_;
     std::vector<CellRun> runs_;
-    std::vector<std::vector<float>> filled_;  ///< of the open slab, by material: um of thickness times pixels of area
+    std::vector<std::vector<float>> filled_;  ///< of the open slab, by material: thickness in um times area in pixels
     int first_row_ = 0, end_row_ = 0;         ///< of the open slab
 };
 

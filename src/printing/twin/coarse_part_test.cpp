@@ -71,7 +71,7 @@ TEST_CASE("however fine the part, the runs stay bounded, and the volume is kept"
     for (int layer = 0; layer < 100; ++layer) {
         twin::Runs runs;
         for (int row = 0; row < 512; ++row) {
-            // Stripes of 6 px, moved a little from layer to layer.
+            // Stripes of 6 px, shifted slightly from layer to layer.
             for (int at = 32 + layer % 3; at + 6 < 480; at += 12) runs.push_back({row, at, at + 6, 255});
         }
         for (const twin::Run& run : runs) all += (run.end - run.begin) * 50.0;
@@ -81,7 +81,7 @@ TEST_CASE("however fine the part, the runs stay bounded, and the volume is kept"
     CHECK(part.runs().size() <= CoarsePart::most_runs);
     CHECK(part.revision() > 0);
     CHECK(part.top_um() == 5050);
-    // Stripes narrower than a cell become full: at most twice as much, and none are lost.
+    // Stripes narrower than a cell fill it: at most twice the volume, and none are lost.
     CHECK(volume(part, 0) > 0.7 * all);
     CHECK(volume(part, 0) < 2.2 * all);
     int top = 0;
@@ -91,7 +91,7 @@ TEST_CASE("however fine the part, the runs stay bounded, and the volume is kept"
     }
 }
 
-TEST_CASE("nonsense is left out") {
+TEST_CASE("invalid input is ignored") {
     CoarsePart part(100, 60, 50, 1000);
     part.add(100, 100, 0, block(0, 5, 0, 5));
     part.add(0, 50, -1, block(0, 5, 0, 5));

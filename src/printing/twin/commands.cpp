@@ -1,4 +1,4 @@
-// What the virtual printer's commands do; the wire and the clock are in twin.cpp.
+// Execution of the virtual printer's commands; the wire and the clock are in twin.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 using machine::Axis;
 using machine::Command;
 
-/// Commands that are accepted and change nothing that the twin models.
+/// Commands that are accepted but change nothing in the model.
 bool is_quiet(const Command& c) {
     constexpr std::array<int, 5> numbers = {82, 105, 108, 110, 302};
     return c.letter == 'M' && std::find(numbers.begin(), numbers.end(), c.number) != numbers.end();
@@ -46,7 +46,7 @@ std::vector<Axis> Twin::axes_to_home(const Command& command) const {
     return axes;
 }
 
-/// When the command is done and its ok may be said.
+/// When the command is done and its `ok` is sent.
 double Twin::blocks_until(const Command& c) {
     const double still = std::max(now_s_, motors_.done_at());
     if (c.is('G', 0) || c.is('G', 1)) return motors_.room_at(now_s_);
@@ -61,7 +61,7 @@ double Twin::blocks_until(const Command& c) {
     return c.is('G', 28) ? still : now_s_;
 }
 
-/// The switch that the axis homes to is never pressed.
+/// Whether the home switch of the axis is dead, that is, never pressed.
 bool Twin::is_dead(Axis axis) const {
     const std::vector<machine::LimitSwitch> switches = machine::switches_of(printer_);
     for (std::size_t i = 0; i < switches.size(); ++i) {
@@ -71,7 +71,8 @@ bool Twin::is_dead(Axis axis) const {
     return false;
 }
 
-/// How long homing takes. To a dead switch Marlin goes one and a half times the travel, and pushes from its end on.
+/// Computes the duration of homing. With a dead switch Marlin moves one and a half times the travel, and pushes against
+/// the end.
 void Twin::plan_homing(Running& running) {
     for (const Axis axis : axes_to_home(*running.command)) {
         const double seconds = motors_.home_seconds(axis);
@@ -92,7 +93,7 @@ void Twin::execute(const Command& c) {
     if (c.is('G', 92)) return execute_set(c);
     if (c.is('M', 106) || c.is('M', 107) || c.is('M', 42)) return execute_switch(c);
     if (c.is('G', 4) || c.is('G', 90) || c.is('M', 400) || is_quiet(c)) {
-        // A numbered M110 did so already when it was received: it counts twice.
+        // A numbered M110 already set the number when it was received: it acts twice.
         if (const auto number = c.value('N'); number && c.is('M', 110))
             reader_.set_last_number(static_cast<long>(std::clamp(*number, -2147483648.0, 2147483647.0)));
         return;
@@ -100,7 +101,7 @@ void Twin::execute(const Command& c) {
     execute_other(c);
 }
 
-/// Soft endstops: an axis that is homed stops at the end of its travel, and the firmware says nothing.
+/// Soft endstops: a homed axis stops at the end of its travel, without a message from the firmware.
 machine::Position Twin::clamped(machine::Position to) {
     if (!soft_endstops_) return to;
     const machine::Position asked = to;
@@ -115,7 +116,7 @@ machine::Position Twin::clamped(machine::Position to) {
 }
 
 void Twin::execute_move(const Command& c) {
-    // Motors that stood still for too long have been switched off, silently.
+    // Motors that were idle for too long have been disabled silently.
     if (idle_limit_s_ > 0 && now_s_ - motors_.done_at() > idle_limit_s_) motors_.release(now_s_);
     if (const std::string letters = not_homed(c); options_.homes_first && !letters.empty())
         return say(fmt::format("echo:Home {} First", letters));
@@ -138,7 +139,7 @@ void Twin::execute_move(const Command& c) {
     note_vat(vat);
 }
 
-/// The motor of the first axis that moves falls short, and nobody notices.
+/// The motor of the first axis that moves falls short, unnoticed by the controller.
 void Twin::miss_steps(const machine::Position& from, const machine::Position& to) {
     const Fault* fault = fault_at(Fault::Kind::missed_steps, ++moves_);
     if (fault == nullptr) return;
@@ -151,7 +152,7 @@ void Twin::miss_steps(const machine::Position& from, const machine::Position& to
     }
 }
 
-/// The letters of the axes that the move names and that are not homed.
+/// The letters of axes in the move that are not homed.
 std::string Twin::not_homed(const Command& command) const {
     std::string letters;
     for (const Axis axis : machine::all_axes) {
@@ -170,7 +171,7 @@ void Twin::execute_home(const Command& c) {
     }
 }
 
-/// G92 stands for homing where a person has stood the axis at its home; anything else would move the origin.
+/// G92 replaces homing if a person has placed the axis at its home position; otherwise it would shift the origin.
 void Twin::execute_set(const Command& c) {
     for (const machine::Word& word : c.words) {
         const auto axis = machine::axis_of_letter(printer_, word.letter);
@@ -182,7 +183,7 @@ void Twin::execute_set(const Command& c) {
     }
 }
 
-/// A switch travels with the moves: it takes effect when those before it are done.
+/// Switching is queued with the moves: it takes effect when those before it are done.
 void Twin::execute_switch(const Command& c) {
     const bool fan = !c.is('M', 42);
     if (fan && options_.report_fans) {
@@ -209,7 +210,7 @@ void Twin::switch_pump(bool on, double at_s) {
     }
 }
 
-/// The pump stops. One that has drawn air has cleaned nothing.
+/// The pump stops. If it has drawn air, it has cleaned nothing.
 void Twin::spray_until(double at_s) {
     fluids_.advance_to(at_s);
     if (fluids_.solution().draws_air()) {
@@ -248,7 +249,7 @@ void Twin::execute_other(const Command& c) {
     } else if (c.is('M', 410)) {
         if (!options_.emergency_parser) quick_stop();
     } else if (c.is('M', 999)) {
-        // Seen: a request that nobody provoked, and an ok for it besides the command's own.
+        // Observed: an unprovoked resend request, and an `ok` for it in addition to the command's own.
         if (c.value('S')) return;
         say(fmt::format("Resend: {}", reader_.last_number() + 1));
         say("ok");
@@ -291,7 +292,7 @@ void Twin::execute_query(const Command& c) {
     }
 }
 
-/// As Marlin reports them: comments and commands, every axis by its letter.
+/// In Marlin's report format: comments and commands, every axis by its letter.
 void Twin::say_settings() {
     const auto row = [&](const char* heading, const char* code, const auto& value) {
         say(fmt::format("echo:; {}:", heading));
@@ -329,7 +330,7 @@ void Twin::say_soft_endstops() {
     say(fmt::format("echo:  Min: {}   Max: {}", low, high));
 }
 
-/// Where the axis really stands, whatever the controller thinks; homed or not.
+/// By the actual position of the axis, whatever the controller assumes; homed or not.
 bool Twin::is_pressed(const machine::LimitSwitch& limit) const {
     const machine::AxisSpec& spec = printer_.axis(limit.axis);
     if (limit.at_max == spec.homes_to_max && is_dead(limit.axis)) return false;

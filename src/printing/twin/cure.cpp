@@ -43,7 +43,7 @@ void Cure::fault(std::string text) {
     if (faults_.size() < most_faults) faults_.push_back(std::move(text));
 }
 
-/// Why so much light leaves nothing solid that holds on to the part; "": it does.
+/// Why the exposure cures nothing that is attached to the part; "": it does.
 std::string Cure::why_not(int vat, double seconds, int z_um, double area_mm2) const {
     const machine::Vat& place = printer_->vats[static_cast<std::size_t>(vat)];
     const machine::Resin* resin = printer_->find_resin(place.resin);
@@ -67,7 +67,7 @@ void Cure::open(int z_um) {
     section_before_mm2_ = std::exchange(section_mm2_, 0);
 }
 
-/// What this light goes on with, if it has cured already.
+/// The exposure that this one continues, if that has cured already.
 Lit* Cure::lit_before(const Runs& light, int vat, int z_um) {
     if (!open_ || open_->top_um != z_um) return nullptr;
     std::vector<Lit>& all = open_->lit[static_cast<std::size_t>(vat)];
@@ -107,12 +107,12 @@ void Cure::expose(const Runs& light, int vat, double seconds, int z_um) {
     open_->lit[static_cast<std::size_t>(vat)].push_back(std::move(lit));
 }
 
-/// How far below the ceiling of a column resin has cured.
+/// Depth below the ceiling of a column to which resin has cured.
 double Cure::overcure_um(const Column& column) const {
     return std::min<double>(curves_[static_cast<std::size_t>(column.vat)].depth_um(column.dose_J_m2), column.free_um);
 }
 
-/// More light arrives at the ceiling of a column.
+/// Adds light to the ceiling of a column.
 void Cure::add_dose(Column& column, double dose_J_m2) {
     const auto vat = static_cast<std::size_t>(column.vat);
     const double before = overcure_um(column);
@@ -128,7 +128,7 @@ void Cure::add_dose(Column& column, double dose_J_m2) {
     deepest_ = {at / width, at % width, column.bottom_um};
 }
 
-/// Light passes the new layer and all that is solid above it, up to the ceiling of the column.
+/// Passes light through the new layer and all solid above it, up to the ceiling of the column.
 void Cure::shine_through(const Runs& light, int vat, double dose_J_m2) {
     const machine::Projector& projector = printer_->projector;
     const auto width = static_cast<std::size_t>(projector.width_px);
@@ -142,7 +142,7 @@ void Cure::shine_through(const Runs& light, int vat, double dose_J_m2) {
     for (const Run& run : light) {
         Column* row = columns_.data() + static_cast<std::size_t>(run.row) * width;
         for (Column* c = row + run.begin; c != row + run.end; ++c) {
-            if (c->top_um < bottom_um)  // nothing solid right above: a new ceiling
+            if (c->top_um < bottom_um)  // no solid directly above: a new ceiling
                 *c = {bottom_um, top_um, bottom_um - c->top_um, 0, static_cast<std::int16_t>(vat)};
             c->top_um = top_um;
             const int way_um = top_um - c->bottom_um;

@@ -73,7 +73,7 @@ TEST_CASE("a light given in pieces adds up, whether the first piece cures or not
         CHECK(cure.pixels_lit_twice() == 0);
         CHECK(cure.left_ml()[0] == near(1 - 0.0016e-3, {.relative = 1e-12}));
     }
-    Cure elsewhere(printer);  // another picture, vat or height does not go on with it
+    Cure elsewhere(printer);  // another image, vat or height does not continue it
     elsewhere.expose(left, 0, 0.3, 50);
     elsewhere.expose(left, 1, 1.7, 50);
     elsewhere.expose(left, 0, 1.5, 50);
@@ -81,7 +81,7 @@ TEST_CASE("a light given in pieces adds up, whether the first piece cures or not
     CHECK(elsewhere.faults().size() == 2);
 }
 
-TEST_CASE("a second light on the same pixels is counted") {
+TEST_CASE("a second exposure of the same pixels is counted") {
     const auto printer = small();
     Cure cure(printer);
     cure.expose(left, 0, 2, 50);
@@ -102,7 +102,7 @@ TEST_CASE("thickness is the gap; a gap that is too deep is lost with all that fo
     CHECK(cure.faults().size() == 1);
 }
 
-TEST_CASE("what a vat no longer holds does not cure") {
+TEST_CASE("resin that a vat no longer holds does not cure") {
     auto printer = small();
     printer.vats[0].fill_ml = 2e-6;  // a layer of the left image takes 1.6e-6
     Cure cure(printer);
@@ -127,7 +127,7 @@ TEST_CASE("working curve: the exposure cures the stated depth, its critical shar
     CHECK(given.depth_um(50 * 2.718281828459045) == near(100, {.relative = 1e-12}));
 }
 
-TEST_CASE("light goes on through a ceiling and cures what should stay liquid below it, more with every layer") {
+TEST_CASE("light passes through a ceiling and cures liquid below it, more with every layer") {
     auto printer = small();
     printer.projector.irradiance_W_m2 = 100;
     printer.resins[0].penetration_um = 100;
@@ -141,7 +141,7 @@ TEST_CASE("light goes on through a ceiling and cures what should stay liquid bel
     cure.expose(all, 0, 2, 150);
     // 200 J/m^2 less 50 um: e^-0.5; 100 ln(200 e^-0.5 / 100) = 19.3 um.
     CHECK(cure.deepest_overcure_um() == near(100 * (std::log(2.0) - 0.5), {.relative = 1e-5}));
-    // Four pixels of the left image are lit there: the four dark ones hang free.
+    // Four pixels of the left image are lit there: the four dark ones are free below.
     CHECK(cure.overcure_mm3()[0] == near(4 * 0.01 * 0.1 * (std::log(2.0) - 0.5), {.relative = 1e-5}));
     cure.expose(all, 0, 2, 200);
     CHECK(cure.deepest_overcure_um() == near(100 * (std::log(2 * (1 + std::exp(-0.5))) - 0.5), {.relative = 1e-6}));

@@ -37,7 +37,7 @@ bool parse_whole(std::string_view text, Number& value) {
     return code == std::errc() && end == text.data() + text.size();
 }
 
-/// The text up to the next colon, taken off `rest`.
+/// Removes the text up to the next colon from `rest` and returns it.
 std::string_view take_part(std::string_view& rest) {
     const std::string_view part = rest.substr(0, rest.find(':'));
     rest.remove_prefix(std::min(rest.size(), part.size() + 1));

@@ -47,7 +47,7 @@ double Fluids::clean(double seconds, std::optional<double> known) {
     return 1 - removed * (1 - stays);
 }
 
-/// What `off` ml of resin have made of the resin in the solution, which were `before` ml.
+/// Updates the resin in the solution, `before` ml, after washing off another `off` ml.
 void Fluids::mix(const std::vector<double>& washed, double off, double before) {
     const double after = solution_.resin_ml();
     if (off <= 0 || after <= before) return;

@@ -18,7 +18,7 @@ machine::Printer printer_with_film() {
 
 }  // namespace
 
-TEST_CASE("what clings to the part and is not sprayed off mixes into the next vat") {
+TEST_CASE("the film on the part that is not sprayed off mixes into the next vat") {
     const auto printer = printer_with_film();
     Fluids fluids(printer);
     CHECK(fluids.leave(0, 1000) == near(0.1, {.relative = 1e-12}));  // 1000 mm^2 under 100 um: 100 ul
@@ -64,7 +64,7 @@ TEST_CASE("solution with resin in it cleans less, and carries resins to where th
     CHECK(fluids.clean(15) == near(0.0525, {.relative = 1e-12}));
 }
 
-TEST_CASE("solution that has been used before counts as foreign resin") {
+TEST_CASE("used solution counts as foreign resin") {
     auto printer = printer_with_film();
     printer.solution = {100, 100, 0.2, 0, 0, 0, 1, 0, 0};
     Fluids fluids(printer);
@@ -74,7 +74,7 @@ TEST_CASE("solution that has been used before counts as foreign resin") {
     CHECK(fluids.foreign_share(1) > 0.0002);
 }
 
-TEST_CASE("without cleaning all of it goes over, and comes back from vat to vat") {
+TEST_CASE("without cleaning the whole film is carried over, from vat to vat") {
     const auto printer = printer_with_film();
     Fluids fluids(printer);
     fluids.leave(0, 1000);
@@ -86,7 +86,7 @@ TEST_CASE("without cleaning all of it goes over, and comes back from vat to vat"
     CHECK(fluids.share(2, 0) == near(0.01, {.relative = 1e-12}));
 }
 
-TEST_CASE("fresh resin thins what has come in from elsewhere; a part that is taken away takes its film along") {
+TEST_CASE("fresh resin dilutes contamination; a removed part takes its film along") {
     const auto printer = printer_with_film();
     Fluids fluids(printer);
     fluids.leave(0, 1000);

@@ -11,7 +11,7 @@
 namespace pliant::twin {
 namespace {
 
-/// Foreign resin and what cleaning left, against what the machine allows.
+/// Compares foreign resin and cleaning residue with the machine's limits.
 void judge_contamination(Report& report, Twin& twin, const job::Manifest& job, bool accepted) {
     const double most = twin.printer().cleaning.most_contamination;
     for (const Contamination& c : twin.contamination()) {
@@ -68,7 +68,7 @@ void measure_resins(Report& report, Twin& twin) {
     }
 }
 
-/// Collects findings; an accepted one does not count.
+/// Collects findings; accepted ones do not fail the print.
 class Verdict {
 public:
     Verdict(Report& report, const Judgement& judgement) : report_(report), judgement_(judgement) {}
@@ -92,7 +92,7 @@ private:
 
 void judge_material(MaterialReport& m, bool exact_images, Verdict& verdict) {
     using Kind = Finding::Kind;
-    // Showing rounds grey to whole values; a job made for another projector is further off.
+    // Showing rounds grey to integers; a larger difference means a job for another projector.
     if (!exact_images && std::abs(m.wanted_mm3 - m.asked_mm3) > 0.01 * m.asked_mm3)
         verdict.add(Kind::image, fmt::format("{}: on this projector the images hold "
                                              "{:.3f} mm^3, the job says {:.3f} (grey, mask)",

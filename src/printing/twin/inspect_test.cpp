@@ -45,7 +45,7 @@ struct Light {
     double seconds = 2.5;
 };
 
-/// Homes, fetches the vat of slot 1 and shows the lights.
+/// Homes, fetches the vat of slot 1 and gives the exposures.
 void print(Twin& twin, const std::vector<Light>& lights) {
     const auto send = [&](const std::string& line) {
         twin.receive(line + "\n");
@@ -71,7 +71,7 @@ double area_mm2(const job::Image& image) {
     return static_cast<double>(light_of(runs_of(image))) / 255;
 }
 
-/// A job of those images in semi-flex, one a layer of 50 um, and what it draws.
+/// A job of those images in semi-flex, one per 50 um layer, and the drawn volume.
 job::Manifest job_of(const std::vector<job::Image>& images) {
     job::Manifest job = half_job();
     job.layers.clear();
@@ -85,7 +85,7 @@ job::Manifest job_of(const std::vector<job::Image>& images) {
     return job;
 }
 
-/// Prints a job whose archive holds `images` as the lights say.
+/// Prints a job whose archive contains `images`, with the given exposures.
 Report verdict(const job::Manifest& job, const std::vector<job::Image>& images, const std::vector<Light>& lights,
                const Judgement& judgement = {}) {
     const auto printer = small_tower();
@@ -130,7 +130,7 @@ TEST_CASE("the right layers pass, with the drawn volume") {
     CHECK(report_json(r).find("\"passed\": true") != std::string::npos);
 }
 
-TEST_CASE("the part is taken off, the vat filled again: the next print begins anew") {
+TEST_CASE("after the part is removed and the vat filled the next print begins anew") {
     const auto printer = small_tower();
     Twin twin(printer);
     print(twin, {0.05, 0.1});
@@ -141,7 +141,7 @@ TEST_CASE("the part is taken off, the vat filled again: the next print begins an
     CHECK(twin.log().exposures == 0);
     CHECK(twin.cured().left_ml()[0] == near(700 - 0.4e-3, {.relative = 1e-12}));
     twin.fill_vat(1);
-    twin.fill_vat(99);  // there is none
+    twin.fill_vat(99);  // no such slot
     CHECK(twin.cured().left_ml()[0] == 700);
     for (const double z : {0.05, 0.1}) {
         twin.receive(fmt::format("G1 Z50\nG1 Z{:.3f}\n", z));
@@ -182,7 +182,7 @@ TEST_CASE("a volume that the images do not hold fails against the model") {
     CHECK(inspect(twin, job, half_image)->passed);
 }
 
-TEST_CASE("another resin than the material's is foreign") {
+TEST_CASE("cured in a resin other than the material's counts as foreign") {
     const auto printer = small_tower();
     Twin twin(printer);
     print(twin, {0.05, 0.1});
@@ -194,13 +194,13 @@ TEST_CASE("another resin than the material's is foreign") {
     CHECK(r.materials[0].missing_mm3 == 0);
 }
 
-TEST_CASE("an image that cannot be had is an error") {
+TEST_CASE("an unavailable image is an error") {
     const auto printer = small_tower();
     Twin twin(printer);
     CHECK_FALSE(inspect(twin, half_job(), [](int, int) -> Result<job::Image> { return input_error("gone"); }));
 }
 
-TEST_CASE("the oracle sees through the projector's grey and mask") {
+TEST_CASE("the inspection accounts for the projector's grey and mask") {
     machine::Printer printer = small_tower();
     printer.projector.grey = {0, 0.8, 1};
     // Two whole pixels and two covered by 128 / 255, to which the grey gives 204; the lower row is masked to 200.
@@ -248,7 +248,7 @@ TEST_CASE("ten times the light, and a tenth more or less, are a wrong dose and n
         CHECK(r.first_deviation ==
               fmt::format("layer 1: 4 pixels lit {:.3g} times as long as the job says (exposure)", share));
     }
-    // The manifest's own time is what counts: of the layer, of the first layers, of the material.
+    // The manifest's own exposure counts: of the layer, of the first layers, of the material.
     job::Manifest job = job_of(pyramid);
     job.layers[1].images[0].exposure_s = 5;
     std::vector<Light> lights = lights_of(pyramid);
@@ -257,7 +257,7 @@ TEST_CASE("ten times the light, and a tenth more or less, are a wrong dose and n
     CHECK(verdict(job, pyramid, lights).passed);
 }
 
-TEST_CASE("exchanged images of one material are found, whether the projector or the archive exchanges them") {
+TEST_CASE("swapped images of one material are found, whether the projector or the archive swaps them") {
     std::vector<Light> lights = lights_of(pyramid);
     std::swap(lights[0].image, lights[1].image);
     const Report shown = verdict(job_of(pyramid), pyramid, lights);
@@ -298,7 +298,7 @@ TEST_CASE(
     CHECK_MESSAGE(good.passed, report_text(good));
     CHECK(good.deepest_overcure_um > 50);
     CHECK(good.deepest_overcure_um < 120);
-    // The same light by a resin that lets it through.
+    // The same light in a more transparent resin.
     machine::Printer clear = small_tower();
     for (machine::Resin& resin : clear.resins) resin.penetration_um = resin.critical_J_m2 = 0;
     const auto printed = [&](const Judgement& judgement) {
@@ -323,12 +323,12 @@ TEST_CASE(
     CHECK(names(accepted) == "overcure (accepted)");
     CHECK(report_text(accepted).find("accepted (overcure): semi-flex: ") != std::string::npos);
     CHECK(report_json(accepted).find("\"accepted\": true") != std::string::npos);
-    // Bleed compensation has left out of the images what the light will cure.
+    // Bleed compensation has removed from the images what the light will cure.
     clear.resins[0].bleed_compensation_um = 600;
     CHECK(printed({}).passed);
 }
 
-TEST_CASE("only what a job may mean can be accepted, and a slip is told") {
+TEST_CASE("only intended deviations can be accepted, and misspelt names are reported") {
     CHECK(accepted_finding("overcure").value() == Finding::Kind::overcure);
     CHECK(
         accepted_finding("missing").error().message ==

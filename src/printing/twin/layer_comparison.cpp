@@ -7,23 +7,23 @@
 namespace pliant::twin {
 namespace {
 
-/// Runs of one picture that are walked through row by row.
+/// Runs of one image, traversed row by row.
 struct Source {
     int resin = 0;
     const Runs* runs = nullptr;
     double seconds = 0;
     int pieces = 1;
-    std::size_t at = 0;  ///< first run that is not done with
-    int value = 0;       ///< in the piece that is being looked at
+    std::size_t at = 0;  ///< first run not completed yet
+    int value = 0;       ///< in the current piece of the row
 };
 
-/// What a resin has in one piece of a row.
+/// The state of a resin in one piece of a row.
 struct ResinThere {
     int resin = 0;
-    int left = 0;                               ///< cured, and not asked for by any image so far
-    int lacking = 0;                            ///< asked for in vain
-    double asked_value_s = 0, lit_value_s = 0;  ///< of every picture its value times its time
-    int value = 0;                              ///< asked for in all
+    int left = 0;                               ///< cured, and not yet claimed by an image
+    int lacking = 0;                            ///< required but not cured
+    double asked_value_s = 0, lit_value_s = 0;  ///< sum over images of value times time
+    int value = 0;                              ///< required in total
     int pieces = 1;
 };
 
@@ -58,7 +58,7 @@ private:
         return row;
     }
 
-    /// Between two borders of runs nothing changes.
+    /// Between two ends of runs nothing changes.
     void walk_row(int row) {
         borders_.clear();
         for_all([&](const Source& s) {
@@ -90,7 +90,7 @@ private:
         return there_.emplace_back(ResinThere{resin});
     }
 
-    /// Takes from the cured resins what the images ask for. What no image claims is too much; what is claimed in vain
+    /// Subtracts what the images require from the cured resins. What no image claims is excess; what is not available
     /// is lacking.
     void compare(int pixels) {
         there_.clear();
@@ -117,7 +117,7 @@ private:
     }
 
     void count(int pixels) {
-        int foreign = 0, lacking = 0;  // of all resins together
+        int foreign = 0, lacking = 0;  // over all resins
         for (const ResinThere& r : there_) {
             lacking += r.lacking;
             foreign += r.left;
@@ -139,7 +139,8 @@ private:
         }
     }
 
-    /// Grey is a share of the pixel, so pictures that share one light their shares of it: the time is their mean.
+    /// Grey is a fraction of the pixel, and images that share a pixel each expose their fraction: the exposure is their
+    /// weighted mean.
     void judge_dose(const ResinThere& r, int pixels) {
         const double asked_s = r.asked_value_s / r.value, lit_s = r.lit_value_s / r.value;
         if (is_right_dose(asked_s, lit_s, r.pieces, slack_s_)) return;
@@ -156,7 +157,7 @@ private:
     LayerDifference found_;
 };
 
-/// Whether every picture is one that was asked for, in its resin and as long as it should be, and none is missing.
+/// Whether every image is a required one, in its resin and for the right time, and none is missing.
 bool all_as_asked(const std::vector<AskedImage>& asked, const std::vector<ShownPicture>& shown, double slack_s) {
     if (asked.size() != shown.size()) return false;
     std::vector<bool> taken(shown.size());

@@ -20,7 +20,7 @@ const std::vector<AskedImage> both{{0, left, 2.5}, {1, right, 2.5}};
 
 }  // namespace
 
-TEST_CASE("what is as asked differs nowhere, in whatever order it was shown") {
+TEST_CASE("correct layers have no difference, in any order of exposures") {
     const LayerDifference d = difference(both, {{1, &right, 2.5}, {0, &left, 2.5}}, slack_s);
     CHECK(d.wrong_px == 0);
     CHECK(d.wrong_dose_px == 0);
@@ -57,7 +57,8 @@ TEST_CASE("a light that is longer or shorter than asked is a wrong dose of its p
         CHECK((seconds < 2.5 ? d.least_share : d.most_share) == near(seconds / 2.5, {.relative = 1e-12}));
     }
     CHECK(difference(both, {{0, &left, 2.53}, {1, &right, 2.47}}, slack_s).wrong_dose_px == 0);
-    // Where the clock is worth little, light in one piece may be longer; in two it must not be two lights.
+    // With an inaccurate clock, an exposure in one piece may be longer; one in two pieces must not be a double
+    // exposure.
     for (const int pieces : {1, 2})
         CHECK(difference(both, {{0, &left, 5, pieces}, {1, &right, 2.5}}, 10).wrong_dose_px == (pieces > 1 ? 5 : 0));
 }

@@ -11,7 +11,7 @@
 namespace pliant::twin {
 namespace {
 
-/// Resins by number; vats of the same resin are one, and so are materials.
+/// Numbers resins; vats with the same resin share a number, and so do materials.
 class Resins {
 public:
     explicit Resins(const machine::Printer& printer) {
@@ -36,7 +36,7 @@ const CuredLayer* layer_at(const std::vector<CuredLayer>& layers, int z_um) {
     return found == layers.end() ? nullptr : &*found;
 }
 
-/// Whether the layer is somewhere else, or nowhere.
+/// Whether the layer is at another height, or missing.
 std::string why_missing(Twin& twin, const job::Manifest& job, int z_um) {
     for (const CuredLayer& cured : twin.cured().layers()) {
         const bool wanted =
@@ -47,7 +47,7 @@ std::string why_missing(Twin& twin, const job::Manifest& job, int z_um) {
     return fmt::format("nothing cured at {} um (exposure)", z_um);
 }
 
-/// The layers of a job beside those of the block.
+/// Compares the layers of a job with those of the block.
 class LayerInspection {
 public:
     LayerInspection(Report& report, Twin& twin, const job::Manifest& job, const RunSource& images, double slack_s)
@@ -102,7 +102,7 @@ private:
         }
     }
 
-    /// What the job's images and the manifest's times ask for, whatever the program did with them.
+    /// What the job's images and the manifest's times require, independent of the program.
     Result<std::vector<AskedImage>> asked_of(std::size_t index) {
         const job::Layer& layer = job_.layers[index];
         std::vector<AskedImage> asked;
@@ -123,7 +123,7 @@ private:
         return asked;
     }
 
-    /// Pixels that several images ask for are to be lit twice.
+    /// Pixels in several images may be exposed twice.
     void allow_shared(const std::vector<AskedImage>& asked) {
         std::vector<Runs> all;
         for (const AskedImage& image : asked) all.push_back(image.runs);
@@ -179,7 +179,8 @@ private:
         return fmt::format("{:.3g}", longer ? found.most_share : found.least_share);
     }
 
-    /// Images of a corrected projector hold light, which is coverage to a rounding: judge_materials adds them up.
+    /// With a corrected projector images hold light, which equals coverage only up to rounding: judge_materials adds it
+    /// up.
     void judge_areas(int index, const LayerDifference& found) {
         if (!exact_images_) return;
         const job::Layer& layer = job_.layers[static_cast<std::size_t>(index)];
@@ -204,7 +205,7 @@ private:
     double pixel_mm2_ = 0;
     bool exact_images_ = true;
     bool grey_ = false;
-    int below_um_ = 0;  ///< top of the layer before
+    int below_um_ = 0;  ///< top of the previous layer
 };
 
 }  // namespace

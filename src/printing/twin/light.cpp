@@ -1,4 +1,4 @@
-// Light in the virtual printer, who may open its door meanwhile, and the part that grows.
+// Exposures of the virtual printer, the opening of its door meanwhile, and the growing part.
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -39,7 +39,7 @@ void Twin::light_on(const job::Image& image) {
     sprayed_s_ = 0;
 }
 
-/// The fault of that light: nobody tells the controller, which only sees its switch.
+/// The fault of that exposure; the controller only sees its switch.
 void Twin::open_door() {
     const Fault* fault = fault_at(Fault::Kind::door_open, log_.exposures);
     if (fault == nullptr) return;

@@ -15,7 +15,7 @@ std::string_view trim(std::string_view text) {
     return text;
 }
 
-/// The number at the beginning of `text`; what follows it is ignored, and none is 0: as strtol does.
+/// The number at the beginning of `text`; the rest is ignored, and no number is 0: like strtol.
 long leading_number(std::string_view text) {
     while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
     long value = 0;

@@ -1,4 +1,4 @@
-// The receiving end of Marlin's wire: bytes become lines, line numbers and checksums are verified.
+// The receiver of Marlin's serial protocol: splits bytes into lines, verifies line numbers and checksums.
 #pragma once
 
 #include <optional>
@@ -7,23 +7,24 @@
 
 namespace pliant::twin {
 
-/// A line that the firmware takes, or the reason why it does not.
+/// A line that the firmware accepts, or the reason why it does not.
 struct ReceivedLine {
     std::string command;         ///< without number, checksum and comment
-    std::optional<long> number;  ///< nullopt: the line was not numbered, and so not verified
-    std::string error;           ///< empty: good
-    bool is_question = false;    ///< so far ahead that no line can have been lost: a host asks for the last one
+    std::optional<long> number;  ///< nullopt: the line had no number, and so was not verified
+    std::string error;           ///< empty: accepted
+    bool is_question = false;    ///< its number is so far ahead that no line can have been lost: a host asks for the
+                                 ///< last one
 };
 
-/// Follows Marlin 2.1: a line that begins with N must carry the next number and the right checksum (number first), and
-/// `M110` sets the number; any other line is taken unverified. Lines are cut at 95 characters; `;` begins a comment;
-/// empty lines are no lines. With `drops_repeats` (2.1.2 and later) a line numbered as the last one, or the one before
-/// it, is no line either: it is dropped in silence, before its checksum is looked at.
+/// Behaves like Marlin 2.1: a line that begins with N must carry the next number and the right checksum (number checked
+/// first), and `M110` sets the number; any other line is accepted unverified. Lines are truncated at 95 characters; `;`
+/// begins a comment; empty lines are ignored. With `drops_repeats` (2.1.2 and later) a line numbered as the last one,
+/// or the one before it, is silently dropped before its checksum is verified.
 class LineReader {
 public:
     explicit LineReader(bool drops_repeats = false) : drops_repeats_(drops_repeats) {}
 
-    /// The line that `byte` ends, if it ends one.
+    /// The line completed by `byte`, if any.
     [[nodiscard]] std::optional<ReceivedLine> feed(char byte);
 
     [[nodiscard]] long last_number() const { return last_number_; }
@@ -37,11 +38,11 @@ private:
     bool drops_repeats_;
     std::string line_;
     bool comment_ = false;
-    bool escape_ = false;  ///< a backslash: the next character loses its meaning
+    bool escape_ = false;  ///< after a backslash: the next character is literal
     long last_number_ = 0;
 };
 
-/// The xor of all bytes, as `N<line> <command>*<xor>` carries it.
+/// The xor of all bytes, as in `N<line> <command>*<xor>`.
 [[nodiscard]] int checksum(std::string_view text);
 
 }  // namespace pliant::twin

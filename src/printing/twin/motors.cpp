@@ -5,7 +5,7 @@
 namespace pliant::twin {
 namespace {
 
-constexpr std::size_t most_moves = 15;  // Marlin's BLOCK_BUFFER_SIZE 16 holds one less
+constexpr std::size_t most_moves = 15;  // one less than Marlin's BLOCK_BUFFER_SIZE of 16
 
 }  // namespace
 

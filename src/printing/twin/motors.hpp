@@ -1,5 +1,5 @@
-// The virtual machine's motors: moves wait in a queue, run one after the other on the virtual clock, and are held
-// against the interlocks when they are queued.
+// The motors of the virtual machine: moves are checked against the interlocks, queued, and run one after the other on
+// the virtual clock.
 #pragma once
 
 #include <deque>
@@ -12,29 +12,29 @@
 
 namespace pliant::twin {
 
-/// Times are seconds of the virtual clock and never go back from call to call. The printer must outlive it.
+/// Times are seconds of the virtual clock and must not decrease from call to call. The printer must outlive it.
 class Motors {
 public:
     Motors(const machine::Printer& printer, const machine::Position& start);
 
-    /// Queues a move; a forbidden one is refused and leaves everything as it is.
+    /// Queues a move; a forbidden one is refused without any change.
     [[nodiscard]] Status move(double now_s, const machine::Position& to, double feed_mm_s);
-    /// Homes at once: the caller has let `home_seconds` pass.
+    /// Homes at once: the caller has already let `home_seconds` pass.
     [[nodiscard]] Status home(double now_s, machine::Axis axis);
     [[nodiscard]] double home_seconds(machine::Axis axis) const;
 
-    /// When the last queued move is done; now or earlier if the machine stands still.
+    /// When the last queued move ends; now or earlier if the machine is at rest.
     [[nodiscard]] double done_at() const { return done_at_s_; }
-    /// When the queue takes another move.
+    /// When the queue has room for another move.
     [[nodiscard]] double room_at(double now_s);
     [[nodiscard]] bool moving(double now_s) const { return now_s < done_at_s_; }
 
-    /// Where the axes are at a moment that is not before the last one asked for.
+    /// The position of the axes at a time not before the last one queried.
     [[nodiscard]] machine::Position position_at(double now_s) const;
 
-    /// Drops the queue and stands where the machine is; it must be homed again.
+    /// Clears the queue and stops at the present position; the machine must be homed again.
     void stop(double now_s);
-    /// The motors let go: positions are lost.
+    /// Disables the motors: positions are lost.
     void release(double now_s) { stop(now_s); }
 
     [[nodiscard]] machine::Interlock& interlock() { return interlock_; }
@@ -46,7 +46,7 @@ private:
         double end_s = 0;
         machine::Position from, to;
         machine::Profile profile;
-        machine::Interlock before;  ///< to go back to if the move never runs to its end
+        machine::Interlock before;  ///< restored if the move is not finished
     };
     void forget_done(double now_s);
 

@@ -1,5 +1,5 @@
-// What a job's images and times cure by themselves: no program, no wire, no faults. It tells before the print how deep
-// the light will cure below undersides.
+// What a job's images and exposures cure in themselves, without program, wire and faults. Shows before the print how
+// deep the light will cure below undersides.
 #pragma once
 
 #include <string>
@@ -13,12 +13,12 @@
 
 namespace pliant::twin {
 
-/// The closed block. Every image is lit as long as the manifest says, in the first vat of its resin, which does not run
-/// dry. `printer` must outlive it, and its vats hold the job's resins. Errors: an image cannot be had.
+/// The closed block. Every image is exposed as long as the manifest says, in the first vat of its resin, which does not
+/// run empty. `printer` must outlive it, and its vats hold the job's resins. Errors: an image is unavailable.
 [[nodiscard]] Result<Cure> planned_cure(const machine::Printer& printer, const job::Manifest& job,
                                         const RunSource& images, const Screen& screen);
 
-/// One line for each resin that cures deeper below undersides than `allowed_overcure_um`; none: all is well.
+/// One line for each resin that cures deeper below undersides than `allowed_overcure_um`; empty if there is none.
 [[nodiscard]] std::vector<std::string> overcure_warnings(const Cure& cure, const machine::Printer& printer);
 
 }  // namespace pliant::twin

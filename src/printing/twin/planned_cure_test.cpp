@@ -13,7 +13,7 @@ namespace {
 
 constexpr double cure_depth_um = 120, layer_um = 50;
 
-/// Pixels of 0.1 mm; a resin whose light of 2 s cures 120 um, with that depth of penetration.
+/// Pixels of 0.1 mm; a resin that cures 120 um in 2 s, with that depth of penetration.
 machine::Printer printer_with(double penetration_um) {
     machine::Printer p;
     p.tower.slots = 2;

@@ -1,5 +1,5 @@
-// Every behaviour of a real Marlin that a host has to live with, one test each. What they follow was seen on the wire
-// of Marlin 2.1.1 and 2.1.2.1, or read in its source.
+// One test for each behaviour of a real Marlin that a host must cope with, as observed on the wire of Marlin 2.1.1 and
+// 2.1.2.1, or read in its source.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -134,7 +134,7 @@ TEST_CASE("answers: since 2.1.2 a line numbered as the last one or the one befor
         for (int i = 0; i < 5; ++i) p.send("M400");
         CHECK(p.raw(Peer::line(5, "M118 E1 dropped")).empty());
         CHECK(p.raw(Peer::line(4, "M118 E1 dropped")).empty());
-        CHECK(p.raw("N5 M400*1\n").empty());  // its checksum is not looked at
+        CHECK(p.raw("N5 M400*1\n").empty());  // its checksum is not verified
         CHECK(holds(p.raw(Peer::line(3, "M400")), "Error:Line Number is not Last Line Number+1, Last Line: 5\n"));
         CHECK(p.raw(Peer::line(6, "M118 E1 taken")) == "echo:taken\nok\n");
         p.twin.reset();
@@ -159,8 +159,8 @@ TEST_CASE("answers: a far number with a wrong checksum names the last line on ev
 TEST_CASE("framing: M110 counts when it is received and again when it is carried out") {
     Peer p;
     p.send("G4 S5");
-    CHECK(p.raw(Peer::line(100, "M110 N100")).empty());        // waits behind the pause, and counts already
-    CHECK(p.raw(Peer::line(101, "M118 E1 between")).empty());  // so this one is taken
+    CHECK(p.raw(Peer::line(100, "M110 N100")).empty());        // waits behind the pause, but already acts
+    CHECK(p.raw(Peer::line(101, "M118 E1 between")).empty());  // so this one is accepted
     CHECK(holds(p.raw("", 6), "ok\nok\necho:between\nok\n"));  // and then 100 is the last line again
     CHECK(holds(p.raw(Peer::line(102, "M400")), "Last Line: 100\nResend: 101\nok\n"));
     CHECK(p.raw(Peer::line(101, "M118 E1 again")) == "echo:again\nok\n");
@@ -208,7 +208,7 @@ TEST_CASE("stopping: a move goes on for 0.9 s after M112 alone, and not at all a
 
 TEST_CASE("homing to a dead switch pushes for one and a half times the travel, and kills the firmware") {
     Peer p(with({}, {{Fault::Kind::dead_switch, 1, 0}}));
-    CHECK(holds(p.send("M119"), "x_min: open\n"));  // where the carriage is parked it should be pressed
+    CHECK(holds(p.send("M119"), "x_min: open\n"));  // parked at its switch, which should be pressed
     CHECK(p.send("G28 Z", 100) != "");
     const double travel_mm = 358;
     const double longest_s = 1.5 * travel_mm / p.printer.axis(Axis::carriage).homing_speed_mm_s;
@@ -330,7 +330,7 @@ TEST_CASE("stopping: after M410 the commands that were queued still run, and pos
     p.send("M118 E1 still here");
     p.twin.advance_to(p.twin.now() + 2);
     (void)p.twin.take_output();
-    CHECK(p.raw("M410\n", 0.9).empty());  // for a second the planner takes nothing
+    CHECK(p.raw("M410\n", 0.9).empty());  // the planner accepts no moves for a second
     CHECK(holds(p.raw("", 0.2), "ok\necho:still here\nok\n"));
     CHECK(p.z_um() > 300000);
     CHECK_FALSE(p.twin.interlock().homed(Axis::platform));
@@ -396,7 +396,7 @@ TEST_CASE("machine: a limit switch is pressed where the axis really stands, also
     p.raw("", 5);
     CHECK(holds(p.send("M119"), "z_max: open"));
     p.raw("", 60);
-    p.send("G1 Z400 F600", 60);  // stops 2 mm short, and the controller does not know
+    p.send("G1 Z400 F600", 60);  // stops 2 mm short, unknown to the controller
     CHECK(holds(p.send("M114"), "Z:400.000"));
     CHECK(holds(p.send("M119"), "z_max: open"));
 }

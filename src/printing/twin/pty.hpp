@@ -1,4 +1,4 @@
-// A pseudo-terminal: one end is this program's, the other is a device that any host may open like a serial port.
+// A pseudo-terminal: one end belongs to this program, the other is a device that any host can open like a serial port.
 #pragma once
 
 #include <filesystem>
@@ -12,25 +12,25 @@ namespace pliant::twin {
 
 class Pty {
 public:
-    /// Opens a pseudo-terminal in raw mode; with `link`, puts a symbolic link of that name to the device (an old link
-    /// is replaced, any other file is not).
+    /// Opens a pseudo-terminal in raw mode; `link` makes a symbolic link of that name to the device (an old link is
+    /// replaced, any other file is not).
     [[nodiscard]] static Result<Pty> open(const std::filesystem::path& link = {});
     Pty(Pty&& other) noexcept;
     Pty& operator=(Pty&&) = delete;
     ~Pty();  ///< removes the link
 
-    /// What hosts open, such as /dev/pts/3.
+    /// The device for hosts, such as /dev/pts/3.
     [[nodiscard]] const std::string& device() const { return device_; }
     /// Bytes from the host; waits up to `timeout_s` for the first. "" if none came, or while no host has the device
     /// open.
     [[nodiscard]] Result<std::string> read(double timeout_s);
-    /// Never blocks: what no host takes is lost, as on a serial line.
+    /// Never blocks: what no host reads is lost, as on a serial line.
     void write(std::string_view bytes);
 
 private:
     Pty(FileHandle file, FileHandle other_end, std::string device);
     FileHandle file_;
-    FileHandle other_end_;  ///< kept open, so that the device survives hosts that come and go
+    FileHandle other_end_;  ///< kept open, so that the device survives the disconnection of hosts
     std::string device_;
     std::filesystem::path link_;
 };

@@ -27,7 +27,7 @@ Json material_json(const MaterialReport& m) {
             {"passed", m.passed}};
 }
 
-/// The map as columns: a row for each vat of each layer.
+/// Contamination as columns: one row for each vat of each layer.
 Json contamination_json(const Report& r) {
     Json top = Json::array(), vat = Json::array(), foreign = Json::array(), residue = Json::array();
     for (const Contamination& c : r.contamination) {
@@ -45,7 +45,7 @@ Json contamination_json(const Report& r) {
             {"residue", std::move(residue)}};
 }
 
-/// A part full of small holes has thousands of them: the sums are of all, the list is of the largest.
+/// A part full of small holes has thousands of them: the sums cover all, the list only the largest.
 Json trapped_json(const Report& r) {
     constexpr std::size_t most = 50;
     Json spaces = Json::array();

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int most = 65535;
 
-/// The first lit pixel at or after `at`, else `width`: eight dark ones at a time.
+/// The first lit pixel at or after `at`, else `width`; skips eight dark ones at a time.
 int next_lit(const std::uint8_t* row, int at, int width) {
     while (at + 8 <= width) {
         std::uint64_t eight = 0;

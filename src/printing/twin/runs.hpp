@@ -1,4 +1,4 @@
-// Layer images as runs of equal pixels: what is lit is a small part of a frame, and long runs of it are of one value.
+// Layer images as runs of equal pixels: the lit part of a frame is small and mostly uniform.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,21 @@ namespace pliant::twin {
 struct Run {
     int row = 0;
     int begin = 0, end = 0;
-    std::uint16_t value = 0;  ///< grey value; sums of such where light was added up
+    std::uint16_t value = 0;  ///< grey value, or a sum of grey values
 
     bool operator==(const Run&) const = default;
 };
 
-/// Ordered by row, then column; dark pixels are in none.
+/// Ordered by row, then column; dark pixels are left out.
 using Runs = std::vector<Run>;
 
 /// The lit pixels of an image.
 [[nodiscard]] Runs runs_of(const job::Image& image);
 
-/// Pixel by pixel sum; `width` is that of the frame.
+/// Pixelwise sum; `width` is that of the frame.
 [[nodiscard]] Runs sum_of(const std::vector<Runs>& parts, int width);
 
-/// Grey values added up: 255 for every fully lit pixel.
+/// Sum of the grey values: 255 for every fully lit pixel.
 [[nodiscard]] long long light_of(const Runs& runs);
 
 }  // namespace pliant::twin

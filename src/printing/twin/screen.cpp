@@ -6,7 +6,7 @@
 namespace pliant::twin {
 namespace {
 
-/// The largest coverage, as a share, at which the curve through evenly spaced points gives no more than `light`.
+/// The largest coverage, as a fraction, at which the curve through evenly spaced points is at most `light`.
 double coverage_at(const std::vector<double>& grey, double light) {
     const auto above = std::upper_bound(grey.begin(), grey.end(), light);
     if (above == grey.end()) return 1;
@@ -36,7 +36,7 @@ Screen::Screen(const machine::Projector& projector, std::optional<job::Image> ma
 
 std::uint16_t Screen::coverage_of(int shown, int mask, long& overlit_px) const {
     if (mask == 0) return 0;
-    // Showing rounds to the nearest value, so light is known to half a step of what was shown.
+    // The shown value is rounded, so the light is known to half a step.
     if (2 * shown > 2 * mask + 1) ++overlit_px;
     const int light = std::min(255, (shown * 255 + mask / 2) / mask);
     return covered_ ? (*covered_)[static_cast<std::size_t>(light)] : static_cast<std::uint16_t>(light);

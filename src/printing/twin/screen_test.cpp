@@ -33,7 +33,7 @@ int value_at(const Runs& runs, int column) {
 
 }  // namespace
 
-TEST_CASE("without grey and mask a picture is what it shows") {
+TEST_CASE("without grey and mask an image is its coverage") {
     const Screen::Picture picture = Screen(projector({}), std::nullopt).coverage(ramp());
     CHECK(picture.runs == ramp());
     CHECK(picture.overlit_px == 0);
@@ -41,7 +41,7 @@ TEST_CASE("without grey and mask a picture is what it shows") {
 
 TEST_CASE("grey is undone: the light of a coverage cures that coverage") {
     const Screen screen(projector({0, 0.5, 0.8, 1}), std::nullopt);
-    // Light of the coverages 1/3 and 2/3 by the printer file, and half way between 2/3 and 1.
+    // The light of coverages 1/3 and 2/3 in the printer file, and of the midpoint between 2/3 and 1.
     const Runs shown = {{0, 0, 1, 128}, {0, 1, 2, 204}, {0, 2, 3, 230}, {0, 3, 4, 255}};
     const Runs runs = screen.coverage(shown).runs;
     CHECK(std::abs(value_at(runs, 0) - 85) <= 1);

@@ -18,7 +18,7 @@ double wall_s() {
 Status serve(Twin& twin, Pty& pty, const ServeOptions& options) {
     double wall_before_s = wall_s();
     double now_s = twin.now();
-    // Light that is looked at every 20 ms would be seconds off on a fast machine.
+    // On an accelerated machine, checking the light every 20 ms would be seconds off.
     const double look_every_s =
         options.lights ? std::clamp(longest_wait_s / options.speed, shortest_wait_s, longest_wait_s) : longest_wait_s;
     while (!options.stop()) {
@@ -31,7 +31,7 @@ Status serve(Twin& twin, Pty& pty, const ServeOptions& options) {
         wall_before_s = wall_now_s;
         twin.advance_to(std::max(twin.now(), now_s));
         if (options.tick) options.tick(twin.now());
-        // A host makes dark before it sends the next move: so the light comes first here too.
+        // A host turns the light off before it sends the next move: so the light is handled first here, too.
         if (options.lights) {
             if (Status status = options.lights(twin); !status) return status;
         }

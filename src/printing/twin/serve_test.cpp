@@ -16,7 +16,7 @@ using namespace pliant::twin;
 
 namespace {
 
-/// A host's end of the device: sends a line, reads until `wanted` has come or five seconds have passed.
+/// A host's end of the device: sends a line, reads until `wanted` has arrived or five seconds have passed.
 struct Host {
     int file;
     std::string heard;

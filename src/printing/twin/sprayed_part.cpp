@@ -6,8 +6,8 @@
 namespace pliant::twin {
 namespace {
 
-constexpr int most_cells = 32;         // of the part in any direction
-constexpr double growth_share = 1.05;  // after which the jets are followed again
+constexpr int most_cells = 32;         // maximum in any direction of the part
+constexpr double growth_share = 1.05;  // growth after which rays are traced again
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// How clean the machine's sprinklers get the part in the virtual printer, as far as it has grown.
+// How clean the machine's nozzles get the part in the virtual printer, at its present height.
 #pragma once
 
 #include <optional>
@@ -10,24 +10,24 @@
 
 namespace pliant::twin {
 
-/// Keeps what the jets reach until the part has grown by a twentieth: rays cost some milliseconds. The printer must
+/// Caches the result until the part has grown by a twentieth: tracing rays costs some milliseconds. The printer must
 /// outlive it.
 class SprayedPart {
 public:
     explicit SprayedPart(const machine::Printer& printer) : printer_(&printer) {}
 
-    /// Share of the film that so many seconds of spray take off, in the mean over the part's surface. Nothing where the
-    /// machine does not say where its sprinklers are, or before the first layer is closed: then the mean of the thesis'
-    /// measurements has to do.
+    /// Fraction of the film that this many seconds of spray remove, averaged over the part's surface. Nothing if the
+    /// machine does not list its nozzles, or before the first layer is closed: then the mean of the thesis'
+    /// measurements is used.
     [[nodiscard]] std::optional<double> removed(const Cure& cure, double seconds);
-    /// The part is gone.
+    /// The part is removed.
     void clear();
 
 private:
     void look(const std::vector<CuredLayer>& layers);
 
     const machine::Printer* printer_;
-    int seen_um_ = 0;  ///< height of the part that the jets were followed to
+    int seen_um_ = 0;  ///< height of the part at the last ray tracing
     std::vector<wash::Face> faces_;
     std::vector<double> rates_;
 };

@@ -18,7 +18,7 @@ machine::Printer tower() {
     return printer;
 }
 
-/// A picture that is white where `solid` says so, x and y in pixels from the middle.
+/// An image that is white where `solid` is true; x and y in pixels from the centre.
 template <class Solid>
 job::Image picture(Solid solid) {
     job::Image image{60, 60, std::vector<std::uint8_t>(3600)};
@@ -31,7 +31,7 @@ constexpr double light_s = 1e4;
 
 }  // namespace
 
-TEST_CASE("what hides from the jets stays wet: a tube of 4 mm is cleaned less than a plate") {
+TEST_CASE("surfaces hidden from the jets stay wet: a tube of 4 mm is cleaned less than a plate") {
     const machine::Printer printer = tower();
     const auto cleaned = [&](const job::Image& image) {
         Cure cure(printer);

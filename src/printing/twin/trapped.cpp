@@ -9,7 +9,7 @@ namespace {
 
 constexpr int half_cured = 128;
 
-/// Numbers that are joined into groups.
+/// Union-find over numbers.
 class Groups {
 public:
     int add() {
@@ -33,7 +33,7 @@ struct Gap {
     int row = 0, begin = 0, end = 0;
     int group = 0;  ///< in its layer
     bool drains = false;
-    int space = -1;  ///< of one that does not drain
+    int space = -1;  ///< space of a gap that does not drain
 };
 
 /// Solid pixels of all resins together.
@@ -60,7 +60,7 @@ std::vector<Gap> gaps_of(const Runs& solid, int width_px, int height_px) {
     return gaps;
 }
 
-/// Calls `each(i, k)` for all pairs of gaps, of `a` in row r and of `b` in row r + `down`, that share a column.
+/// Calls `each(i, k)` for all pairs of gaps, of `a` in row r and of `b` in row r + `down`, with a common column.
 template <class Each>
 void overlapping(const std::vector<Gap>& a, const std::vector<Gap>& b, int down, Each each) {
     std::size_t first = 0;
@@ -72,7 +72,7 @@ void overlapping(const std::vector<Gap>& a, const std::vector<Gap>& b, int down,
     }
 }
 
-/// The spaces that hold liquid, layer by layer from the lowest up.
+/// Finds the spaces that hold liquid, layer by layer from the lowest up.
 class Finder {
 public:
     Finder(int width_px, int height_px, double pixel_um)
@@ -101,7 +101,7 @@ public:
     }
 
 private:
-    /// By group: whether it reaches the frame's border, or what is below it drains.
+    /// By group: whether it reaches the frame's border or is above one that drains.
     std::vector<bool> draining(std::vector<Gap>& gaps) const {
         Groups groups;
         for (std::size_t i = 0; i < gaps.size(); ++i) groups.add();
@@ -157,7 +157,7 @@ private:
     int width_, height_;
     double pixel_mm2_;
     bool lowest_ = true;
-    std::vector<Gap> below_;  ///< of the layer before
+    std::vector<Gap> below_;  ///< of the previous layer
     Groups groups_;           ///< of spaces
     std::vector<Trapped> spaces_;
 };

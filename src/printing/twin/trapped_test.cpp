@@ -75,11 +75,11 @@ TEST_CASE("two pockets that join further up are one, largest first; a solid part
     CHECK(trapped_in({}).empty());
 }
 
-TEST_CASE("a wall that two resins make together is a wall; one that is less than half cured leaks") {
+TEST_CASE("a wall made of two resins counts; one less than half cured leaks") {
     const std::vector<std::string> shared = {"       ", " ##### ", " #  +# ", " ##### ", "       "};
     const std::vector<std::string> weak = {"       ", " ##### ", " #  o+ ", " ##+## ", "       "};
     CHECK(trapped_in({drawn(1, plate), drawn(2, shared), drawn(3, plate)}).size() == 1);
     auto leak = drawn(2, weak);
-    leak.vats[1].runs.clear();  // a third of a wall is none
+    leak.vats[1].runs.clear();  // a wall cured to a third does not count
     CHECK(trapped_in({drawn(1, plate), leak, drawn(3, plate)}).empty());
 }

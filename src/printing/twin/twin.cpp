@@ -11,13 +11,13 @@ namespace pliant::twin {
 namespace {
 
 constexpr std::size_t queue_lines = 4;     // Marlin's BUFSIZE
-constexpr std::size_t buffer_bytes = 127;  // RX_BUFFER_SIZE 128 holds one less
+constexpr std::size_t buffer_bytes = 127;  // one less than RX_BUFFER_SIZE of 128
 constexpr std::size_t longest_raw_line = 4096;
 constexpr double never = std::numeric_limits<double>::infinity();
-constexpr double runs_on_s = 0.9;   // seen on a Mega: last step of a move after a lone M112
-constexpr double quick_stop_s = 1;  // how long the planner takes no move after M410
+constexpr double runs_on_s = 0.9;   // measured on a Mega: until the last step of a move after an M112 alone
+constexpr double quick_stop_s = 1;  // time after M410 in which the planner accepts no move
 
-/// Somewhere in the middle of every travel: nobody knows until the axes are homed.
+/// In the middle of every travel: the true position is unknown until the axes are homed.
 machine::Position unknown_start(const machine::Printer& printer) {
     machine::Position start;
     for (const machine::Axis axis : machine::all_axes) {
@@ -56,7 +56,7 @@ Twin::Twin(const machine::Printer& printer, Options options)
         boot();
 }
 
-/// What the firmware says first; `echo:` and `//` lines are for people.
+/// The first messages of the firmware; `echo:` and `//` lines are for people.
 void Twin::boot() {
     boots_at_s_.reset();
     say("start");
@@ -95,7 +95,7 @@ void Twin::violation(const std::string& what) {
     say("Error:interlock: " + what);
 }
 
-// --- the receiving end ---------------------------------------------------------------------------------------------
+// The receiving end.
 
 void Twin::mishap(const std::string& what) {
     log_.mishaps.push_back(fmt::format("{:.3f} s: {}", now_s_, what));
@@ -111,9 +111,9 @@ void Twin::receive(std::string_view bytes) {
     }
 }
 
-/// A whole line has arrived: faults, then the emergency parser, then the receive buffer.
+/// Handles a complete line: faults, then the emergency parser, then the receive buffer.
 void Twin::take_line(std::string line) {
-    if (line == "\n" || line == "\r\n") return;  // nothing at all, and no line for the faults either
+    if (line == "\n" || line == "\r\n") return;  // empty, and not counted for faults
     ++lines_;
     if (fault_hits(Fault::Kind::reset, lines_)) return reset();
     if (dead_ || fault_hits(Fault::Kind::lose_line, lines_)) return;
@@ -134,7 +134,7 @@ void Twin::take_line(std::string line) {
     advance_to(now_s_);
 }
 
-/// Moves lines from the receive buffer into the command queue, as long as there is room.
+/// Moves lines from the receive buffer to the command queue while there is room.
 void Twin::drain() {
     while (!buffer_.empty() && queue_.size() < queue_lines && now_s_ >= stalled_until_s_) {
         const long last = reader_.last_number();
@@ -154,7 +154,7 @@ void Twin::drain() {
     }
 }
 
-/// Error, request, and an ok that acknowledges nothing; what else has arrived is thrown away.
+/// Sends an error, a resend request, and an `ok` without meaning; discards what else has arrived.
 void Twin::refuse(const ReceivedLine& line) {
     if (!line.is_question) ++log_.bad_lines;
     buffer_.clear();
@@ -163,7 +163,7 @@ void Twin::refuse(const ReceivedLine& line) {
     say("ok");
 }
 
-/// A killed firmware says so and hears nothing more. What moves then goes on for a while.
+/// A killed firmware reports it and reads nothing more. Moves in progress continue for a while.
 void Twin::kill(std::string_view why) {
     note_push();
     dead_ = true;
@@ -177,7 +177,7 @@ void Twin::kill(std::string_view why) {
     lets_go_s_ = now_s_ + runs_on_s;
 }
 
-/// Everything is switched off, and the relay of the emergency line drops if the machine has one.
+/// Switches everything off; the relay of the emergency line, if any, drops.
 void Twin::let_go() {
     lets_go_s_.reset();
     outputs_off();
@@ -186,7 +186,7 @@ void Twin::let_go() {
     motors_.release(now_s_);
 }
 
-/// Homing to a dead switch ends here, whatever ends it.
+/// Homing to a dead switch ends here, for whatever reason.
 void Twin::note_push() {
     if (!running_ || now_s_ <= running_->reaches_end_s) return;
     log_.pushed_s += now_s_ - running_->reaches_end_s;
@@ -201,7 +201,7 @@ void Twin::outputs_off() {
     }
 }
 
-/// What is queued is carried out later: after a stop the planner takes nothing for a second.
+/// Queued commands are executed later: after a stop the planner accepts nothing for a second.
 void Twin::quick_stop() {
     motors_.stop(now_s_);
     held_until_s_ = now_s_ + quick_stop_s;
@@ -209,11 +209,11 @@ void Twin::quick_stop() {
     note_push();
     running_->reaches_end_s = never;
     running_->done_at_s = held_until_s_;
-    // An interrupted homing has homed nothing, an interrupted pause is over.
+    // An interrupted homing has homed nothing; an interrupted pause has ended.
     if (running_->command && running_->command->is('G', 28)) running_->command = machine::Command{'M', 400, {}, {}};
 }
 
-/// M108: a pause for the user is over.
+/// M108: ends a pause for the user.
 void Twin::user_continues() {
     if (!running_ || !running_->command) return;
     if (running_->command->is('M', 0) || running_->command->is('M', 1)) running_->done_at_s = now_s_;
@@ -244,9 +244,9 @@ void Twin::reset() {
         boot();
 }
 
-// --- the clock -----------------------------------------------------------------------------------------------------
+// The clock.
 
-/// When an idle firmware says or does something by itself; infinite if never.
+/// When an idle firmware sends or does something by itself; infinite if never.
 double Twin::idle_event() const {
     if (!queue_.empty() || !buffer_.empty()) return std::max(stalled_until_s_, held_until_s_);
     return options_.wait_every_s > 0 && !dead_ ? next_wait_s_ : never;

@@ -1,12 +1,13 @@
 // The virtual printer: speaks Marlin on a stream of bytes, moves on a virtual clock, obeys or refuses by the interlocks
-// of the machine, and cures what the projector shows it. The same G-code that drives the real machine drives this one.
+// of the machine, and cures what the projector shows it. The same G-code drives it and the real machine.
 //
 //     Twin twin(printer);
 //     twin.receive("N1 G28 Z*18\n");
 //     twin.advance_to(60);
 //     twin.take_output();   // "start\n...ok\n"
 //
-// There is no wall time in it: whoever owns it moves its clock. docs/reference/printer.md says what it knows of Marlin.
+// It does not use real time: the owner advances its clock. docs/reference/printer.md lists the supported parts of
+// Marlin.
 #pragma once
 
 #include <array>
@@ -33,99 +34,100 @@
 
 namespace pliant::twin {
 
-/// Which Marlin it is, and what goes wrong.
+/// Release of Marlin, and faults.
 struct Options {
     bool advanced_ok = false;  ///< `ok N12 P15 B3` instead of `ok`
     double busy_every_s = 2;   ///< `echo:busy: processing` while a command blocks; 0: never. M113 changes it
     std::vector<Fault> faults;
-    std::optional<machine::MarlinRelease> release{};  ///< none: what the printer file says of its board
-    bool homes_first = false;      ///< NO_MOTION_BEFORE_HOMING: moves of an axis that is not homed are left out
-    bool emergency_parser = true;  ///< M112, M108 and M410 act as soon as they arrive
-    bool z_sync = false;           ///< NANODLP_Z_SYNC: moves of the platform block and end with `Z_move_comp`
+    std::optional<machine::MarlinRelease> release{};  ///< nullopt: as in the printer file
+    bool homes_first = false;      ///< NO_MOTION_BEFORE_HOMING: moves of an axis that is not homed are ignored
+    bool emergency_parser = true;  ///< M112, M108 and M410 act on arrival
+    bool z_sync = false;           ///< NANODLP_Z_SYNC: moves of the platform block and are confirmed by `Z_move_comp`
     bool report_fans = false;      ///< `M106 P0 S255` whenever a fan changes
     double wait_every_s = 0;       ///< `wait` while idle (builds with NO_TIMEOUTS); 0: never
     double boot_s = 0;             ///< silence after a reset, before `start`
-    /// The projector's mask, of its size: how evenly it lights. None: where the printer file names one, it is unknown
-    /// here, and light is taken for even.
+    /// The projector's mask, of its size. None: a mask named in the printer file is unknown here, and the light counts
+    /// as even.
     std::optional<job::Image> mask{};
 };
 
-/// What happened that must not, or should be known.
+/// Forbidden or remarkable events.
 struct Log {
     std::vector<std::string> violations;  ///< of the interlocks, with the time
-    std::vector<std::string> mishaps;     ///< what broke behind the wire, unknown to the controller
-    int swaps = 0;                        ///< another vat was hooked than the one before
-    int short_cleanings = 0;  ///< of those, with less spray since the last light than the machine should give
+    std::vector<std::string> mishaps;     ///< failures in the machine, unknown to the controller
+    int swaps = 0;                        ///< number of times another vat than the previous one was hooked
+    int short_cleanings = 0;              ///< swaps with less spray since the last exposure than required
     int exposures = 0;
-    long overlit_pixels = 0;  ///< shown more light than a whole pixel needs, in all exposures
+    long overlit_pixels = 0;  ///< given more light than a whole pixel needs, over all exposures
     int homings = 0;
     int bad_lines = 0;
     int resets = 0;
-    std::vector<double> fan_s;    ///< how long each fan has run
-    double lit_while_open_s = 0;  ///< light behind an open door
+    std::vector<double> fan_s;    ///< running time of each fan
+    double lit_while_open_s = 0;  ///< exposure time with the door open
     bool power_cut = false;       ///< the board's relay has dropped (emergency_line), until a reset
-    double pushed_s = 0;          ///< an axis homing to a dead switch pushed against the end of its travel
-    int clamped_moves = 0;        ///< that asked for more than an axis' travel, and were cut without a word
-    long moves = 0;               ///< carried out; a repeated one changes nothing and is none
-    std::uint64_t path = 14695981039346656037ULL;  ///< hash (FNV-1a) of where they went, in order
+    double pushed_s = 0;          ///< time an axis that homes to a dead switch pushed against the end of its travel
+    int clamped_moves = 0;        ///< beyond an axis' travel, and silently limited to it
+    long moves = 0;               ///< executed; a repeated one changes nothing and does not count
+    std::uint64_t path = 14695981039346656037ULL;  ///< hash (FNV-1a) of their targets, in order
 };
 
 /// Log::path after one more move.
 [[nodiscard]] std::uint64_t path_after(std::uint64_t path, const machine::Position& to);
 
-/// What a layer was printed in: shares from 0 to 1.
+/// The contamination that a layer was printed with: fractions from 0 to 1.
 struct Contamination {
     int top_um = 0;
     int vat = 0;
     double foreign = 0;  ///< of the vat's content that is another resin
-    double residue = 0;  ///< of the film of the vat before, past its brush: what cleaning has left on the part
+    double residue = 0;  ///< of the previous vat's film, after its brush: left on the part by cleaning
 };
 
 class Twin {
 public:
     explicit Twin(const machine::Printer& printer, Options options = {});
 
-    /// Bytes from the host, arriving now. What does not fit into the receive buffer is lost, as on the real machine.
+    /// Bytes from the host, arriving now. Bytes that do not fit into the receive buffer are lost, as on the real
+    /// machine.
     void receive(std::string_view bytes);
-    /// Everything said up to now and not yet taken.
+    /// All output so far that has not been taken.
     [[nodiscard]] std::string take_output();
 
     [[nodiscard]] double now() const { return now_s_; }
-    /// Somebody has it open, for those who stand outside; light goes through it.
+    /// Actual state of the door, open to observers outside; light passes through it.
     [[nodiscard]] bool door_is_open() const { return now_s_ >= door_opens_s_ && now_s_ < door_shuts_s_; }
-    void advance_to(double seconds);  ///< never back
-    /// When the firmware will say or do something next; nullopt while it waits for the host.
+    void advance_to(double seconds);  ///< must not decrease
+    /// When the firmware will send or do something next; nullopt while it waits for the host.
     [[nodiscard]] std::optional<double> next_event() const;
 
-    /// Somebody opens the door, or shuts it; nobody tells the controller, which only sees its switch.
+    /// Opens or shuts the door; the controller only sees its switch.
     void set_door(bool open);
-    /// Somebody fills the vat of a slot up to what the printer file has in it. No such slot: nothing happens.
+    /// Refills the vat of a slot to the level in the printer file. Does nothing if there is no such slot.
     void fill_vat(int slot);
-    /// Somebody looks after the cleaning solution.
+    /// Maintenance of the cleaning solution.
     void care(machine::SolutionCare care) { fluids_.care(care); }
 
-    /// Somebody takes the part away and cleans the platform: the next print begins with an empty block and log.
+    /// Removes the part and cleans the platform: the next print begins with an empty block and log.
     void take_part_off();
 
     void light_on(const job::Image& image);
     void light_off();
 
-    /// Which Marlin it speaks like.
+    /// The release of Marlin it behaves like.
     [[nodiscard]] machine::MarlinRelease release() const {
         return options_.release.value_or(printer_.controller.firmware);
     }
-    /// As if the USB port was opened: position and line number are lost, `start` is said.
+    /// As when the USB port is opened: position and line number are lost, `start` is sent.
     void reset();
 
     [[nodiscard]] const machine::Printer& printer() const { return printer_; }
-    /// Where the axes are now; interlock() knows where they go.
+    /// The present position of the axes; interlock() has their targets.
     [[nodiscard]] machine::Position motors_position() const { return motors_.position_at(now_s_); }
     [[nodiscard]] const machine::Interlock& interlock() const { return motors_.interlock(); }
     [[nodiscard]] const Log& log() const { return log_; }
     [[nodiscard]] const Screen& screen() const { return screen_; }
     /// The cured block, closed up to now.
     [[nodiscard]] const Cure& cured();
-    /// The layers of it that are closed already, while it still grows.
+    /// Its layers that are closed already, while it still grows.
     [[nodiscard]] const std::vector<CuredLayer>& closed_layers() const { return cure_.layers(); }
     [[nodiscard]] const Fluids& fluids() const { return fluids_; }
     /// One entry for each vat of each layer, in the order of printing.
@@ -141,11 +143,12 @@ private:
     };
     struct Running {
         Queued queued;
-        std::optional<machine::Command> command;  ///< nullopt: unknown
+        std::optional<machine::Command> command;  ///< nullopt: unknown command
         double done_at_s = 0;
         double next_busy_s = 0;
-        double reaches_end_s = std::numeric_limits<double>::infinity();  ///< homing to a dead switch: the axis pushes
-        bool synced = false;  ///< a move that its end is waited for has been queued
+        double reaches_end_s = std::numeric_limits<double>::infinity();  ///< homing to a dead switch: when the axis
+                                                                         ///< reaches the end of its travel
+        bool synced = false;  ///< the move whose end is awaited has been queued
     };
 
     void say(std::string_view line);
@@ -194,7 +197,7 @@ private:
     void note_push();
     void outputs_off();
     void quick_stop();
-    /// The fault of that kind for the n-th time something happens; nullptr: none.
+    /// The fault of that kind for the n-th occurrence; nullptr: none.
     [[nodiscard]] const Fault* fault_at(Fault::Kind kind, int n) const;
     [[nodiscard]] bool fault_hits(Fault::Kind kind, int n) const { return fault_at(kind, n) != nullptr; }
     [[nodiscard]] std::vector<machine::Axis> axes_to_home(const machine::Command& command) const;
@@ -211,14 +214,14 @@ private:
     double now_s_ = 0;
 
     LineReader reader_{release() != machine::MarlinRelease::v2_1_1};
-    std::string arriving_;  ///< the line whose end has not arrived
-    std::string buffer_;    ///< received, waiting for a place in the queue
+    std::string arriving_;  ///< the incomplete line
+    std::string buffer_;    ///< received, waiting for room in the queue
     std::deque<Queued> queue_;
     std::optional<Running> running_;
     std::string output_;
-    bool dead_ = false;                ///< killed: reads nothing, says nothing
-    std::optional<double> lets_go_s_;  ///< killed in motion: the steppers go on until then
-    double held_until_s_ = 0;          ///< after a quick stop the queue waits
+    bool dead_ = false;                ///< killed: reads and sends nothing
+    std::optional<double> lets_go_s_;  ///< killed in motion: the motors run until then
+    double held_until_s_ = 0;          ///< the queue waits until then after a quick stop
     double idle_limit_s_ = 120;
     bool soft_endstops_ = true;  ///< M211
     double feed_mm_s_ = 0;
@@ -226,17 +229,17 @@ private:
     double next_wait_s_ = 0;
     std::optional<double> boots_at_s_;  ///< silent until then
     double stalled_until_s_ = 0;
-    int refuse_more_ = 0;  ///< good lines that a resend loop still refuses
+    int refuse_more_ = 0;  ///< valid lines still to be refused by a resend loop
     int lines_ = 0, oks_ = 0, resends_ = 0, bytes_ = 0, moves_ = 0, unhooked_ = 0, pump_starts_ = 0;
 
-    std::array<int, machine::axis_count> slip_um_{};  ///< how far each axis is from where the controller thinks
-    int stuck_vat_ = -1;                              ///< on hooks that do not let go
+    std::array<int, machine::axis_count> slip_um_{};  ///< deviation of each axis from the controller's position
+    int stuck_vat_ = -1;                              ///< on hooks that do not release
     int missed_vat_ = -1;                             ///< on hooks that did not catch it, or fallen off them
-    int left_vat_ = -1;                               ///< stays in the wall, though the retriever thinks it has it
-    bool fork_stuck_ = false;                         ///< stays in the next time that a vat changes its place
-    int takes_ = 0, reaches_ = 0;                     ///< of the magnet; of the fork, out
+    int left_vat_ = -1;                               ///< left in the wall, though the retriever is assumed to have it
+    bool fork_stuck_ = false;                         ///< stays in at the next transfer of a vat
+    int takes_ = 0, reaches_ = 0;                     ///< number of uses of the magnet, and of extensions of the fork
     machine::Settling settling_{printer_};
-    int part_vat_ = -1;  ///< whose resin clings to the part
+    int part_vat_ = -1;  ///< whose resin is on the part
     double residue_ = 0;
     machine::BrushWatch brush_{printer_};
     bool pump_works_ = true;
@@ -245,10 +248,10 @@ private:
     double shown_since_s_ = 0;
     int shown_vat_ = -1;
     double door_opens_s_ = -1, door_shuts_s_ = -1;  ///< the last time
-    std::vector<double> fan_since_s_;               ///< below 0: off
+    std::vector<double> fan_since_s_;               ///< since when each fan runs; below 0: off
     bool pump_on_ = false;
     double pump_since_s_ = 0;
-    double sprayed_s_ = 0;  ///< since the last light
+    double sprayed_s_ = 0;  ///< since the last exposure
     int last_vat_ = -1;
 };
 

@@ -1,4 +1,5 @@
-// Where the virtual printer's vats are, whatever its controller thinks, and what the part carries from one to the next.
+// The actual places of the virtual printer's vats, whatever its controller assumes, and the carry-over of resin by the
+// part.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,11 +13,11 @@ namespace {
 using machine::Axis;
 using machine::Command;
 
-constexpr int most_slip_um = 500;  // of a carriage, a table, a tower: beyond that nothing fits any more
+constexpr int most_slip_um = 500;  // of carriage, table or tower: with a larger error transfers fail
 
 }  // namespace
 
-/// A move has put a vat on the hooks, under the platform, or away.
+/// Handles a move that has put a vat on the hooks, under the platform, or away.
 void Twin::note_vat(std::optional<int> before) {
     const auto vat = interlock().hooked_vat();
     if (vat == before) return;
@@ -41,7 +42,7 @@ void Twin::note_vat(std::optional<int> before) {
     count_swap(*vat);
 }
 
-/// Counts swaps, and those with too little cleaning between the last light and the new vat.
+/// Counts swaps, and those with too little cleaning between the last exposure and the new vat.
 void Twin::count_swap(int vat) {
     if (vat == last_vat_) return;
     if (last_vat_ >= 0) {
@@ -55,7 +56,7 @@ void Twin::count_swap(int vat) {
     last_vat_ = vat;
 }
 
-/// Magnet and fork act when the moves before them are done, and take their time.
+/// Magnet and fork switch when the moves before them are done, and take their time.
 void Twin::switch_latch(const Command& c, double at_s) {
     const std::optional<int> vat = interlock().hooked_vat();
     const bool was_out = interlock().fork_out();
@@ -67,7 +68,7 @@ void Twin::switch_latch(const Command& c, double at_s) {
     fork_stuck_ = true;
 }
 
-/// What a fork that stayed in has not taken off its place, or has not put there.
+/// Records the vat that a fork which stayed in has not taken off its place, or has not put there.
 void Twin::miss_vat(const std::optional<int>& tray) {
     const std::optional<int> now = interlock().tray_vat();
     if (now == tray) return;
@@ -77,7 +78,7 @@ void Twin::miss_vat(const std::optional<int>& tray) {
     mishap(fmt::format("the vat of slot {} is not where the retriever thinks", slot_of(left_vat_)));
 }
 
-/// Without power the magnet lets its vat go, which only stands where it is in its slot or under the platform.
+/// Without power the magnet releases its vat, which is secure only in its slot or under the platform.
 void Twin::drop_vat() {
     const machine::Switch& coil = printer_.hooks.magnet.coil;
     const std::optional<int> vat = interlock().hooked_vat();
@@ -90,7 +91,7 @@ void Twin::drop_vat() {
     mishap(fmt::format("the vat of slot {} falls: its magnet has no power", slot_of(*vat)));
 }
 
-/// The vat that really is under the platform, by index; -1: none is where it should be.
+/// Index of the vat that actually is under the platform; -1: none is in place.
 int Twin::vat_under_light() const {
     const int hooked = interlock().hooked_vat().value_or(-1);
     const auto slip = [&](machine::Axis axis) { return std::abs(slip_um_[static_cast<std::size_t>(axis)]); };
@@ -99,7 +100,7 @@ int Twin::vat_under_light() const {
     return stuck_vat_ >= 0 ? stuck_vat_ : hooked;
 }
 
-/// The part comes into a vat with what cleaning has left on it of the one before.
+/// The part enters a vat with the cleaning residue of the previous one.
 void Twin::change_vat_part(int vat) {
     if (part_vat_ != vat) {
         cure_.take_ml(vat, -fluids_.enter(vat, cure_.left_ml()[static_cast<std::size_t>(vat)]));

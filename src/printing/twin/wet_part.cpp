@@ -8,7 +8,7 @@ namespace {
 
 constexpr int most_cells = 80;
 
-/// Rows and columns that hold anything.
+/// Rows and columns that contain anything.
 struct Bounds {
     int row = 0, end_row = 0, column = 0, end_column = 0;
 };
@@ -31,7 +31,7 @@ wash::PartCells wet_part(const CoarsePart& part, const machine::Projector& proje
     if (part.runs().empty()) return cells;
     const Bounds b = bounds_of(part);
     const CoarsePart::Slab& first = part.slabs().front();
-    // Slabs are equally high, but for the last one and where nothing is printed between two.
+    // Slabs are equally high, except the last one and where empty layers are in between.
     const int slab_um = std::max(1, first.top_um - first.bottom_um);
     cells.columns = b.end_column - b.column;
     cells.rows = b.end_row - b.row;

@@ -1,4 +1,4 @@
-// A part as the spray meets it: the cells of a coarse part, where it hangs on the platform.
+// A part as seen by the spray: the cells of a coarse part, hanging on the platform.
 #pragma once
 
 #include "printing/machine/printer.hpp"
@@ -7,8 +7,8 @@
 
 namespace pliant::twin {
 
-/// Whatever its materials. Empty (no columns) if nothing is solid; at most 80 cells in any direction, and at most so
-/// many as the coarse part has.
+/// All materials together. Empty (no columns) if nothing is solid; at most 80 cells in any direction, and no more than
+/// the coarse part has.
 [[nodiscard]] wash::PartCells wet_part(const CoarsePart& part, const machine::Projector& projector);
 
 }  // namespace pliant::twin

@@ -15,21 +15,21 @@ namespace {
 using machine::Axis;
 using machine::Printer;
 
-/// How far the machine may oscillate: the interlocks' and the printer file's limits.
+/// Maximum oscillation, by the interlocks' and the printer file's limits.
 Strokes most_strokes(const Printer& p, double part_mm) {
     Strokes most;
     if (p.has_carriage()) {
         const machine::Carriage& c = p.carriage;
         most.x_um = c.tower_um - c.print_um - c.shear_um - c.back_off_um - 1;
     }
-    // The same stroke must do for the tallest part that the machine builds, which the printer file is checked for.
+    // The stroke must also work for the tallest part of the machine, because the printer file is checked for that.
     const int tallest_um = std::max(p.platform.build_height_um, static_cast<int>(std::ceil(part_mm * 1000)));
     most.z_um = std::max(0, p.axis(Axis::platform).max_um - p.clear_um(tallest_um));
     return most;
 }
 
-/// What every cleaning takes at least: a stroke out and back at the speed of cleaning, and of a tower the time in which
-/// the vat is let go, the tower goes on by a slot, and the next vat is taken, all while the pump runs.
+/// Minimum duration of a cleaning: a stroke out and back at cleaning speed and, with a tower, the time to release the
+/// vat, move the tower by one slot, and take the next vat, all while the pump runs.
 double least_seconds(const Printer& p, const Strokes& strokes) {
     machine::Position far;
     far[Axis::carriage] = strokes.x_um;
@@ -54,7 +54,7 @@ public:
     Search(const PartCells& part, const Printer& printer, double wanted)
         : part_(part), printer_(printer), faces_(wet_faces(part)), wanted_(wanted) {}
 
-    /// Remembers the better one; what a person would call equal keeps the shorter way.
+    /// Keeps the better one; practically equal results keep the shorter strokes.
     void attempt(const Strokes& strokes) {
         if (!tried_.insert({strokes.x_um, strokes.z_um}).second) return;
         const std::vector<double> rates = washed_rates(part_, faces_, printer_, strokes);
@@ -68,7 +68,7 @@ public:
             const double middle = (low + high) / 2;
             (cleanness(faces_, rates, middle).removed < wanted_ ? low : high) = middle;
         }
-        // Whole tenths of a second, as a person writes them.
+        // Rounded up to tenths of a second, as in a printer file.
         const double seconds = std::ceil(10 * std::max(high, least_seconds(printer_, strokes)) - 1e-9) / 10;
         if (seconds > most_s || (best_ && seconds >= best_->seconds)) return;
         const Cleanness c = cleanness(faces_, rates, seconds);

@@ -1,4 +1,4 @@
-// The oscillation and the time with which the spray cleans a part with the least solution.
+// The oscillation and duration with which the spray cleans a part using the least solution.
 #pragma once
 
 #include "base/core/error.hpp"
@@ -9,15 +9,15 @@ namespace pliant::wash {
 struct BestSpray {
     Strokes strokes;
     double seconds = 0;
-    double solution_ml = 0;  ///< of one cleaning
-    double removed = 0;      ///< share of the film, at least what was wanted
-    double unseen = 0;       ///< share of the surface that no solution reaches
+    double solution_ml = 0;  ///< per cleaning
+    double removed = 0;      ///< fraction of the film, at least the required one
+    double unseen = 0;       ///< fraction of the surface that no solution reaches
 };
 
 /// Searches all strokes that the machine has room for, first coarsely, then around the best. A cleaning is at least one
-/// stroke out and back, and of a tower what its hooks take meanwhile. Errors: the machine has no sprinklers, pumps
-/// nothing, or no oscillation makes the part so clean within the longest cleaning that the machine allows; then it says
-/// how clean it gets.
+/// stroke out and back and, with a tower, what its hooks need meanwhile. Errors: the machine has no nozzles, pumps
+/// nothing, or no oscillation gets the part clean enough within the machine's longest cleaning; then the error says how
+/// clean it gets.
 [[nodiscard]] Result<BestSpray> best_spray(const PartCells& part, const machine::Printer& printer, double wanted);
 
 }  // namespace pliant::wash

@@ -37,8 +37,8 @@ TEST_CASE("the best spray takes less solution than the printer's own for the sam
     CHECK(best->removed >= 0.95);
     const auto rates = washed_rates(part, faces, p, best->strokes);
     CHECK(cleanness(faces, rates, best->seconds).removed == near(best->removed, {.relative = 1e-12}));
-    // The hooks, the way to them and that of the tower by a slot take 2 (3 + 15 / 15.2 + 15.2 / 50 + 101.6 / 40 + 40 /
-    // 200) s, which is more than this disc needs.
+    // The hooks, the way to them and the tower's move by one slot take 2 (3 + 15 / 15.2 + 15.2 / 50 + 101.6 / 40 + 40 /
+    // 200) s, more than this disc needs.
     const double store_s = 2 * (3 + 15 / 15.2 + 15.2 / 50 + 101.6 / 40 + 40.0 / 200);
     CHECK(best->seconds == near(store_s, {.relative = 0.01}));
 }
@@ -61,7 +61,7 @@ TEST_CASE("on a machine whose moves take no time nobody who tries other strokes 
     }
 }
 
-TEST_CASE("what cannot be reached is said, and what is missing") {
+TEST_CASE("an unreachable goal is reported, and what is missing") {
     const machine::Printer p = tower();
     const Result<BestSpray> scaffold = best_spray(coarsened(wash::test::scaffold(), 32), p, 0.99);
     REQUIRE_FALSE(scaffold);

@@ -13,8 +13,8 @@ struct Side {
 };
 constexpr std::array<Side, 6> sides = {{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
-/// Away from what is solid around a cell: cells show a slope as steps, which this smooths. The platform counts as
-/// solid.
+/// The direction away from the solid around a cell: smooths the steps by which cells approximate a slope. The platform
+/// counts as solid.
 Vec3 outwards(const PartCells& part, int column, int row, int slab) {
     constexpr int reach = 2;
     Vec3 away;
@@ -33,7 +33,7 @@ Face face_of(const PartCells& part, int column, int row, int slab, const Side& s
     const double area = side.slab != 0 ? part.cell_mm * part.cell_mm : part.cell_mm * part.high_mm;
     const Vec3 axis{static_cast<double>(side.column), static_cast<double>(side.row), static_cast<double>(-side.slab)};
     const Vec3 away = outwards(part, column, row, slab);
-    // Of a thin wall, whose other side is as near, the sum says nothing.
+    // On a thin wall, whose other side is as near, the sum is meaningless.
     const double least = 1e-6 * (part.cell_mm + part.high_mm);
     const Vec3 normal = norm(away) > least && dot(away, axis) > 0 ? unit(away) : axis;
     return {{part.x_mm + (column + 0.5 + 0.5 * side.column) * part.cell_mm,
@@ -64,7 +64,7 @@ std::vector<Face> wet_faces(const PartCells& part) {
 
 CellJoiner::CellJoiner(const PartCells& fine, int most)
     : wide_(std::max(1, (std::max(fine.columns, fine.rows) + most - 1) / most)) {
-    // About as high as wide: what a slope looks like is judged from the cells around it.
+    // About as high as wide: slopes are estimated from the surrounding cells.
     const int as_wide = static_cast<int>(std::lround(fine.cell_mm * wide_ / fine.high_mm));
     high_ = std::max({1, (fine.slabs + most - 1) / most, as_wide});
     out_ = {(fine.columns + wide_ - 1) / wide_,

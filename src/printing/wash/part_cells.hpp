@@ -1,4 +1,4 @@
-// A part in cells, as it hangs below the platform, and the surface of it that gets wet.
+// A part in cells, hanging below the platform, and its wetted surface.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace pliant::wash {
 
-/// Cells are `cell_mm` wide and deep, `high_mm` high. x and y count from `x_mm`, `y_mm`, the corner of the first cell
-/// from the middle of the platform; z counts down from the platform.
+/// Cells are `cell_mm` wide and deep, `high_mm` high. The corner of the first cell is at `x_mm`, `y_mm` from the middle
+/// of the platform; z counts down from the platform.
 struct PartCells {
     int columns = 0, rows = 0, slabs = 0;
     double cell_mm = 0, high_mm = 0;
@@ -23,32 +23,33 @@ struct PartCells {
                    static_cast<std::size_t>(columns) +
                static_cast<std::size_t>(column);
     }
-    /// Outside of the cells nothing is solid.
+    /// Nothing outside the cells is solid.
     [[nodiscard]] bool at(int column, int row, int slab) const {
         return column >= 0 && row >= 0 && slab >= 0 && column < columns && row < rows && slab < slabs &&
                solid[index(column, row, slab)] != 0;
     }
 };
 
-/// A side of a solid cell with nothing behind it. Millimetres from the middle of the platform's face, z up: the part
-/// lies below 0.
+/// A face of a solid cell with an empty cell in front of it. Millimetres from the middle of the platform's face, z up:
+/// the part is below 0.
 struct Face {
     Vec3 middle;
-    Vec3 axis;            ///< outwards from the cell, of length 1
-    Vec3 normal;          ///< of the smooth surface that the cells stand for, of length 1
+    Vec3 axis;            ///< outward unit normal of the cell's face
+    Vec3 normal;          ///< unit normal of the smooth surface that the cells represent
     double area_mm2 = 0;  ///< of that surface
 };
 
-/// All but what is fixed to the platform, slab by slab. Closed pockets count too: nothing reaches them.
+/// All faces except those on the platform, slab by slab. Those of closed pockets are included, although nothing reaches
+/// them.
 [[nodiscard]] std::vector<Face> wet_faces(const PartCells& part);
 
-/// Joins fine cells to larger ones, at most `most` in any direction and not much wider than high; what is filled to a
-/// third is solid. Memory: of the larger cells only.
+/// Merges fine cells into larger ones, at most `most` in any direction and not much wider than high; a large cell is
+/// solid if a third of it is filled. Memory: of the larger cells only.
 class CellJoiner {
 public:
-    /// `fine` without its `solid`.
+    /// `fine`: its `solid` is not used.
     CellJoiner(const PartCells& fine, int most);
-    /// A solid cell of the fine ones.
+    /// Adds a solid fine cell.
     void add(int column, int row, int slab);
     [[nodiscard]] PartCells made() &&;
 

@@ -26,7 +26,7 @@ public:
         for (std::size_t f = 0; f < faces.size(); ++f) flow_mm3_s_[f] = rates[f] * faces[f].area_mm2;
     }
 
-    /// From the platform down: no face gives to one above it.
+    /// From the platform down: no face passes solution to one above it.
     std::vector<double> run() {
         for (int slab = 0; slab < part_.slabs; ++slab) {
             spread_ledges(slab);
@@ -88,7 +88,7 @@ private:
         give(face(cell, down), q);
     }
 
-    /// Off an underside onto the next face below.
+    /// From an underside onto the next face below.
     void drip(const Cell& cell) {
         const std::size_t from = face(cell, down);
         if (from == none) return;
@@ -97,7 +97,7 @@ private:
         }
     }
 
-    /// What has come onto a ledge covers it evenly and leaves it evenly over its edges.
+    /// Solution on a ledge spreads evenly and leaves evenly over its edges.
     void spread_ledges(int slab) {
         std::vector<std::uint8_t> seen(static_cast<std::size_t>(part_.columns) * static_cast<std::size_t>(part_.rows));
         const auto at = [&](const Cell& c) {
@@ -142,7 +142,7 @@ private:
     const PartCells& part_;
     const std::vector<Face>& faces_;
     std::vector<std::size_t> face_of_;  ///< (cells, sides)
-    std::vector<double> flow_mm3_s_;    ///< over each face
+    std::vector<double> flow_mm3_s_;    ///< flow over each face
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Solution that runs off: what has hit a part flows down over it, and drips onto what lies below. No constant of its
-// own: the volume stays, and solution that runs over a place washes it as if it had hit it.
+// Run-off: solution that has hit a part flows down over it and drips onto what is below. It needs no constant of its
+// own: volume is conserved, and solution that flows over a place washes it as if it had hit it.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace pliant::wash {
 
-/// Depth of solution that each face gets in a second, in mm, with what runs over it from above. `rates_mm_s` is what
-/// the jets bring. Nothing is lost on the way: down a wall straight, over a ledge evenly to all of its edges, off an
-/// underside as drops onto the next face below. `faces` must be wet_faces(part).
+/// Depth of solution that each face gets per second, in mm, including what flows over it from above. `rates_mm_s`: from
+/// the jets. Volume is conserved: it flows straight down a wall, over a ledge evenly to all of its edges, and drips off
+/// an underside onto the next face below. `faces` must be wet_faces(part).
 [[nodiscard]] std::vector<double> with_run_off(const PartCells& part, const std::vector<Face>& faces,
                                                const std::vector<double>& rates_mm_s);
 
-/// What jets and run-off together bring to each face, in mm a second, in the mean over one stroke.
+/// The sum of jets and run-off for each face, in mm per second, averaged over one stroke.
 [[nodiscard]] std::vector<double> washed_rates(const PartCells& part, const std::vector<Face>& faces,
                                                const machine::Printer& printer, const Strokes& strokes);
 

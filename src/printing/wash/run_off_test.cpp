@@ -13,7 +13,7 @@ using namespace pliant::wash;
 
 namespace {
 
-/// What runs over each face where only those for which `hit` is true get 1 mm a second.
+/// Flow over each face if only those for which `hit` is true get 1 mm per second.
 template <class Hit>
 std::vector<double> flow(const PartCells& part, const std::vector<Face>& faces, Hit hit) {
     std::vector<double> rates;
@@ -28,7 +28,7 @@ bool is_side(const Face& face) {
 }  // namespace
 
 TEST_CASE("down a wall everything runs on, nothing goes up, and the lower edge takes it all") {
-    // A column of 1 mm, 10 mm high; its uppermost half millimetre of wall is hit.
+    // A column of 1 mm, 10 mm high; the top half millimetre of its wall is hit.
     const PartCells column = test::cells_of(1, 10, 0.5, [](double, double, double) { return true; });
     const std::vector<Face> faces = wet_faces(column);
     const auto rates = flow(column, faces, [](const Face& f) { return is_side(f) && f.middle.z > -0.5; });

@@ -13,17 +13,17 @@ namespace {
 
 using machine::Printer;
 
-constexpr int places_of_stroke = 12;  // in which a stroke is tried
+constexpr int places_of_stroke = 12;  // number of positions at which a stroke is sampled
 
-/// A head where it stands for a moment, in the part's own millimetres.
+/// A nozzle at one moment, in the part's frame, millimetres.
 struct Head {
     Vec3 place;
     Vec3 aim;
     double least_cosine = 0;   ///< of the angle between its axis and a drop
-    double flow_mm3_s_sr = 0;  ///< into each direction of the cone
+    double flow_mm3_s_sr = 0;  ///< per solid angle of the cone
 };
 
-/// Heads at a share of the stroke: the carriage stands back and goes further, the platform rises.
+/// Nozzles at a fraction of the stroke: the carriage starts from its back position and moves on, the platform rises.
 std::vector<Head> heads_at(const Printer& p, double part_mm, const Strokes& strokes, double share) {
     double flow = 0;
     for (const machine::Sprinkler& s : p.sprinklers) flow += s.flow;
@@ -49,7 +49,7 @@ bool is_solid(const PartCells& part, const Vec3& point) {
                    cell(-point.z, part.high_mm));
 }
 
-/// Walks from cell to cell along a ray until it leaves the part's box; whether it meets a solid cell.
+/// Walks along a ray from cell to cell until it leaves the part's box; returns whether it hits a solid cell.
 bool is_hidden(const PartCells& part, const Vec3& from, const Vec3& direction) {
     const std::array<double, 3> size = {part.cell_mm, part.cell_mm, part.high_mm};
     const std::array<double, 3> at = {from.x - part.x_mm, from.y - part.y_mm, -from.z};
@@ -73,7 +73,7 @@ bool is_hidden(const PartCells& part, const Vec3& from, const Vec3& direction) {
     }
 }
 
-/// What one head brings to a face, in mm a second.
+/// Contribution of one nozzle to a face, in mm per second.
 double rate_of(const PartCells& part, const Face& face, const Head& head) {
     const Vec3 to_head = head.place - face.middle;
     const double distance = norm(to_head);
@@ -81,7 +81,7 @@ double rate_of(const PartCells& part, const Face& face, const Head& head) {
     const Vec3 direction = to_head / distance;
     const double facing = dot(direction, face.normal);
     if (facing <= 0 || -dot(direction, head.aim) < head.least_cosine) return 0;
-    // From as far outside as the steps are high that a slope has in cells; between two walls, from the face itself.
+    // Starts outside by the height of the steps that approximate a slope; between two walls, at the face itself.
     const double cell_mm = std::min(part.cell_mm, part.high_mm);
     Vec3 from = face.middle + cell_mm * face.normal;
     if (is_solid(part, from)) from = face.middle + 1e-3 * cell_mm * face.axis;

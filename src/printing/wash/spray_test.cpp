@@ -18,7 +18,7 @@ machine::Printer tower() {
     return machine::load_printer("examples/printers/tower.toml").value();
 }
 
-/// One head straight below the middle of the platform, with the carriage standing back.
+/// One nozzle directly below the middle of the platform, with the carriage back.
 machine::Printer one_head(double cone_deg) {
     machine::Printer p = tower();
     machine::Sprinkler head;
@@ -67,7 +67,7 @@ TEST_CASE("beyond the cone, behind another piece and on its far side a part stay
     const std::vector<double> rates = spray_rates(plate, faces, one_head(20), {});
     const double radius = 84.55 * std::tan(std::numbers::pi / 18);
     CHECK(seen_mm2(faces, rates) / (std::numbers::pi * radius * radius) == near(1, {.relative = 0.03}));
-    // A stem of 10 x 10 mm with a plate at its far end: what hangs above the plate is in its shade.
+    // A stem of 10 x 10 mm with a plate at its far end: everything above the plate is shaded by it.
     const PartCells shade = test::cells_of(
         40, 30, 0.5, [](double x, double y, double d) { return d > 28 || (std::abs(x) < 5 && std::abs(y) < 5); });
     const std::vector<Face> all = wet_faces(shade);
@@ -94,7 +94,7 @@ TEST_CASE("the four parts of table 4.2: drawn as heavy as weighed, they come as 
                      << " %");
         CHECK(std::abs(c.removed - m.removed) < 0.035);
     }
-    // The pits' tips point up: no solution runs there, as it does along the beams of a scaffold.
+    // The pits' tips point up: no solution flows in there, whereas it flows along the beams of a scaffold.
     const Cleanness scaffold = cleaned(test::scaffold(), p), pyramids = cleaned(test::pyramids(), p);
     CHECK(scaffold.removed > pyramids.removed);
     CHECK(scaffold.unseen < pyramids.unseen);

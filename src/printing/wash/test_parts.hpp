@@ -1,5 +1,5 @@
-// Parts with the features that the thesis names for those of table 4.2 (figure 4.8), as heavy as there: the picture
-// gives no measures, so these are ours. They hang below the platform as they are printed.
+// Parts with the features that the thesis names for those of table 4.2 (figure 4.8), and with the same weights; the
+// figure has no dimensions, so these are ours. They hang below the platform as printed.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +29,7 @@ inline PartCells cells_of(double side_mm, double height_mm, double cell_mm,
     return p;
 }
 
-/// Ten discs, each narrower than the one before it.
+/// Ten discs of decreasing diameter.
 inline PartCells cone() {
     return cells_of(32, 20, 0.5,
                     [](double x, double y, double d) { return std::hypot(x, y) < 16 - 1.5 * std::floor(d / 2); });
@@ -43,12 +43,12 @@ inline PartCells scaffold() {
     });
 }
 
-/// A flat one: 69 % of what gets wet is one face, as much as a cloth wipes off it.
+/// A flat one: 69 % of its wetted surface is one face, as much as a cloth wipes off.
 inline PartCells cylinder() {
     return cells_of(54, 6, 0.5, [](double x, double y, double) { return std::hypot(x, y) < 26.5; });
 }
 
-/// A block with four pits, pyramids whose tips point at the platform.
+/// A block with four pyramid-shaped pits whose tips point at the platform.
 inline PartCells pyramids() {
     return cells_of(34, 16, 0.5, [](double x, double y, double d) {
         const double across = std::max(std::abs(std::abs(x) - 8.5), std::abs(std::abs(y) - 8.5));

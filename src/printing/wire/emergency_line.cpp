@@ -17,7 +17,7 @@ namespace {
 
 using Signal = machine::EmergencyLine::Signal;
 
-/// A file that is kept open: nothing can be missing when it is needed.
+/// A file kept open, so that opening cannot fail when it is needed.
 class Opened {
 public:
     Opened(std::string device, int flags)
@@ -34,12 +34,12 @@ private:
     FileHandle file_;
 };
 
-/// A control line of a serial port: up lets the machine run.
+/// A control line of a serial port: high lets the machine run.
 class PortLine final : public EmergencyLine {
 public:
     PortLine(const std::string& device, bool rts) : port_(device, O_RDWR), bit_(rts ? TIOCM_RTS : TIOCM_DTR) {}
 
-    /// The port keeps the line as it is when the program ends: a host that dies has its journal, not this.
+    /// The port keeps the state of the line when the program ends: a crash of the host is left to the journal.
     [[nodiscard]] Status open() {
         termios settings{};
         if (!port_.good() || ::tcgetattr(port_.file(), &settings) != 0) return port_.error();

@@ -39,7 +39,7 @@ TEST_CASE("a pin's file: released when opened, pulled and released again, the ot
     }
 }
 
-TEST_CASE("what cannot be pulled is refused before anything moves; without a line there is none") {
+TEST_CASE("an unusable emergency line is refused before anything moves; none is accepted") {
     CHECK(open_emergency_line({Signal::file, "/none/value", 0, true}).error().message.find("/none/value") !=
           std::string::npos);
     CHECK(open_emergency_line({Signal::dtr, "/dev/null", 0, true}).error().message.find("/dev/null") !=

@@ -1,4 +1,4 @@
-// Who makes dark when the host dies in the middle of a light, and knows how long it was on: a process of its own that
+// Turns the light off if the host dies during an exposure, and records how long it was on: a separate process that
 // waits for the end of a pipe.
 #pragma once
 
@@ -9,14 +9,14 @@ namespace pliant::host {
 class Guard {
 public:
     virtual ~Guard() = default;
-    /// Light number `light` (of the journal) is about to be noted; it is not on yet.
+    /// Exposure number `light` (of the journal) is about to be recorded; it has not started yet.
     virtual void announced(long light) = 0;
-    /// It goes on now, on the devices' clock.
+    /// It starts now, on the devices' clock.
     virtual void lit(double now_s) = 0;
-    /// It is off.
+    /// It has ended.
     virtual void dark(double now_s) = 0;
-    /// For how long light number `light` was on when the host died that had announced it, as the guard of that host saw
-    /// it; 0: it had not gone on. nullopt: nobody saw.
+    /// How long exposure number `light` lasted if its host died, as observed by that host's guard; 0: it had not
+    /// started. nullopt: not observed.
     [[nodiscard]] virtual std::optional<double> lit_s(long light) = 0;
 };
 

@@ -1,4 +1,4 @@
-// A command as it goes over the wire: numbered and checksummed.
+// Formats a command for the wire: numbered and with checksum.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,8 +8,8 @@
 
 namespace pliant::host {
 
-/// A line with a line end at both ends. If the one between two lines were lost or damaged, they would become one, and
-/// one in 256 of such passes the checksum; empty lines do nothing.
+/// A line with a line end before and after it. If the only line end between two lines were lost or damaged, they would
+/// merge into one, and one in 256 of such passes the checksum; empty lines are harmless.
 inline std::string framed_line(long number, std::string_view command) {
     const std::string line = fmt::format("N{} {}", number, command);
     int sum = 0;

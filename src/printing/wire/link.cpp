@@ -13,11 +13,11 @@ namespace pliant::host {
 namespace {
 
 constexpr std::size_t longest_command = 80;  // leaves room for N, number and checksum in Marlin's 95
-constexpr double late_s = 0.02;              // past the deadline of a fence
-constexpr double echo_timeout_s = 4;         // the echo of a fence; `busy` comes every 2 s before it
+constexpr double late_s = 0.02;              // tolerance of a fence's deadline
+constexpr double echo_timeout_s = 4;         // for the echo of a fence; `busy` comes every 2 s before it
 constexpr std::size_t longest_answer = 4096;
-constexpr double recent_lines = 200;      // over which the wire is judged
-constexpr long most_number = 2147483647;  // a firmware counts lines in 32 bits
+constexpr double recent_lines = 200;      // number of lines by which the wire is judged
+constexpr long most_number = 2147483647;  // firmware uses 32-bit line numbers
 
 bool begins(std::string_view text, std::string_view with) {
     return text.substr(0, with.size()) == with;
@@ -33,7 +33,8 @@ std::string_view trim(std::string_view text) {
     return text;
 }
 
-/// A number that is the whole text and may count lines. Bytes get lost on the way here too: half a number is none.
+/// A valid line number that is the whole text. Bytes get lost in this direction, too: a truncated number does not
+/// count.
 std::optional<long> whole_number(std::string_view text) {
     text = trim(text);
     long value = 0;
@@ -60,7 +61,7 @@ bool Firmware::can(const std::string& capability) const {
 Link::Link(Wire& wire, Clock& clock, LinkOptions options)
     : wire_(wire), clock_(clock), options_(options), window_lines_(options.window_lines) {}
 
-// --- what the caller asks for --------------------------------------------------------------------------------------
+// Public functions.
 
 Status Link::put(std::string_view bytes) {
     Status status = wire_.write(bytes);
@@ -134,7 +135,7 @@ Status Link::pass_fence() {
         if (Status status = send(fmt::format("M118 E1 tok {}", token_)); !status) return status;
         if (Status status = run_until([this] { return fence_seen_ || silent_; }); !status) return status;
         if (!fence_seen_) continue;
-        // Everything before the token has been executed, whatever became of its ok.
+        // Everything before the token has been executed, even if its `ok` was lost.
         const long token_line = next_number_ - 1;
         drop_outstanding([&](long number) { return number < token_line; });
         return {};
@@ -167,7 +168,7 @@ void Link::halt() {
 }
 
 void Link::stop(const std::deque<std::string>& commands) {
-    // Errors do not matter any more: everything possible is tried.
+    // Errors are ignored from here on: everything possible is tried.
     connected_ = false;
     watch_ = nullptr;
     urgent("M410");
@@ -178,7 +179,7 @@ void Link::stop(const std::deque<std::string>& commands) {
     for (const std::string& command : commands) (void)wire_.write(command + "\n");
 }
 
-// --- sending -------------------------------------------------------------------------------------------------------
+// Sending.
 
 const std::string& Link::line_bytes(long number) const {
     return history_[static_cast<std::size_t>(number - base_ - 1)];
@@ -219,9 +220,9 @@ Status Link::run_until(const std::function<bool()>& done) {
     }
 }
 
-// --- listening -----------------------------------------------------------------------------------------------------
+// Receiving.
 
-/// Handles the next answers; a long time without one means that it was lost, whatever else is said meanwhile.
+/// Handles the next answers; a long time without one means that it was lost, whatever other lines arrive.
 Status Link::listen() {
     const double patience_s = outstanding_.empty() ? echo_timeout_s : options_.answer_timeout_s;
     const double left_s = std::max(0.0, deadline_s_ - clock_.now()) + late_s;
@@ -233,7 +234,7 @@ Status Link::listen() {
     return *heard && !is_late ? Status{} : give_up_waiting();
 }
 
-/// Reads once and handles every complete line; false if nothing came in time. The watch is asked meanwhile.
+/// Reads once and handles every complete line; false if nothing arrived in time. Calls the watch meanwhile.
 Result<bool> Link::hear(double timeout_s) {
     if (!watch_) return hear_once(timeout_s);
     const double end = clock_.now() + timeout_s;
@@ -313,8 +314,8 @@ void Link::handle_firmware(std::string_view line) {
     firmware_.capabilities[std::string(rest.substr(0, colon))] = rest[colon + 1] == '1';
 }
 
-/// The quoted text is a command of ours: the firmware cannot do it. Anything else is what noise has made of a line, and
-/// that line will be asked for again.
+/// If the quoted text is one of our commands, the firmware does not support it. Otherwise noise has changed a line,
+/// which will be requested again.
 Status Link::handle_unknown(std::string_view line) {
     if (!connected_ || tolerant_) return {};
     const std::string_view text = trim(line.substr(21));
@@ -324,7 +325,7 @@ Status Link::handle_unknown(std::string_view line) {
     return failure("the printer does not know a command of the job: {}", text);
 }
 
-/// Whether a recent line carried it; a firmware may quote only the command's word.
+/// Whether a recent line contained it; firmware may quote only the command's first word.
 bool Link::has_been_sent(std::string_view command) const {
     constexpr std::size_t recent = 64;
     if (command.empty()) return false;
@@ -338,12 +339,12 @@ bool Link::has_been_sent(std::string_view command) const {
     return false;
 }
 
-/// A damaged line is asked for again; anything else that the firmware calls an error ends the print.
+/// A damaged line is requested again; anything else that the firmware calls an error ends the print.
 Status Link::handle_error(std::string_view line) {
     const bool damaged = contains(line, "Line Number is not Last") || contains(line, "checksum mismatch") ||
                          contains(line, "No Checksum with line number");
     if (!damaged) return handle_halt(trim(line.substr(6)));
-    // The Resend that should follow may be lost: the error itself says as much.
+    // The Resend that should follow may be lost, but the error contains the same number.
     const std::size_t last = line.find("Last Line:");
     if (last != std::string_view::npos) {
         if (const auto number = whole_number(line.substr(last + 10))) wanted_ = *number + 1;
@@ -351,7 +352,7 @@ Status Link::handle_error(std::string_view line) {
     return {};
 }
 
-/// An error that is not about a line. A killed firmware answers nothing any more.
+/// An error that is not about a line. Killed firmware does not answer any more.
 Status Link::handle_halt(std::string_view error) {
     halted_ = halted_ || contains(error, "halted") || contains(error, "kill()");
     if (!connected_) return {};
@@ -381,7 +382,7 @@ void Link::handle_ok(std::string_view line) {
     outstanding_.pop_front();
 }
 
-/// ADVANCED_OK: `B` is how many places are free. One that was free while nothing else was under way is all there are.
+/// ADVANCED_OK: `B` is the number of free places. The number free while nothing else was in flight is the total.
 void Link::adapt_window(std::string_view answer) {
     const std::size_t at = answer.rfind(" B");
     if (at == std::string_view::npos || outstanding_.size() > 1) return;
@@ -390,16 +391,16 @@ void Link::adapt_window(std::string_view answer) {
     window_lines_ = std::clamp(static_cast<int>(*places), 1, options_.window_lines);
 }
 
-/// An idle firmware that waits has answered everything: what is still outstanding will not come.
+/// Idle firmware that sends `wait` has answered everything: outstanding answers are lost.
 void Link::handle_wait() {
     constexpr double under_way_s = 0.5;
     if (connected_ && !outstanding_.empty() && !wanted_ && clock_.now() - last_write_s_ > under_way_s)
         (void)give_up_waiting();
 }
 
-// --- recovering ----------------------------------------------------------------------------------------------------
+// Recovery.
 
-/// What the checksum has caught tells how much it cannot have caught.
+/// The rate of errors caught by the checksum gives an estimate of those that it misses.
 Status Link::note_refusal() {
     refused_ += 1 / recent_lines;
     if (refused_ <= options_.most_refused) return {};
@@ -409,7 +410,7 @@ Status Link::note_refusal() {
         100 * refused_);
 }
 
-/// Lines in flight behind a bad one are refused one by one; only when the wire is quiet is the state known.
+/// Lines in flight after a bad one are refused one by one; the state is known only when the wire is quiet.
 Status Link::resynchronise() {
     // After a silence it may turn out that only answers were lost: then no line was damaged.
     const bool only_answers = probing_ && *wanted_ == next_to_send_;
@@ -421,7 +422,7 @@ Status Link::resynchronise() {
 }
 
 Status Link::go_back_to(long number) {
-    // Its `start` was not heard: line 1 is wanted though more were sent than it takes without having had that one.
+    // Its `start` was missed: line 1 is requested although more lines were sent than could be accepted without it.
     if (number == 1 && (base_ > 0 || next_to_send_ > 1 + options_.window_lines)) return handle_restart();
     if (number > next_number_ || number <= base_) {
         return failure("the printer asks for line {}, lines {} to {} are at hand", number, base_ + 1, next_number_ - 1);
@@ -433,14 +434,14 @@ Status Link::go_back_to(long number) {
     }
     resends_ += next_to_send_ > number ? next_to_send_ - number : 0;
     next_to_send_ = number;
-    // Lines before it have arrived and owe their ok still, unless a long silence has told that their oks are lost.
+    // Lines before it have arrived and their `ok`s are still due, unless a long silence showed that these are lost.
     const bool lost = std::exchange(probing_, false);
     drop_outstanding([&](long n) { return lost || n >= number; });
     return {};
 }
 
-/// Asks for the last line that the firmware has taken. (Repeating one would not tell: since 2.1.2 a line that was taken
-/// among the last two is passed over in silence.)
+/// Asks for the last line that the firmware has accepted. (Repeating one would not tell: since 2.1.2 a line that is
+/// among the last two accepted is silently ignored.)
 Status Link::give_up_waiting() {
     if (++silences_ > options_.most_repeats) return failure("the printer has stopped answering");
     answer_s_ = clock_.now();

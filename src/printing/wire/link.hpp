@@ -1,9 +1,10 @@
-// A reliable stream of commands to a Marlin over a wire that loses and damages bytes.
+// A reliable stream of commands to Marlin over a wire that loses and damages bytes.
 //
-// Lines are numbered and checksummed; as many of them are under way as the firmware's queue and receive buffer hold. A
-// refused line makes the link wait until the wire is quiet and go back to it; every line since connect() is kept for
-// that. Every command must be safe to run twice (absolute coordinates), because the protocol cannot exclude that. What
-// went through is known by fences: `M400` and `M118 E1 tok N`, an echo that comes back only when all motion is done.
+// Lines are numbered and have checksums; as many are in flight as the firmware's queue and receive buffer hold. After a
+// refused line the link waits until the wire is quiet and resends from that line; for this it keeps every line since
+// connect(). Every command must be safe to execute twice (absolute coordinates), because the protocol cannot exclude
+// that. Completion is confirmed by fences: `M400` and `M118 E1 tok N`, an echo that returns only when all motion is
+// done.
 #pragma once
 
 #include <cstddef>
@@ -22,22 +23,23 @@
 namespace pliant::host {
 
 struct LinkOptions {
-    int window_lines = 4;          ///< fewer if the firmware says (ADVANCED_OK) that it has fewer places
-    int window_bytes = 120;        ///< below the receive buffer
-    double boot_s = 3;             ///< how long `start` may take after the port was opened
+    int window_lines = 4;          ///< fewer if the firmware reports (ADVANCED_OK) fewer free places
+    int window_bytes = 120;        ///< less than the receive buffer
+    double boot_s = 3;             ///< maximum time until `start` after the port was opened
     double answer_timeout_s = 12;  ///< silence after which an answer counts as lost; `busy` comes every 2 s
-    double quiet_s = 0.2;          ///< silence after which nothing more is under way
-    int most_repeats = 10;         ///< of one and the same line, and of silences in a row
-    /// Share of recent lines that may come to be repeated. Beyond it the wire is not trusted any more: a checksum of 8
-    /// bits lets about r^2 / 14 of all lines through damaged where r of them arrive damaged.
+    double quiet_s = 0.2;          ///< silence after which nothing more is in flight
+    int most_repeats = 10;         ///< of the same line, and of consecutive silences
+    /// Maximum fraction of recent lines that may need repeating. Above it the wire is no longer trusted: if a fraction
+    /// r of the lines arrives damaged, an 8-bit checksum lets about r^2 / 14 of all lines through damaged.
     double most_refused = 0.2;
-    double talk_s = 60;           ///< how long one that is not busy may say other things before it answers connect()
-    int most_connects = 10;       ///< silences in a row before connect() gives up
-    double watch_every_s = 0.02;  ///< how often the watch is asked, at least, while something is waited for
-    bool may_be_halted = false;   ///< an emergency stop or a halt came last: what a silence means then
+    double talk_s = 60;           ///< maximum time that a controller which is not busy may send other lines before it
+                                  ///< answers connect()
+    int most_connects = 10;       ///< consecutive silences before connect() gives up
+    double watch_every_s = 0.02;  ///< longest interval between calls of the watch while waiting
+    bool may_be_halted = false;   ///< the last session ended with an emergency stop or a halt, which explains silence
 };
 
-/// What M115 says.
+/// The answer to M115.
 struct Firmware {
     std::string name;
     std::map<std::string, bool> capabilities;  ///< "EMERGENCY_PARSER", ...
@@ -45,70 +47,71 @@ struct Firmware {
     [[nodiscard]] bool can(const std::string& capability) const;
 };
 
-/// How long after M410, which stops motion within a millisecond, M112 follows. M112 alone lets a move go on for most of
-/// a second; at the same time as M410 it would be heeded first.
+/// Delay from M410, which stops motion within a millisecond, to M112. M112 alone lets a move continue for most of a
+/// second; sent together with M410 it would be executed first.
 inline constexpr double m112_after_m410_s = 0.01;
 
-/// Stops at the first sign that the machine is not where the stream thinks it is: a restart, an unknown command, an
-/// error that is not about a damaged line. Wire and clock must outlive it.
+/// Fails at the first sign that the machine is not in the expected state: a restart, an unknown command, an error that
+/// is not about a damaged line. Wire and clock must outlive it.
 class Link {
 public:
     Link(Wire& wire, Clock& clock, LinkOptions options = {});
 
-    /// Asked at least every LinkOptions::watch_every_s while something is waited for; an error ends the waiting and is
-    /// what the call returns.
+    /// Called at least every LinkOptions::watch_every_s while waiting; an error ends the wait and is returned.
     void set_watch(std::function<Status()> watch) { watch_ = std::move(watch); }
-    /// Gets every line that is heard and is no `ok`: prompts, reports, echoes.
+    /// Receives every line other than `ok`: prompts, reports, echoes.
     void set_listener(std::function<void(std::string_view)> listener) { listener_ = std::move(listener); }
 
-    /// Waits for the firmware to start (or finds it running) and makes `base` the number of the last line: the next one
-    /// is `base` + 1.
+    /// Waits for the firmware to start (or finds it running) and sets the number of the last line to `base`: the next
+    /// one is `base` + 1.
     [[nodiscard]] Status connect(long base = 0);
-    /// Before connect(): the number of the last line that the controller has taken; 0 if it has just started. Every
-    /// release of Marlin names it when a line with a number far ahead arrives, and takes nothing of that line. A
-    /// controller that still knows the numbers of an earlier host has not been reset since.
+    /// Before connect(): the number of the last line that the controller accepted; 0 if it has just started. Every
+    /// release of Marlin reports it when a line with a number far ahead arrives, and ignores that line. A controller
+    /// that still knows the numbers of an earlier host has not been reset since.
     [[nodiscard]] Result<long> last_line();
-    /// Asks who it is (M115). What a build does not say stays unknown.
+    /// Identifies the firmware (M115). What a build does not report stays unknown.
     [[nodiscard]] Result<Firmware> introduce();
 
-    /// Returns when the line is under way; blocks while the window is full. No line end, no comment, at most 80
+    /// Returns when the line has been sent; blocks while the window is full. No line end, no comment, at most 80
     /// characters.
     [[nodiscard]] Status send(std::string_view command);
-    /// The same for a command that the firmware need not know.
+    /// The same for a command that the firmware may not know.
     [[nodiscard]] Status send_if_known(std::string_view command);
-    /// Sends a query and returns the lines that come back until it has been carried out; the machine stands still then.
+    /// Sends a query and returns the lines received until it has been executed; the machine is then at rest.
     [[nodiscard]] Result<std::vector<std::string>> ask(std::string_view command);
-    /// Returns when everything sent has been executed and all motion is done. Errors: not within so long, too.
+    /// Returns when everything sent has been executed and all motion is done. Errors include a timeout after
+    /// `within_s`.
     [[nodiscard]] Status fence(double within_s = std::numeric_limits<double>::infinity());
-    /// Listens for so long, and lets the watch be asked. Without `repair` what the firmware asks for again is left for
-    /// later: nothing delays the end.
+    /// Listens for this time and calls the watch. Without `repair`, resend requests are postponed, so that nothing
+    /// delays the end.
     [[nodiscard]] Status listen_for(double seconds, bool repair = true);
-    /// Whether every line has had its ok: the next one goes out at once.
+    /// Whether every line has been acknowledged, so that the next one is sent at once.
     [[nodiscard]] bool is_quiet() const { return outstanding_.empty() && !wanted_ && next_to_send_ == next_number_; }
 
-    /// Past the window and without a number: M112, M410, M108. May be called from any thread if the wire allows it.
+    /// Bypasses the window and has no line number: M112, M410, M108. Thread-safe if the wire is.
     void urgent(std::string_view command);
-    /// M410 and M112, past the window: nothing moves any more, and the controller must be reset.
+    /// M410 and M112, bypassing the window: all motion stops, and the controller must be reset.
     void halt();
-    /// Stops motion at once (M410, past the window) and then sends `commands` unnumbered. The link is of no use after.
+    /// Stops motion at once (M410, bypassing the window) and then sends `commands` unnumbered. The link cannot be used
+    /// afterwards.
     void stop(const std::deque<std::string>& commands);
 
     [[nodiscard]] long lines_sent() const { return next_number_ - base_ - 1; }
-    /// The number that the next command will carry.
+    /// The number of the next command.
     [[nodiscard]] long next_number() const { return next_number_; }
     [[nodiscard]] long resends() const { return resends_; }
     [[nodiscard]] bool connected() const { return connected_; }
-    /// Whether the controller restarted: it knows no position, nothing may be sent to it.
+    /// Whether the controller restarted: it has lost its position, and nothing may be sent to it.
     [[nodiscard]] bool was_reset() const { return was_reset_; }
-    /// Whether `start` was heard while connecting.
+    /// Whether `start` was received while connecting.
     [[nodiscard]] bool has_started() const { return started_; }
-    /// Before connect(): the controller has been heard before on this wire, there is no `start` to wait for.
+    /// Before connect(): the controller has already been heard on this wire, so there is no `start` to wait for.
     void expect_no_start() { no_start_ = true; }
-    /// Whether the controller has halted itself, and answers nothing before it is reset.
+    /// Whether the controller has halted itself, and will not answer before a reset.
     [[nodiscard]] bool has_halted() const { return halted_; }
-    /// Whether it has said that homing failed: the switch was not found.
+    /// Whether it reported that homing failed: the switch was not found.
     [[nodiscard]] bool homing_failed() const { return homing_failed_; }
-    /// Whether fence() ended because its time was over.
+    /// Whether fence() ended by timeout.
     [[nodiscard]] bool ran_late() const { return ran_late_; }
     /// Whether the wire itself broke.
     [[nodiscard]] bool wire_failed() const { return wire_failed_; }
@@ -156,23 +159,23 @@ private:
     const LinkOptions options_;
     std::function<Status()> watch_;
     std::function<void(std::string_view)> listener_;
-    std::string heard_;                 ///< a line that is not complete yet
-    std::vector<std::string> history_;  ///< every line since connect(), the first one has number base_ + 1
-    std::deque<Sent> outstanding_;      ///< lines that were sent and have had no ok
+    std::string heard_;                 ///< an incomplete line
+    std::vector<std::string> history_;  ///< every line since connect(); the first one has number base_ + 1
+    std::deque<Sent> outstanding_;      ///< lines sent but not acknowledged
     std::size_t outstanding_bytes_ = 0;
     int window_lines_ = 4;
     long base_ = 0;
     long next_number_ = 1;        ///< of the next command
-    long next_to_send_ = 1;       ///< below next_number_ while lines wait or are repeated
-    std::optional<long> wanted_;  ///< line that the firmware asks for
-    bool ignore_ok_ = false;      ///< the one that follows a Resend
-    long repeated_ = 0;           ///< line that was asked for last, and how often
+    long next_to_send_ = 1;       ///< below next_number_ while lines wait or are resent
+    std::optional<long> wanted_;  ///< line requested by the firmware
+    bool ignore_ok_ = false;      ///< for the `ok` that follows a Resend
+    long repeated_ = 0;           ///< last requested line, and the number of requests
     int repeats_ = 0;
-    double refused_ = 0;     ///< share of recent lines that had to be repeated
+    double refused_ = 0;     ///< fraction of recent lines that had to be resent
     int silences_ = 0;       ///< since the last ok
     bool probing_ = false;   ///< after a silence the firmware was asked for its last line
-    bool silent_ = false;    ///< nothing is outstanding and nothing came
-    bool tolerant_ = false;  ///< unknown commands are no error
+    bool silent_ = false;    ///< nothing is outstanding and nothing was received
+    bool tolerant_ = false;  ///< unknown commands are not errors
     bool connected_ = false;
     bool started_ = false;
     bool was_reset_ = false;
@@ -181,16 +184,16 @@ private:
     bool halted_ = false;
     bool homing_failed_ = false;
     bool ran_late_ = false;
-    double deadline_s_ = std::numeric_limits<double>::infinity();  ///< of what is waited for
+    double deadline_s_ = std::numeric_limits<double>::infinity();  ///< of the current wait
     double last_write_s_ = 0;
-    double busy_s_ = 0;    ///< when it last said that it is
-    double answer_s_ = 0;  ///< when it last answered a line or was busy; other talk is no answer
+    double busy_s_ = 0;    ///< when it last reported `busy`
+    double answer_s_ = 0;  ///< when it last answered a line or reported `busy`; other lines do not count
     long resends_ = 0;
     long token_ = 0;
-    std::string awaited_;  ///< the echo of the fence
+    std::string awaited_;  ///< the expected echo of the fence
     bool fence_seen_ = false;
     Firmware firmware_;
-    std::vector<std::string>* answers_ = nullptr;  ///< of the query under way
+    std::vector<std::string>* answers_ = nullptr;  ///< to the current query
 };
 
 }  // namespace pliant::host

@@ -1,4 +1,4 @@
-// How a host and a controller agree on the number of the last line, on every release of Marlin.
+// How host and controller agree on the number of the last line, with every release of Marlin.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@ Status Link::wait_for_boot() {
     return {};
 }
 
-/// Returns when it has answered, or after a silence in which the line or its answer must have been lost. One that is
-/// busy answers when it has a place for the line; one that only talks is none that can be printed with.
+/// Returns when it has answered, or after a silence that means that the line or its answer was lost. A busy controller
+/// answers when it has room for the line; one that only sends other lines cannot be used for printing.
 Status Link::wait_for_answer(double begin_s, const std::function<bool()>& answered) {
     double end = clock_.now() + options_.boot_s;
     while (!answered() && clock_.now() < end) {
@@ -41,13 +41,13 @@ Status Link::no_answer() const {
         "stop, failed homing) answers only after a reset");
 }
 
-/// A number far ahead is refused by every release, whatever the last one was, and the refusal names that. The checksum
-/// is wrong, so that the line is not taken even where its number happens to follow.
+/// Every release refuses a number far ahead, whatever the last one was, and the refusal contains the last one. The
+/// checksum is wrong, so that the line is not accepted even if its number happens to be the next.
 Status Link::put_probe() {
     return put("\nN2147483640 M400*0\n");
 }
 
-/// The last line that the controller has taken. nullopt: it did not say.
+/// The last line that the controller has accepted. nullopt: it did not say.
 Result<std::optional<long>> Link::probe_last_line(double begin_s) {
     wanted_.reset();
     if (Status status = put_probe(); !status) return tl::unexpected(status.error());
@@ -60,7 +60,7 @@ Result<std::optional<long>> Link::probe_last_line(double begin_s) {
     return *wanted - 1;
 }
 
-/// Bytes get lost on the way here too: a number counts when it has come twice.
+/// Bytes get lost in this direction, too: a number counts once it was received twice.
 Result<long> Link::last_line() {
     if (Status status = wait_for_boot(); !status) return tl::unexpected(status.error());
     const double begin_s = clock_.now();
@@ -77,8 +77,8 @@ Result<long> Link::last_line() {
     return tl::unexpected(no_answer().error());
 }
 
-/// M110 counts when it is received, and again when it is carried out; and an ok may be that of a line which another
-/// host has left behind. So what counts is an echo from behind it, and then the number that the controller names.
+/// M110 acts when it is received, and again when it is executed; and an `ok` may belong to a line of another host. So
+/// the proof is an echo sent after it, and then the number that the controller reports.
 Result<bool> Link::set_base(long base, int attempt, double begin_s) {
     wanted_.reset();
     fence_seen_ = false;

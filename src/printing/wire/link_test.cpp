@@ -15,7 +15,7 @@ using pliant::test::holds;
 
 namespace {
 
-/// Answers `first` to the first line that holds `part`, otherwise as a good Marlin.
+/// Answers the first line that contains `part` with `first`, otherwise like a faultless Marlin.
 struct Once {
     std::string part, first;
     bool done = false;
@@ -26,7 +26,7 @@ struct Once {
     }
 };
 
-/// Answers as a good Marlin up to the first line of the print.
+/// Answers like a faultless Marlin up to the first line of the print.
 std::string deaf_to_moves(const std::string& line, bool& deaf) {
     deaf = deaf || line.find(" G1 ") != std::string::npos;
     return deaf ? "" : good_answer(line);
@@ -67,7 +67,7 @@ TEST_CASE("lines are numbered and checksummed from M110 on") {
 }
 
 TEST_CASE("a refused line is sent again from there, with or without the whole answer") {
-    for (const char* answer : {"Error:checksum mismatch, Last Line: 2\nResend: 3\nok\n",  // as it should be
+    for (const char* answer : {"Error:checksum mismatch, Last Line: 2\nResend: 3\nok\n",  // the normal case
                                "Error:checksum mismatch, Last Line: 2\nResend: 3\n",      // without ok
                                "Error:checksum mismatch, Last Line: 2\nok\n",             // without Resend
                                "Resend: 3\nok\n"}) {
@@ -91,7 +91,7 @@ TEST_CASE("numbers that count no lines are garbage") {
     CHECK_FALSE(b.link.last_line());
 }
 
-TEST_CASE("a lost ok is found out by asking for the last line: nothing is sent twice, nothing counts as damage") {
+TEST_CASE("a lost ok is detected by querying the last line: no resend, no damage counted") {
     bool lost = false;
     Bench b(
         [&](const std::string& line) -> std::string {
@@ -106,7 +106,7 @@ TEST_CASE("a lost ok is found out by asking for the last line: nothing is sent t
     CHECK(b.link.resends() == 0);
 }
 
-TEST_CASE("the last line counts when it was named twice: half a number is none") {
+TEST_CASE("the last line number counts once received twice: a truncated one does not") {
     int asked = 0;
     Bench b([&](const std::string& line) {
         return is_probe(line) ? refusal(++asked == 1 ? 1004 : 1000004) : good_answer(line);
@@ -115,8 +115,8 @@ TEST_CASE("the last line counts when it was named twice: half a number is none")
     CHECK(asked == 3);
 }
 
-TEST_CASE("an ok that another host has left behind is not that of M110") {
-    // M110 gets lost; an ok of an old line comes in its place.
+TEST_CASE("an ok for another host's line is not that of M110") {
+    // M110 is lost; an ok for an old line arrives instead.
     Bench b(Once{"M110", "ok N77 P15 B3\n"});
     b.wire.forgets = "M110";
     REQUIRE(b.link.connect(1000000));
@@ -175,7 +175,7 @@ TEST_CASE("a fence with an end: late is late, though the printer says that it is
     CHECK(b.clock.now_s - before_s == near(40, {.relative = 0.05}));
 }
 
-TEST_CASE("busy restarts the patience") {
+TEST_CASE("busy restarts the timeout") {
     int busy = 0;
     CountingClock clock;
     struct BusyWire final : Wire {
@@ -208,12 +208,12 @@ TEST_CASE("busy restarts the patience") {
     CHECK(link.resends() == 0);
 }
 
-TEST_CASE("what means that the machine is not where we think ends the print") {
+TEST_CASE("signs that the machine is not in the expected state end the print") {
     CHECK(holds(Bench(Once{"X3*", "echo:Unknown command: \"G1 X3\"\nok\n"}).error_of_print(), "does not know"));
     CHECK(holds(Bench(Once{"X3*", "start\necho: External Reset\n"}).error_of_print(), "restarted"));
     CHECK(holds(Bench(Once{"X3*", "Watchdog Reset\n"}).error_of_print(), "restarted"));
     CHECK(holds(Bench(Once{"X3*", "Error:Printer halted. kill() called!\n"}).error_of_print(), "Printer halted"));
-    // A reset whose `start` got lost: the numbers begin anew, long after line 1 was taken.
+    // A reset whose `start` was lost: line numbers begin anew, long after line 1.
     const std::string anew = "Error:Line Number is not Last Line Number+1, Last Line: 0\nResend: 1\nok\n";
     Bench reset(Once{"X6*", "oksta" + anew});
     CHECK(holds(reset.error_of_print(), "restarted"));
@@ -221,7 +221,7 @@ TEST_CASE("what means that the machine is not where we think ends the print") {
     CHECK(holds(Bench(Once{"X3*", "Resend: 77\nok\n"}).error_of_print(), "asks for line 77"));
 }
 
-TEST_CASE("endless refusal and endless silence end") {
+TEST_CASE("endless refusal and endless silence are given up") {
     const auto refuse = [](const std::string& line) -> std::string {
         return line.find("X3*") != std::string::npos ? "Error:checksum mismatch, Last Line: 2\nResend: 3\nok\n"
                                                      : good_answer(line);
@@ -233,7 +233,7 @@ TEST_CASE("endless refusal and endless silence end") {
     CHECK(holds(Bench([](const std::string&) { return std::string(); }).error_of_print(), "does not answer"));
 }
 
-TEST_CASE("talk is no answer") {
+TEST_CASE("other lines are not answers") {
     constexpr const char* talk = "T:20.0 /0.0 B:20.0 /0.0\n";
     SUBCASE("one that never answers is given up") {
         Bench b([](const std::string&) { return std::string(); });
@@ -261,7 +261,7 @@ TEST_CASE("talk is no answer") {
     }
 }
 
-TEST_CASE("garbage between the lines is passed over") {
+TEST_CASE("garbage between the lines is ignored") {
     Bench b([](const std::string& line) {
         if (is_probe(line)) return good_answer(line);
         return "T:0 B:0\n\x01\xff\necho:busy: procesing\nResnd: 1\n//action:notification hi\n" +
@@ -271,7 +271,7 @@ TEST_CASE("garbage between the lines is passed over") {
 }
 
 TEST_CASE("the window holds lines and bytes back") {
-    // Nothing is answered: only what the window takes is written.
+    // Nothing is answered: only what fits the window is written.
     bool is_deaf = false;
     const auto deaf = [&](const std::string& line) { return deaf_to_moves(line, is_deaf); };
     Bench lines(deaf, {2, 120, 3, 12, 0.2, 1});

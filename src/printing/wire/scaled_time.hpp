@@ -1,4 +1,4 @@
-// Time that runs faster, for a virtual printer whose clock does: the host's patience and its lights shrink with it.
+// Accelerated time, for a virtual printer with a fast clock: the host's timeouts and exposures shrink with it.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace pliant::host {
 
-/// `clock` must outlive it; `speed` seconds pass here in one of `clock`.
+/// `clock` must outlive it; `speed` seconds pass here per second of `clock`.
 class ScaledClock final : public Clock {
 public:
     ScaledClock(Clock& clock, double speed) : clock_(clock), speed_(speed) {}
@@ -21,7 +21,7 @@ private:
     double speed_;
 };
 
-/// Waits for answers in the time of a ScaledClock; not less than a millisecond, so that nobody spins.
+/// Waits for answers in the time of a ScaledClock, but at least a millisecond, to avoid busy waiting.
 class ScaledWire final : public Wire {
 public:
     ScaledWire(std::unique_ptr<Wire> wire, double speed) : wire_(std::move(wire)), speed_(speed) {}

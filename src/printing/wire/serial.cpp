@@ -1,6 +1,6 @@
 #include "printing/wire/serial.hpp"
 
-// termios2 lives in the kernel's header, which must not meet <termios.h>.
+// termios2 is in the kernel's header, which conflicts with <termios.h>.
 #include <asm/termbits.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -38,12 +38,12 @@ Status set_up(int file, int baud_rate) {
     settings.c_cc[VTIME] = 0;
     settings.c_ospeed = settings.c_ispeed = static_cast<speed_t>(baud_rate);
     if (ioctl(file, TCSETS2, &settings) != 0) return input_error("{}", std::strerror(errno));
-    (void)ioctl(file, TCFLSH, TCIFLUSH);  // what was said while nobody listened
+    (void)ioctl(file, TCFLSH, TCIFLUSH);  // discard what was sent while nobody listened
     return {};
 }
 
-/// For this program alone: by flock against hosts that ask for it, by TIOCEXCL against all others. A pseudo-terminal
-/// would stay exclusive after a host has died, because its machine has it open too.
+/// Exclusive use: by flock against hosts that ask for it, by TIOCEXCL against all others. A pseudo-terminal would stay
+/// exclusive after a host has died, because its machine keeps it open, too.
 Status take_alone(int file) {
     if (::flock(file, LOCK_EX | LOCK_NB) != 0) return input_error("another host has it open");
     struct stat status {};
@@ -53,8 +53,8 @@ Status take_alone(int file) {
     return {};
 }
 
-/// The lock file that other programs look for, such as minicom and picocom: LCK..ttyUSB0 with the number of the
-/// process. One whose process is gone is stale. "": there is no place for it, or this is no such device.
+/// The lock file used by programs such as minicom and picocom: LCK..ttyUSB0 with the process number. One whose process
+/// is gone is stale. "": there is no folder for it, or the device is of another kind.
 Result<std::string> make_lock_file(const std::string& device) {
     std::error_code none;
     const std::filesystem::path real = std::filesystem::canonical(device, none);
@@ -80,7 +80,7 @@ std::string first_line(const std::filesystem::path& path) {
     return line;
 }
 
-/// Whether the file is ready for `events` in time; an interrupted wait counts as not yet.
+/// Whether the file is ready for `events` in time; an interrupted wait counts as not ready.
 Result<bool> wait_for(int file, short events, int timeout_ms) {
     pollfd wait{file, events, 0};
     const int ready = poll(&wait, 1, timeout_ms);
@@ -168,11 +168,11 @@ std::vector<SerialPort> serial_ports(const std::string& devices) {
     for (const auto& entry : std::filesystem::directory_iterator(devices, none)) {
         const std::filesystem::path device = entry.path() / "device";
         if (!std::filesystem::exists(device, none)) continue;
-        // Ports of the mainboard are listed whether there is something or not: a type of 0 means there is not.
+        // Mainboard ports are listed whether they exist or not: type 0 means that they do not.
         const std::string type = first_line(entry.path() / "type");
         if (type == "0") continue;
         SerialPort port{"/dev/" + entry.path().filename().string(), ""};
-        // The name of a USB board stands one or two folders above its interface.
+        // The name of a USB board is one or two folders above its interface.
         for (const char* up : {"..", "../.."}) {
             if (port.name.empty()) port.name = first_line(std::filesystem::canonical(device, none) / up / "product");
         }

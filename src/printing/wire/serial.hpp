@@ -1,4 +1,4 @@
-// A serial port as a Wire. Any baud rate, 250000 too.
+// A serial port as a Wire. Any baud rate, including 250000.
 #pragma once
 
 #include <string>
@@ -11,16 +11,16 @@ namespace pliant::host {
 
 class SerialWire final : public Wire {
 public:
-    /// Opens a terminal device for itself alone: raw, 8 data bits, no parity, no flow control. Opening a board such as
-    /// the Mega 2560 for the first time after it was plugged in resets it; closing and opening again does not. Errors
-    /// name the device and what the system said; a device that another host has open is refused.
+    /// Opens a terminal device exclusively: raw, 8 data bits, no parity, no flow control. Opening a board such as the
+    /// Mega 2560 for the first time after it was plugged in resets it; closing and reopening does not. Errors name the
+    /// device and the system's message; a device that another host has open is refused.
     [[nodiscard]] static Result<SerialWire> open(const std::string& device, int baud_rate);
 
     SerialWire(SerialWire&& other) noexcept;
     SerialWire& operator=(SerialWire&& other) noexcept;
     ~SerialWire() override;
 
-    /// May be called from several threads: a short line arrives whole.
+    /// Thread-safe: a short line is written in one piece.
     [[nodiscard]] Status write(std::string_view bytes) override;
     [[nodiscard]] Result<std::string> read(double timeout_s) override;
     /// By a pulse of DTR.
@@ -35,10 +35,10 @@ private:
 
 struct SerialPort {
     std::string device;  ///< "/dev/ttyACM0"
-    std::string name;    ///< of the board or adapter, "" if the system knows none
+    std::string name;    ///< of the board or adapter, "" if unknown to the system
 };
 
-/// The serial ports that have something behind them, by name. `devices` is for tests.
+/// The serial ports with hardware behind them, sorted by name. `devices` is for tests.
 [[nodiscard]] std::vector<SerialPort> serial_ports(const std::string& devices = "/sys/class/tty");
 
 }  // namespace pliant::host

@@ -15,7 +15,7 @@ using namespace pliant::host;
 
 namespace {
 
-/// A pseudo-terminal whose other end the test holds.
+/// A pseudo-terminal whose other end is held by the test.
 struct Pty {
     int file = posix_openpt(O_RDWR | O_NOCTTY);
     std::string name;
@@ -80,8 +80,8 @@ TEST_CASE("ports are listed by the boards behind them") {
     std::filesystem::create_directories(folder / "tty" / "ttyACM0");
     std::filesystem::create_directory_symlink(folder / "usb" / "1-1" / "1-1:1.0",
                                               folder / "tty" / "ttyACM0" / "device");
-    std::filesystem::create_directories(folder / "tty" / "tty1");              // a console: no device
-    std::filesystem::create_directories(folder / "tty" / "ttyS0" / "device");  // a port that is not there
+    std::filesystem::create_directories(folder / "tty" / "tty1");              // a console, not a device
+    std::filesystem::create_directories(folder / "tty" / "ttyS0" / "device");  // a port that does not exist
     std::ofstream(folder / "tty" / "ttyS0" / "type") << "0\n";
     const auto ports = serial_ports((folder / "tty").string());
     REQUIRE(ports.size() == 1);
