@@ -1,5 +1,4 @@
-// The thesis' gap and air elements: their derivatives, and that a robot bends as far with them as with the true
-// constraint.
+// The thesis' gap and air elements: their derivatives, and the same bending as with the true constraint.
 #include "simulation/elements/actuated_space.hpp"
 
 #include <doctest/doctest.h>
@@ -46,7 +45,7 @@ Trajectory run_to_the_end(const Description& d, Solver solver = Solver::automati
     return t;
 }
 
-/// How far the tip is from where it is with the true constraint, beside how far that one has moved.
+/// Distance of the tip from its position with the true constraint, relative to the motion of that.
 double tip_error(const Description& with_elements, const Description& with_constraint) {
     const Vec3 u = comparison::tip_displacement(with_elements, run_to_the_end(with_elements).steps.back());
     const Vec3 v = comparison::tip_displacement(with_constraint, run_to_the_end(with_constraint).steps.back());
@@ -133,7 +132,7 @@ TEST_CASE("gap elements: free ones stand still where they are s times as long, w
     const GapElements gaps(c.model.elements(), along_x);
     std::vector<double> force(x.size(), 0.0), at_rest(x.size(), 0.0);
     double m = 1;
-    m *= (1 - s) / (1 - gaps.scale(1));  // s falls in proportion to m
+    m *= (1 - s) / (1 - gaps.scale(1));  // s decreases linearly with m
     CHECK(gaps.scale(m) == near(s, {.relative = 1e-12}));
     gaps.add_gradient(x, force);
     gaps.add_pull(x, m, force);

@@ -1,4 +1,4 @@
-// Steps gone back over: all of them, in order, from the right states, and no more often than promised.
+// Backward traversal of steps: all of them, in order, from the right states, and no more often than promised.
 #include "simulation/gradient/backwards.hpp"
 
 #include <doctest/doctest.h>
@@ -11,8 +11,8 @@ using namespace pliant::sim;
 namespace {
 
 struct Walk {
-    std::vector<int> back;   ///< steps, as they were gone back over
-    std::vector<int> times;  ///< (steps) that each was taken forwards
+    std::vector<int> back;   ///< steps, in the order of the backward pass
+    std::vector<int> times;  ///< (steps) how often each was computed forwards
     int most_states = 0;
 };
 

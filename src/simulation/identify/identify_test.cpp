@@ -1,4 +1,4 @@
-// Numbers that a simulation was made with, found again from what would have been measured on it.
+// Parameters used in a simulation are recovered from synthetic measurements.
 #include "simulation/identify/identify.hpp"
 
 #include <doctest/doctest.h>
@@ -23,7 +23,7 @@ const std::string pulled = R"(
 )";
 const std::string heavy = "program = { steps = 2, gravity = [0, 0, -9.81] }\n";
 
-/// Exact data give the values back that they were made with, from where the file begins.
+/// Exact data give back the values that generated them, starting from those of the file.
 void check_found(const Bar& bar, const std::vector<std::string>& keys, const std::vector<double>& truth,
                  const std::vector<std::string>& columns, const std::vector<double>& times) {
     const auto unknowns = bar.unknowns(keys);
@@ -188,7 +188,7 @@ TEST_CASE(
         for (std::size_t j = 0; j < 2; ++j)
             held[j] += *result.found[j].low < truth[j] && truth[j] < *result.found[j].high ? 1 : 0;
     }
-    // 16 or fewer of 20 would happen once in 60 times, if intervals were as wide as they say.
+    // With correct intervals, 16 or fewer of 20 occur once in 60 times.
     CHECK(held[0] >= 16);
     CHECK(held[1] >= 16);
 

@@ -1,4 +1,4 @@
-// How what is measured changes with an unknown, against programs that are solved with a little more and a little less.
+// Derivatives of measurements with respect to an unknown, against programs solved with slightly different values.
 #include "simulation/identify/trial.hpp"
 
 #include <doctest/doctest.h>

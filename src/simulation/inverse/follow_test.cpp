@@ -1,4 +1,4 @@
-// Targets that a forward solution shows to be within reach are found.
+// Targets that a forward solution shows to be reachable are found.
 #include "simulation/inverse/follow.hpp"
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ using namespace pliant::sim::inverse::testing;
 
 namespace {
 
-/// Where `values` lead is found again, and the values found lead there by a forward solution of their own.
+/// Solves for the position reached with `values`, and checks the result by an independent forward solution.
 void check_found(Description d, const std::vector<std::pair<double, double>>& ranges, const std::vector<double>& values,
                  double tolerance = 1e-5) {
     const Model model = made(std::move(d));
@@ -57,7 +57,7 @@ TEST_CASE("several cables are found again, also with quadratic elements") {
 
 namespace {
 
-/// A closed curve of places of the tip, each of which some inputs lead to.
+/// A closed path of the tip, every point of which is reachable.
 InverseTask path_task(const Model& model, std::size_t waypoints) {
     InverseTask task = task_for(model, {{0.75, 1}, {0.75, 1}, {0.75, 1}});
     task.goals = {at_point({})};
@@ -157,7 +157,7 @@ TEST_CASE("friction in the guides: each waypoint is a step from the one before")
 }
 
 TEST_CASE("where the way from rest ends aside, another beginning is found, and a note says so") {
-    // A step from rest does not show the force of a table that nothing touches yet.
+    // At rest nothing touches the table, so its force has no derivative there.
     Description d = bar(2);
     ContactRules rules;
     rules.surface = contact::robot_surface(d.mesh);
@@ -203,7 +203,7 @@ TEST_CASE("what a step that lowers prices showed is no measure for the way to th
     const Model model = made(bar(2));
     InverseTask task = task_for(model, {{0.75, 1}, {0.75, 1}});
     task.inputs[0].effort_price = task.inputs[1].effort_price = 1;
-    task.inputs[0].rest = task.inputs[1].rest = 0.95;  // both pull where it begins, and need not
+    task.inputs[0].rest = task.inputs[1].rest = 0.95;  // both pull initially, and need not
     const Vec3 begin = tip_under(model, task, {0.95, 0.95}), end = tip_under(model, task, {0.9, 1});
     task.goals = {at_point(begin, 1e-3)};
     task.goals[0].wanted = {{begin}, {end}};

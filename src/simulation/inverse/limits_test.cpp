@@ -1,4 +1,4 @@
-// What cannot be reached: the nearest point that can, and what keeps the robot from the rest.
+// Unreachable goals: the nearest reachable point, and the limits that prevent more.
 #include <doctest/doctest.h>
 
 #include <algorithm>

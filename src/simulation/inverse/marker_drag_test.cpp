@@ -1,4 +1,4 @@
-// A marker that is led by hand, as the studio does it.
+// Dragging a marker, as in the studio.
 #include "simulation/inverse/marker_drag.hpp"
 
 #include <doctest/doctest.h>

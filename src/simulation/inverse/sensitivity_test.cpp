@@ -1,4 +1,4 @@
-// What a linearised state says about changes of its inputs, and how often it takes a solution to say so.
+// Predictions of a linearised state for changes of its inputs, and the number of solves they take.
 #include "simulation/inverse/sensitivity.hpp"
 
 #include <doctest/doctest.h>

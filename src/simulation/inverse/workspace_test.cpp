@@ -1,4 +1,4 @@
-// Where markers get: samples are equilibria, and an interrupted search gives the same bits.
+// Workspaces: samples are equilibria, and an interrupted search gives the same bits.
 #include "simulation/inverse/workspace.hpp"
 
 #include <doctest/doctest.h>
