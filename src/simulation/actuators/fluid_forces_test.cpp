@@ -78,7 +78,7 @@ TEST_CASE("buoyancy is the change of the energy of the water that is displaced")
     }
 }
 
-TEST_CASE("drag is the change of its potential, and brakes") {
+TEST_CASE("drag is the gradient of its potential, and dissipates energy") {
     Fluid fluid{1000, 0.7, 0.2, {}, {}, {}};
     fluid.current_m_s = {0.1, -0.2, 0.05};
     const FluidForces forces(fluid, faces);

@@ -119,7 +119,7 @@ TEST_CASE("gap elements: forces and stiffness are derivatives of their energy") 
     CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(c.hessian(0, false)).eigenvalues()[0] < -1e-3 * P.norm());
 }
 
-TEST_CASE("gap elements: free ones stand still where they are s times as long, whatever their shear") {
+TEST_CASE("gap elements: free ones are in equilibrium at s times their length, whatever their shear") {
     const Case c;
     // All of the box is made s times as long along x and sheared: only the gap along x is at its target.
     const double s = 0.8;
@@ -145,7 +145,7 @@ TEST_CASE("gap elements: free ones stand still where they are s times as long, w
     CHECK(gaps.tension(c.rest, m) == near(m, {.relative = 1e-12}));
 }
 
-TEST_CASE("a finger with gap elements bends as one with a cable of that length") {
+TEST_CASE("a finger with gap elements bends like one with a cable of the same length") {
     for (const int order : {1, 2}) {
         for (const double ratio : {0.9, 0.85}) {
             const double error = tip_error(finger(order, ratio, Act::elements), finger(order, ratio, Act::constraint));
@@ -155,7 +155,7 @@ TEST_CASE("a finger with gap elements bends as one with a cable of that length")
     }
 }
 
-TEST_CASE("a block with air elements bends as one with air of that volume") {
+TEST_CASE("a block with air elements bends like one with the same air volume") {
     for (const int order : {1, 2}) {
         for (const double ratio : {1.25, 1.6}) {
             const double error = tip_error(block(order, ratio, Act::elements), block(order, ratio, Act::constraint));
@@ -177,7 +177,7 @@ TEST_CASE("elements meet their constraint; the pressure is that of the true one,
     CHECK(air.chambers[0].pressure_Pa / true_air.chambers[0].pressure_Pa == near(1, {.relative = 0.1}));
 }
 
-TEST_CASE("the thesis' iteration leads where Newton's does, with elements of either kind") {
+TEST_CASE("the thesis' iteration converges to Newton's solution, with elements of either kind") {
     struct {
         Description d;
         double error;
@@ -192,7 +192,7 @@ TEST_CASE("the thesis' iteration leads where Newton's does, with elements of eit
     }
 }
 
-TEST_CASE("elements are steered by hand and end where a program ends") {
+TEST_CASE("elements under interactive control reach the same state as a program") {
     const Progress silent;
     for (const Description& d : {finger(1, 0.85, Act::elements), block(1, 1.4, Act::elements)}) {
         const Model model = made(d);
@@ -205,7 +205,7 @@ TEST_CASE("elements are steered by hand and end where a program ends") {
     }
 }
 
-TEST_CASE("elements that cannot act as they are asked to are refused") {
+TEST_CASE("impossible targets of elements are refused") {
     const auto refusal = [](Description d) {
         const auto model = Model::create(std::move(d));
         REQUIRE_FALSE(model);

@@ -112,7 +112,7 @@ TEST_CASE("stiffness of eight tets of shape-blend at a time is the symmetric par
     }
 }
 
-TEST_CASE("a tet of shape-blend that is turned inside out, or not a number, is noticed") {
+TEST_CASE("an inverted or NaN tet of shape-blend is detected") {
     const Model model = mixed(1);
     for (const double bad : {-0.5, std::nan("")}) {
         std::vector<double> x;

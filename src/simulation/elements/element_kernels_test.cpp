@@ -132,7 +132,7 @@ TEST_CASE("projected stiffness of eight tets at a time is that of the laws, each
     }
 }
 
-TEST_CASE("a tet that is inside out or not a number is noticed in every lane") {
+TEST_CASE("an inverted or NaN tet is detected in every lane") {
     const auto model = Model::create(mixed(1));
     REQUIRE(model);
     const std::vector<double> good = distorted(model->mesh());
@@ -152,7 +152,7 @@ TEST_CASE("a tet that is inside out or not a number is noticed in every lane") {
     }
 }
 
-TEST_CASE("a motion that turns the whole body carries it round without stretching it") {
+TEST_CASE("a rotation of the whole body does not stretch it") {
     for (const int order : {1, 2}) {
         Description d = mixed(order);
         d.supports = {{"point", {0}, {}}};
@@ -187,7 +187,7 @@ TEST_CASE("a motion that turns the whole body carries it round without stretchin
     }
 }
 
-TEST_CASE("a motion goes on by shares of the turns between the states before it") {
+TEST_CASE("a motion is extrapolated from the rotations between previous states") {
     Description d = mixed(1);
     d.supports = {{"point", {0}, {}}};
     const auto model = Model::create(std::move(d));

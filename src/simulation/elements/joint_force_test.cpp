@@ -112,7 +112,7 @@ TEST_CASE("force and torque are those on the second thing, and do work as the en
     }
 }
 
-TEST_CASE("what moves as one with the other end feels nothing") {
+TEST_CASE("a rigid motion of both ends causes no joint force") {
     for (const Joint::Kind kind : kinds) {
         Joint joint = some_joint(kind, false);
         joint.law = {};

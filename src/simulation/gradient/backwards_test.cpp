@@ -56,7 +56,7 @@ Walk walk(int steps, int kept) {
 
 }  // namespace
 
-TEST_CASE("every step is gone back over once, the last first") {
+TEST_CASE("every step is traversed backwards once, the last first") {
     for (const int kept : {0, 1, 2, 5, 8}) {
         for (const int steps : {1, 2, 3, 7, 50}) {
             const Walk w = walk(steps, kept);

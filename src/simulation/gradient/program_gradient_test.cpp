@@ -134,7 +134,7 @@ double worst_error(const Description& d, const Program& program) {
 
 }  // namespace
 
-TEST_CASE("a program at rest at every instant, as the sum over its steps") {
+TEST_CASE("a quasi-static program, as the sum over its steps") {
     for (const int order : {1, 2}) {
         const double worst =
             worst_error(bender(order), {.steps = 2, .tolerance = 1e-11, .solver = Solver::newton, .checks = false});
@@ -308,7 +308,7 @@ TEST_CASE("steps that had to be halved, in time, count with all their pieces") {
     }
 }
 
-TEST_CASE("what is not there, what does not converge, and who does not want to wait") {
+TEST_CASE("missing measures, steps that do not converge, and cancelling") {
     const auto model = Model::create(bender());
     Progress silent;
     const auto told = [&](const Measure& measure, const Program& program, Progress& progress) {

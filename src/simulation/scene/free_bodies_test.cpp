@@ -309,7 +309,7 @@ friction = 0.2
     }
 }
 
-TEST_CASE("what cannot be is told in one line") {
+TEST_CASE("impossible scenes are reported in one line") {
     using robot::testing::check_problem;
     const std::string still = "steps = 1\n";
     const auto object = [&](const std::string& keys) { return world("[[object]]\nname = \"it\"\n" + keys, still); };

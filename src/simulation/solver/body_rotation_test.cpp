@@ -89,7 +89,7 @@ struct Tangent {
 
 }  // namespace
 
-TEST_CASE("of a body that turned as a whole, motions and forces turn with it") {
+TEST_CASE("motions and forces rotate with a body rotated as a whole") {
     for (const int order : {1, 2}) {
         Bar body(order);
         const Eigen::VectorXd& rest = body.rest;

@@ -109,7 +109,7 @@ TEST_CASE("where the first solver stalls the next one finishes the step, and the
     }
 }
 
-TEST_CASE("where nobody gets there the reasons of all are given, and each has its budget") {
+TEST_CASE("if all solvers fail all reasons are given, and each has its budget") {
     const auto model = Model::create(pushed_bar());
     REQUIRE(model);
     const Equilibrium system(*model);
