@@ -22,7 +22,7 @@ constexpr std::size_t history_bytes = std::size_t{96} << 20;
 constexpr std::chrono::milliseconds frame_gap{15};  // sending faster than the display rate is useless
 constexpr std::chrono::milliseconds pause{80};      // after the last input before refining; during interaction inputs
                                                     // come faster
-constexpr double quick_s = 0.05;                    // per increment: frame rate during interaction
+constexpr double quick_s = 0.05;                    // per increment: fast enough for interaction
 constexpr double slow_s = 0.15;
 
 std::string dumped(const Json& json) {

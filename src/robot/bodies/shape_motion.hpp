@@ -20,7 +20,7 @@ struct DrawnAround {
     double step = 0;  ///< above zero
 };
 
-/// (nodes) m per unit of the number. `mesh`: from build_mesh(robot, ...), in metres. Empty for a robot with a mesh of
+/// (nodes) m per unit of the number. `mesh`: from build_mesh(robot, ...), in metres. Zero for a robot with a mesh of
 /// its own, which cannot follow a number that moves its features. Errors: bodies separate or overlap, so that no motion
 /// of this mesh follows them; the number changes geometry read from a file.
 [[nodiscard]] Result<std::vector<Vec3>> shape_motion(const Robot& robot, const DrawnAround& around,
