@@ -1,5 +1,5 @@
-// pliant calibrate: constants of materials from tests. `tensile` is a measured curve, `elongation` a bar of two
-// materials, `ratio` that bar simulated.
+// pliant calibrate: material constants from tests. `tensile` fits a measured curve, `elongation` evaluates a bar of two
+// materials, `ratio` simulates that bar.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Files {
-    std::string folder;  ///< empty: nothing is written
+    std::string folder;  ///< empty: no output is written
     Output output;
 };
 
@@ -50,7 +50,7 @@ struct RatioCommand : Files {
 
 using RatioRuns = std::vector<std::pair<calibrate::RatioOptions, calibrate::RatioResult>>;
 
-/// Points of every interface beside the two formulas; of one interface its own curve too.
+/// The points of every interface and the two formulas; for a single interface its fitted curve too.
 report::Plot ratio_plot(const RatioRuns& runs) {
     report::Plot plot{"Shape parameter of the soft part", "material ratio R_m", "R_omega", {}};
     double most = 1;
@@ -78,7 +78,7 @@ report::Plot ratio_plot(const RatioRuns& runs) {
     return plot;
 }
 
-/// The texts of one run as they are; of several one after the other, with the interface of each.
+/// The text of one run as it is; for several runs all texts, each with its interface.
 std::string ratio_texts(const RatioRuns& runs) {
     if (runs.size() == 1) return calibrate::ratio_text(runs.front().second);
     std::string text;
@@ -95,7 +95,7 @@ std::string ratio_jsons(const RatioRuns& runs) {
     return text + "]";
 }
 
-/// Of several a column in front says which interface.
+/// For several runs with a leading column for the interface.
 std::string ratio_csvs(const RatioRuns& runs) {
     if (runs.size() == 1) return calibrate::ratio_csv(runs.front().second);
     std::string text;
@@ -135,7 +135,7 @@ struct TensileCommand : Files {
     double most_stretch = 0;
 };
 
-/// Rows up to a stretch: a law with few constants cannot follow a rubber to its end.
+/// Rows up to a maximum stretch: a law with few constants cannot fit rubber at large stretches.
 calibrate::TensileTest up_to(const calibrate::TensileTest& test, double most_stretch) {
     if (most_stretch == 0) return test;
     calibrate::TensileTest part;

@@ -1,4 +1,4 @@
-// pliant check: is a robot, printer, job or mesh file what it should be?
+// pliant check: validates robot, printer, job and mesh files.
 #include "printing/plan/check.hpp"
 
 #include <fmt/core.h>
@@ -43,7 +43,7 @@ std::string bodies(std::size_t count) {
     return count == 1 ? "1 body" : fmt::format("{} bodies", count);
 }
 
-/// A robot is checked as far as a mesh of it: overlaps, cables outside, supports that catch nothing show only then.
+/// A robot is meshed for the check: overlaps, cables outside, empty selectors only show then.
 Result<std::string> check_robot(const std::string& file, Progress& progress) {
     Result<robot::Robot> read = read_robot(file, {});
     if (!read) return tl::unexpected(read.error());
@@ -65,7 +65,7 @@ Result<std::string> check_printer(const std::string& file) {
                        counted(printer->vats.size(), "vat"), printer->projector.width_px, printer->projector.height_px);
 }
 
-/// Robot and printer files are told apart by what only one of them has.
+/// Robot and printer files are distinguished by keys that only one of them has.
 Result<std::string> check_toml(const std::string& file, Progress& progress) {
     const Result<config::Document> document = config::load(file);
     if (!document) return tl::unexpected(document.error());
@@ -95,7 +95,7 @@ Result<std::string> check_job(const std::string& file, const Options& options) {
     return text;
 }
 
-/// G-code from anywhere, against the machine that is to run it.
+/// Checks any G-code against the machine that is to run it.
 Result<std::string> check_program(const std::string& file, const Options& options) {
     if (options.printer.empty()) return input_error("{}: give --printer, the machine that is to run it", file);
     const Result<machine::Printer> printer = read_printer(options.printer);
@@ -112,7 +112,7 @@ Result<std::string> check_program(const std::string& file, const Options& option
                        printer->name);
 }
 
-/// What a board has answered, against the machine that it is to drive.
+/// Compares a board's answers with the machine that it is to drive.
 Result<std::string> check_firmware(const std::string& where, const Result<std::string>& answers,
                                    const machine::Printer& printer) {
     if (!answers) return tl::unexpected(answers.error());
@@ -169,7 +169,7 @@ void add_check(CLI::App& app, int& status) {
         nlohmann::json results = nlohmann::json::array();
         for (const std::string& file : options->files) {
             auto progress = terminal_progress(options->output);
-            on_signal(OnSignal::leave);  // it writes nothing
+            on_signal(OnSignal::leave);  // no output to clean up
             const Result<std::string> text = check(file, *options, *progress);
             progress.reset();
             if (!text) status = report(text.error());

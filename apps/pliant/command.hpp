@@ -1,4 +1,4 @@
-// What all commands share: how they end, how they report errors and progress.
+// Common to all commands: exit status, error reports and progress.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -12,7 +12,7 @@
 
 namespace pliant::app {
 
-/// Exit status of every command: DESIGN section 3.
+/// Exit status of every command, as docs/reference/commands.md tells users.
 enum Exit { exit_done = 0, exit_failed = 1, exit_bad_input = 2 };
 
 /// `-q`, `-v` and `--json`, as given on the command line.
@@ -48,15 +48,15 @@ void add_completion(CLI::App& app, int& status);
 
 void add_output_options(CLI::App& command, Output& output, bool with_json);
 
-/// Prints the error to stderr and gives the exit status that belongs to it; with --json also `{"error": "..."}` to
-/// stdout, so that a program that reads it always finds JSON.
+/// Prints the error to stderr and returns its exit status; with --json also prints `{"error": "..."}` to stdout, so
+/// that a program that reads it always gets JSON.
 int report(const Error& error, bool json = false);
 int report(const Failure& failure, bool json = false);
 
-/// --json was given to this command.
+/// True if --json was given to this command.
 [[nodiscard]] bool asks_for_json(const CLI::App& command);
 
-/// What `command` does when it is given: `work` gives a Status, or a Result with the exit status.
+/// Registers the action of `command`: `work` returns a Status, or a Result with the exit status.
 template <class Work>
 void on_call(CLI::App& command, int& status, Work work) {
     command.callback([work, &status, &command] {
@@ -74,7 +74,8 @@ void on_call(CLI::App& command, int& status, Work work) {
     });
 }
 
-/// A bar on a terminal's stderr for work that takes over a second; Ctrl-C and SIGTERM cancel (interrupt.hpp).
+/// A progress bar on stderr, if it is a terminal, for work that takes over a second; Ctrl-C and SIGTERM cancel
+/// (interrupt.hpp).
 [[nodiscard]] std::unique_ptr<Progress> terminal_progress(const Output& output);
 
 }  // namespace pliant::app

@@ -21,7 +21,7 @@ std::vector<std::string> split(std::string_view text, char by) {
     return words;
 }
 
-/// Words that stand for what is built into the program, where a file may be given too.
+/// Names of built-in things that are accepted in place of a file.
 std::vector<std::string> built_in(const std::string& name) {
     std::vector<std::string> words;
     if (name == "--printer" || name == "printer" || name == "printers") {
@@ -32,7 +32,7 @@ std::vector<std::string> built_in(const std::string& name) {
     return words;
 }
 
-/// CLI11 names a type and then what is checked: "TEXT:{yeoh,ogden}", "INT:INT in [1 - 3]".
+/// CLI11 appends the check to the type: "TEXT:{yeoh,ogden}", "INT:INT in [1 - 3]".
 void read_type(const std::string& type, OptionEntry& entry) {
     entry.value = type;
     if (const std::size_t open = type.find(":{"); open != std::string::npos) {

@@ -1,4 +1,4 @@
-// pliant compare-printers: what machines can do, beside each other; the comparison of the thesis reckoned anew.
+// pliant compare-printers: compares machines; the comparison of the thesis, recomputed.
 #include <fmt/core.h>
 
 #include <string>

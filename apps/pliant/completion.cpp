@@ -1,4 +1,4 @@
-// pliant completion: what shells load to complete command lines, made from the parser's own table.
+// pliant completion: scripts for shell completion, generated from the parser's own table.
 #include "completion.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ bool takes_files(const OptionEntry& entry) {
 
 void add_completion(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand("completion", "print the completion script of a shell");
-    command->group("");  // for packages and profiles, not for every day
+    command->group("");  // hidden: only for packages and shell profiles
     auto shell = std::make_shared<std::string>();
     command->add_option("shell", *shell, "bash, zsh or fish; json: the table of all commands and options")
         ->required()

@@ -1,4 +1,4 @@
-// What bash, zsh and fish load to complete the words of a command line.
+// Scripts for bash, zsh and fish that complete command lines.
 #pragma once
 
 #include <string>
@@ -14,10 +14,10 @@ namespace pliant::app {
 /// Text in single quotes, as all three shells read it.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
-/// Every command but the program itself, those below others too, in order.
+/// Every command except the program itself, including subcommands, in order.
 [[nodiscard]] std::vector<const CommandEntry*> all_commands(const CommandEntry& program);
 
-/// Whether what is typed there may be the name of a file.
+/// True if the value may be a file name.
 [[nodiscard]] bool takes_files(const OptionEntry& entry);
 
 }  // namespace pliant::app

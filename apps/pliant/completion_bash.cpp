@@ -6,7 +6,7 @@
 namespace pliant::app {
 namespace {
 
-/// The word before the one that is typed; `--law=yeoh` reaches us as three words.
+/// The word before the cursor word; bash splits `--law=yeoh` into three words.
 constexpr const char* head = R"(# bash completion for pliant, written by "pliant completion bash"
 _pliant() {
     local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command='' i
@@ -40,7 +40,7 @@ std::string words_and_files(const OptionEntry& entry) {
                        takes_files(entry) ? "yes" : "");
 }
 
-/// The last word of "calibrate tensile", and what is before it.
+/// The last word of "calibrate tensile", and the words before it.
 std::pair<std::string, std::string> parted(const std::string& name) {
     const std::size_t space = name.rfind(' ');
     if (space == std::string::npos) return {"", name};
@@ -59,7 +59,7 @@ std::string names_below(const CommandEntry& entry) {
     return fmt::format("{}", fmt::join(names, " "));
 }
 
-/// What may stand where a command's arguments do: its own commands, or words and files of the first argument.
+/// Completions for a command's positional arguments: its subcommands, or words and files of the first argument.
 std::string arguments_of(const CommandEntry& entry) {
     if (!entry.below.empty()) return fmt::format("words={} files=", in_quotes(names_below(entry)));
     return entry.arguments.empty() ? "words='' files=" : words_and_files(entry.arguments.front());

@@ -8,7 +8,7 @@
 namespace pliant::app {
 namespace {
 
-/// Whether the words before the cursor name exactly this command.
+/// True if the words before the cursor name exactly this command.
 constexpr const char* head = R"(# fish completion for pliant, written by "pliant completion fish"
 function __pliant_at
     set -l command

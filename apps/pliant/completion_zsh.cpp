@@ -6,7 +6,7 @@
 namespace pliant::app {
 namespace {
 
-/// For the parts of an _arguments specification, in which brackets and colons part things.
+/// Escapes brackets and colons, which are separators in an _arguments specification.
 std::string escaped(std::string_view text) {
     std::string out;
     for (const char c : text) {
@@ -16,7 +16,7 @@ std::string escaped(std::string_view text) {
     return out;
 }
 
-/// "TEXT:action": what is typed there and how it is completed.
+/// "TEXT:action": description of the value, and how it is completed.
 std::string value_of(const OptionEntry& entry, const std::string& name) {
     std::string action = " ";
     if (!entry.choices.empty() && entry.open)
@@ -28,7 +28,7 @@ std::string value_of(const OptionEntry& entry, const std::string& name) {
     return fmt::format("{}:{}", escaped(name), action);
 }
 
-/// One line for each name of an option: after one of them the others are not offered, unless it may be repeated.
+/// One line for each name of an option: using one of them excludes the others, unless it may be repeated.
 std::string option_lines(const OptionEntry& option) {
     std::string text;
     for (const std::string& name : option.names) {
@@ -51,7 +51,7 @@ std::string last_word(const std::string& name) {
     return name.substr(name.rfind(' ') + 1);  // npos + 1 is 0
 }
 
-/// Arguments: those that are counted, and those that may be repeated.
+/// Positional arguments: single ones, and those that may be repeated.
 std::string argument_lines(const CommandEntry& command) {
     std::string text;
     int number = 0;
@@ -69,7 +69,7 @@ std::string leaf(const CommandEntry& command) {
     return text + argument_lines(command) + "\n}\n";
 }
 
-/// A command that has commands below it.
+/// A command with subcommands.
 std::string branch(const CommandEntry& command) {
     std::string text = fmt::format("{}() {{\n    local -a below\n    below=(\n", function_name(command));
     for (const CommandEntry& below : command.below)
@@ -90,7 +90,7 @@ std::string zsh_completion(const CommandEntry& program) {
     for (const CommandEntry* command : all_commands(program))
         text += command->below.empty() ? leaf(*command) : branch(*command);
     text += branch(program);
-    // Loaded by the first Tab as the function itself, or by a profile that only defines it.
+    // Run as the function itself by the first Tab, or sourced by a profile that only defines it.
     return text +
            "if [ \"$funcstack[1]\" = _pliant ]; then\n    _pliant \"$@\"\nelse\n    compdef _pliant pliant\nfi\n";
 }

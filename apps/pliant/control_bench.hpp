@@ -1,5 +1,5 @@
-// The bench of tests of a controlled print: a small job of two materials, a twin, a control that is served in the
-// calling thread, and ways to end a host in the middle.
+// Test bench for controlled prints: a small job of two materials, a twin, a control that is served in the calling
+// thread, and ways to kill a host midway.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -22,20 +22,20 @@
 
 namespace pliant::app {
 
-/// Thrown by the devices of a host that has been killed: nothing that it does afterwards reaches anything.
+/// Thrown by the devices of a host that has been killed, so that nothing it does afterwards has an effect.
 struct Killed {};
 
-/// Counts what a host does at its devices; at the n-th time it dies.
+/// Counts the device operations of a host; at the n-th one it is killed.
 struct Life {
     long deeds = 0;
     long dies_at = -1;
     bool dead = false;
-    bool unplugged = false;  ///< the cable of the machine
-    int resets = 0;          ///< of the controller, asked for by the host
+    bool unplugged = false;  ///< the cable of the machine is unplugged
+    int resets = 0;          ///< controller resets requested by the host
     std::function<void()> on_death;
-    /// Called at every deed on the wire: for mishaps in the middle.
+    /// Called at every operation on the wire, to inject faults.
     std::function<void(long)> at_deed;
-    /// Called whenever the host listens: for wishes.
+    /// Called whenever the host listens, to send requests.
     std::function<void()> at_look;
 
     bool act(bool on_wire = true) {
@@ -114,7 +114,7 @@ struct ControlBench {
     bool sync = false;
     host::LayerHook after_layer;
     std::function<void()> at_open;   ///< of the port
-    std::vector<host::Given> ended;  ///< lights, as the host has told
+    std::vector<host::Given> ended;  ///< exposures, as reported by the host
     host::EmergencyLine* emergency_line = nullptr;
     std::vector<host::Refill> refills;
     std::unique_ptr<rehearse::TwinClock> clock;
@@ -147,7 +147,8 @@ struct ControlBench {
         gcode = plan::write_gcode(plan, job, printer);
     }
 
-    /// A host that knows nothing but the journal. What the one before had open is closed, as the system does.
+    /// A new host that knows nothing but the journal. Whatever the previous one had open is closed, as the operating
+    /// system would.
     void new_host() {
         control.reset();
         life = std::make_unique<Life>();
@@ -188,7 +189,7 @@ struct ControlBench {
         control->serve_until_idle();
     }
 
-    /// True if the host lived to the end of what it was asked for.
+    /// True if the host was not killed before the end.
     bool start(const host::StartOptions& options = {}) {
         const Status started = control->start(options);
         REQUIRE_MESSAGE(started, (started ? "" : started.error().message));
@@ -219,7 +220,7 @@ struct ControlBench {
         CHECK(snapshot().finished);
         must_be_whole();
     }
-    /// At its n-th deed, in the middle of a print.
+    /// Kills the host at its n-th operation, during a print.
     void must_die(long deed) {
         life->dies_at = deed;
         REQUIRE_FALSE(start());

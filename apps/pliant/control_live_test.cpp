@@ -1,5 +1,5 @@
-// A print under control as it really runs: a thread that works, others that look and ask, a virtual printer on a
-// pseudo-terminal in a thread of its own, thousands of times as fast.
+// A controlled print under realistic conditions: a worker thread, other threads that observe and send requests, and a
+// virtual printer on a pseudo-terminal in a thread of its own, running thousands of times faster than real time.
 #include <doctest/doctest.h>
 
 #include <atomic>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double speed = 200;
 
-/// The machine's own clock, which lags on a busy computer: so nobody loses patience there.
+/// The machine's own clock, which slows down on a busy computer, so that nothing times out there.
 class MachineClock final : public host::Clock {
 public:
     [[nodiscard]] double now() const override { return now_s; }
@@ -80,7 +80,7 @@ struct Live {
         tell();
         return false;
     }
-    /// What the engine was doing instead, and what it had said.
+    /// Prints what the engine was doing instead, and its messages.
     void tell() const {
         MESSAGE("state: ", std::string(host::state_text(control.state())));
         for (const host::Event& event : control.events_since(0)) MESSAGE(event.kind, ": ", event.text);
@@ -96,12 +96,12 @@ TEST_CASE("an emergency stop from another thread makes dark and reaches the mach
     Live live;
     REQUIRE(live.control.connect());
     REQUIRE(live.reaches(host::State::idle));
-    // A virtual printer objects to light before it is homed and has a vat under its platform.
+    // A virtual printer reports exposure before it is homed and has a vat below its platform.
     REQUIRE(live.control.home({}));
     REQUIRE(live.reaches(host::State::idle));
     REQUIRE(live.control.bring_vat(1));
     REQUIRE(live.reaches(host::State::idle));
-    // A light of a third of a second here: on a busy computer this thread may sleep through one.
+    // The exposure takes a third of a second: on a busy computer this thread may miss it.
     for (int tries = 0; tries < 20 && !live.light.lit(); ++tries) {
         REQUIRE(live.control.expose_test(halves::image(0, 0).value(), 60));
         REQUIRE(live.reaches([&] { return live.light.lit() || live.control.snapshot().state == host::State::idle; }));
@@ -112,7 +112,7 @@ TEST_CASE("an emergency stop from another thread makes dark and reaches the mach
     CHECK_FALSE(live.light.lit());
     live.end();
     live.twin.receive("M105\n");
-    CHECK(live.twin.take_output().find("ok") == std::string::npos);  // dead until it is reset
+    CHECK(live.twin.take_output().find("ok") == std::string::npos);  // no answer until it is reset
 }
 
 TEST_CASE("while the machine stands idle its switches are known, and follow the axes") {

@@ -1,5 +1,5 @@
-// A print under control against the virtual printer, in one thread and on its clock: pauses, changes, cancelling, and
-// resuming after every way to end.
+// A controlled print on the virtual printer, in one thread and on its clock: pauses, changes, cancelling, and resuming
+// after every kind of interruption.
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
@@ -22,10 +22,10 @@ TEST_CASE("a print under control comes out as the plain one, and keeps a journal
 
 namespace {
 
-/// Every deed of the host at its devices is a moment at which it may end; bench/kill_print.cpp takes all of them.
+/// The host may be killed at each of its device operations; bench/kill_print.cpp tries all of them.
 const long every = std::getenv("PLIANT_EVERY_MOMENT") != nullptr ? 1 : 7;
 
-/// What cured, to be held against an undisturbed print.
+/// The cured block, for comparison with an undisturbed print.
 std::string block_of(twin::Twin& twin) {
     std::string text;
     for (const twin::CuredLayer& layer : twin.cured().layers()) {
@@ -42,7 +42,7 @@ std::string block_of(twin::Twin& twin) {
 
 constexpr std::array both_releases = {machine::MarlinRelease::v2_1_1, machine::MarlinRelease::v2_1_2};
 
-/// The releases in turn, along the moments of a print.
+/// Alternates between firmware releases along the moments of a print.
 machine::MarlinRelease release_at(long moment) {
     return both_releases[static_cast<std::size_t>(moment / every % 2)];
 }
@@ -59,7 +59,7 @@ twin::Options faulty(twin::Fault::Kind kind, int n, double amount = 0) {
     return options;
 }
 
-/// False if a vat hung half-way on its hooks; else the part must be the undisturbed one.
+/// False if a vat was stuck half-way on its hooks; else the part must equal the undisturbed one.
 bool has_gone_on(ControlBench& b, const std::string& whole) {
     INFO(b.last_error());
     if (b.last_error().find("half-way on the hooks") != std::string::npos) return false;
@@ -85,7 +85,7 @@ TEST_CASE("a host that is killed anywhere is followed by one that finishes the s
         REQUIRE_FALSE(b.start());
         b.new_host();
         if (!b.snapshot().can_resume) {
-            b.start();  // nothing had begun
+            b.start();  // the print had not begun
         } else {
             ++resumed;
             b.start({true, {}});
@@ -111,7 +111,7 @@ TEST_CASE("the controller restarts anywhere: the print stops dark, and goes on i
         };
         CAPTURE(n);
         REQUIRE(b.start());
-        if (b.snapshot().finished) {  // before anything had moved, or after it had
+        if (b.snapshot().finished) {  // killed before the first or after the last motion
             ++before;
             CHECK(block_of(*b.twin) == whole);
             continue;
@@ -155,7 +155,7 @@ TEST_CASE("a power cut anywhere: a light that nobody saw the end of is asked abo
         b.start({true, {}});
         if (b.last_error().find("nobody saw how long") != std::string::npos) {
             ++asked;
-            CHECK(b.snapshot().state == host::State::offline);  // nothing has been touched
+            CHECK(b.snapshot().state == host::State::offline);  // the machine was not touched
             b.start({true, {lit_s, false}});
         }
         ++(has_gone_on(b, whole) ? resumed : refused);
@@ -170,7 +170,7 @@ using host::PauseWhen;
 using host::Snapshot;
 using host::State;
 
-/// Somebody at the machine: does something once, when the print has got so far, and resumes every pause.
+/// A person at the machine: acts once, at a given point of the print, and resumes every pause.
 struct Person {
     ControlBench& b;
     std::function<bool(const Snapshot&)> reached;
@@ -199,7 +199,7 @@ struct Person {
     }
 };
 
-/// Between two lights.
+/// Between two exposures.
 std::function<bool(const Snapshot&)> completion_above(double share) {
     return [share](const Snapshot& s) { return !s.lit && s.completion > share; };
 }
@@ -275,7 +275,7 @@ TEST_CASE("a suspended print is parked, and goes on where it was") {
         b.start();
         CHECK_FALSE(b.twin->interlock().hooked_vat());
         REQUIRE(b.snapshot().can_resume);
-        CHECK_FALSE(b.control->home({}));  // nothing by hand while a print waits
+        CHECK_FALSE(b.control->home({}));  // no manual control while a print waits
         b.must_finish({true, {}});
     }
 }
@@ -389,7 +389,7 @@ TEST_CASE("homing to a dead switch is stopped within the time that its way takes
         b.twin->receive("M105\n");
         CHECK(b.twin->take_output().find("ok") == std::string::npos);  // halted
     }
-    // One that homes so fast that Marlin gives up before the host does: what it says is not swallowed.
+    // Homing so fast that Marlin gives up before the host does: its message must not be lost.
     ControlBench b(faulty(twin::Fault::Kind::dead_switch, 1), "tower", 2, [](machine::Printer& printer) {
         printer.axes[static_cast<std::size_t>(machine::Axis::carriage)].homing_speed_mm_s = 200;
     });
@@ -405,7 +405,7 @@ TEST_CASE("a first try at the wrong port leaves nothing behind: the next one pri
     CHECK_FALSE(b.snapshot().can_resume);
     b.life->unplugged = false;
     b.must_finish();
-    // A host that was killed before anything moved, likewise.
+    // The same for a host killed before the first motion.
     ControlBench killed;
     killed.must_die(3);
     killed.new_host();
@@ -508,7 +508,7 @@ TEST_CASE("an emergency stop pulls the hardware's line before it says M112; conn
     b.new_host();
     bool alive = false;
     line.release_before_m112 = [&]() -> Status {
-        alive = !b.twin->log().power_cut;  // M112 would have dropped the board's own relay
+        alive = !b.twin->log().power_cut;  // M112 would have switched off the board's own relay
         return {};
     };
     Person person(b, lit_on_layer(1), [&] { b.control->emergency_stop(); });
@@ -543,7 +543,7 @@ void with_door(machine::Printer& printer) {
     printer.door.input = "y_max";
 }
 
-/// Somebody who tries to resume all the time; what happened meanwhile.
+/// A person who constantly tries to resume, with a record of what happened.
 struct Impatient {
     ControlBench& b;
     int refused = 0, paused = 0;
@@ -663,7 +663,7 @@ TEST_CASE("a switch that is stuck is found before the axis that homed to it goes
 
 TEST_CASE("a controller that restarts between the fence and the light gets no light, though it says nothing yet") {
     twin::Options options;
-    options.boot_s = 2;  // silent for longer than it takes to light
+    options.boot_s = 2;  // silent for longer than booting takes
     ControlBench b(options);
     int reset_before = 0;
     b.life->at_deed = [&](long) {
@@ -735,7 +735,7 @@ TEST_CASE("every light that has ended is told, broken off or whole") {
     CHECK(broken == 1);
     CHECK(b.ended.front().layer == 0);
     CHECK(b.ended.back().layer == 4);
-    // The seconds of one that went on are those of all its pieces.
+    // The duration of a resumed exposure is the sum of its pieces.
     for (std::size_t k = 1; k < b.ended.size(); ++k) {
         if (b.ended[k - 1].complete) continue;
         CHECK(b.ended[k].seconds == near(12, {.relative = 0.01}));
@@ -930,7 +930,7 @@ TEST_CASE("every kind of machine is resumed after its host was killed") {
 
 namespace {
 
-/// A disk that is full for files longer than so many bytes, while it lives.
+/// Simulates a disk that is full for files above a size, during its lifetime.
 struct FullDisk {
     rlimit before{};
     explicit FullDisk(std::uintmax_t bytes) {

@@ -32,7 +32,7 @@ bool is_fence(const std::string& line) {
     return line.starts_with("```");
 }
 
-/// Goes through a document and collects its steps; comments hold for the next block or command.
+/// Reads a document and collects its steps; comments apply to the next block or command.
 class Reader {
 public:
     explicit Reader(std::string_view text) : lines_(lines_of(text)) {}
@@ -103,7 +103,7 @@ private:
             take(next_.text);
             return {};
         }
-        const std::string reason = next_.reason;  // for all commands of the block
+        const std::string reason = next_.reason;  // applies to all commands of the block
         for (std::size_t i = 0; i < block.size();) {
             if (!block[i].starts_with("$ ")) {
                 ++i;
@@ -155,10 +155,10 @@ private:
 struct Number {
     double value = 0;
     double last_digit = 1;
-    std::string before;  ///< since the last number, spaces as one
+    std::string before;  ///< text since the last number, with runs of spaces as one
 };
 
-/// A line as numbers and the words before each; the last has the words behind them all and no value.
+/// A line as numbers, each with the words before it; the last entry has the remaining words and no value.
 std::vector<Number> numbers_of(const std::string& line) {
     static const std::regex form(R"((\d+):(\d\d):(\d\d)|[-+]?\d+(\.\d+)?([eE][-+]?\d+)?)");
     static const std::regex spaces(R"(\s+)");
@@ -205,7 +205,7 @@ bool same_line(const std::string& shown, const std::string& printed, const std::
     return true;
 }
 
-/// How many lines a place names: of a table all up to the next one's comment or header.
+/// Number of lines that a place covers: for a table all up to the next comment or header.
 std::size_t extent(const Lines& lines, std::size_t at) {
     if (!lines[at].starts_with("[")) return 1;
     std::size_t end = at + 1;

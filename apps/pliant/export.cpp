@@ -1,4 +1,4 @@
-// pliant export: a job's images as other programs take them.
+// pliant export: writes a job's images in formats of other programs.
 #include "printing/job/export.hpp"
 
 #include <fmt/core.h>

@@ -1,4 +1,4 @@
-// pliant firmware: what the controller must be built with for a machine; and asking a board what it was built with.
+// pliant firmware: the controller configuration that a machine needs; and queries a board for its own.
 #include "printing/machine/firmware.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ struct Options {
     Output output;
 };
 
-/// A configuration file of Marlin in the folder of its source, or in that folder's Marlin.
+/// A configuration file of Marlin in its source folder, or in the subfolder Marlin.
 Result<machine::MarlinFile> read_marlin_file(const std::string& folder, const char* name) {
     const std::filesystem::path root = folder;
     for (const std::filesystem::path& path : {root / name, root / "Marlin" / name}) {
@@ -36,7 +36,8 @@ Result<machine::MarlinFile> read_marlin_file(const std::string& folder, const ch
 
 constexpr const char* record_name = "pliant_settings.txt";
 
-/// Only a folder of an earlier run may be replaced: never Marlin's own, into which its files may have been copied.
+/// Only the output of an earlier run may be replaced, never a Marlin source folder that its files may have been copied
+/// into.
 Status check_target(const std::filesystem::path& folder) {
     std::error_code code;
     for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {

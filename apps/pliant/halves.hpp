@@ -12,7 +12,7 @@ namespace pliant::app::halves {
 inline constexpr int width_px = 8, height_px = 6;
 inline constexpr double pixel_um = 158.75;
 inline constexpr double pixel_mm2 = pixel_um * pixel_um / 1e6;
-/// Soft covers 24 pixels and 6 of grey 100, rigid the rest of 48.
+/// Area of the soft material: 24 full pixels and 6 of grey 100; rigid covers the rest of the 48.
 inline constexpr double soft_mm2 = pixel_mm2 * (24 + 6 * 100.0 / 255);
 inline constexpr double rigid_mm2 = pixel_mm2 * 48 - soft_mm2;
 
@@ -31,7 +31,7 @@ struct Look {
     int layers = 5;
     int bottom_layers = 2;
     double bottom_exposure_s = 12;
-    double area_mm2 = 0;  ///< of each material's surface
+    double area_mm2 = 0;  ///< of each material's image
     std::string soft_resin = "semi-flex", rigid_resin = "rigid-flex";
 };
 

@@ -1,4 +1,4 @@
-// pliant help: what --help of a command prints, asked for in the words that other programs have for it.
+// pliant help: prints the --help of a command, for users who expect `help COMMAND`.
 #include <fmt/core.h>
 
 #include <CLI/Formatter.hpp>
@@ -11,7 +11,7 @@
 namespace pliant::app {
 namespace {
 
-/// The command of that name directly below `app`; else an error that says which was meant.
+/// The command of that name directly below `app`; the error suggests the closest name.
 Result<const CLI::App*> command_below(const CLI::App& app, const std::string& path, const std::string& name) {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -33,7 +33,7 @@ Status help(const CLI::App& app, const std::vector<std::string>& words) {
         path += word + " ";
         full += " " + word;
     }
-    // Not command->help(), which prints that of the command at work: this one.
+    // Not command->help(), which prints the help of the running command.
     fmt::print("{}", command->get_formatter()->make_help(command, full, CLI::AppFormatMode::Normal));
     return {};
 }

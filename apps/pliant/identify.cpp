@@ -25,7 +25,7 @@ struct Options {
     std::vector<std::string> unknowns;
     std::string judge_on;
     std::vector<std::string> assignments;
-    std::string folder;  ///< empty: nothing is written
+    std::string folder;  ///< empty: no output is written
     Output output;
 };
 

@@ -26,7 +26,7 @@ std::string lower_extension(const fs::path& file) {
     return extension;
 }
 
-/// `parameters`, `name` and `material` tell nothing: both kinds may have the first two, a slip the last.
+/// `parameters`, `name` and `material` are not used: both kinds may have the first two, a typing error the last.
 FileKind kind_of_toml(const fs::path& file) {
     constexpr std::array<std::string_view, 10> of_printers{"axis",  "projector", "vat",      "tower",    "vat_shape",
                                                            "resin", "cleaning",  "carriage", "platform", "table"};
@@ -43,7 +43,7 @@ FileKind kind_of_toml(const fs::path& file) {
     return printers > robots ? FileKind::printer : FileKind::robot;
 }
 
-/// "an STL", by the ending of its name.
+/// "an STL", by its file extension.
 std::string_view geometry_name(const std::string& file) {
     constexpr std::array<std::pair<std::string_view, std::string_view>, 12> names{{{".stl", "an STL"},
                                                                                    {".obj", "an OBJ"},
@@ -64,7 +64,7 @@ std::string_view geometry_name(const std::string& file) {
     return "geometry";
 }
 
-/// What it is, and how it becomes what is needed.
+/// Describes what the file is, and how to convert it to what is needed.
 std::string text_of(FileKind kind, const std::string& file, FileKind needed) {
     const std::string stem = fs::path(file).stem().string();
     if (needed == FileKind::printer) {
@@ -99,7 +99,7 @@ std::vector<std::string> built_in_names() {
     return names;
 }
 
-/// A word that could be the name of a printer, not of a file.
+/// True for a word that could be the name of a printer, not of a file.
 bool is_name(const std::string& word) {
     return word.find_first_of("./\\") == std::string::npos;
 }

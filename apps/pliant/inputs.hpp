@@ -1,5 +1,5 @@
-// The files that commands are given. One of another kind than is needed is named for what it is, in one line; a
-// printer may be one of those that are built in, by name.
+// Input files of commands. A file of the wrong kind is reported in one line that says what it is; a printer may also be
+// a built-in one, by name.
 #pragma once
 
 #include <filesystem>
@@ -18,11 +18,11 @@ namespace pliant::app {
 
 enum class FileKind { unknown, robot, printer, job, geometry };
 
-/// By content: a TOML file has keys that only robots, or only printers, have; a zip file is a job where it has a
-/// manifest. `geometry`: 3MF, STL, OBJ, PLY, STEP and mesh files, by name.
+/// Recognised by content: a TOML file has keys that only robots, or only printers, have; a zip file is a job if it has
+/// a manifest. `geometry`: 3MF, STL, OBJ, PLY, STEP and mesh files, by name.
 [[nodiscard]] FileKind kind_of(const std::filesystem::path& file);
 
-/// Refuses a file that is certainly of another kind.
+/// Rejects a file that is certainly of another kind.
 [[nodiscard]] Status expect(FileKind needed, const std::string& file);
 
 struct PrinterText {
@@ -30,24 +30,24 @@ struct PrinterText {
     std::string text;
 };
 
-/// A printer file, or the built-in one of that name where there is no such file. Errors: as machine::load_printer, a
-/// name that is neither.
+/// A printer file, or the built-in one of that name if there is no such file. Errors: those of machine::load_printer,
+/// or the name is neither.
 [[nodiscard]] Result<PrinterText> read_printer_file(const std::string& name);
 [[nodiscard]] Result<machine::Printer> read_printer(const std::string& name);
 
-/// Errors: as robot::load_robot; another kind of file.
+/// Errors: those of robot::load_robot; another kind of file.
 [[nodiscard]] Result<robot::Robot> read_robot(const std::string& file, const std::vector<std::string>& assignments);
 
-/// Errors: as operate::open_job; another kind of file.
+/// Errors: those of operate::open_job; another kind of file.
 [[nodiscard]] Result<operate::OpenJob> read_job(const std::string& file);
-/// Errors: as operate::prove_job; another kind of file.
+/// Errors: those of operate::prove_job; another kind of file.
 [[nodiscard]] Result<operate::ProvedJob> prove_job(const std::string& file,
                                                    operate::Pixels pixels = operate::Pixels::fingerprints,
                                                    const machine::Printer* other = nullptr);
 [[nodiscard]] Result<job::Archive> read_archive(const std::string& file);
 
-/// Refuses a file to be written whose name ends otherwise than what is written into it, as in
-/// `-o part.stl: a job ends in .zip: part.zip`. Empty names pass.
+/// Rejects an output file whose extension does not fit its content, as in `-o part.stl: a job ends in .zip: part.zip`.
+/// Empty names pass.
 [[nodiscard]] Status check_ending(std::string_view option, const std::string& file, std::string_view what,
                                   std::string_view ending);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t passed_on_ms = 30;
 
-// A signal handler can reach nothing but globals.
+// A signal handler can only access globals.
 std::atomic<OnSignal> wanted = OnSignal::end;
 std::atomic<std::int64_t> first_ms = 0;  // 0: there was none
 std::atomic<bool> again = false, key_again = false;
@@ -28,16 +28,16 @@ std::int64_t monotonic_ms() {
     return std::int64_t{1000} * now.tv_sec + now.tv_nsec / 1'000'000 + 1;
 }
 
-/// Calls nothing that a signal handler may not call.
+/// Async-signal-safe.
 [[noreturn]] void leave() {
-    const std::string_view line = on_terminal ? "\r\033[Kcancelled\n" : "cancelled\n";  // wipes a progress bar away
+    const std::string_view line = on_terminal ? "\r\033[Kcancelled\n" : "cancelled\n";  // erases a progress bar
     (void)!::write(STDERR_FILENO, line.data(), line.size());
     ::_exit(1);
 }
 
 void handle(int signal) {
     const OnSignal what = wanted;
-    if (::getpid() != owner) {  // a child that tries a STEP file: its parent says what is to be said
+    if (::getpid() != owner) {  // a child process that tests a STEP file: its parent prints the message
         if (what == OnSignal::leave) ::_exit(1);
         return;
     }

@@ -1,23 +1,23 @@
-// How Ctrl-C (SIGINT) and a request to end (SIGTERM) reach a command.
+// Handling of Ctrl-C (SIGINT) and termination requests (SIGTERM) in a command.
 #pragma once
 
 namespace pliant::app {
 
-/// What a signal does. A second one counts only if it comes over 30 ms after the first: some programs, `timeout` among
-/// them, send theirs to the program and to its group, which is twice.
+/// Effect of a signal. A second one only counts if it comes over 30 ms after the first: some programs, such as
+/// `timeout`, signal both the program and its group, so that it arrives twice.
 enum class OnSignal {
-    end,       ///< what it does to any program
-    leave,     ///< ends the program at once with exit status 1 and the line "cancelled": there is nothing to keep yet
-    ask,       ///< the first makes interrupted() true, the second leaves
-    ask_twice  ///< the first makes interrupted() true, the second interrupted_again(): half a file must be put away
+    end,       ///< the default: terminates the program
+    leave,     ///< terminates at once with exit status 1 and the line "cancelled": there is nothing to clean up yet
+    ask,       ///< the first makes interrupted() true, the second terminates
+    ask_twice  ///< the first makes interrupted() true, the second interrupted_again(): a partial file must be removed
 };
 
-/// From now on; a signal that has come already counts. For the main thread.
+/// Applies from now on; a signal received earlier still counts. Main thread only.
 void on_signal(OnSignal what);
 
 [[nodiscard]] bool interrupted();
 [[nodiscard]] bool interrupted_again();
-/// The second, or a later one, was Ctrl-C.
+/// True if the second signal, or a later one, was Ctrl-C.
 [[nodiscard]] bool pressed_again();
 
 }  // namespace pliant::app

@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM sent to the real program, at moments that it shows by what it says or writes.
+// Sends Ctrl-C and SIGTERM to the real program, at moments recognised by its output.
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr auto patience = 240s;  // for a machine that does much else
+constexpr auto patience = 240s;  // for a heavily loaded machine
 const std::string finger = "examples/tutorial/finger.toml";
 const std::string linear = "mesh.order=1";
 
@@ -40,7 +40,7 @@ bool wait_for(const std::function<bool()>& sign) {
     return false;
 }
 
-/// `pliant` with its standard error on a terminal, so that it shows its bar.
+/// `pliant` with standard error on a terminal, so that it shows its progress bar.
 class Program {
 public:
     explicit Program(std::vector<std::string> words) {
@@ -74,7 +74,7 @@ public:
         listen();
         return said_.find(text) != std::string::npos;
     }
-    /// From a percent on; which percent is shown first depends on how fast the computer is.
+    /// True from one percent on; which percentage is shown first depends on the speed of the computer.
     bool has_converged_steps() {
         listen();
         static const std::regex bar(R"(simulate \[[= ]*\] +[1-9][0-9]? %)");
@@ -83,7 +83,7 @@ public:
     /// Whether it has started the program of this name.
     [[nodiscard]] bool has_child(const std::string& name) const { return !test::children_of(process_, name).empty(); }
     bool ended() {
-        listen();  // or it waits for somebody to read
+        listen();  // its output must be read, or it blocks
         if (!ended_ && ::waitpid(process_, &status_, WNOHANG) == process_) ended_ = true;
         return ended_;
     }
@@ -93,7 +93,7 @@ public:
         listen();
         return in_time && WIFEXITED(status_) ? WEXITSTATUS(status_) : -1;
     }
-    /// The last line, without what it wiped away.
+    /// The last line, without erased text.
     [[nodiscard]] std::string last_line() const {
         const std::string text = said_.substr(0, said_.find_last_not_of("\r\n") + 1);
         return text.substr(text.find_last_of("\nK") + 1);
@@ -183,7 +183,7 @@ TEST_CASE("a second signal while files are written leaves nothing behind") {
     const test::Folder folder("interrupt");
     const fs::path out = folder / "out";
     bool put_away = false;
-    for (int attempt = 0; attempt < 5 && !put_away; ++attempt) {  // it may be done before the second comes
+    for (int attempt = 0; attempt < 5 && !put_away; ++attempt) {  // it may finish before the second signal
         Program program({"simulate", finger, "-o", out, "--steps", "300", "--set", linear});
         REQUIRE(wait_for([&] { return fs::exists(folder / "out.partial/frames/frame_0001.vtu"); }));
         program.send(SIGTERM);

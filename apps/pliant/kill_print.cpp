@@ -1,8 +1,9 @@
-// Kills the host of a print again and again, or resets its controller, and holds what cured in the end against an
-// undisturbed print. Everything is as in a workshop: `pliant print` is a process of its own, killed with SIGKILL at
-// random moments; the virtual printer is at the other end of a pseudo-terminal and sees the light through a folder.
+// Kills the host of a print repeatedly, or resets its controller, and compares what finally cured with an undisturbed
+// print. Everything is as in production: `pliant print` is a process of its own, killed with SIGKILL at random moments;
+// the virtual printer is at the other end of a pseudo-terminal and sees the light through a folder.
 //
-// The prints take turns on a Marlin 2.1.1 and a 2.1.2. Then one is interrupted twice, which is an emergency stop.
+// The prints alternate between a Marlin 2.1.1 and a 2.1.2. Finally one is interrupted twice, which is an emergency
+// stop.
 //
 //   pliant_kill_print PLIANT [--kills N] [--resets N] [--speed X] [--seed S] [--per-print N]
 #include <fcntl.h>
@@ -75,7 +76,7 @@ twin::Options booting(machine::MarlinRelease release) {
     return options;
 }
 
-/// The virtual printer with a folder for its light, in a thread.
+/// The virtual printer, watching a folder for its light, in a thread.
 class Machine {
 public:
     Machine(const machine::Printer& printer, const fs::path& folder, double speed, machine::MarlinRelease release)
@@ -131,7 +132,7 @@ private:
     std::thread thread_;
 };
 
-/// `pliant print` as a process; what it says goes to a file.
+/// `pliant print` as a process; its output goes to a file.
 class Host {
 public:
     Host(const Wanted& wanted, const Job& job, const std::string& device, const fs::path& folder, bool resume) {
@@ -153,7 +154,7 @@ public:
             stop(wanted.program + ": cannot be started");
         posix_spawn_file_actions_destroy(&actions);
     }
-    /// True if it has ended within so long.
+    /// True if it ends within this time.
     bool ends_within(double seconds) {
         const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
         do {
@@ -191,7 +192,7 @@ struct Count {
     int kills = 0, resets = 0, prints = 0, refused = 0, wrong = 0, pieces = 0;
 };
 
-/// A print with some ends in the middle. False if it came out otherwise than undisturbed.
+/// One print that is killed several times. False if the result differs from an undisturbed print.
 class Round {
 public:
     Round(const Wanted& wanted, const Job& job, const fs::path& folder, std::mt19937& random, double print_s)
@@ -225,7 +226,7 @@ public:
         return judge(machine.end(), count);
     }
 
-    /// Ctrl-C twice: an emergency stop at once. Without a reset the next host says that one is wanted, with one it
+    /// Ctrl-C twice: an immediate emergency stop. Without a reset the next host says that one is needed; after one it
     /// finishes the part.
     std::string interrupt_twice(Count& count) {
         constexpr double between_s = 0.1, at_once_s = 3, soon_s = 30, longest_s = 300;
@@ -257,7 +258,7 @@ public:
 
 private:
     std::string judge(twin::Twin& twin, Count& count) {
-        const twin::Judgement judgement{{}, 0.05 * wanted_.speed};  // the computer may be late by 50 ms
+        const twin::Judgement judgement{{}, 0.05 * wanted_.speed};  // a busy computer may be late by 50 ms
         const twin::Report report =
             need(twin::inspect(twin, job_.manifest, twin::ImageSource(app::halves::image), judgement));
         for (const twin::CuredLayer& layer : twin.cured().layers()) {
@@ -308,7 +309,7 @@ int run(const Wanted& wanted) {
         std::fflush(stdout);
     }
     tell(count);
-    Wanted slow = wanted;  // parking must not be over before the second signal
+    Wanted slow = wanted;  // parking must last until the second signal
     slow.speed = std::min(wanted.speed, 50.0);
     Round twice(slow, job, folder, random, print_s * wanted.speed / slow.speed);
     twice.undisturbed = first.undisturbed;

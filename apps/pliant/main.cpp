@@ -1,4 +1,4 @@
-// The command line: one file per command, each thin over the library.
+// The command line: one file per command, each a thin layer over the library.
 #include <fmt/format.h>
 #include <malloc.h>
 
@@ -18,7 +18,7 @@
 
 namespace {
 
-/// The first word is neither a command nor an option.
+/// For a first word that is neither a command nor an option.
 int refuse(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
@@ -29,7 +29,7 @@ int refuse(const CLI::App& app, const std::string& word) {
     return pliant::app::exit_bad_input;
 }
 
-/// The command that was given, or the one below it, as in `calibrate tensile`.
+/// The command that was given, or its subcommand, as in `calibrate tensile`.
 const CLI::App* given_command(const CLI::App& app) {
     const CLI::App* command = &app;
     for (auto below = app.get_subcommands(); !below.empty(); below = command->get_subcommands())
@@ -37,7 +37,7 @@ const CLI::App* given_command(const CLI::App& app) {
     return command;
 }
 
-/// An option that the command does not have: says which was meant. "": there is none such.
+/// The error for an option that the command does not have, with a suggestion. "": there is none.
 std::string unknown_option(const CLI::App& command) {
     const std::vector<std::string> left = command.remaining();
     const auto found = std::find_if(left.begin(), left.end(),
@@ -123,9 +123,9 @@ std::vector<std::string> pliant::app::commands_of_studies() {
     return names;
 }
 
-// Only running out of memory can escape, and that ends the program in any case.
+// Only std::bad_alloc can escape, which ends the program in any case.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
-    // The solver takes and gives back the same large blocks again and again: keep them instead of mapping them anew.
+    // The solver repeatedly allocates and frees the same large blocks: keep them instead of mapping them anew.
     mallopt(M_MMAP_THRESHOLD, 1 << 30);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
     const std::vector<std::string> words(argv + 1, argv + argc);

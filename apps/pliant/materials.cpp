@@ -1,4 +1,4 @@
-// pliant materials: the library of materials that robot files may name.
+// pliant materials: lists the library of materials that robot files may name.
 #include <fmt/core.h>
 
 #include <vector>

@@ -47,10 +47,10 @@ Result<robot::Robot> load(const Options& options) {
     return read_robot(options.files.front(), options.assignments);
 }
 
-/// A robot is more than its mesh: as .inp it becomes a deck that CalculiX can run.
+/// A robot is more than its mesh: as .inp it is written as a deck that CalculiX can run.
 Status write_robot(const Options& options, const robot::Robot& robot, const mesh::TetMesh& mesh_m) {
     if (std::filesystem::path(options.output_file).extension() != ".inp") {
-        // Files carry the robot's own unit, as the drawing did.
+        // Files use the robot's own length unit, as the drawing did.
         return mesh::write_tet_mesh(options.output_file, mesh::scaled(mesh_m, 1 / robot.unit_m), encoding(options));
     }
     const Result<sim::Model> model = robot::build_model(robot, mesh_m);
@@ -60,7 +60,7 @@ Status write_robot(const Options& options, const robot::Robot& robot, const mesh
     return write_file(options.output_file, *deck);
 }
 
-/// No mesh file carries a unit: to change it, both must be said.
+/// Mesh files have no unit: to convert, both units must be given.
 Result<double> scale(const Options& options) {
     if (options.from_unit.empty() && options.to_unit.empty()) return 1.0;
     if (options.from_unit.empty() || options.to_unit.empty())
@@ -102,7 +102,7 @@ Status tell(const Options& options, const mesh::TetMesh& mesh) {
 
 Status build(const Options& options) {
     auto progress = terminal_progress(options.output);
-    on_signal(OnSignal::leave);  // nothing is written while it meshes
+    on_signal(OnSignal::leave);  // no output is written while meshing
     const Result<robot::Robot> robot = load(options);
     if (!robot) return tl::unexpected(robot.error());
     const Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, *progress);

@@ -1,4 +1,4 @@
-// pliant new: a robot file, or a printer file, to begin with: one of those that are built into the program.
+// pliant new: creates a robot or printer file from a built-in one.
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -23,7 +23,7 @@ struct Options {
     Output output;
 };
 
-/// The value of the line `name = "..."` that a file begins with, as far as it has one.
+/// The value of the line `name = "..."` at the beginning of a file, if there is one.
 std::string_view title_of(std::string_view text) {
     constexpr std::string_view key = "name = \"";
     const std::size_t at = text.starts_with(key) ? 0 : text.find("\n" + std::string(key));
@@ -32,7 +32,7 @@ std::string_view title_of(std::string_view text) {
     return text.substr(begin, text.find('"', begin) - begin);
 }
 
-/// The same text with another name. Precondition: it has one.
+/// The same text with another name. Precondition: it has a name.
 std::string renamed(std::string_view text, std::string_view name) {
     const std::string_view title = title_of(text);
     const auto at = static_cast<std::size_t>(title.data() - text.data());

@@ -1,6 +1,6 @@
-// The rehearsal is the performance: a print with --twin and one at a port, on the same virtual printer with the same
-// mishap, write the same journal. What differs is what is the clock's: when a light began, how long it was on to the
-// millisecond, and the number with which a session's lines begin.
+// A print with --twin and one at a port, on the same virtual printer with the same fault, write the same journal: both
+// use the same engine. Only timing differs: when an exposure began, its duration to the millisecond, and the first line
+// number of a session.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -37,7 +37,7 @@ struct Bench {
         job = std::move(*made);
         REQUIRE(write_file(folder / "printer.toml", job.printer_text));
     }
-    /// What a command line of the shell leaves in its exit status; PLIANT is the program, `said` gets what it says.
+    /// The exit status of a shell command line; PLIANT stands for the program, `said` receives its output.
     [[nodiscard]] int shell(const std::string& line, const std::string& said) const {
         const std::string all = fmt::format("cd {} && PLIANT={} && {{ {}; }} >{} 2>&1 </dev/null",
                                             folder.path().string(), PLIANT_PROGRAM, line, said);
@@ -47,7 +47,7 @@ struct Bench {
     [[nodiscard]] std::string text(const std::string& name) const { return read_file(folder / name).value_or(""); }
 };
 
-/// The same print twice: by --twin, and at a port behind which `pliant twin` stands in a process of its own.
+/// The same print twice: by --twin, and at a port served by `pliant twin` in a process of its own.
 struct TwoPrints {
     int twin_status = -1, port_status = -1;
     std::vector<host::JournalRecord> twin, port;
@@ -73,7 +73,7 @@ struct TwoPrints {
     }
 };
 
-/// Without what is the clock's; lines count from where their session began.
+/// Removes timing; lines are counted from the start of their session.
 std::string timeless(const std::vector<host::JournalRecord>& records) {
     std::string text;
     long base = 0;
@@ -89,7 +89,7 @@ std::string timeless(const std::vector<host::JournalRecord>& records) {
     return text;
 }
 
-/// How long each piece of light was on, on the machine's clock.
+/// Duration of each exposure piece, on the machine's clock.
 std::vector<double> lit(const std::vector<host::JournalRecord>& records) {
     std::vector<double> seconds;
     for (const host::JournalRecord& record : records) {
@@ -136,7 +136,7 @@ TEST_CASE("a print with --twin and one over the wire write the same journal, wha
         const std::string here = timeless(p.twin), there = timeless(p.port);
         CHECK(here == there);
         CHECK(here.find(cases[i].ends) != std::string::npos);
-        // A port has no oracle: what is wrong with the part fails only the virtual print.
+        // A port has no oracle: defects of the part only fail the virtual print.
         CHECK(p.port_status == (here.find(" end\n") != std::string::npos ? 0 : 1));
         CHECK(p.twin_status == (cases[i].fault.empty() || cases[i].fault == "lose-line:60" ? 0 : 1));
         const std::vector<double> seconds = lit(p.twin), over_wire = lit(p.port);
@@ -157,7 +157,7 @@ TEST_CASE("the same job leaves the same bytes of journal, every time") {
 }
 
 TEST_CASE("a print that asks for resin on the way is rehearsed to its end; the journal says what was asked") {
-    const Bench b("tower", [](std::string& text) {  // beyond what must stay in a vat: one layer
+    const Bench b("tower", [](std::string& text) {  // more than must stay in a vat: enough for one layer
         for (std::size_t at = 0; (at = text.find("\"700 ml\"")) != std::string::npos;)
             text.replace(at, 8, "\"60.00004 ml\"");
     });
@@ -177,7 +177,7 @@ TEST_CASE("killed or cancelled in the middle, a virtual print leaves no file") {
         for (const auto& entry : fs::directory_iterator(b.folder.path())) all.insert(entry.path().filename());
         return all;
     };
-    // A command after a layer is a moment in the middle.
+    // A command after a layer acts in the middle of the print.
     for (const std::string signal : {"KILL", "INT"}) {
         CAPTURE(signal);
         const std::set<std::string> before = names();

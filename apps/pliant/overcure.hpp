@@ -1,4 +1,4 @@
-// What the light of a job will cure below undersides, told before anything is printed.
+// Warnings, before printing, about overcure below undersides of a job.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace pliant::app {
 
-/// One line for each resin; none: no deeper than the drawing allows. Cost: every image is read. Errors: an image cannot
-/// be read, the mask is missing.
+/// One line per resin; empty if curing is no deeper than the drawing allows. Cost: every image is read. Errors: an
+/// image cannot be read, the mask is missing.
 [[nodiscard]] Result<std::vector<std::string>> overcure_warnings(const job::Archive& archive, const plan::Plan& plan,
                                                                  const machine::Printer& printer);
 

@@ -1,4 +1,4 @@
-// pliant plan: what a job takes on its printer: vats, swaps, times, resin.
+// pliant plan: what a job needs on its printer: vats, swaps, times, resin.
 #include "printing/plan/plan.hpp"
 
 #include <fmt/core.h>

@@ -1,5 +1,5 @@
-// pliant print: prints a job, on a machine at a serial port or on the virtual printer, which obeys the same G-code and
-// sees the same images.
+// pliant print: prints a job on a machine at a serial port or on the virtual printer, which receives the same G-code
+// and images.
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
@@ -25,7 +25,7 @@ struct Options {
     bool given_speed = false;
 };
 
-/// The page about a print whose journal is there, whoever printed it.
+/// The report of a print from its journal, whoever printed it.
 Result<int> report_on_journal(const LiveOptions& live) {
     const std::string journal = live.journal.empty() ? live.job + ".journal" : live.journal;
     const Result<std::string> page = report::print_report(live.job, journal, {});

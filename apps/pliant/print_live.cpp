@@ -31,7 +31,7 @@
 namespace pliant::app {
 namespace {
 
-/// Keys one by one while it lives, if standard input is a terminal.
+/// Reads single keys during its lifetime, if standard input is a terminal.
 class Keys {
 public:
     Keys() {
@@ -46,7 +46,7 @@ public:
     Keys(const Keys&) = delete;
     Keys& operator=(const Keys&) = delete;
 
-    /// Waits so long; 0: none was pressed.
+    /// Waits for a key up to the timeout; 0: none was pressed.
     [[nodiscard]] char next(int timeout_ms) const {
         pollfd wait{active_ ? STDIN_FILENO : -1, POLLIN, 0};
         char key = 0;
@@ -90,7 +90,7 @@ private:
     std::thread thread_;
 };
 
-/// What a person sees: a line that is rewritten on a terminal, the events otherwise.
+/// Display for a person: a rewritten line on a terminal, otherwise the events.
 class Display {
 public:
     explicit Display(const Output& output) : quiet_(output.quiet), line_(!output.quiet && isatty(STDERR_FILENO) == 1) {}
@@ -141,7 +141,7 @@ void press(host::Control& control, char key) {
     if (key == 'e') control.emergency_stop();
 }
 
-/// Until the print has ended. Ctrl-C and SIGTERM suspend it; Ctrl-C after that is an emergency stop.
+/// Runs until the print has ended. Ctrl-C and SIGTERM suspend it; a later Ctrl-C is an emergency stop.
 void attend(host::Control& control, const Output& output) {
     const Keys keys;
     Display display(output);
@@ -156,7 +156,7 @@ void attend(host::Control& control, const Output& output) {
     display.clear();
 }
 
-/// How it ended, and what was known then.
+/// How the print ended, and what was known then.
 struct Ended {
     int status = exit_failed;
     host::Snapshot last;
@@ -182,7 +182,7 @@ Result<Ended> run(host::Control& control, const LiveOptions& options, operate::R
     return ended;
 }
 
-/// The page about the print, as far as it went; `block`: what has cured in the virtual printer, or null.
+/// The report of the print, even if incomplete; `block`: the cured part of the virtual printer, or null.
 Status write_report(const LiveOptions& options, const operate::ReadyJob& ready, const host::Snapshot& last,
                     std::shared_ptr<const report::CuredBlock> block) {
     if (options.report.empty()) return {};
@@ -193,7 +193,7 @@ Status write_report(const LiveOptions& options, const operate::ReadyJob& ready, 
     return write_file(options.report, *page);
 }
 
-/// Says what the virtual printer has found, and gives the exit status.
+/// Prints the findings of the virtual printer, and returns the exit status.
 int verdict(const LiveOptions& options, const twin::Report& report, int status) {
     if (options.output.json)
         fmt::print("{}\n", twin::report_json(report));
@@ -202,13 +202,13 @@ int verdict(const LiveOptions& options, const twin::Report& report, int status) 
     return report.passed ? status : static_cast<int>(exit_failed);
 }
 
-/// The virtual printer's block against the job; a page about it holds it whole.
+/// Compares the virtual printer's block with the job; a report includes it.
 Result<int> judge(const LiveOptions& options, const operate::ReadyJob& ready, const Ended& ended, twin::Twin& twin) {
     const job::Manifest& manifest = ready.archive->manifest();
     const twin::RunSource images = [&](int layer, int material) {
         return operate::image_of(*ready.archive, layer, material).map(twin::runs_of);
     };
-    constexpr double wall_clock_s = 0.05;  // how late a busy computer may be
+    constexpr double wall_clock_s = 0.05;  // allowed delay on a busy computer
     const twin::Judgement judgement{options.accepted, wall_clock_s * std::max(1.0, options.speed)};
     if (options.report.empty())
         return twin::inspect(twin, manifest, images, judgement).map([&](const twin::Report& report) {
@@ -231,7 +231,7 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     wanted.mask = std::move(*mask);
     wanted.faults = options.faults;
     LiveTwin machine(ready.printer, std::move(wanted), std::move(*pty), options.speed);
-    // This printer is gone when the program ends: nothing of it can be gone on with.
+    // This printer is gone when the program ends, so its prints cannot be resumed.
     const Result<rehearse::MemoryFile> journal = rehearse::MemoryFile::make();
     if (!journal) return tl::unexpected(journal.error());
     ready.job.journal = journal->path();

@@ -1,4 +1,4 @@
-// A print on a machine that takes real time: progress, keys, Ctrl-C.
+// Prints on a machine in real time, with progress, keys and Ctrl-C.
 #pragma once
 
 #include <optional>
@@ -15,27 +15,27 @@ namespace pliant::app {
 
 struct LiveOptions {
     std::string job;
-    std::string port;       ///< device; "": the virtual printer in this program
-    std::string projector;  ///< folder for the pictures
+    std::string port;       ///< device; "": the built-in virtual printer
+    std::string projector;  ///< folder for the projected images
     std::string journal;    ///< "": beside the job
     std::string after_layer;
-    std::string emergency_line;  ///< "": the printer file's
-    std::string report;          ///< file for the report of the print (HTML); "": none
+    std::string emergency_line;  ///< "": that of the printer file
+    std::string report;          ///< file for the HTML report of the print; "": none
     bool resume = false;
     std::optional<double> assume_lit_s;
     bool assume_vats_untouched = false;
-    bool yes = false;  ///< the vats are in place: nobody is asked
+    bool yes = false;  ///< the vats are in place: do not ask
     double speed = 1;
-    std::vector<twin::Finding::Kind> accepted;  ///< what may be wrong with a print on the virtual printer
+    std::vector<twin::Finding::Kind> accepted;  ///< findings that do not fail a print on the virtual printer
     std::vector<twin::Fault> faults;            ///< of the virtual printer
-    std::string clock_file;                     ///< of the virtual printer; "": the wall's clock
+    std::string clock_file;                     ///< of the virtual printer; "": the wall clock
     Output output;
 };
 
-/// What `--after-layer` asks for; empty: nothing.
+/// The hook for `--after-layer`; empty without it.
 [[nodiscard]] host::LayerHook layer_hook(const LiveOptions& options);
 
-/// The exit status.
+/// Returns the exit status.
 [[nodiscard]] Result<int> print_live(const LiveOptions& options);
 
 }  // namespace pliant::app

@@ -1,4 +1,4 @@
-// Whole prints on machines with another store than the tower with hooks: a magnet, and a wall of vats.
+// Whole prints on machines with other stores than the tower with hooks: a magnet, and a wall of vats.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -159,13 +159,14 @@ TEST_CASE("plan and virtual printer agree about the film: what is brushed back, 
         p.run();
         REQUIRE(p.report.brushed_ml > 0);
         CHECK(p.report.brushed_ml / p.plan.brushed_ml == near(1, {.relative = 1e-6}));
-        // Of what the brush leaves the plan takes the thesis' mean share off, 94.75 %; the twin what its jets reach.
+        // Of the film left by the brush, the plan removes the thesis' mean share, 94.75 %; the twin removes what its
+        // jets reach.
         CHECK(p.report.washed_ml / p.plan.waste_ml > 0.9);
         CHECK(p.report.washed_ml / p.plan.waste_ml < 1);
     }
     Print blind("tower");
     blind.printer.sprinklers.clear();
     blind.run();
-    // Where the tower has further to go the pump runs longer, and takes off a little more.
+    // If the tower has further to go, the pump runs longer and removes a little more.
     CHECK(blind.report.washed_ml / (0.9475 * blind.plan.waste_ml) == near(1, {.relative = 0.02}));
 }

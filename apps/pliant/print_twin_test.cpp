@@ -1,5 +1,5 @@
 // Plan, host and twin together: a job becomes G-code, the host sends it over a bad wire, and the virtual printer's
-// block is held against the job.
+// block is compared with the job.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -70,7 +70,7 @@ struct Print {
     }
 };
 
-/// Counts the lines that have been written and not yet answered by an ok.
+/// Counts the lines sent and not yet acknowledged by an ok.
 class CountingWire final : public host::Wire {
 public:
     CountingWire(std::unique_ptr<host::Wire> wire, int& most) : wire_(std::move(wire)), most_(most) {}
@@ -136,7 +136,7 @@ TEST_CASE("the planned time is the machine's, but for where the axes stand when 
     // The plan homes from the far end. The twin starts half-way up in Z (20 s instead of 40 s), at the print position
     // in X (0 s instead of 358/8 s), half-way in Y (36.5 s instead of 73 s).
     const double homing_less = 20 + 358 / 8.0 + 36.5;
-    // After homing an axis the host takes it off its switch and back, to see that the switch is not stuck.
+    // After homing an axis the host moves it off its switch and back, to check that the switch is not stuck.
     double tried_s = 0;
     for (const machine::LimitSwitch& limit : p.printer.limit_switches) {
         const machine::AxisSpec& axis = p.printer.axis(limit.axis);
@@ -149,7 +149,7 @@ TEST_CASE("the planned time is the machine's, but for where the axes stand when 
 }
 
 TEST_CASE("the print survives a damaged, a lost, an unanswered and an unnumbered line wherever it happens") {
-    constexpr int connecting = 4;  // M110, its fence, and the questions for the last line
+    constexpr int connecting = 4;  // M110, its synchronisation, and the queries for the last line
     for (const auto release : both_releases) {
         long resends = 0;
         for (const auto kind :
@@ -348,7 +348,7 @@ std::string joined(const std::vector<std::string>& lines) {
     return text;
 }
 
-/// Whether host, twin or oracle find fault with the program.
+/// True if host, twin or oracle report an error of the program.
 bool noticed(const std::string& gcode) {
     Print p;
     p.gcode = gcode;
@@ -356,8 +356,8 @@ bool noticed(const std::string& gcode) {
     return !p.status || !p.report.passed;
 }
 
-/// Lines that may go without harm to the part: comments, fences before something that waits itself, fans, the strokes
-/// of a spray, what only loosens or settles, and what the next line does as well.
+/// Lines that can be dropped without affecting the part: comments, synchronisation before a command that waits itself,
+/// fans, spray strokes, moves that only peel or settle, and lines whose effect the next one repeats.
 bool harmless_to_drop(const std::string& line) {
     if (line[0] == ';') return line.rfind(";@expose", 0) != 0;
     for (const char* start : {"M400", "M107", "M106 P0", "M106 P2", "M84", "G4 "}) {
@@ -382,8 +382,8 @@ TEST_CASE("mutation: drop any one line, and the oracle notices or the part is th
         else
             unseen.push_back(fmt::format("{}: {}", i + 1, lines[i]));
     }
-    // What is left are moves that the next absolute move makes too (strokes, lifts, shears, stops on the way down) and
-    // the spray after the last layer.
+    // The rest are moves that the next absolute move makes too (strokes, lifts, shears, stops on the way down) and the
+    // spray after the last layer.
     for (const std::string& line : unseen) {
         INFO(line);
         const bool stroke = line.find("G1 ") != std::string::npos;
@@ -442,7 +442,7 @@ TEST_CASE("mutation: any one image that is shown with one pixel changed is notic
 
 namespace {
 
-/// A random job of the size of the halves, in two resins: what it has of images, and how long they are lit.
+/// A random job of the size of the halves, in two resins: its images and exposures.
 struct RandomJob {
     std::map<std::pair<int, int>, job::Image> images;
     job::Manifest job = app::halves::job({});
@@ -480,7 +480,7 @@ struct RandomJob {
 
 using Images = std::map<std::pair<int, int>, job::Image>;
 
-/// Plans and prints a job whose projector shows `shown`, and holds the block against the archive's images.
+/// Plans and prints a job with a projector that shows `shown`, and compares the block with the archive's images.
 twin::Report print_of(const job::Manifest& planned, const RandomJob& asked, const Images& shown,
                       const Images& archived) {
     const machine::Printer printer = small_tower();
@@ -558,7 +558,7 @@ TEST_CASE("what breaks behind the wire shows in the part, by layer and step") {
     const twin::Report pump = broken({Fault::Kind::dead_pump, 1, 0});
     CHECK(pump.log.short_cleanings == 5);
     CHECK(pump.worst_residue == 1);
-    // Moves 1 to 6 try the switches of the three axes, 7 to 10 load the first vat; the next ones lower the platform
+    // Moves 1 to 6 test the switches of the three axes, 7 to 10 load the first vat; the next ones lower the platform
     // into it.
     const twin::Report missed = broken({Fault::Kind::missed_steps, 12, 0.02});
     INFO(missed.first_deviation << " " << missed.log.mishaps[0]);

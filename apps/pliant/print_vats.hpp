@@ -1,4 +1,4 @@
-// What must be in which vat before a print begins: shown, and asked for on a terminal.
+// Shows which resin must be in which vat before a print begins, and asks for confirmation on a terminal.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace pliant::app {
 
-/// On stderr: slot, resin and amount of every vat of the plan, and `warnings`; nothing if quiet.
+/// Prints slot, resin and amount of every vat of the plan, and `warnings`, to stderr; nothing if quiet.
 void show_vats(const plan::Plan& plan, const std::vector<std::string>& warnings, const Output& output);
 
-/// Asks whether they are so, where somebody sits at a terminal and the output is not quiet. Error: the answer is no.
+/// Asks for confirmation if input is a terminal and output is not quiet. Error: the answer is no.
 [[nodiscard]] Status ask_for_vats(const Output& output);
 
 }  // namespace pliant::app

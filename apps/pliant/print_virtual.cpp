@@ -30,7 +30,7 @@ Status write_page(const std::string& file, rehearse::Rehearsal& rehearsal, const
     return page ? write_file(file, *page) : tl::unexpected(page.error());
 }
 
-/// Journal and page, where they are asked for.
+/// Writes journal and report, if requested.
 Status write_records(const LiveOptions& options, rehearse::Rehearsal& rehearsal, const twin::Judgement& judgement) {
     if (!options.journal.empty()) {
         const Result<std::string> journal = rehearsal.print().journal();

@@ -1,4 +1,4 @@
-// A print on the virtual printer at its own pace: hours of the machine in a second.
+// Prints on the virtual printer at full speed: hours of machine time in a second.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace pliant::app {
 
-/// `report_file`: for the verdict as JSON; "": none. The exit status. Errors: a job that is none, a print that failed
-/// or was cancelled. What was asked for of a print that failed (journal, page) is written all the same, of one that was
-/// cancelled nothing is.
+/// `report_file`: for the verdict as JSON; "": none. Returns the exit status. Errors: an invalid job, a failed or
+/// cancelled print. The requested outputs (journal, page) of a failed print are still written, those of a cancelled one
+/// are not.
 [[nodiscard]] Result<int> print_virtual(const LiveOptions& options, const std::string& report_file);
 
 }  // namespace pliant::app

@@ -1,4 +1,4 @@
-// The program as a function: what main() does with its words.
+// The program as a function: everything that main() does.
 #pragma once
 
 #include <string>
@@ -6,10 +6,10 @@
 
 namespace pliant::app {
 
-/// Runs a command line, without the program's name, and gives its exit status.
+/// Runs a command line, given without the program's name, and returns its exit status.
 int run_program(const std::vector<std::string>& words);
 
-/// The commands that give --json and end by themselves: what a study may run.
+/// The commands that support --json and end by themselves: those that a study may run.
 [[nodiscard]] std::vector<std::string> commands_of_studies();
 
 }  // namespace pliant::app

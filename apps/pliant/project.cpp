@@ -1,4 +1,4 @@
-// pliant project: the projector by itself: displays, test patterns, what is measured on them.
+// pliant project: the projector alone: displays, test patterns, calibration by measurements.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -91,7 +91,7 @@ Status release(const Options& options) {
     return {};
 }
 
-/// Measured distances become the printer file's pixel.
+/// Converts measured distances to the printer file's pixel size.
 Status calibrate_size(const Options& options, const Setting& setting) {
     const auto& p = setting.pattern;
     if (p.width_px == 0) return input_error("--measured: give --printer, or --size");
@@ -152,7 +152,7 @@ Result<job::Image> wanted_image(const Options& options, const host::PatternOptio
     return host::test_pattern(options.pattern, pattern);
 }
 
-/// Until the time is over or Ctrl-C comes. The projector itself ends a light that has an end.
+/// Runs until the time is over or Ctrl-C is pressed. The projector itself ends an exposure of limited time.
 Status light(const Options& options, Setting setting) {
     host::ScreenOptions screen;
     screen.width_px = setting.pattern.width_px;

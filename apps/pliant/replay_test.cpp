@@ -1,5 +1,5 @@
-// A virtual print is broken off at any record of its journal, its machine is lost, another one is brought to where it
-// was, and the print goes on: the part is the one of a print that nobody has disturbed.
+// A virtual print is interrupted after any record of its journal and its machine is discarded; another one is restored
+// to that state, and the print continues: the part equals that of an undisturbed print.
 #include "printing/rehearse/replay.hpp"
 
 #include <doctest/doctest.h>
@@ -24,7 +24,7 @@ namespace {
 
 constexpr int layers = 4;
 
-/// Nothing of a light that was not journaled was given.
+/// Exposure that was not journaled did not take place.
 class NoLight final : public host::Guard {
 public:
     void announced(long light) override { last_ = light; }
@@ -63,7 +63,7 @@ struct Bench {
     [[nodiscard]] std::vector<host::JournalRecord> records() const {
         return host::parse_journal(read_file(journal).value(), "journal").value().records;
     }
-    /// Another twin goes on with the journal, and the part is inspected.
+    /// Another twin continues from the journal, and the part is inspected.
     [[nodiscard]] twin::Report gone_on() {
         twin::Twin twin(printer);
         const Status replayed = rehearse::replay(records(), ready, twin);
@@ -97,7 +97,7 @@ struct Bench {
     }
 };
 
-/// Every so many records of an undisturbed print.
+/// Interrupts an undisturbed print after every n-th record.
 void break_off_everywhere(const char* file, std::size_t every) {
     Bench b(file);
     const Printed whole(b.printer, b.job, b.ready, halves::image);

@@ -1,4 +1,4 @@
-// A run with checkpoints that is killed again and again ends with the same results as one that was never touched.
+// A run with checkpoints that is killed repeatedly ends with the same results as an uninterrupted one.
 #include <doctest/doctest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -48,7 +48,7 @@ int exit_status(pid_t process) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
-/// How much is kept, bytes; 0 before the first checkpoint is whole.
+/// Size of the checkpoint, bytes; 0 before the first one is complete.
 std::uintmax_t kept(const fs::path& results) {
     std::error_code none;
     if (!fs::exists(results.string() + ".checkpoint/state", none)) return 0;
@@ -56,7 +56,7 @@ std::uintmax_t kept(const fs::path& results) {
     return none ? 0 : size;
 }
 
-/// All of a file, without the column of wall times.
+/// The whole file, without the column of wall times.
 std::string table(const fs::path& file) {
     std::ifstream in(file);
     std::string line, out;
@@ -94,7 +94,7 @@ TEST_CASE("a run that is killed at ten moments and resumed ends with the same re
     std::vector<std::string> options{"--checkpoint-every", "1"};
     for (int k = 0; k < kills; ++k) {
         const pid_t process = started(robot, pieces, options);
-        // As soon as it has got further, and then at some moment within the next steps.
+        // Kills it once it has advanced, at a random moment within the next steps.
         const std::uintmax_t before = kept(pieces);
         for (int wait = 0; wait < 20000 && kept(pieces) <= before; ++wait)
             std::this_thread::sleep_for(std::chrono::milliseconds(1));

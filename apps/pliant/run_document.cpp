@@ -1,7 +1,7 @@
-// Runs the commands of a document as they stand in it, one after the other in a folder of their own, and compares what
-// they print with what the document shows:
+// Runs the commands of a document one after the other in a temporary folder, and compares their output with that in the
+// document:
 //   pliant_run_document PLIANT DOCUMENT.md [--update]      from the root of the repository
-// --update writes what was printed into the document where it differs. document.hpp says what is run.
+// --update replaces the output in the document where it differs. document.hpp says what is run.
 #include <fmt/core.h>
 #include <sys/wait.h>
 
@@ -36,8 +36,8 @@ public:
             fs::create_symlink(repository / name, folder_ / "work" / name);
     }
 
-    /// Lines of output and errors in the order in which a terminal shows them. Files that a document puts in /tmp lie
-    /// in the folder.
+    /// Lines of output and errors in the order in which a terminal shows them. Files that a document puts in /tmp are
+    /// redirected to the folder.
     Outcome shell(const std::string& command) const {
         const std::string here = (folder_ / "").string(), file = (folder_ / "command").string();
         const std::string script = fmt::format("cd '{0}work'; PATH='{0}bin':$PATH\n{1}\n", here,
@@ -80,7 +80,7 @@ std::string command_of(const DocumentStep& step) {
     return step.interrupt_s > 0 ? fmt::format("timeout -s INT {} {}", step.interrupt_s, command) : command;
 }
 
-/// What is wrong with a step, "" if nothing.
+/// The error of a step, "" if none.
 std::string problem_of(const DocumentStep& step, const Runner& runner, std::vector<std::string>& printed) {
     if (step.kind == DocumentStep::Kind::skipped) {
         fmt::print("line {}: not run: {}: {}\n", step.line, step.text, step.reason);

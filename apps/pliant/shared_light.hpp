@@ -1,5 +1,4 @@
-// The projector of a virtual printer in the same program: what the host shows in its thread, the machine's thread looks
-// at in its own time.
+// The projector of a virtual printer in the same program: written by the host's thread, read by the machine's thread.
 #pragma once
 
 #include <mutex>
@@ -26,7 +25,7 @@ public:
         const std::scoped_lock lock(mutex_);
         return image_.has_value();
     }
-    /// For the machine's thread.
+    /// For the machine's thread: passes the current image to the twin.
     [[nodiscard]] Status look(twin::Twin& twin) {
         const std::scoped_lock lock(mutex_);
         if (image_.has_value() == seen_) return {};

@@ -30,11 +30,11 @@ struct Options {
     std::string pictures = "few";
     std::string picture_size;
     bool film = false;
-    std::string view;     ///< "x,y,z" from the robot to the eye; empty: chosen
+    std::string view;     ///< "x,y,z" from the robot to the camera; empty: automatic
     std::string solvers;  ///< one, or several with commas
     bool compare = false;
-    std::string measured;      ///< CSV of markers; empty: none
-    int checkpoint_every = 0;  ///< steps; 0: no checkpoints, or when resumed as before
+    std::string measured;      ///< CSV of measured markers; empty: none
+    int checkpoint_every = 0;  ///< in steps; 0: no checkpoints, or as before when resumed
     bool resume = false;
     std::vector<std::string> assignments;
     Output output;
@@ -91,7 +91,7 @@ Result<Point> read_view(const std::string& text) {
     return Point{v.x, v.y, v.z};
 }
 
-/// None: the robot file's. More than one: a comparison.
+/// Empty: that of the robot file. More than one: a comparison.
 Result<std::vector<sim::Solver>> asked_solvers(const Options& options) {
     if (options.compare) return std::vector(sim::all_solvers.begin(), sim::all_solvers.end());
     if (options.solvers.empty()) return std::vector<sim::Solver>{};
@@ -121,7 +121,7 @@ Result<ResultsOptions> read_pictures(const Options& options) {
     return choice;
 }
 
-/// While files are written the first signal leaves the pictures out; only the second cancels. False: without pictures.
+/// While files are written, the first signal skips the pictures; only the second cancels. False: without pictures.
 bool write_results(const Options& options, const ResultsOptions& pictures, ProgramResult& result, Progress& progress) {
     on_signal(OnSignal::ask_twice);
     return result.write(options.folder, pictures, [&](std::string_view stage, double share) {
@@ -130,7 +130,7 @@ bool write_results(const Options& options, const ResultsOptions& pictures, Progr
     });
 }
 
-/// Prints what was found, and gives the exit status.
+/// Prints the results, and returns the exit status.
 int tell(const Options& options, const Model& model, const ProgramResult& result, bool all_drawn) {
     if (options.output.json)
         fmt::print("{}\n", result.summary_json());
@@ -147,7 +147,7 @@ int tell(const Options& options, const Model& model, const ProgramResult& result
     return exit_failed;
 }
 
-/// What the command line changes in the robot file.
+/// All overrides of the robot file from the command line.
 std::vector<std::string> all_assignments(const Options& options, const std::vector<sim::Solver>& solvers) {
     std::vector<std::string> assignments = options.assignments;
     if (solvers.size() == 1) assignments.push_back(fmt::format("program.solver={}", sim::name(solvers.front())));
@@ -167,7 +167,7 @@ RunOptions run_options(const Options& options, const Robot& robot) {
     return run;
 }
 
-/// A checkpoint is of no use after the results are written, unless the run was cancelled.
+/// Removes the checkpoint: it is useless after the results are written, unless the run was cancelled.
 void put_away(const Options& options, const ProgramResult& result) {
     if (!interrupted()) return result.remove_checkpoint();
     if (options.checkpoint_every == 0 && !options.resume) return;
@@ -198,7 +198,7 @@ Result<int> simulate(const Options& options) {
         progress->advance(stage, share);
         return !interrupted();
     };
-    on_signal(OnSignal::leave);  // nothing is written before there is a step
+    on_signal(OnSignal::leave);  // nothing is written before the first step
     const Robot robot = Robot::load(options.robot, all_assignments(options, *solvers));
     const Model model(robot, watch);
     on_signal(OnSignal::ask);

@@ -26,7 +26,7 @@ struct SliceOptions {
     Output output;
 };
 
-/// "50 um", or "25 to 100 um" where layers are not alike.
+/// "50 um", or "25 to 100 um" for layers of different heights.
 std::string heights_text(const job::Manifest& manifest) {
     int least = 0, most = 0;
     for (const job::Layer& layer : manifest.layers) {
@@ -36,7 +36,7 @@ std::string heights_text(const job::Manifest& manifest) {
     return least == most ? fmt::format("{} um", least) : fmt::format("{} to {} um", least, most);
 }
 
-/// What was drawn of each material that is printed with others, as in ", exposed together: a 12.0, b 3.0 mm^3".
+/// Drawn volumes of materials that are exposed together, as in ", exposed together: a 12.0, b 3.0 mm^3".
 std::string parts_text(const job::Material& material) {
     std::string text;
     for (const job::MaterialPart& part : material.parts)
@@ -91,7 +91,7 @@ Status draw_picture(const SliceOptions& options) {
     return write_file(options.picture, *png);
 }
 
-/// What only the finished images can tell.
+/// Adds warnings that depend on the finished images.
 Status add_overcure(const std::string& file, const machine::Printer& printer, plan::Plan& plan) {
     const Result<job::Archive> archive = job::Archive::open(file);
     if (!archive) return tl::unexpected(archive.error());
@@ -109,7 +109,7 @@ Result<prepare::PrinterFile> with_mask(const std::string& file) {
     return prepare::PrinterFile{std::move(read->printer), std::move(read->text), std::move(*mask)};
 }
 
-/// The table itself goes into the order, so that the job can keep it.
+/// The table itself is stored in the order, so that the job can keep it.
 Status read_paint(const std::string& file, prepare::Order& order) {
     if (file.empty()) return {};
     constexpr std::uintmax_t largest = 64 << 20;
@@ -129,7 +129,7 @@ Status slice(SliceOptions& options) {
     auto progress = terminal_progress(options.output);
     const Result<prepare::PrinterFile> printer = with_mask(options.printer);
     if (!printer) return tl::unexpected(printer.error());
-    on_signal(OnSignal::leave);  // nothing is written while it reads and meshes
+    on_signal(OnSignal::leave);  // no output is written while reading and meshing
     const prepare::Order& order = options.order;
     for (const std::string& input : order.inputs) {
         if (!input.ends_with(".toml")) continue;

@@ -20,7 +20,7 @@ struct SmallJob {
     std::filesystem::path file;
 };
 
-/// Gives the line of `table` that begins with `key = ` another value. Errors: there is no such line.
+/// Replaces the value of the line in `table` that begins with `key = `. Errors: there is no such line.
 inline Status set_key(std::string& text, const std::string& table, const std::string& key, const std::string& value) {
     const std::size_t begin = text.find("\n[" + table + "]"), at = text.find("\n" + key + " = ", begin);
     if (begin == std::string::npos || at == std::string::npos)
@@ -29,8 +29,8 @@ inline Status set_key(std::string& text, const std::string& table, const std::st
     return {};
 }
 
-/// FOLDER/halves.zip for the machine whose printer file `text` is. `look.soft_resin` and `look.rigid_resin` must be
-/// resins of it.
+/// Writes FOLDER/halves.zip for the machine with the printer file `text`. `look.soft_resin` and `look.rigid_resin` must
+/// be resins of it.
 inline Result<SmallJob> write_small_job(const std::filesystem::path& folder, std::string text,
                                         const halves::Look& look) {
     Status fits = set_key(text, "projector", "width", std::to_string(halves::width_px));

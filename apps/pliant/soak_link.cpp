@@ -1,11 +1,11 @@
-// The host's link on a wire that damages lines, loses bytes and swallows answers: many lines, each carried out exactly
-// once in effect, the end position exact; then whole prints on the same wire, which the oracle must pass.
+// Tests the host's link on a wire that damages lines, loses bytes and swallows answers: many lines, each executed
+// exactly once in effect, with an exact end position; then whole prints on the same wire, which the oracle must pass.
 //
-// Both kinds of Marlin answer in turn: 2.1.1, and 2.1.2, which drops repeated lines in silence.
+// Two kinds of Marlin answer in turn: 2.1.1, and 2.1.2, which silently drops repeated lines.
 //
 //   pliant_soak_link [LINES] [SEED]              1 % of the lines with a flipped bit, 1 % with a lost byte
 //   pliant_soak_link [LINES] [SEED] byte SHARE   that share of all bytes flipped and as many lost (0.01: 1 %)
-//   pliant_soak_link throughput [LINES]         lines a second over a pseudo-terminal to a fast virtual printer
+//   pliant_soak_link throughput [LINES]         lines per second over a pseudo-terminal to a fast virtual printer
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -100,7 +100,7 @@ host::LinkOptions patient() {
     return options;
 }
 
-/// Moves the platform to random heights and keeps the account of what the machine must have done by then.
+/// Moves the platform to random heights and tracks what the machine must have done.
 class Mover {
 public:
     Mover(const machine::Printer& printer, twin::Twin& twin, host::Link& link, unsigned seed)
@@ -129,7 +129,7 @@ public:
         return status;
     }
     [[nodiscard]] long moves() const { return moves_; }
-    /// After a fence: the machine has gone the same way, and nowhere that it must not.
+    /// After synchronisation: the machine has followed the same path, and no other.
     [[nodiscard]] bool path_is_right() const { return twin_.log().path == path_; }
     [[nodiscard]] bool well() const { return path_is_right() && twin_.log().violations.empty(); }
     [[nodiscard]] bool exact() const {
@@ -146,7 +146,7 @@ private:
     long moves_ = 0;
 };
 
-/// Random heights of the platform, one line each; true if all is well.
+/// Sends random heights of the platform, one per line; true if all were executed correctly.
 bool soak_moves(const machine::Printer& printer, long lines, unsigned seed, const Noise& noise, Release release,
                 bool advanced_ok) {
     twin::Options twin_options;
@@ -177,13 +177,13 @@ bool soak_moves(const machine::Printer& printer, long lines, unsigned seed, cons
 
 struct Session {
     long lines = 0;
-    bool wrong = false;    ///< a line was carried out otherwise than it was sent
-    bool stopped = false;  ///< the link has judged the wire
+    bool wrong = false;    ///< a line was not executed as it was sent
+    bool stopped = false;  ///< the link has given up on the wire
     std::string why;
 };
 
-/// A fresh machine, moved until something is wrong or `lines` have gone through. Every few moves the machine is looked
-/// at from behind, so that a line which has passed its checksum damaged is noticed at once.
+/// A fresh machine, moved until an error occurs or `lines` have been sent. Every few moves the machine's own log is
+/// checked, so that a damaged line with a valid checksum is detected at once.
 Session soak_session(const machine::Printer& printer, long lines, unsigned seed, const Noise& noise, Release release,
                      bool judged) {
     constexpr int together = 10;
@@ -210,8 +210,8 @@ Session soak_session(const machine::Printer& printer, long lines, unsigned seed,
     return session;
 }
 
-/// The noise of whole bytes: how often a damaged line passes the checksum of 8 bits, and what the link makes of it.
-/// True if the link as it is has carried out every line as it was sent, and to the end.
+/// Noise on single bytes: how often a damaged line passes the 8-bit checksum, and how the link handles it. True if the
+/// link with its usual settings executed every line as sent, to the end.
 bool soak_bytes(const machine::Printer& printer, long lines, unsigned seed, const Noise& noise, Release release) {
     bool good = true;
     for (const bool judged : {false, true}) {
@@ -248,7 +248,7 @@ Result<job::Image> image_of(int, int material) {
     return image;
 }
 
-/// Prints until so many lines have been sent.
+/// Prints until this many lines have been sent.
 bool soak_prints(machine::Printer printer, long lines, unsigned seed, const Noise& noise, Release release) {
     printer.controller.firmware = release;
     printer.projector.width_px = width;
@@ -288,7 +288,7 @@ bool soak_prints(machine::Printer printer, long lines, unsigned seed, const Nois
     return wrong == 0;
 }
 
-/// How many lines a second are acknowledged over a pseudo-terminal, with a machine that takes no time.
+/// Measures how many lines per second are acknowledged over a pseudo-terminal, with a machine that takes no time.
 bool measure_throughput(const machine::Printer& printer, long lines) {
     auto pty = twin::Pty::open();
     if (!pty) return false;

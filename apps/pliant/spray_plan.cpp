@@ -15,7 +15,7 @@
 namespace pliant::app {
 namespace {
 
-/// The finished part, all materials as one.
+/// The finished part, with all materials as one.
 Result<wash::PartCells> part_of(const job::Archive& archive, const machine::Projector& projector) {
     const job::Manifest& m = archive.manifest();
     const int part_um = m.layers.empty() ? 0 : m.layers.back().z_um;

@@ -22,7 +22,7 @@ constexpr int usual_port = 7117;
 
 struct Options {
     std::string file;
-    int port = -1;  ///< -1: the usual one, or any if that is taken
+    int port = -1;  ///< -1: the default one, or any free one if that is taken
     std::string address = "127.0.0.1";
     std::string token_file;
     std::string notify, webcam;
@@ -30,7 +30,7 @@ struct Options {
     Output output;
 };
 
-/// A port that was asked for is that port; else the usual one or, if that is taken, any.
+/// A requested port is used as given; otherwise the default one or, if that is taken, any free one.
 Result<std::unique_ptr<studio::Server>> start(studio::Studio& studio, const Options& options,
                                               studio::ServerSettings settings) {
     settings.port = options.port >= 0 ? options.port : usual_port;
@@ -45,7 +45,7 @@ void wait_for_interrupt(const sigset_t& signals) {
     sigwait(&signals, &signal);
 }
 
-/// What stands in the address: on all addresses of the computer, its name.
+/// The host part of the address: the computer's name if bound to all of its addresses.
 std::string host_name(const std::string& address) {
     std::array<char, 256> name{};
     if ((address == "0.0.0.0" || address == "::") && ::gethostname(name.data(), name.size() - 1) == 0)
@@ -53,7 +53,8 @@ std::string host_name(const std::string& address) {
     return address.find(':') == std::string::npos ? address : "[" + address + "]";
 }
 
-/// A token that was made for this run is part of the address; one in a file is not repeated where others may read it.
+/// A token generated for this run is printed as part of the address; one from a file is not, because others might read
+/// it.
 void tell(const Options& options, const std::string& address) {
     if (options.output.quiet) {
         fmt::print("{}\n", address);
@@ -65,7 +66,7 @@ void tell(const Options& options, const std::string& address) {
     std::fflush(stdout);
 }
 
-/// In the browser of the desktop. Where there is none the address has been printed.
+/// Opens the desktop's browser. If there is none, the address has been printed.
 void open_browser(const std::string& address) {
     const Result<pid_t> browser = start_process("/usr/bin/env", {"xdg-open", address}, {});
     if (browser) std::thread([process = *browser] { ::waitpid(process, nullptr, 0); }).detach();
@@ -79,7 +80,7 @@ Result<std::string> choose_token(const Options& options) {
 Result<int> run_studio(const Options& options) {
     if (!options.webcam.empty() && studio::origin_of(options.webcam).empty())
         return input_error("--webcam {}: an address is needed, as in http://camera:8080/stream", options.webcam);
-    // Blocked before any thread is made, so that every thread leaves them to sigwait.
+    // Blocked before any thread is created, so that all threads leave them to sigwait.
     sigset_t signals;
     sigemptyset(&signals);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);

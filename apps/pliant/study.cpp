@@ -55,7 +55,7 @@ fs::path this_program() {
     return fs::read_symlink("/proc/self/exe", error);
 }
 
-/// A whole number from the environment, the first of these that is there.
+/// A whole number from the first of these environment variables that is set.
 std::optional<std::size_t> number_of(std::initializer_list<const char*> names) {
     for (const char* name : names) {
         const char* const text = std::getenv(name);
@@ -68,7 +68,7 @@ std::optional<std::size_t> number_of(std::initializer_list<const char*> names) {
     return std::nullopt;
 }
 
-/// The place of this process among those that mpirun or srun started.
+/// The rank of this process among those started by mpirun or srun.
 struct Rank {
     std::size_t rank = 0, size = 1;
 };
@@ -114,7 +114,7 @@ Status run_by_slurm(const Options& options, const study::Plan& plan, const fs::p
     return {};
 }
 
-/// What a task of a cluster does: the rows of one chunk of a study that another process leads.
+/// A task on a cluster: runs the rows of one chunk of a study that another process manages.
 Result<int> run_chunk(const Options& options) {
     const auto plan = study::load_plan(options.study);
     if (!plan) return tl::unexpected(plan.error());
@@ -163,7 +163,7 @@ Status draw_plots(const study::Plan& plan, const study::Collected& rows, const f
     return {};
 }
 
-/// Writes what was found, tells it, and gives the exit status.
+/// Writes and prints the results, and returns the exit status.
 Result<int> finish(const Options& options, const study::Plan& plan, const fs::path& folder,
                    const study::RunAccount* account) {
     const auto rows = study::collect(plan, folder);
@@ -193,7 +193,7 @@ fs::path results_folder(const Options& options) {
     return fs::path(options.study).stem().string() + "_study";
 }
 
-/// Says what is there already when it was stopped.
+/// The error after a stop, which says what has been completed.
 tl::unexpected<Error> stopped(const study::Plan& plan, const fs::path& folder, const Error& error) {
     if (error.cause != Cause::cancelled) return tl::unexpected(error);
     const auto rows = study::collect(plan, folder);
@@ -203,7 +203,7 @@ tl::unexpected<Error> stopped(const study::Plan& plan, const fs::path& folder, c
                                       recorded, plan.rows.size(), folder.string())});
 }
 
-/// For schedulers that the program does not know: what they have to run.
+/// For unknown schedulers: prints what they have to run.
 int tell_plan(const Options& options, const study::Plan& plan, const fs::path& folder) {
     if (options.output.json)
         fmt::print(
@@ -225,7 +225,7 @@ Result<int> run_study(const Options& options) {
     const Result<Rank> rank = mpi ? find_rank() : Result<Rank>(Rank{});
     if (!rank) return tl::unexpected(rank.error());
     const fs::path folder = results_folder(options);
-    // Ranks begin at different times: one may find the records of another.
+    // Ranks start at different times: one may find records of another.
     const auto plan =
         study::open_folder(*asked, folder, options.resume || mpi ? study::Begin::resume : study::Begin::fresh);
     if (!plan) return tl::unexpected(plan.error());

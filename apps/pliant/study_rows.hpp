@@ -1,4 +1,4 @@
-// The process that runs rows of a study: this program, started by itself.
+// The worker process that runs rows of a study: this program, started by itself.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace pliant::app {
 
-/// The first word of such a process; the second is "one-core" or "all-cores".
+/// The first argument of such a process; the second is "one-core" or "all-cores".
 inline constexpr std::string_view study_rows_word = "--study-rows";
 
-/// Runs rows that come over standard input, which is a socket, until it closes.
+/// Runs rows received over standard input, which is a socket, until it closes.
 int serve_study_rows(const std::vector<std::string>& words);
 
 }  // namespace pliant::app

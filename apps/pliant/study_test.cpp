@@ -1,4 +1,4 @@
-// `pliant study` as people and clusters run it: real simulations, a closed form, kills, ranks, mistakes.
+// `pliant study` as used by people and on clusters: real simulations, a closed form, kills, ranks, errors.
 #include <doctest/doctest.h>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -115,7 +115,7 @@ TEST_CASE("a force is proportional to the modulus in every row, and the same on 
     REQUIRE(forces.size() == 12);
     for (std::size_t k = 0; k < 12; ++k) {
         CHECK((moduli[k] >= 1 && moduli[k] < 4));
-        // 1e-6: what the solver leaves of an equilibrium.
+        // 1e-6: the solver's tolerance.
         CHECK(forces[k] / moduli[k] == near(forces[0] / moduli[0], {.relative = 1e-6}));
     }
     REQUIRE(
@@ -226,7 +226,7 @@ TEST_CASE("every command with --json can be a row") {
     REQUIRE_MESSAGE(ended.status == 0, ended.errors);
     const auto tets = column(place / "o/results.csv", "tets");
     REQUIRE(tets.size() == 2);
-    CHECK(tets[1] > 2 * tets[0]);  // of a bar that is as thin as the coarser tets are long
+    CHECK(tets[1] > 2 * tets[0]);  // of a bar as thin as the coarser tets are long
     CHECK(fs::exists(place / "o/rows/000001/bar.vtk"));
 }
 

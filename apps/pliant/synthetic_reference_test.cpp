@@ -1,5 +1,5 @@
-// 3MF files of two to eight materials from reading to the order of vats, against what the README of the reference data
-// expects: layers, pixels of every material, overlap, swaps. Layers of 50 um, pixels of 50 um.
+// 3MF files of two to eight materials, from reading to the order of vats, compared with the values in the README of the
+// reference data: layers, pixels of every material, overlap, swaps. Layers of 50 um, pixels of 50 um.
 #include <doctest/doctest.h>
 
 #include <cstdlib>

@@ -77,7 +77,7 @@ Tampering light(const char* name, std::function<void(machine::Expose&)> change) 
             }};
 }
 
-/// Lines of which the forger drops all that `drops` names.
+/// Drops all lines selected by `drops`.
 Tampering dropped(const char* name, std::function<bool(const Parts&, std::size_t)> drops) {
     return {name, Kind::meaning, [drops = std::move(drops)](Parts& p) {
                 Lines kept;
@@ -148,7 +148,7 @@ std::vector<Tampering> of_lights() {
     return list;
 }
 
-/// The last way down before the light at line `at`.
+/// The last downward move before the exposure at line `at`.
 Found descent_before(const Parts& p, std::size_t at) {
     const std::string begin = fmt::format("G1 {}", p.printer.axis(Axis::platform).letter);
     for (std::size_t i = at; i-- > 0;) {
@@ -157,7 +157,7 @@ Found descent_before(const Parts& p, std::size_t at) {
     return std::nullopt;
 }
 
-/// The platform at another height under a light in the middle.
+/// Changes the height of the platform for an exposure in the middle.
 Tampering height(const char* name, double more_mm) {
     return {name, Kind::meaning, [more_mm](Parts& p) {
                 const Found at = middle_light(p);
@@ -171,7 +171,7 @@ Tampering height(const char* name, double more_mm) {
             }};
 }
 
-/// Another feed of the move that `find` gives.
+/// Changes the feed rate of the move returned by `find`.
 Tampering faster(const char* name, std::function<Found(const Parts&)> find) {
     return {name, Kind::meaning, [find = std::move(find)](Parts& p) {
                 const Found at = find(p);
@@ -182,7 +182,7 @@ Tampering faster(const char* name, std::function<Found(const Parts&)> find) {
             }};
 }
 
-/// The way up after a light, of the lift alone.
+/// The upward move after an exposure, by the platform's lift alone.
 Found lift_after(const Parts& p, std::size_t light) {
     const std::string begin = fmt::format("G1 {}", p.printer.axis(Axis::platform).letter);
     return find_line(p.gcode, begin, light);
@@ -256,7 +256,7 @@ std::vector<Tampering> of_moves() {
     };
 }
 
-/// The lines of the first cleaning between two vats: behind the pump's start, up to its end.
+/// The lines of the first cleaning between two vats: after the pump's start, up to its end.
 std::pair<std::size_t, std::size_t> cleaning_of(const Parts& p) {
     if (p.printer.pump.on.empty()) return {0, 0};
     const Found on = find_line(p.gcode, p.printer.pump.on);
@@ -264,7 +264,7 @@ std::pair<std::size_t, std::size_t> cleaning_of(const Parts& p) {
     return off ? std::pair(*on + 1, *off) : std::pair<std::size_t, std::size_t>(0, 0);
 }
 
-/// Whether a line of the cleaning is a stroke: it moves the platform.
+/// True if a line of the cleaning is a stroke: it moves the platform.
 bool is_stroke(const Parts& p, const std::string& line) {
     return line.starts_with("G1") &&
            line.find(fmt::format(" {}", p.printer.axis(Axis::platform).letter)) != std::string::npos;
@@ -342,7 +342,7 @@ std::vector<Tampering> of_cleaning() {
     };
 }
 
-/// Exchanges what two vats of printer.toml hold.
+/// Exchanges the resins of two vats in printer.toml.
 bool exchange_vats(Parts& p) {
     if (p.printer.vats.size() < 2) return false;
     const std::string a = fmt::format("resin = \"{}\"", p.printer.vats[0].resin),
@@ -351,7 +351,7 @@ bool exchange_vats(Parts& p) {
     return replace(text, a, "@") && replace(text, b, a) && replace(text, "@", b);
 }
 
-/// Another text behind `key = ` of printer.toml.
+/// Replaces the value of `key = ` in printer.toml.
 Tampering printer_key(const char* name, std::string key, std::string value) {
     return {name, Kind::meaning, [key = std::move(key), value = std::move(value)](Parts& p) {
                 std::string& text = p.entries["printer.toml"];
@@ -496,7 +496,7 @@ job::LayerImage& middle_image(Parts& p) {
     return *images.at(images.size() / 2);
 }
 
-/// Other pixels in an image; `adjusted`: the manifest has their area.
+/// Changes pixels of an image; `adjusted`: the manifest has the new area.
 Tampering pixels(const char* name, bool adjusted, std::function<void(job::Image&)> change) {
     return {name, adjusted ? Kind::pixels : Kind::areas, [adjusted, change = std::move(change)](Parts& p) {
                 job::LayerImage& entry = middle_image(p);
@@ -513,14 +513,14 @@ Tampering pixels(const char* name, bool adjusted, std::function<void(job::Image&
             }};
 }
 
-/// Some pixels of full light go dark.
+/// Turns some fully lit pixels dark.
 void darken(job::Image& image, int count) {
     for (std::uint8_t& value : image.pixels) {
         if (value == 255 && count-- > 0) value = 0;
     }
 }
 
-/// Dark pixels of the last rows light up.
+/// Lights dark pixels in the last rows.
 void stray(job::Image& image) {
     for (std::size_t i = image.pixels.size() - 5; i < image.pixels.size(); ++i) image.pixels[i] = 255;
 }

@@ -1,5 +1,4 @@
-// Jobs as forgers, slips and bad disks leave them: any job archive, taken apart, changed in one way, put together
-// again. For tests.
+// Tampered or damaged jobs for tests: takes a job archive apart, changes it in one way, and reassembles it.
 #pragma once
 
 #include <functional>
@@ -12,33 +11,33 @@
 
 namespace pliant::app::tamper {
 
-/// A job taken apart.
+/// The contents of a job.
 struct Parts {
     job::Manifest manifest;
-    std::map<std::string, std::string> entries;  ///< all but the manifest
+    std::map<std::string, std::string> entries;  ///< all entries except the manifest
     std::vector<std::string> gcode;              ///< lines of job.gcode, which is not in `entries`
-    machine::Printer printer;                    ///< as read; a change of it goes into entries["printer.toml"]
+    machine::Printer printer;                    ///< as read; to change it, change entries["printer.toml"]
 };
 
-/// What a change leaves for the proof to go by, where the forger has remade all fingerprints.
+/// How a change can be detected if all checksums have been recomputed.
 enum class Kind {
-    meaning,  ///< what the program or the job says is wrong
-    pixels,   ///< pixels alone, with their areas corrected: only a fingerprint can tell
-    areas     ///< pixels whose areas do not fit: only a fingerprint or a look at every pixel (check) can tell
+    meaning,  ///< from the content of the program or the job
+    pixels,   ///< pixels alone, with areas adjusted: only by a checksum
+    areas     ///< pixels with wrong areas: only by a checksum or a check of every pixel
 };
 
 struct Tampering {
     std::string name;
     Kind kind = Kind::meaning;
-    /// False: there is nothing of the sort in this job.
+    /// False: not applicable to this job.
     std::function<bool(Parts&)> change;
 };
 
-/// All that we know of.
+/// All known kinds of tampering.
 [[nodiscard]] std::vector<Tampering> tamperings();
 
 [[nodiscard]] Parts take_apart(const std::filesystem::path& job);
-/// `remade`: with the fingerprints of what is there now, as a forger would.
+/// `remade`: with checksums recomputed for the changed contents, as a forger would.
 void put_together(const Parts& parts, bool remade, const std::filesystem::path& job);
 
 }  // namespace pliant::app::tamper

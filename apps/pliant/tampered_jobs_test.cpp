@@ -1,4 +1,4 @@
-// Every tampering that we know of, made of real jobs, is refused by everything that prints; untouched jobs pass.
+// Every known tampering, applied to real jobs, is refused by everything that prints; untouched jobs pass.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ namespace {
 
 constexpr int width_px = 96, height_px = 64;
 
-/// The line of `text` that begins with `key = ` with another value.
+/// Replaces the value of the line of `text` that begins with `key = `.
 void set_key(std::string& text, const std::string& key, const std::string& value) {
     const std::size_t at = text.find("\n" + key + " = ");
     REQUIRE(at != std::string::npos);
@@ -95,7 +95,7 @@ void check_message(const std::string& message, const fs::path& file) {
     CHECK(message.find(file.filename().string()) != std::string::npos);
 }
 
-/// Refused by all as it is, and by all that can tell once its fingerprints have been remade.
+/// Refused by all as it is, and by all that can detect it once its checksums have been recomputed.
 void check_refused(const Tampering& tampering, const Parts& parts, const fs::path& file) {
     CAPTURE(tampering.name);
     tamper::put_together(parts, false, file);
@@ -106,13 +106,13 @@ void check_refused(const Tampering& tampering, const Parts& parts, const fs::pat
         check_message(printed(file), file);
         check_message(hosted(file), file);
     } else {
-        // Only the fingerprints tell: this is what they are for.
+        // Only the checksums can detect this: that is their purpose.
         CHECK(printed(file) == "");
         CHECK(hosted(file) == "");
     }
 }
 
-/// The names of what there was to change in a job of this machine.
+/// Names of the tamperings that apply to a job of this machine.
 std::set<std::string> tamper_all(const std::string& machine) {
     const test::Folder folder("tampered");
     const fs::path good = folder / "good.zip", bad = folder / "bad.zip";
@@ -120,7 +120,7 @@ std::set<std::string> tamper_all(const std::string& machine) {
     CHECK(checked(good) == "");
     const Parts whole = tamper::take_apart(good);
     tamper::put_together(whole, false, bad);
-    CHECK(hosted(bad) == "");  // taking apart alone changes nothing
+    CHECK(hosted(bad) == "");  // taking it apart changes nothing
     std::set<std::string> names;
     for (const Tampering& tampering : tamper::tamperings()) {
         Parts parts = whole;
@@ -137,7 +137,7 @@ TEST_CASE("every tampered job is refused by check, by the virtual printer, and b
     const std::set<std::string> names = tamper_all("tower");
     MESSAGE(names.size() << " kinds");
     CHECK(names.size() >= 75);
-    CHECK(tamper::tamperings().size() - names.size() <= 2);  // what a tower has not
+    CHECK(tamper::tamperings().size() - names.size() <= 2);  // those that do not apply to a tower
 }
 
 TEST_CASE("every tampered job is refused by check, by the virtual printer, and by the host: table, single vat") {
@@ -191,7 +191,7 @@ TEST_CASE("50 untouched jobs pass") {
             check(fmt::format("{}, {}", machine, name), small_printer(machine), order);
         }
     }
-    // Machines that ask for something else.
+    // Machines with other requirements.
     const auto tower_with = [&](const std::string& what, const std::function<void(std::string&)>& change,
                                 const Change& wish = {}) {
         prepare::Order order;
@@ -275,7 +275,7 @@ TEST_CASE("a job of format 1 is read, proved as far as that goes, with a warning
     REQUIRE(ready->warnings.size() == 1);
     CHECK(test::holds(ready->warnings[0], "cannot be proved"));
     for (const Tampering& tampering : tamper::tamperings()) {
-        if (tampering.kind != Kind::areas) continue;  // its pixels are looked at, as there is nothing else to go by
+        if (tampering.kind != Kind::areas) continue;  // pixels are checked, because there are no checksums
         Parts changed = parts;
         REQUIRE(tampering.change(changed));
         tamper::put_together(changed, false, file);

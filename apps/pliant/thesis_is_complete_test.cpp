@@ -1,4 +1,4 @@
-// docs/thesis.md has every number of the thesis in a heading, in its order, each with commands that run; and
+// docs/thesis.md has every number of the thesis in a heading, in order, each with commands that run; and
 // examples/thesis has a row, a place and a command for every figure.
 #include <doctest/doctest.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// What the thesis numbers, kind by kind in its order. Sections are those that claim something.
+/// The numbered items of the thesis, kind by kind in order. Only sections with claims are included.
 const std::map<std::string, Names> thesis_numbers = {
     {"equation", {"T3.1", "T3.2", "T3.3", "T3.4", "T3.5", "T3.6", "T3.7", "T3.8"}},
     {"appendix", {"A.1", "A.2", "A.3", "A.4", "B.1", "B.2", "B.3", "B.4", "B.5"}},
@@ -37,7 +37,7 @@ struct Entry {
     int line = 0;
     std::string heading;
     Names names;       ///< what stands before the colon, in lower case but for the T, F, A and B of numbers
-    int commands = 0;  ///< that run and show what they print
+    int commands = 0;  ///< number of commands that run and show their output
 };
 
 Names names_of(const std::string& heading) {
@@ -52,8 +52,7 @@ Names names_of(const std::string& heading) {
     return names;
 }
 
-/// The sections under `### ` with the commands that stand in them. A block of commands none of which shows anything
-/// does not count.
+/// The sections under `### ` with their commands. A block of commands without any output does not count.
 std::vector<Entry> entries_of(const std::string& text) {
     std::vector<Entry> entries;
     std::istringstream in(text);

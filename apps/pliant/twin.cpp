@@ -1,4 +1,4 @@
-// pliant twin: the virtual printer as a device that any host can open.
+// pliant twin: the virtual printer as a device for any host program.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -61,8 +61,8 @@ Result<twin::Options> twin_options(const Options& options) {
     return result;
 }
 
-/// The projector: light is what `shown.png` in a folder holds; without that file it is dark. A host writes the file
-/// aside and renames it.
+/// The projector: the current image is `shown.png` in a folder; without that file it is dark. A host writes a temporary
+/// file and renames it.
 class FolderProjector {
 public:
     explicit FolderProjector(std::filesystem::path file) : file_(std::move(file)) {}
@@ -77,7 +77,7 @@ public:
         }
         if (lit_ && time == seen_) return {};
         const Result<std::string> bytes = read_file(file_);
-        if (!bytes) return {};  // gone again
+        if (!bytes) return {};  // removed in the meantime
         const machine::Projector& p = twin.printer().projector;
         Result<job::Image> image = job::decode_png(*bytes, {p.width_px, p.height_px}, file_.string());
         if (!image) return tl::unexpected(image.error());
@@ -142,7 +142,7 @@ Status run_twin(const Options& options) {
         auto made = operate::ClockFile::create(options.clock);
         if (!made) return tl::unexpected(made.error());
         clock.emplace(std::move(*made));
-        serve.longest_step_s = 0.1 / options.speed;  // of the machine's clock
+        serve.longest_step_s = 0.1 / options.speed;  // on the machine's clock
         serve.tick = [&](double now_s) { clock->set(now_s); };
     }
     if (options.trace) {

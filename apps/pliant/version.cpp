@@ -1,4 +1,4 @@
-// pliant version: what the program is, and what it was built with.
+// pliant version: version of the program and the libraries it was built with.
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
@@ -14,7 +14,7 @@ namespace {
 
 using Entry = std::pair<std::string, std::string>;
 
-/// PLIANT_LIBRARIES is "Eigen 3.4.0|fmt 9.1.0|...": the build tells it.
+/// PLIANT_LIBRARIES is "Eigen 3.4.0|fmt 9.1.0|...", set by the build.
 std::vector<Entry> libraries(std::string_view text) {
     std::vector<Entry> entries;
     while (!text.empty()) {

@@ -1,4 +1,4 @@
-// For tests of whole prints: a job that is in memory, printed on the virtual printer as `pliant print --twin` does it.
+// Bench for tests of whole prints: a job in memory, printed on the virtual printer as by `pliant print --twin`.
 #pragma once
 
 #include <memory>
@@ -23,13 +23,13 @@ inline host::PrintJob print_job(const job::Manifest& job, const std::string& gco
     return ready;
 }
 
-/// A print that is over.
+/// A completed print.
 struct Printed {
     std::unique_ptr<rehearse::VirtualPrint> print;
     Status status;
     twin::Report report;
 
-    /// `archived`: the images that the block is held against.
+    /// `archived`: the images that the block is compared with.
     Printed(const machine::Printer& printer, const job::Manifest& job, host::PrintJob ready,
             const host::ImageSource& archived, rehearse::Options options = {})
         : print(rehearse::VirtualPrint::make(printer, std::move(ready), std::move(options)).value()) {
@@ -37,11 +37,11 @@ struct Printed {
         status = print->print(silent);
         report = twin::inspect(print->twin(), job, twin::ImageSource(archived)).value();
     }
-    /// Pieces of light that have ended.
+    /// Number of completed exposure pieces.
     [[nodiscard]] int lights() const { return static_cast<int>(print->lights().size()); }
 };
 
-/// A host that knows no rules: sends the commands of a program, without its lights, until the machine refuses one.
+/// A host without checks: sends the commands of a program, without exposures, until the machine refuses one.
 inline Status send_unchecked(twin::Twin& twin, const std::string& gcode) {
     rehearse::TwinWire wire(twin);
     rehearse::TwinClock clock(twin);

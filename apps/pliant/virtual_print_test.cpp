@@ -1,4 +1,4 @@
-// Prints on the virtual printer by the engine that prints on machines: prompts, pauses, the door, interlocks, guard,
+// Prints on the virtual printer with the engine for real machines: prompts, pauses, the door, interlocks, guard,
 // cancelling.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ struct Bench {
     }
 };
 
-/// The kinds of the journal's records, in order, those named alone.
+/// The kinds of the journal's records, in order, restricted to those named.
 std::string kinds(const Printed& printed, const std::vector<std::string>& wanted) {
     std::string text;
     const std::vector<host::JournalRecord> records = printed.print->records().value();
@@ -56,7 +56,7 @@ const host::JournalRecord* first(const std::vector<host::JournalRecord>& records
     return found == records.end() ? nullptr : &*found;
 }
 
-/// Acts once, when the print has got so far.
+/// Acts once, at a given point of the print.
 rehearse::Options when(std::function<bool(const host::Snapshot&)> reached, std::function<Status(host::Control&)> act) {
     rehearse::Options options;
     options.meanwhile = [reached = std::move(reached), act = std::move(act), done = false](host::Control& c) mutable {
@@ -99,7 +99,7 @@ TEST_CASE("resin that is asked for on the way is filled in, and the journal says
     Bench b;
     const double layer_ml = halves::soft_mm2 * 0.05 / 1000;
     const Printed whole = b.run();
-    // A vat that gives what two layers need, and no more.
+    // A vat with just enough resin for two layers.
     machine::Vat& vat = b.printer.vats.front();
     vat.fill_ml = b.printer.vat_shape.least_ml + 2.2 * layer_ml;
     const auto plan = plan::make_plan(b.job, b.printer).value();
@@ -200,7 +200,7 @@ TEST_CASE("the guard hears of every light, and knows how long one was on when it
     guard.announced(7);
     guard.lit(twin.now());
     twin.advance_to(1.5);
-    CHECK_FALSE(guard.lit_s(7));  // the host lives
+    CHECK_FALSE(guard.lit_s(7));  // the host is alive
     guard.host_died();
     CHECK(guard.lit_s(7).value() == near(1.5, {.relative = 1e-12}));
     CHECK_FALSE(guard.lit_s(8));

@@ -1,4 +1,4 @@
-// pliant workspace: where markers can get.
+// pliant workspace: the positions that markers can reach.
 #include "pliant/workspace.hpp"
 
 #include <fmt/core.h>
@@ -23,7 +23,7 @@ struct Options {
     Output output;
 };
 
-/// What is done stands beside the results until they are written.
+/// Completed pieces are stored beside the results until these are written.
 Result<WorkspaceOptions> search_options(const Options& options) {
     WorkspaceOptions search = options.search;
     if (options.folder.empty() && search.resume)

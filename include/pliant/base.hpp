@@ -1,5 +1,5 @@
 /// @file
-/// What all of Pliant's library shares: points, errors, progress.
+/// Common to the whole interface: points, errors, progress.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-/// Marks what the shared library shows.
+/// Marks the symbols that the shared library exports.
 #define PLIANT_API __attribute__((visibility("default")))
 
 /// Simulates multi-material soft robots, and slices, plans and prints them.
@@ -17,30 +17,31 @@ namespace pliant {
 /// x, y and z.
 using Point = std::array<double, 3>;
 
-/// What went wrong, in one line for people: where, what, and what would be right. Thrown by everything that can fail.
+/// An error, described in one line: where it occurred, what is wrong, and what would be right. Thrown by every function
+/// that can fail.
 class PLIANT_API Failure : public std::runtime_error {
 public:
-    /// Who is to look at it.
+    /// Who can fix it.
     enum class Kind {
-        input,      ///< a file, a key or an argument is wrong
-        failed,     ///< the work itself did not succeed: a disk, a solver
-        cancelled,  ///< the caller asked for an end
+        input,      ///< the caller: a file, a key or an argument is wrong
+        failed,     ///< the operation failed, for example a disk or a solver
+        cancelled,  ///< the caller cancelled
     };
-    /// `line` of `file`, from 1, and `key` in it; 0 and "" where they are not known.
+    /// `line` (from 1) and `key` locate the error in `file`; 0 and "" if unknown.
     Failure(Kind kind, const std::string& message, std::string file = {}, int line = 0, std::string key = {});
     ~Failure() override;
-    /// A copy, as exceptions must be.
+    /// Copies, as exceptions must.
     Failure(const Failure&);
-    /// A copy, as exceptions must be.
+    /// Copies, as exceptions must.
     Failure& operator=(const Failure&);
 
-    /// Who is to look at it.
+    /// Kind of the error.
     [[nodiscard]] Kind kind() const noexcept { return kind_; }
-    /// The file that the error is in; "" if it is in none.
+    /// The file that the error is in; "" if none.
     [[nodiscard]] const std::string& file() const noexcept { return file_; }
-    /// Its line, from 1; 0 where that is not known.
+    /// The line in the file, from 1; 0 if unknown.
     [[nodiscard]] int line() const noexcept { return line_; }
-    /// The key there; "" where that is not known.
+    /// The key in the file; "" if unknown.
     [[nodiscard]] const std::string& key() const noexcept { return key_; }
 
 private:
@@ -50,16 +51,16 @@ private:
     std::string key_;
 };
 
-/// Told what is being done and which share of it is done, many times a second; false asks for an end, which comes as a
-/// Failure of kind `cancelled`. May be empty.
+/// Progress callback: called many times a second with the current stage and the completed share, 0 to 1. Returning
+/// false cancels, which ends in a Failure of kind `cancelled`. May be empty.
 using Watch = std::function<bool(std::string_view stage, double share)>;
 
-/// Value in SI units of a text as robot files have it: quantity("4 mm", "m") is 0.004. `unit` says what it must be: m,
-/// s, N, Pa, m^3, kg/m^3 or N/m.
-/// @throws Failure where the text is no number with such a unit; it names the units that would be right.
+/// Converts a text with a unit, as in robot files, to SI: quantity("4 mm", "m") is 0.004. `unit` is the required unit:
+/// m, s, N, Pa, m^3, kg/m^3 or N/m.
+/// @throws Failure if the text is not a number with a suitable unit; the message names the suitable units.
 [[nodiscard]] PLIANT_API double quantity(std::string_view text, std::string_view unit);
 
-/// Version of the library, as "1.0.0".
+/// Version of the library, such as "1.0.0".
 [[nodiscard]] PLIANT_API std::string_view version() noexcept;
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
 /// @file
-/// Gradients: how what is measured on a robot, at one state or over its whole program, changes with everything that it
+/// Gradients of what is measured on a robot, at one state or over its whole program, with respect to everything that it
 /// depends on.
 #pragma once
 
@@ -15,68 +15,69 @@
 
 namespace pliant {
 
-/// A number, and how it changes with each measure; no slopes: it does not.
+/// A cost and its derivatives with respect to the measures; empty slopes stand for zero.
 struct Judgement {
-    double value = 0;              ///< the number
+    double value = 0;              ///< the cost
     std::vector<double> slopes{};  ///< (measures) its derivatives
 };
 
-/// What a program is judged by: the sum over its steps, from 1, of what `judge` says.
+/// An objective of a program: the sum of `judge` over its steps, from step 1.
 struct Objective {
-    std::vector<Measure> measures;  ///< what `judge` is told
-    /// Called once or more for a step, in any order; must say the same each time. `values`: (measures), SI.
+    std::vector<Measure> measures;  ///< the values passed to `judge`
+    /// Called at least once per step, in any order; must be deterministic. `values`: (measures), SI.
     std::function<Judgement(int step, std::span<const double> values)> judge;
 };
 
-/// What a gradient is wanted by, beside inputs and parameters.
+/// What to differentiate with respect to, in addition to inputs and parameters.
 struct GradientOptions {
-    bool rest_positions = false;  ///< of the nodes
+    bool rest_positions = false;  ///< node positions at rest
     bool guide_points = false;    ///< of cables and springs
-    bool tets = false;            ///< what each tetrahedron is made of
-    /// Names of [parameters] of the robot file that are numbers, not formulas of others. Whatever follows from one
-    /// counts: the shape, whose mesh moves along and keeps its topology, places, constants, targets. For programs at
-    /// rest without friction.
+    bool tets = false;            ///< material properties of each tetrahedron
+    /// Names of [parameters] of the robot file that are numbers, not formulas of others. Everything that follows from
+    /// one is included: the shape, whose mesh moves along with unchanged topology, positions, constants, targets. Only
+    /// for quasi-static programs without friction.
     std::vector<std::string> numbers{};
-    /// States that are kept on the way where steps depend on those before. Others are solved again, so that memory does
-    /// not grow with the number of steps.
+    /// Number of states kept if steps depend on earlier ones. The others are solved again, so that memory does not grow
+    /// with the number of steps.
     int kept = 8;
 };
 
-/// Of a number that each tetrahedron has, as if each had a material of its own.
+/// Derivative with respect to a property of each tetrahedron, as if each had its own material.
 struct TetGradient {
     std::string name;            ///< youngs_modulus, c10, density...
-    std::string unit;            ///< SI; "" of a plain number
-    std::vector<double> values;  ///< (tets); 0 where a tetrahedron has no such number
+    std::string unit;            ///< SI; "" if dimensionless
+    std::vector<double> values;  ///< (tets); 0 if a tetrahedron has no such property
 };
 
-/// The derivative of an objective.
+/// Value and gradient of an objective.
 struct ProgramGradient {
-    double value = 0;                         ///< of the objective
+    double value = 0;                         ///< the objective
     std::vector<std::vector<double>> values;  ///< (steps, measures) SI
-    std::vector<Parameter> parameters;        ///< what the robot is made of and stands in
+    std::vector<Parameter> parameters;        ///< of the robot and its surroundings
     std::vector<double> by_parameters;        ///< (parameters)
-    /// (nodes), where wanted. Lengths and volumes that are wanted as a share of what they are at rest follow.
+    /// (nodes), if requested. Lengths and volumes prescribed as ratios change with their rest values.
     std::vector<Point> by_rest_positions;
-    std::vector<GuidePoint> guide_points;  ///< of cables, then of springs; where wanted
-    /// (guide_points) by where each is at rest: the mesh then carries it elsewhere, and lengths that are wanted as a
-    /// share of what they are at rest follow. Gap elements that a cable acts through stay as they are.
+    std::vector<GuidePoint> guide_points;  ///< of cables, then of springs; if requested
+    /// (guide_points) with respect to the rest position of each guide point: it is re-attached to the mesh as it moves,
+    /// and lengths prescribed as ratios change with their rest values. Gap elements that a cable acts through are
+    /// unchanged.
     std::vector<Point> by_guide_points;
-    std::vector<TetGradient> by_tets;  ///< where wanted
+    std::vector<TetGradient> by_tets;  ///< if requested
     std::vector<double> by_numbers;    ///< (GradientOptions::numbers) in the units of the robot file
-    /// Where an equilibrium was found: the end of each step, and where a step was halved what lies between.
+    /// An equilibrium that was solved for: the end of each step and, if a step was halved, the states in between.
     struct Instant {
         int step = 0;                   ///< of the program, from 1
         double time = 0;                ///< of the program
-        std::vector<double> by_inputs;  ///< (inputs); empty: nothing depends on them
+        std::vector<double> by_inputs;  ///< (inputs); empty: the objective does not depend on them
     };
-    std::vector<Parameter> inputs;  ///< what drives the robot; values are those at rest
-    std::vector<Instant> instants;  ///< in the order of time
+    std::vector<Parameter> inputs;  ///< inputs of the robot; their values are those at rest
+    std::vector<Instant> instants;  ///< in chronological order
 };
 
-/// Runs the robot's program and goes back over it with the adjoint of each step; also of a motion in time. What
-/// friction lags stays as it was found.
-/// @throws Failure of a measure or a number that is not there, of a number that no motion of the mesh follows; where a
-/// step does not converge or has no derivative; cancelled. What `judge` throws is passed on.
+/// Runs the robot's program and differentiates it backwards, with the adjoint of each step; also for a motion in time.
+/// Lagged quantities of friction are held constant.
+/// @throws Failure if a measure or number does not exist, the mesh cannot follow a number, or a step does not converge
+/// or has no derivative; or when cancelled. Exceptions of `judge` are passed on.
 [[nodiscard]] PLIANT_API ProgramGradient gradient(const Model& model, const Objective& objective,
                                                   const GradientOptions& options = {}, const Watch& watch = {});
 

@@ -1,5 +1,5 @@
 /// @file
-/// Numbers of a robot from measurements on it: those with which its program, simulated, comes nearest.
+/// Parameter identification: the robot parameters with which the simulated program comes closest to measurements.
 #pragma once
 
 #include <cstddef>
@@ -14,85 +14,86 @@
 
 namespace pliant {
 
-/// What was measured, as a table: docs/reference/commands.md, "identify", has its columns.
+/// A table of measurements; its columns are described in docs/reference/commands.md, "identify".
 struct Measurements {
     std::string csv;                    ///< the table
-    std::string file = "measured.csv";  ///< what messages call it
+    std::string file = "measured.csv";  ///< name used in messages
 
-    /// Reads a file.
-    /// @throws Failure of the disk.
+    /// Reads the table from a file.
+    /// @throws Failure if the file cannot be read.
     [[nodiscard]] static PLIANT_API Measurements load(const std::filesystem::path& file);
 };
 
-/// Which rows are kept out of the fit, to judge it on.
+/// Which rows are held out of the fit for validation.
 enum class JudgeOn {
-    nothing,       ///< or what the column `use` says
+    nothing,       ///< none, except rows marked in the column `use`
     every_second,  ///< the second row of the table, the fourth...
-    second_half,   ///< as it says
+    second_half,   ///< the second half of the rows
 };
 
-/// A number that was looked for.
+/// Estimate of one unknown parameter.
 struct Estimate {
     std::string key;               ///< as in the robot file
-    std::string unit;              ///< SI; "" of a plain number
-    double start = 0;              ///< where the search began
-    double value = 0;              ///< found
-    std::optional<double> low{};   ///< of the 95 % confidence interval, where the data give one
+    std::string unit;              ///< SI; "" if dimensionless
+    double start = 0;              ///< initial value of the search
+    double value = 0;              ///< estimated value
+    std::optional<double> low{};   ///< of the 95 % confidence interval, if the data determine one
     std::optional<double> high{};  ///< likewise
-    bool at_bound = false;         ///< a bound stops it
-    bool matters = true;           ///< false: nothing that was measured depends on it
+    bool at_bound = false;         ///< the estimate is limited by a bound
+    bool matters = true;           ///< false: none of the measurements depends on it
 };
 
-/// One measured value beside the simulated ones.
+/// One measured value and its simulated counterparts.
 struct Comparison {
-    int line = 0;          ///< of the table
-    double time = 0;       ///< of the program
-    std::string quantity;  ///< column of the table
-    std::string unit;      ///< of the values: that of the column
-    bool judged = false;   ///< kept out of the fit
-    double measured = 0;   ///< value
-    double before = 0;     ///< simulated with the numbers that the robot had
-    double after = 0;      ///< simulated with those that were found
+    int line = 0;          ///< in the table
+    double time = 0;       ///< program time
+    std::string quantity;  ///< column in the table
+    std::string unit;      ///< of all three values: that of the column
+    bool judged = false;   ///< held out of the fit
+    double measured = 0;   ///< measured value
+    double before = 0;     ///< simulated with the initial parameters
+    double after = 0;      ///< simulated with the estimates
 };
 
-/// Root mean square of simulated minus measured values of one unit.
+/// Root mean square of simulated minus measured values in one unit.
 struct FitError {
     std::string unit;        ///< as in Comparison
-    std::size_t values = 0;  ///< how many there are
-    double before = 0;       ///< with the numbers that the robot had
-    double after = 0;        ///< with those that were found
+    std::size_t values = 0;  ///< number of values
+    double before = 0;       ///< with the initial parameters
+    double after = 0;        ///< with the estimates
 };
 
-/// What was found. A value; copies share what never changes.
+/// Result of an identification. A value; copies share immutable data.
 class PLIANT_API Identification {
 public:
-    /// False: the search ended after too many trials.
+    /// False if the search ended at the limit of trials.
     [[nodiscard]] bool converged() const;
-    /// In the order in which they were asked for.
+    /// The estimates, in the order of the unknowns.
     [[nodiscard]] std::vector<Estimate> estimates() const;
-    /// (estimates, estimates) correlation; not a number beside one that is at a bound or does not matter.
+    /// (estimates, estimates) correlation matrix; NaN in rows and columns of an estimate at a bound or one that does
+    /// not matter.
     [[nodiscard]] std::vector<std::vector<double>> correlation() const;
-    /// In the order of the table.
+    /// All measured values, in the order of the table.
     [[nodiscard]] std::vector<Comparison> comparisons() const;
-    /// By unit, of the values that were fitted.
+    /// Errors of the fitted values, one for each unit.
     [[nodiscard]] std::vector<FitError> fitted() const;
-    /// By unit, of those that were kept out of the fit.
+    /// Errors of the values held out of the fit, one for each unit.
     [[nodiscard]] std::vector<FitError> judged() const;
-    /// Where the answer should not be trusted, a sentence each.
+    /// Reasons not to trust the result, one sentence each.
     [[nodiscard]] const std::vector<std::string>& warnings() const;
-    /// Programs that were solved.
+    /// Number of programs that were solved.
     [[nodiscard]] int trials() const;
-    /// KEY=VALUE of everything that was found, as Robot::load() takes it.
+    /// All estimates as KEY=VALUE, as Robot::load() takes them.
     [[nodiscard]] std::vector<std::string> changes() const;
-    /// The robot with what was found.
+    /// The robot with the estimated parameters.
     [[nodiscard]] Robot robot() const;
-    /// For people: tables of the numbers and of the errors.
+    /// Text for people: tables of the estimates and errors.
     [[nodiscard]] std::string text() const;
     /// All figures, as in summary.json.
     [[nodiscard]] std::string json() const;
-    /// Writes the folder that `pliant identify -o` writes, whole or not at all, in place of an older one:
+    /// Writes the folder that `pliant identify -o` writes, whole or not at all, replacing an older one:
     /// identified.toml, summary.json, comparison.csv and plots.
-    /// @throws Failure of the disk.
+    /// @throws Failure if a file cannot be written.
     void write(const std::filesystem::path& folder) const;
 
     /// @cond
@@ -104,10 +105,10 @@ private:
     /// @endcond
 };
 
-/// Least squares over the values that are not judged. `unknowns` are keys of the robot file, or KEY=LOW..HIGH; `mesh`
-/// as for Model, of a robot that says mesh.file = "memory:".
-/// @throws Failure of the robot, the table, an unknown that there is not; where there are fewer values than unknowns or
-/// the program cannot be solved; cancelled.
+/// Least-squares fit to all values that are not held out. `unknowns` are keys of the robot file, or KEY=LOW..HIGH;
+/// `mesh` is for a robot that says mesh.file = "memory:", as for Model.
+/// @throws Failure if the robot or the table is invalid, an unknown does not exist, there are fewer values than
+/// unknowns, or the program cannot be solved; or when cancelled.
 [[nodiscard]] PLIANT_API Identification identify(const Robot& robot, const std::vector<std::string>& unknowns,
                                                  const Measurements& measured, JudgeOn judge = JudgeOn::nothing,
                                                  const std::optional<Mesh>& mesh = {}, const Watch& watch = {});

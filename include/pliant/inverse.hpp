@@ -1,5 +1,5 @@
 /// @file
-/// Inverse kinematics: what to pull so that the robot meets the goals of its file.
+/// Inverse kinematics: actuator inputs that take the robot to the goals of its file.
 #pragma once
 
 #include <cstddef>
@@ -13,71 +13,72 @@
 
 namespace pliant {
 
-/// An actuator with a range: what inverse() and workspace() may move.
+/// An actuator with a range, which inverse() and workspace() may vary.
 struct SteeredInput {
     std::string name;  ///< of the cable or chamber
-    std::string unit;  ///< SI, of what its target names; "" of a ratio
-    double low = 0;    ///< of its range
-    double high = 0;   ///< of its range
+    std::string unit;  ///< SI unit of its target; "" for a ratio
+    double low = 0;    ///< lower end of its range
+    double high = 0;   ///< upper end of its range
 };
 
-/// How inverse() searches.
+/// Options of inverse().
 struct InverseOptions {
-    /// Beginnings spread over the ranges that are tried where the way from rest does not reach the first waypoint.
+    /// Number of starting points, spread over the ranges, that are tried if the search from rest does not reach the
+    /// first waypoint.
     int starts = 6;
 };
 
-/// How one goal fares at a waypoint.
+/// Result for one goal at a waypoint.
 struct GoalResult {
     std::string name;           ///< as in the robot file
     bool reached = false;       ///< within its tolerance
-    double error = 0;           ///< m, rad or N, as `unit` says; of several markers the largest
+    double error = 0;           ///< m, rad or N, as `unit` says; the largest over several markers
     std::string unit;           ///< of the error
-    std::vector<Point> wanted;  ///< places; of a plane a point and its normal; a unit direction; a force
-    std::vector<Point> got;     ///< places of its markers; a direction; a force. A size is the first number.
+    std::vector<Point> wanted;  ///< positions; for a plane a point and its normal; a unit direction; a force
+    std::vector<Point> got;     ///< positions of its markers; a direction; a force. Of a magnitude: the first number
 };
 
-/// A waypoint, as far as the robot got to it.
+/// Result at one waypoint: the state closest to its goals.
 struct Waypoint {
-    bool reached = false;             ///< all of its goals
-    double time = 0;                  ///< of the robot's program: where all that is not steered stands
+    bool reached = false;             ///< all of its goals are reached
+    double time = 0;                  ///< program time, which sets everything that is not steered
     std::vector<GoalResult> goals;    ///< in the order of the robot file
     std::vector<double> inputs;       ///< (InverseResult::inputs()) SI
-    std::vector<std::string> limits;  ///< where not reached: what stops it, a sentence each
+    std::vector<std::string> limits;  ///< if not reached: the limits that prevent it, one sentence each
     StepResult result;                ///< of the equilibrium
-    Observation observed;             ///< what it is like
+    Observation observed;             ///< measurable quantities of the state
     std::vector<Point> positions;     ///< (nodes) m
-    int forward_solutions = 0;        ///< equilibria that were solved for on the way
+    int forward_solutions = 0;        ///< equilibria solved for during the search
     double wall_s = 0;                ///< wall time of the search
 };
 
-/// What came of the goals. A value; copies share what never changes.
+/// Result of inverse(). A value; copies share immutable data.
 class PLIANT_API InverseResult {
 public:
-    /// All waypoints.
+    /// True if all waypoints were reached.
     [[nodiscard]] bool reached() const;
-    /// Why waypoints are missing; empty where none is.
+    /// Why waypoints are missing; empty if none is.
     [[nodiscard]] const std::string& message() const;
-    /// What is worth knowing about the search, a sentence each.
+    /// Remarks about the search, one sentence each.
     [[nodiscard]] const std::vector<std::string>& notes() const;
-    /// What was moved.
+    /// The inputs that were varied.
     [[nodiscard]] const std::vector<SteeredInput>& inputs() const;
-    /// Waypoints of the goals.
+    /// Number of waypoints in the goals.
     [[nodiscard]] std::size_t waypoints_wanted() const;
-    /// Waypoints that there is a state for.
+    /// Number of waypoints with a result.
     [[nodiscard]] std::size_t waypoint_count() const;
-    /// A waypoint, from 0.
-    /// @throws Failure where there is none of that index.
+    /// One waypoint, counted from 0.
+    /// @throws Failure if the index is out of range.
     [[nodiscard]] Waypoint waypoint(std::size_t index) const;
-    /// For people: a line for each waypoint, and what stops those that are not reached.
+    /// Text for people: one line per waypoint, and the active limits of those that were not reached.
     [[nodiscard]] std::string text() const;
     /// All figures, as in inverse.json.
     [[nodiscard]] std::string json() const;
 
-    /// Writes the folder that `pliant inverse -o` writes, whole or not at all, in place of an older one: program.toml,
-    /// which leads through the waypoints, its results, inverse.json and waypoints.csv. Gives warnings where that
-    /// program, run from rest, leads elsewhere. Of a robot that was given as text robot.toml is written, too.
-    /// @throws Failure where there is no waypoint, of the program, of the disk; cancelled.
+    /// Writes the folder that `pliant inverse -o` writes, whole or not at all, replacing an older one: program.toml,
+    /// which leads through the waypoints, the results of that program, inverse.json and waypoints.csv; also robot.toml
+    /// if the robot was given as text. Returns warnings if the program, run from rest, ends up elsewhere.
+    /// @throws Failure if there is no waypoint, the program fails, or a file cannot be written; or when cancelled.
     std::vector<std::string> write(const std::filesystem::path& folder, const Watch& watch = {}) const;
 
     /// @cond
@@ -89,10 +90,11 @@ private:
     /// @endcond
 };
 
-/// Looks for the inputs that take the robot to its goals, waypoint by waypoint, each from the one before; every answer
-/// is an equilibrium. What cannot be reached ends as near as it gets, and is no Failure.
-/// @throws Failure where the robot has no goals or no actuator with a range, or moves in time; cancelled before the
-/// first waypoint was done.
+/// Searches for the inputs that take the robot to its goals, one waypoint after the other, each search starting from
+/// the previous result. Every answer is an equilibrium. A goal out of reach is not a Failure: the result is the closest
+/// state that was found.
+/// @throws Failure if the robot has no goals or no actuator with a range, or moves in time; or when cancelled before
+/// the first waypoint is done.
 [[nodiscard]] PLIANT_API InverseResult inverse(const Model& model, const InverseOptions& options = {},
                                                const Watch& watch = {});
 

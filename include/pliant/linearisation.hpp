@@ -1,5 +1,5 @@
 /// @file
-/// What a state answers to small changes: of what drives the robot, of what it is made of, of its rest shape.
+/// Derivatives of a state of equilibrium with respect to inputs, parameters and the rest shape.
 #pragma once
 
 #include <cstddef>
@@ -13,132 +13,135 @@
 
 namespace pliant {
 
-/// A number that a state is a function of.
+/// A number that the state depends on.
 struct Parameter {
-    std::string name;  ///< for people: cable "left": length
-    std::string unit;  ///< SI; "" for a plain number
-    double value = 0;  ///< at the state
+    std::string name;  ///< for people, such as: cable "left": length
+    std::string unit;  ///< SI; "" if dimensionless
+    double value = 0;  ///< its value at the state
 };
 
-/// A point that a cable or spring goes through.
+/// A guide point of a cable or spring.
 struct GuidePoint {
-    std::string name;  ///< for people: cable "left": point 2
-    Point place{};     ///< at rest, m
+    std::string name;  ///< for people, such as: cable "left": point 2
+    Point place{};     ///< rest position, m
 };
 
-/// What the gradient of a state is wanted by, beside what always is.
+/// Optional parts of the gradient of a state.
 struct StateGradientOptions {
-    bool guide_points = false;  ///< of cables and springs
+    bool guide_points = false;  ///< also with respect to the guide points of cables and springs
 };
 
-/// A small change of a state, for each unit of what causes it.
+/// First-order change of a state, per unit of its cause.
 struct Change {
     std::vector<Point> positions;      ///< (nodes) m
     std::vector<double> tensions_N;    ///< (cables)
     std::vector<double> pressures_Pa;  ///< (chambers)
 };
 
-/// A function of the state, to first order: its derivatives by the positions of nodes, by tensions and by pressures.
-/// What is left empty is zero.
+/// A function of the state, given by its first derivatives with respect to node positions, tensions and pressures. An
+/// empty vector stands for zero.
 struct Quantity {
     std::vector<Point> by_positions;   ///< (nodes)
     std::vector<double> by_tensions;   ///< (cables)
     std::vector<double> by_pressures;  ///< (chambers)
 };
 
-/// Something that can be measured on a robot: one number, SI.
+/// A scalar that can be measured on a robot, in SI units.
 struct Measure {
-    /// What is measured.
+    /// The measured quantity.
     enum class Of {
         marker,         ///< its coordinate along `direction`, m
         tension,        ///< of a cable, N
-        pressure,       ///< of a chamber or a load that presses, Pa
+        pressure,       ///< of a chamber or a pressure load, Pa
         length,         ///< of a cable, m
-        length_ratio,   ///< of a cable, over that at rest
+        length_ratio,   ///< length of a cable over its rest length
         volume,         ///< of a chamber, m^3
-        volume_ratio,   ///< of a chamber, over that at rest
+        volume_ratio,   ///< volume of a chamber over its rest volume
         spring_length,  ///< m
         spring_force,   ///< N, positive where it pulls
         reaction,       ///< force of a support on the robot along `direction`, N
         contact_force,  ///< force of an obstacle on the robot along `direction`, with friction, N
-        self_contact,   ///< sum of the sizes of the robot's normal forces on itself, N; has no name
+        self_contact,   ///< sum of the magnitudes of the robot's normal forces on itself, N; needs no name
     };
-    Of of = Of::marker;  ///< what is measured
-    std::string name;    ///< on which, as in the robot file
-    Point direction{};   ///< of any length
+    Of of = Of::marker;  ///< the measured quantity
+    std::string name;    ///< what it is measured on, as in the robot file
+    Point direction{};   ///< need not be normalised
 };
 
-/// The equations of a state of equilibrium, F(z) = 0 in its unknowns z, linearised: elements, cables and chambers,
-/// pressure that follows its wall, contact, friction as it was found, inertia. The unknowns are the positions of the
-/// nodes that nothing holds, three by three, then the multipliers that are not given: tensions of cables and minus the
-/// pressures of chambers. For one thread at a time.
+/// The equilibrium equations F(z) = 0, linearised at a state: elements, cables and chambers, follower pressure,
+/// contact, friction as found at the state, inertia. The unknowns z are the coordinates of the unconstrained nodes,
+/// three for each, followed by the multipliers that are not prescribed: cable tensions and minus the chamber pressures.
+/// Not thread-safe.
 class PLIANT_API Linearisation {
 public:
-    /// Of a state that a Stepper left.
-    /// @throws Failure where the state is one that no body can have.
+    /// Linearises at a state returned by a Stepper.
+    /// @throws Failure if the state is not physically possible, as with an inverted element.
     explicit Linearisation(const State& state);
-    /// Moves it; the other one is of no use afterwards.
+    /// Moves; the moved-from object may only be assigned to or destroyed.
     Linearisation(Linearisation&&) noexcept;
-    /// Moves it; the other one is of no use afterwards.
+    /// Moves; the moved-from object may only be assigned to or destroyed.
     Linearisation& operator=(Linearisation&&) noexcept;
     ~Linearisation();
 
-    /// Unknowns.
+    /// Number of unknowns.
     [[nodiscard]] std::size_t size() const;
-    /// (unknowns) A v with A = dF/dz. Exact.
-    /// @throws Failure where v has another size.
+    /// (unknowns) the product A v with the exact tangent A = dF/dz.
+    /// @throws Failure if v has the wrong size.
     [[nodiscard]] std::vector<double> multiply(std::span<const double> v) const;
-    /// (unknowns) A^T w.
+    /// (unknowns) the product A^T w.
     [[nodiscard]] std::vector<double> multiply_transposed(std::span<const double> w) const;
-    /// (unknowns) A^-1 b, to 1e-12 of b; also where the equilibrium is unstable. The first solution factorises.
-    /// @throws Failure where the matrix is singular, or cables that do the same are asked for different things.
+    /// (unknowns) A^-1 b with a residual of 1e-12 of b; also at an unstable equilibrium. The first solve factorises A.
+    /// @throws Failure if A is singular, or redundant cables have conflicting targets.
     [[nodiscard]] std::vector<double> solve(std::span<const double> b);
-    /// (unknowns) A^-T b.
+    /// (unknowns) A^-T b, accurate as solve().
     [[nodiscard]] std::vector<double> solve_transposed(std::span<const double> b);
-    /// What a vector of unknowns is, as a change of the state.
+    /// Translates a vector of unknowns into a change of the state.
     [[nodiscard]] Change change(std::span<const double> unknowns) const;
 
-    /// What drives the robot: lengths, tensions, volumes, pressures, gas, and how far supports, loads, gravity and
-    /// obstacles are on their way.
+    /// The inputs: cable lengths and tensions, chamber volumes, pressures and gas amounts, and the progress of
+    /// supports, loads, gravity and obstacles along their program.
     [[nodiscard]] const std::vector<Parameter>& inputs() const;
-    /// What the robot is made of and stands in: constants of materials, densities, springs, friction, loads, gravity,
-    /// supports, contact. The constants of a material are Young's modulus and Poisson ratio, then those of its law.
+    /// The parameters of the robot and its surroundings: material constants, densities, springs, friction, loads,
+    /// gravity, supports, contact. The constants of a material are Young's modulus and Poisson ratio, followed by those
+    /// of its law.
     [[nodiscard]] const std::vector<Parameter>& parameters() const;
 
-    /// The guide points of cables, then those of springs. With guides at crossings those count, too.
-    /// @throws Failure where one is tied to no tetrahedron.
+    /// The guide points of all cables, followed by those of all springs. Guide points placed at crossings are included.
+    /// @throws Failure if a guide point is not attached to a tetrahedron.
     [[nodiscard]] const std::vector<GuidePoint>& guide_points();
 
-    /// What the whole state does for each unit of an input. One solution.
-    /// @throws Failure as of solve(), or there is no such input.
+    /// Derivative of the whole state with respect to one input. One linear solve.
+    /// @throws Failure as for solve(), or if there is no such input.
     [[nodiscard]] Change response_to_input(std::size_t input);
-    /// What the whole state does for each unit of a parameter. One solution.
-    /// @throws Failure as of solve(), or there is no such parameter.
+    /// Derivative of the whole state with respect to one parameter. One linear solve.
+    /// @throws Failure as for solve(), or if there is no such parameter.
     [[nodiscard]] Change response_to_parameter(std::size_t parameter);
 
-    /// What everything does to a quantity.
+    /// Derivatives of a quantity.
     struct Gradient {
         std::vector<double> inputs;         ///< (inputs)
         std::vector<double> parameters;     ///< (parameters)
         std::vector<Point> rest_positions;  ///< (nodes)
-        /// (guide_points()) where wanted, by where each is at rest: the mesh then carries it elsewhere.
+        /// (guide_points()) where requested: derivative with respect to the rest position of each guide point, which is
+        /// re-attached to the mesh as it moves.
         std::vector<Point> guide_points{};
     };
-    /// By one transposed solution. With the rest shape and with guide points, lengths and volumes that are driven stay
-    /// as they are, in m and m^3; with the rest shape everything that is tied to nodes moves along.
-    /// @throws Failure as of solve(), or the quantity has another size than the model.
+    /// Gradient of a quantity, by one transposed solve. For derivatives with respect to the rest shape and guide
+    /// points, prescribed lengths and volumes keep their values in m and m^3; with the rest shape, everything attached
+    /// to nodes moves along.
+    /// @throws Failure as for solve(), or if the size of the quantity does not match the model.
     [[nodiscard]] Gradient gradient(const Quantity& quantity, const StateGradientOptions& options = {});
-    /// Coordinate of a marker along a direction; m for a direction of length 1.
-    /// @throws Failure where there is no such marker.
+    /// The coordinate of a marker along a direction; in m for a unit direction.
+    /// @throws Failure if there is no such marker.
     [[nodiscard]] Quantity marker_coordinate(std::size_t marker, const Point& direction) const;
 
-    /// The number at this state.
-    /// @throws Failure where the robot has nothing of that name.
+    /// The value of a measure at this state.
+    /// @throws Failure if the robot has nothing of that name.
     [[nodiscard]] double value(const Measure& measure) const;
-    /// By one transposed solution. Unlike that of a Quantity it knows what the measure itself has of a parameter, and
-    /// with the rest shape and with guide points lengths and volumes that are wanted as a share of what they are at
-    /// rest follow.
-    /// @throws Failure as of solve() and value().
+    /// Gradient of a measure, by one transposed solve. Unlike for a Quantity, the explicit dependence of the measure on
+    /// a parameter is included. For derivatives with respect to the rest shape and guide points, lengths and volumes
+    /// prescribed as ratios change with their rest values.
+    /// @throws Failure as for solve() and value().
     [[nodiscard]] Gradient gradient(const Measure& measure, const StateGradientOptions& options = {});
 
 private:

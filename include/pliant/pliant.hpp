@@ -1,5 +1,5 @@
 /// @file
-/// All of Pliant's library.
+/// The whole public interface of Pliant.
 #pragma once
 
 #include "pliant/base.hpp"           // IWYU pragma: export

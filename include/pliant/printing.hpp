@@ -1,8 +1,8 @@
 /// @file
-/// Printing in several resins: from bodies to a job file, its plan, its proof, and a print on the virtual printer.
+/// Multi-resin printing: from bodies to a job file, its plan, its verification, and a print on the virtual printer.
 ///
-/// Micrometres inside, millimetres and seconds where a name says so. A job is a file (.zip) that holds layer images,
-/// the printer, the plan and the G-code; nothing else is kept between the calls.
+/// Micrometres internally, millimetres and seconds where a name says so. A job is a file (.zip) that holds layer
+/// images, the printer, the plan and the G-code; nothing else is kept between calls.
 #pragma once
 
 #include <array>
@@ -18,84 +18,87 @@
 
 namespace pliant {
 
-/// What is to be sliced, and how. Lengths are texts with a unit, as in "50 um"; an empty one is the printer's default.
+/// What to slice, and how. Lengths are texts with a unit, as in "50 um"; empty: the printer's default.
 struct SliceOptions {
-    /// One robot file; or any of FILE.3mf, FILE.vtk (regions are materials) and MATERIAL=FILE of a surface or solid.
+    /// One robot file; or any number of FILE.3mf, FILE.vtk (one material per region) and MATERIAL=FILE (a surface or
+    /// solid).
     std::vector<std::string> inputs;
     std::filesystem::path printer;     ///< printer file (TOML)
-    std::vector<std::string> changes;  ///< KEY=VALUE of the robot file
-    std::vector<std::string> resins;   ///< MATERIAL=RESIN: what a material is printed in
-    std::string layer;                 ///< height of a layer
-    int copies = 1;                    ///< side by side
-    bool any_vat = false;              ///< a resin that no vat holds is filled into a free one
-    std::string support;               ///< material of supports; empty: none
+    std::vector<std::string> changes;  ///< overrides of the robot file, KEY=VALUE
+    std::vector<std::string> resins;   ///< MATERIAL=RESIN: the resin each material is printed in
+    std::string layer;                 ///< layer height
+    int copies = 1;                    ///< placed side by side
+    bool any_vat = false;              ///< fill a resin that no vat holds into a free vat
+    std::string support;               ///< material of the supports; empty: no supports
 };
 
-/// What a job takes on its printer.
+/// What a job needs on its printer.
 struct PrintPlan {
-    /// A vat that the job uses.
+    /// A vat used by the job.
     struct Vat {
-        int slot = 0;         ///< where it stands, from 1
-        std::string resin;    ///< what it must hold
-        double resin_ml = 0;  ///< that the job uses
+        int slot = 0;         ///< its place in the tower, from 1
+        std::string resin;    ///< the resin it must hold
+        double resin_ml = 0;  ///< used by the job
         bool refill = false;  ///< the printer file names another resin for it, or none
     };
-    int layers = 0;                     ///< of the part
-    int swaps = 0;                      ///< changes of vat
-    double seconds = 0;                 ///< in all
-    double swap_s = 0;                  ///< of them, for changes of vat
-    double clean_s = 0;                 ///< for cleaning
-    double expose_s = 0;                ///< for light
-    double move_s = 0;                  ///< for all other motion
-    double solution_ml = 0;             ///< cleaning solution used up
+    int layers = 0;                     ///< number of layers of the part
+    int swaps = 0;                      ///< number of vat swaps
+    double seconds = 0;                 ///< total printing time
+    double swap_s = 0;                  ///< of this: swaps
+    double clean_s = 0;                 ///< of this: cleaning
+    double expose_s = 0;                ///< of this: exposure
+    double move_s = 0;                  ///< of this: all other motion
+    double solution_ml = 0;             ///< cleaning solution used
     std::vector<Vat> vats;              ///< in the order of the printer file
-    std::vector<std::string> warnings;  ///< a sentence each
+    std::vector<std::string> warnings;  ///< one sentence each
 };
 
-/// Slices, plans and writes the job file, whole or not at all.
-/// @throws Failure of the options, the geometry, the slicer, the planner or the disk; cancelled.
+/// Slices and plans, and writes the job file, whole or not at all.
+/// @throws Failure if the options or the geometry are invalid, slicing or planning fails, or the file cannot be
+/// written; or when cancelled.
 PLIANT_API PrintPlan slice_job(const SliceOptions& options, const std::filesystem::path& job, const Watch& watch = {});
 
-/// Plans a job again, for its own printer.
-/// @throws Failure of the file.
+/// Recomputes the plan of a job for the printer stored in it.
+/// @throws Failure if the file cannot be read or is invalid.
 [[nodiscard]] PLIANT_API PrintPlan plan_job(const std::filesystem::path& job);
 
-/// Proves a job as everything that prints does: every image against its fingerprint, the G-code against the machine.
-/// Gives warnings, of what could not be proved.
-/// @throws Failure that names file, entry or line, and layer.
+/// Verifies a job as is done before every print: each image against its checksum, the G-code against the machine.
+/// Returns warnings about what could not be verified.
+/// @throws Failure that names the file, the entry or line, and the layer.
 PLIANT_API std::vector<std::string> check_job(const std::filesystem::path& job);
 
-/// What has cured, voxel by voxel: pixels of the projector across, cured layers up; as large as it must be to hold all.
+/// The cured part as voxels: one projector pixel wide, one cured layer high; just large enough to hold everything.
 struct CuredBlock {
     std::array<std::size_t, 3> size{};  ///< voxels along x, y and z
-    Point corner_mm{};                  ///< the lowest x, y and z of the block, on the printer's platform
+    Point corner_mm{};                  ///< minimum x, y and z, in the coordinates of the platform
     double pixel_mm = 0;                ///< length of a voxel along x and y
-    std::vector<double> bottoms_mm;     ///< (z) where a layer begins
-    std::vector<double> tops_mm;        ///< (z) where it ends
-    std::vector<std::string> resins;    ///< that have cured
-    std::vector<std::uint8_t> resin;    ///< (z, y, x) 0: none, k: the k-th of `resins`; of several the one with most
-    std::vector<std::uint8_t> share;    ///< (z, y, x) of the voxel that is solid, 255: all of it
+    std::vector<double> bottoms_mm;     ///< (z) lower side of each layer
+    std::vector<double> tops_mm;        ///< (z) upper side of each layer
+    std::vector<std::string> resins;    ///< resins that have cured
+    std::vector<std::uint8_t> resin;    ///< (z, y, x) 0: none, k: the k-th of `resins`; if several cured, the largest
+    std::vector<std::uint8_t> share;    ///< (z, y, x) solid fraction of the voxel, 255: all of it
 };
 
-/// What is wanted of a virtual print beside its verdict.
+/// Optional results of a virtual print.
 struct VirtualPrintOptions {
-    bool block = false;  ///< the cured block: a byte or two for each voxel
+    bool block = false;  ///< the cured block: one or two bytes per voxel
 };
 
-/// What a print on the virtual printer came to.
+/// Result of a print on the virtual printer.
 struct VirtualPrint {
-    bool passed = false;               ///< the part is as the job asks, and nothing happened that must not
-    std::vector<std::string> reasons;  ///< why it did not pass, a sentence each
-    double seconds = 0;                ///< of the machine's clock
-    int layers = 0;                    ///< that cured
-    /// (material, volume that cured in its own resin, mm^3)
+    bool passed = false;               ///< the part matches the job, and no error occurred
+    std::vector<std::string> reasons;  ///< why it did not pass, one sentence each
+    double seconds = 0;                ///< on the machine's clock
+    int layers = 0;                    ///< number of cured layers
+    /// (material, volume cured in its own resin, mm^3)
     std::vector<std::pair<std::string, double>> cured_mm3;
-    std::string journal;                      ///< of the print, as the host writes it
-    std::shared_ptr<const CuredBlock> block;  ///< where the options ask for it; else null
+    std::string journal;                      ///< of the print, as written by the host
+    std::shared_ptr<const CuredBlock> block;  ///< if requested; otherwise null
 };
 
-/// Prints a job on the virtual printer, by the engine that prints on machines; takes seconds.
-/// @throws Failure of the job, of the print; cancelled; a block of more than 4 * 10^9 voxels.
+/// Prints a job on the virtual printer, with the same code that drives real machines; takes seconds.
+/// @throws Failure if the job is invalid, the print fails, or the block has more than 4 * 10^9 voxels; or when
+/// cancelled.
 [[nodiscard]] PLIANT_API VirtualPrint print_virtually(const std::filesystem::path& job, const Watch& watch = {},
                                                       const VirtualPrintOptions& options = {});
 

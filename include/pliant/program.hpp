@@ -1,5 +1,5 @@
 /// @file
-/// Runs the program of a robot file from rest to its end, and writes what came of it: what `pliant simulate` does.
+/// Runs the program of a robot file from rest to its end, and writes the results, as `pliant simulate` does.
 #pragma once
 
 #include <array>
@@ -18,75 +18,78 @@ namespace pliant {
 
 /// A step of a program.
 struct ProgramStep {
-    int index = 0;                 ///< 0: at rest
-    double time = 0;               ///< of the program
-    StepResult result;             ///< how it was reached
-    Observation observed;          ///< what it is like
+    int index = 0;                 ///< 0: the rest state
+    double time = 0;               ///< program time
+    StepResult result;             ///< result of the solver
+    Observation observed;          ///< measurable quantities of the state
     std::vector<Point> positions;  ///< (nodes) m
 };
 
-/// How a program is run.
+/// Options of run().
 struct RunOptions {
-    /// Called with each step as it comes, the rest state first.
+    /// Called with each step as soon as it is solved, the rest state first.
     std::function<void(const ProgramStep&)> on_step{};
-    /// CSV of measured markers, columns as in markers.csv, to be compared with the simulated ones.
+    /// CSV of measured marker positions, with the columns of markers.csv, for comparison with the simulated ones.
     std::filesystem::path measured{};
-    /// Folder in which the run is kept as it goes, so that it can be gone on with after a stop; empty: it is not kept.
+    /// Folder in which the run is saved as it proceeds, so that it can be resumed; empty: the run is not saved.
     std::filesystem::path checkpoint{};
-    /// Steps from one checkpoint to the next; 0 with `resume`: as before.
+    /// Steps between checkpoints; 0 with `resume`: as in the checkpoint.
     int checkpoint_every = 0;
-    /// Goes on from the checkpoint; the results are those of a run that was never stopped.
+    /// Resumes from the checkpoint; the results are those of an uninterrupted run.
     bool resume = false;
-    /// Called once with the last step that the checkpoint has.
+    /// Called once, with the last step stored in the checkpoint.
     std::function<void(int step)> on_resume{};
 };
 
-/// Which pictures a results folder has.
+/// Which pictures a results folder contains.
 enum class Pictures {
     none,  ///< no pictures
-    few,   ///< the last state over the rest shape
-    all,   ///< also the rest state, states on the way, and stress
+    few,   ///< the final state over the rest shape
+    all,   ///< also the rest state, intermediate states and stress
 };
 
-/// What a results folder is to have.
+/// Contents of a results folder.
 struct ResultsOptions {
-    Pictures pictures = Pictures::few;            ///< drawing them takes longest
-    std::array<int, 2> picture_size_px = {0, 0};  ///< width and height, 100 to 10000; 0: 800 x 500, of all 1600 x 1000
+    Pictures pictures = Pictures::few;            ///< drawing them takes most of the time
+    std::array<int, 2> picture_size_px = {0, 0};  ///< width and height, 100 to 10000; 0: 800 x 500, or 1600 x 1000 for
+                                                  ///< `all`
     bool film = false;                            ///< also film.gif, the motion as an animated GIF
-    std::optional<Point> towards_eye{};           ///< direction from the robot to the eye; else where motion shows best
-    std::function<bool()> enough_pictures{};      ///< asked while they are drawn; true leaves all of them out
+    std::optional<Point> towards_eye{};           ///< direction from the robot to the camera; default: where the motion
+                                                  ///< shows best
+    std::function<bool()> enough_pictures{};      ///< polled while drawing; true leaves out all pictures
 };
 
-/// What came of a program. A value; the steps are shared by all copies, and in a file where they are large.
+/// Result of a program. A value; copies share the steps, which are kept in a file if they are large.
 class PLIANT_API ProgramResult {
 public:
-    /// It ran to its end.
+    /// True if the program ran to its end.
     [[nodiscard]] bool converged() const;
-    /// Where and why it stopped, if it did.
+    /// Where and why the program stopped early; otherwise empty.
     [[nodiscard]] const std::string& message() const;
-    /// Where the answer should not be trusted, a sentence each.
+    /// Reasons not to trust the result, one sentence each.
     [[nodiscard]] const std::vector<std::string>& warnings() const;
-    /// The solver that was asked for or chosen, by name.
+    /// Name of the solver that was requested or chosen.
     [[nodiscard]] const std::string& solver() const;
     /// Wall time of solving, s.
     [[nodiscard]] double solve_s() const;
-    /// Steps that were accepted, the rest state among them; at least 1.
+    /// Number of accepted steps, including the rest state; at least 1.
     [[nodiscard]] std::size_t step_count() const;
-    /// A step, 0 at rest.
-    /// @throws Failure where there is none of that index.
+    /// One step; 0 is the rest state.
+    /// @throws Failure if the index is out of range.
     [[nodiscard]] ProgramStep step(std::size_t index) const;
-    /// A line for each marker that was measured: how far the measured points lie from the simulated way.
+    /// One line per measured marker: the distance of the measured points from the simulated path.
     [[nodiscard]] std::vector<std::string> deviations() const;
     /// All figures, as in summary.json.
     [[nodiscard]] std::string summary_json() const;
 
-    /// Writes the folder that `pliant simulate -o` writes, whole or not at all, in place of an older one: summary.json,
-    /// tables, frames for ParaView, robot.glb, pictures, report.html. False: without the pictures, because
-    /// `enough_pictures` said so.
-    /// @throws Failure of the options, of the disk; or something else stands in the folder's place; cancelled.
+    /// Writes the folder that `pliant simulate -o` writes, whole or not at all, replacing an older one: summary.json,
+    /// tables, frames for ParaView, robot.glb, pictures, report.html. Returns false if the pictures were left out
+    /// because `enough_pictures` returned true.
+    /// @throws Failure if the options are invalid, a file cannot be written, or something else is at that path; or when
+    /// cancelled.
     bool write(const std::filesystem::path& folder, const ResultsOptions& options = {}, const Watch& watch = {});
-    /// Deletes the checkpoint of the run, if it has one.
-    /// @throws Failure of the disk.
+    /// Deletes the checkpoint of the run, if there is one.
+    /// @throws Failure if it cannot be deleted.
     void remove_checkpoint() const;
 
     /// @cond
@@ -98,9 +101,9 @@ private:
     /// @endcond
 };
 
-/// Runs the robot's program from rest, or from where it was kept. A program that gets stuck or is cancelled is no
-/// Failure: the result says so and has the steps until then.
-/// @throws Failure of the measured markers, or of the checkpoint.
+/// Runs the robot's program from rest, or from a checkpoint. A program that stops early or is cancelled is not a
+/// Failure: the result says so and holds the steps up to then.
+/// @throws Failure if the measured markers or the checkpoint are invalid.
 PLIANT_API ProgramResult run(const Model& model, const RunOptions& options = {}, const Watch& watch = {});
 
 }  // namespace pliant

@@ -1,9 +1,9 @@
 /// @file
-/// Simulation of soft robots that cables and chambers drive: from a robot file to states, one step after the other.
+/// Simulation of soft robots driven by cables and chambers: from a robot file to a sequence of states.
 ///
 /// SI units throughout: metres, newtons, pascals, seconds. All classes are values: a copy of a Robot, a Model or a
-/// State is independent of the original (and cheap: what never changes is shared). Nothing is drawn, printed or logged.
-/// Different objects may be used by different threads at the same time.
+/// State is independent of the original, and cheap because immutable data are shared. Nothing is drawn, printed or
+/// logged. Different objects may be used from different threads at the same time.
 #pragma once
 
 #include <cstddef>
@@ -23,19 +23,20 @@ namespace pliant {
 /// A robot as its file describes it: bodies, materials, cables, chambers, supports, markers and a program.
 class PLIANT_API Robot {
 public:
-    /// Reads a robot file (TOML). `changes` are KEY=VALUE, as in "mesh.order=1" or
+    /// Reads a robot file (TOML). `changes` override keys of the file, written KEY=VALUE, as in "mesh.order=1" or
     /// "cable.flexor.target.length_ratio=0.8".
-    /// @throws Failure with a line for each problem of the file.
+    /// @throws Failure with one line for each problem in the file.
     [[nodiscard]] static Robot load(const std::filesystem::path& file, const std::vector<std::string>& changes = {});
-    /// The same of a text; files that it names are sought from `folder`, or where the program runs.
+    /// Reads a robot from the text of a robot file. Files that it names are looked up relative to `folder`, or to the
+    /// working directory if that is empty.
     [[nodiscard]] static Robot parse(std::string_view toml, const std::filesystem::path& folder = {},
                                      const std::vector<std::string>& changes = {});
 
-    /// As in the file.
+    /// Name given in the robot file.
     [[nodiscard]] const std::string& name() const;
-    /// Duration of its program, in seconds for a motion in time.
+    /// Duration of the program; in seconds for a motion in time.
     [[nodiscard]] double duration() const;
-    /// Steps of its program.
+    /// Number of steps of the program.
     [[nodiscard]] int steps() const;
 
     /// @cond
@@ -49,53 +50,56 @@ private:
     /// @endcond
 };
 
-/// A mesh of tetrahedra that a program has made itself.
+/// A tetrahedral mesh supplied by the caller.
 struct Mesh {
     std::vector<Point> points;  ///< m
     std::vector<int> tets;  ///< (tets * nodes_per_tet) indices into points; the nodes of edges 01 12 20 03 13 23 last
     int nodes_per_tet = 4;  ///< or 10
-    std::vector<int> regions{};                       ///< (tets) index into region_names; empty: all in the first
-    std::vector<std::string> region_names = {"all"};  ///< what `region` of a body names
+    std::vector<int> regions{};                       ///< (tets) index into region_names; empty: all tets are in the
+                                                      ///< first region
+    std::vector<std::string> region_names = {"all"};  ///< names that `region` of a body refers to
 };
 
-/// A robot that is meshed and ready to be simulated. Never changes.
+/// A meshed robot, ready to be simulated. Immutable.
 class PLIANT_API Model {
 public:
-    /// Meshes the bodies, or reads the mesh that the file names, and ties everything to it. Meshing is done by the
-    /// program `pliant-mesh`, which must be installed; a robot with a mesh file needs none.
-    /// @throws Failure of the geometry, the mesh, or of what does not fit it.
+    /// Meshes the bodies, or reads the mesh file that the robot names, and attaches actuators, supports and markers to
+    /// the mesh. Meshing is done by the program `pliant-mesh`, which must be installed; a robot with a mesh file does
+    /// not need it.
+    /// @throws Failure if the geometry or the mesh is invalid, or something in the robot does not fit the mesh.
     explicit Model(const Robot& robot, const Watch& watch = {});
-    /// The same with a mesh for a robot that says `mesh.file = "memory:"` and names its regions as in any mesh file.
-    /// Points that no tetrahedron uses are left out, tetrahedra that are inside out are turned; nodes have an order of
-    /// their own, that of rest_positions().
-    /// @throws Failure where the robot's bodies are drawn, or the mesh is none.
+    /// Uses the given mesh for a robot that says `mesh.file = "memory:"` and names its regions as for any mesh file.
+    /// Points that no tetrahedron uses are dropped and inverted tetrahedra are reoriented; nodes are therefore
+    /// renumbered, in the order of rest_positions().
+    /// @throws Failure if the robot's bodies are drawn rather than taken from a mesh, or `mesh` is not a valid mesh.
     Model(const Robot& robot, const Mesh& mesh);
 
-    /// Nodes of the mesh.
+    /// Number of nodes of the mesh.
     [[nodiscard]] std::size_t node_count() const;
-    /// Tetrahedra of the mesh.
+    /// Number of tetrahedra of the mesh.
     [[nodiscard]] std::size_t tet_count() const;
-    /// 1: 4 nodes a tetrahedron; 2: 10.
+    /// Order of the elements: 1 for 4 nodes a tetrahedron, 2 for 10.
     [[nodiscard]] int order() const;
-    /// (nodes) positions at rest, m.
+    /// (nodes) rest positions, m.
     [[nodiscard]] std::vector<Point> rest_positions() const;
-    /// (3 nodes) the same without a copy, x, y and z of each node; there as long as a copy of this model is.
+    /// (3 nodes) rest positions without a copy: x, y and z of each node, m; valid as long as a copy of this model
+    /// exists.
     [[nodiscard]] std::span<const double> rest_coordinates() const;
-    /// (tets * 4 or 10) node indices, corners first.
+    /// (tets * 4 or 10) node indices of each tetrahedron, corners first.
     [[nodiscard]] const std::vector<int>& tets() const;
-    /// (tets) index into region_names().
+    /// (tets) index of each tetrahedron into region_names().
     [[nodiscard]] const std::vector<int>& regions() const;
-    /// Names of the bodies.
+    /// Names of the bodies, one for each region.
     [[nodiscard]] const std::vector<std::string>& region_names() const;
-    /// (triangles) nodes of the surface, seen from outside counter-clockwise; corners only.
+    /// (triangles) corner nodes of the surface, counter-clockwise seen from outside.
     [[nodiscard]] std::vector<std::array<int, 3>> surface() const;
-    /// Names, in the order of Inputs::cables.
+    /// Names of the cables, in the order of Inputs::cables.
     [[nodiscard]] std::vector<std::string> cables() const;
-    /// Names, in the order of Inputs::chambers.
+    /// Names of the chambers, in the order of Inputs::chambers.
     [[nodiscard]] std::vector<std::string> chambers() const;
-    /// Names, in the order of Observation::markers.
+    /// Names of the markers, in the order of Observation::markers.
     [[nodiscard]] std::vector<std::string> markers() const;
-    /// What is odd about the robot before anything moves, a sentence each.
+    /// Warnings about the robot as described, before any step; one sentence each.
     [[nodiscard]] std::vector<std::string> warnings() const;
 
     /// @cond
@@ -109,50 +113,50 @@ private:
 
 /// How one cable or chamber is driven.
 struct Drive {
-    /// What is given.
+    /// Which quantity is prescribed.
     enum class By {
-        length,    ///< of a cable, m: it may be shorter where it is slack
+        length,    ///< of a cable, m; a slack cable may be shorter
         tension,   ///< of a cable, N
         volume,    ///< of a chamber, m^3
         pressure,  ///< of a chamber, Pa above ambient
         gas,       ///< of a sealed chamber: absolute pressure times volume, J
     };
-    By by = By::length;  ///< what is given
-    double value = 0;    ///< how much, in the unit above
+    By by = By::length;  ///< which quantity is prescribed
+    double value = 0;    ///< its value, in the unit given above
 
-    /// Same kind and same number.
+    /// Same quantity and same value.
     friend bool operator==(const Drive&, const Drive&) = default;
 };
 
-/// Everything that steers a robot at one instant.
+/// All inputs to a robot at one instant.
 struct Inputs {
-    double time = 0;              ///< of the program: drives supports, loads, gravity and obstacles
+    double time = 0;              ///< program time, which sets supports, loads, gravity and obstacles
     std::vector<Drive> cables;    ///< in the order of Model::cables()
     std::vector<Drive> chambers;  ///< in the order of Model::chambers()
 };
 
-/// Everything about a robot that changes: positions, velocities, multipliers, contact, friction and what the solver
-/// remembers. Two states are equal if all their bits are; a step from equal states gives equal states, on any number of
-/// threads and whatever was solved in between.
+/// Everything about a robot that changes: positions, velocities, multipliers, contact, friction and the memory of the
+/// solver. Two states are equal if all their bits are equal. A step from equal states gives equal states, on any number
+/// of threads and whatever was solved in between.
 class PLIANT_API State {
 public:
-    /// (nodes) m.
+    /// (nodes) node positions, m.
     [[nodiscard]] std::vector<Point> positions() const;
-    /// (3 nodes) the same without a copy, x, y and z of each node; there as long as this state or a copy of it is, and
-    /// is not stepped.
+    /// (3 nodes) node positions without a copy: x, y and z of each node, m; valid until this state is stepped, and as
+    /// long as it or a copy of it exists.
     [[nodiscard]] std::span<const double> coordinates() const;
-    /// (nodes) m/s; all 0 for a robot at rest at every instant.
+    /// (nodes) node velocities, m/s; all zero in a quasi-static simulation.
     [[nodiscard]] std::vector<Point> velocities() const;
-    /// That it is in equilibrium with.
+    /// The inputs at which this state is in equilibrium.
     [[nodiscard]] Inputs inputs() const;
 
-    /// All of it, to be kept; belongs to this model.
+    /// The whole state in binary form, for storage; can be read back only for the same model.
     [[nodiscard]] std::string bytes() const;
     /// Writes bytes() to a file, whole or not at all.
-    /// @throws Failure of the disk.
+    /// @throws Failure if the file cannot be written.
     void save(const std::filesystem::path& file) const;
 
-    /// True if all bits are the same.
+    /// True if all bits are equal.
     friend PLIANT_API bool operator==(const State& a, const State& b);
 
     /// @cond
@@ -165,30 +169,30 @@ private:
     /// @endcond
 };
 
-/// What a step did.
+/// Result of a step.
 struct StepResult {
-    bool arrived = false;  ///< the state has the inputs that were asked for; otherwise it is as far as it got
-    bool loose = false;    ///< accepted on looser terms than the tolerance, because friction did not settle
-    std::string reason;    ///< why it did not arrive, or on which terms; empty otherwise
-    int iterations = 0;    ///< of the solver
-    int pieces = 0;        ///< that the step was cut into
-    double residual = 0;   ///< norm of the out-of-balance force over that of the forces that balance
+    bool arrived = false;  ///< the state has the requested inputs; otherwise it is as far as the solver got
+    bool loose = false;    ///< accepted at a looser tolerance, because friction did not settle
+    std::string reason;    ///< why it did not arrive, or at which tolerance it was accepted; otherwise empty
+    int iterations = 0;    ///< solver iterations
+    int pieces = 0;        ///< number of substeps that the step was divided into
+    double residual = 0;   ///< norm of the out-of-balance force over the norm of the forces that balance
 };
 
-/// What can be read off a state.
+/// Measurable quantities of a state.
 struct Observation {
     /// A cable.
     struct Cable {
         std::string name;         ///< as in the robot file
-        double length_m = 0;      ///< along all its points
-        double length_ratio = 1;  ///< of that at rest
+        double length_m = 0;      ///< along the whole cable
+        double length_ratio = 1;  ///< length over rest length
         double tension_N = 0;     ///< never negative
     };
     /// A chamber.
     struct Chamber {
         std::string name;         ///< as in the robot file
-        double volume_m3 = 0;     ///< inside its walls
-        double volume_ratio = 1;  ///< of that at rest
+        double volume_m3 = 0;     ///< enclosed by its walls
+        double volume_ratio = 1;  ///< volume over rest volume
         double pressure_Pa = 0;   ///< above ambient
     };
     /// A spring.
@@ -197,105 +201,107 @@ struct Observation {
         double length_m = 0;  ///< between its ends
         double force_N = 0;   ///< positive where it pulls
     };
-    /// Something with a place.
+    /// A marker.
     struct Marker {
         std::string name;  ///< as in the robot file
-        Point position_m;  ///< in the state
+        Point position_m;  ///< current position
     };
-    /// Something that exerts a force on the robot: a support or an obstacle.
+    /// Force on the robot from a support or an obstacle.
     struct Force {
         std::string name;  ///< as in the robot file
-        Point force_N;     ///< on the robot
+        Point force_N;     ///< acting on the robot
     };
     /// A sensor.
     struct Sensor {
-        /// One of the numbers that it gives.
+        /// One of the values that the sensor gives.
         struct Reading {
-            std::string name;  ///< "strain", "force_x"; docs/reference/robot.md lists them
-            std::string unit;  ///< SI: "N"; "" for a plain number
-            double value = 0;  ///< in the unit
+            std::string name;  ///< "strain", "force_x"...: listed in docs/reference/robot.md
+            std::string unit;  ///< SI, such as "N"; "" if dimensionless
+            double value = 0;  ///< in that unit
         };
         std::string name;               ///< as in the robot file
-        std::vector<Reading> readings;  ///< always the same, in the same order
+        std::vector<Reading> readings;  ///< always the same ones, in the same order
     };
     /// A joint.
     struct Joint {
         std::string name;       ///< as in the robot file
-        Point force_N;          ///< of the first of the two things on the second
-        Point torque_Nm;        ///< likewise, about the joint
-        double coordinate = 0;  ///< angle of a hinge, rad, with whole turns; place of a slider, m; else 0
-        double effort = 0;      ///< what drives, holds and damps along it, N m or N
+        Point force_N;          ///< from the first connected part on the second
+        Point torque_Nm;        ///< likewise; about the joint
+        double coordinate = 0;  ///< hinge: angle with whole turns, rad; slider: displacement, m; otherwise 0
+        double effort = 0;      ///< drive, hold and damping along it, N m or N
     };
     /// A rigid object.
     struct Object {
         std::string name;                            ///< as in the robot file
-        Point position_m;                            ///< of its centre of mass
-        std::array<double, 4> rotation{1, 0, 0, 0};  ///< from where it started: unit quaternion w, x, y, z, w >= 0
-        Point force_N;                               ///< pressure and friction of all that touches it
+        Point position_m;                            ///< of the centre of mass
+        std::array<double, 4> rotation{1, 0, 0, 0};  ///< since the start: unit quaternion w, x, y, z, w >= 0
+        Point force_N;                               ///< normal force and friction of everything that touches it
     };
     std::vector<Cable> cables;      ///< in the order of Model::cables()
     std::vector<Chamber> chambers;  ///< in the order of Model::chambers()
     std::vector<Spring> springs;    ///< in the order of the robot file
     std::vector<Marker> markers;    ///< in the order of Model::markers()
-    std::vector<Force> supports;    ///< reactions
-    std::vector<Force> contacts;    ///< pressure and friction of obstacles
+    std::vector<Force> supports;    ///< reactions of the supports
+    std::vector<Force> contacts;    ///< normal force and friction of the obstacles
     std::vector<Sensor> sensors;    ///< in the order of the robot file
     std::vector<Joint> joints;      ///< in the order of the robot file
     std::vector<Object> objects;    ///< in the order of the robot file
-    double self_contact_N = 0;      ///< sum of the sizes of the robot's forces on itself
-    /// Smallest distance between surfaces that are near enough to act; infinite where none are.
+    double self_contact_N = 0;      ///< sum of the magnitudes of the self-contact forces
+    /// Smallest distance between surfaces within contact range; infinite if there are none.
     double smallest_distance_m = std::numeric_limits<double>::infinity();
     double energy_J = 0;          ///< elastic and contact energy, minus the work of loads and gravity
-    double kinetic_energy_J = 0;  ///< of a motion in time
-    double min_J = 1;             ///< smallest ratio of volumes, now over rest, of any point
+    double kinetic_energy_J = 0;  ///< of a motion in time, otherwise 0
+    double min_J = 1;             ///< smallest J = det F over all integration points
 };
 
-/// One value for each tetrahedron: the mean over its integration points.
+/// One value per tetrahedron: the mean over its integration points.
 struct Fields {
-    std::vector<double> volume_ratio;       ///< det F
-    std::vector<double> von_mises_Pa;       ///< of the Cauchy stress
+    std::vector<double> volume_ratio;       ///< J = det F
+    std::vector<double> von_mises_Pa;       ///< von Mises stress, from the Cauchy stress
     std::vector<double> max_stretch;        ///< largest principal stretch
-    std::vector<double> energy_density_Pa;  ///< J/m^3 of rest volume; 0 where the law has no energy
+    std::vector<double> energy_density_Pa;  ///< J/m^3 of rest volume; 0 if the law has no energy
 };
 
-/// How steps are solved. What is left out is as the robot's file says.
+/// Solver options. Options that are not set take the value in the robot file.
 struct StepOptions {
-    std::optional<double> tolerance{};     ///< largest residual
-    std::optional<int> iteration_limit{};  ///< for one piece of a step
+    std::optional<double> tolerance{};     ///< largest residual of a converged step
+    std::optional<int> iteration_limit{};  ///< for each substep
 };
 
-/// Takes a robot from one state to the next. For one thread at a time; as many as wanted may share a model.
+/// Advances a robot from one state to the next. Not thread-safe; any number of steppers may share a model.
 class PLIANT_API Stepper {
 public:
-    /// Prepares the solver: as much work as a step or two.
+    /// Sets up the solver; costs about as much as one or two steps.
     explicit Stepper(const Model& model, const StepOptions& options = {});
-    /// Moves it; the other one is of no use afterwards.
+    /// Moves; the moved-from stepper may only be assigned to or destroyed.
     Stepper(Stepper&&) noexcept;
-    /// Moves it; the other one is of no use afterwards.
+    /// Moves; the moved-from stepper may only be assigned to or destroyed.
     Stepper& operator=(Stepper&&) noexcept;
     ~Stepper();
 
-    /// Undeformed and, for a motion in time, still.
+    /// The rest state: undeformed and, for a motion in time, with zero velocity.
     [[nodiscard]] State rest() const;
-    /// What the robot's program asks for at `time`.
+    /// The inputs that the robot's program prescribes at `time`.
     [[nodiscard]] Inputs program(double time) const;
-    /// Goes from `state` to the inputs, on a straight way in as many pieces as it takes, and leaves the new state
-    /// there. A motion in time takes until `inputs.time`, which must be later than that of the state.
-    /// @throws Failure of kind `input` where the state belongs to another model, there are not as many drives as cables
-    /// and chambers, or a number is not possible; or of kind `cancelled`, `state` is then as far as it got.
+    /// Solves for equilibrium at `inputs` and stores the new state in `state`. The inputs are ramped linearly from
+    /// those of the state, in as many substeps as needed. A motion in time is integrated up to `inputs.time`, which
+    /// must be later than the time of the state.
+    /// @throws Failure of kind `input` if the state belongs to another model, the number of drives differs from that of
+    /// the cables and chambers, or a value is impossible; of kind `cancelled`: `state` is then as far as the solver
+    /// got.
     StepResult step(State& state, const Inputs& inputs, const Watch& watch = {});
-    /// Everything that can be read off a state.
+    /// All measurable quantities of a state.
     [[nodiscard]] Observation observe(const State& state) const;
-    /// Strains and stresses.
+    /// Strains and stresses of a state.
     [[nodiscard]] Fields fields(const State& state) const;
-    /// (nodes) N, pressure and friction of everything that touches a node; zero where nothing does.
+    /// (nodes) contact force on each node, normal force and friction, N; zero for nodes without contact.
     [[nodiscard]] std::vector<Point> contact_forces(const State& state) const;
     /// (cables)(points) m, the path of each cable in this state.
     [[nodiscard]] std::vector<std::vector<Point>> cable_paths(const State& state) const;
-    /// The state whose State::bytes() these are.
-    /// @throws Failure: no state, one of another version or model, or damaged.
+    /// Restores a state from State::bytes().
+    /// @throws Failure if the bytes are damaged, are not a state, or belong to another version or model.
     [[nodiscard]] State state_from(std::string_view bytes) const;
-    /// The state that State::save() wrote to this file.
+    /// Restores a state from a file written by State::save().
     [[nodiscard]] State load(const std::filesystem::path& file) const;
 
 private:

@@ -1,5 +1,5 @@
 /// @file
-/// What a page draws of a robot: the studio's viewer, in a page of one's own.
+/// Data for drawing a robot on a web page with the viewer of the studio.
 #pragma once
 
 #include <memory>
@@ -11,26 +11,26 @@
 
 namespace pliant {
 
-/// Surfaces of every material, cables, chambers, supports, obstacles and markers, as the viewer of web/src/viewer.ts
-/// reads them: a head in JSON and arrays of numbers behind it. docs/reference/studio.md says what is in these packets.
-/// Lengths in mm.
+/// Surfaces of every material, cables, chambers, supports, obstacles and markers, in the format that the viewer in
+/// web/src/viewer.ts reads: a JSON header followed by arrays of numbers. docs/reference/studio.md describes these
+/// packets. Lengths in mm.
 class PLIANT_API View {
 public:
-    /// Finds the surfaces.
+    /// Extracts the surfaces.
     explicit View(const Model& model);
-    /// Moves it; the other one is of no use afterwards.
+    /// Moves; the moved-from view may only be assigned to or destroyed.
     View(View&&) noexcept;
-    /// Moves it; the other one is of no use afterwards.
+    /// Moves; the moved-from view may only be assigned to or destroyed.
     View& operator=(View&&) noexcept;
     ~View();
 
     /// Everything that does not move.
     [[nodiscard]] std::string scene() const;
-    /// A state, with its fields.
-    /// @throws Failure where the state is one of another model.
+    /// A state with its fields.
+    /// @throws Failure if the state belongs to another model.
     [[nodiscard]] std::string frame(const State& state) const;
-    /// Nodes that are anywhere, (nodes) m, as those of a ProgramStep; obstacles are where they are at `time`.
-    /// @throws Failure where there are not as many as the model has, or one is not finite.
+    /// Arbitrary node positions, (nodes) m, such as those of a ProgramStep; obstacles are placed as at `time`.
+    /// @throws Failure if the number of positions differs from that of the nodes, or one is not finite.
     [[nodiscard]] std::string frame(const std::vector<Point>& positions, double time) const;
 
 private:

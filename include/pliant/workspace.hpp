@@ -1,5 +1,6 @@
 /// @file
-/// Where the markers of a robot can get within the ranges of its actuators, and what that takes.
+/// The workspace of the markers: where they can get within the ranges of the actuators, at which tensions and
+/// pressures.
 #pragma once
 
 #include <cstddef>
@@ -15,54 +16,54 @@
 
 namespace pliant {
 
-/// How workspace() searches.
+/// Options of workspace().
 struct WorkspaceOptions {
-    int side = 9;       ///< places along each input of a sheet; at least 2
-    int between = 100;  ///< inputs that are spread over the ranges beside the sheets
-    /// Folder in which pieces are kept as they are done, so that the search can be gone on with; empty: they are not.
+    int side = 9;       ///< samples along each input of a sheet; at least 2
+    int between = 100;  ///< number of further samples, spread over the ranges
+    /// Folder in which completed pieces are stored, so that the search can be resumed; empty: nothing is stored.
     std::filesystem::path checkpoint{};
-    /// Goes on from the checkpoint; the results are those of a search that was never stopped.
+    /// Resumes from the checkpoint; the results are those of an uninterrupted search.
     bool resume = false;
 };
 
 /// One equilibrium of a workspace.
 struct WorkspaceSample {
-    std::size_t piece = 0;             ///< that it belongs to: a sheet, or some of the inputs in between
+    std::size_t piece = 0;             ///< the piece it belongs to: a sheet, or a group of the further samples
     std::vector<double> inputs;        ///< (Workspace::inputs()) SI
-    bool found = false;                ///< there is an equilibrium; else all below is empty
+    bool found = false;                ///< an equilibrium was found; otherwise everything below is empty
     std::vector<Point> markers;        ///< (Model::markers()) m
     std::vector<double> tensions_N;    ///< (Model::cables())
     std::vector<double> pressures_Pa;  ///< (Model::chambers())
 };
 
-/// Triangles that share points.
+/// A triangle surface.
 struct Surface {
     std::vector<Point> points;                  ///< m
     std::vector<std::array<int, 3>> triangles;  ///< indices into points
 };
 
-/// Where markers can get. A value; copies share what never changes.
+/// The workspace of all markers. A value; copies share immutable data.
 class PLIANT_API Workspace {
 public:
-    /// What was moved.
+    /// The inputs that were varied.
     [[nodiscard]] const std::vector<SteeredInput>& inputs() const;
-    /// Samples of all pieces.
+    /// Number of samples in all pieces.
     [[nodiscard]] std::size_t sample_count() const;
-    /// A sample, from 0.
-    /// @throws Failure where there is none of that index.
+    /// One sample, counted from 0.
+    /// @throws Failure if the index is out of range.
     [[nodiscard]] WorkspaceSample sample(std::size_t index) const;
-    /// The sheets that a marker can get to, on which two inputs vary and all others stand at one of their ends; empty
-    /// where there are none.
-    /// @throws Failure where there is no such marker.
+    /// The sheets reached by a marker: on each, two inputs vary and all others are at one end of their range. Empty if
+    /// there are none.
+    /// @throws Failure if there is no such marker.
     [[nodiscard]] Surface sheets(std::size_t marker) const;
-    /// Number of samples and box of each marker, as in workspace.json.
+    /// Number of samples and bounding box of each marker, as in workspace.json.
     [[nodiscard]] std::string json() const;
-    /// Writes the folder that `pliant workspace -o` writes, whole or not at all, in place of an older one: tables,
+    /// Writes the folder that `pliant workspace -o` writes, whole or not at all, replacing an older one: tables,
     /// surfaces and a picture.
-    /// @throws Failure of the disk; cancelled.
+    /// @throws Failure if a file cannot be written, or when cancelled.
     void write(const std::filesystem::path& folder, const Watch& watch = {}) const;
-    /// Deletes the checkpoint of the search, if it has one.
-    /// @throws Failure of the disk.
+    /// Deletes the checkpoint of the search, if there is one.
+    /// @throws Failure if it cannot be deleted.
     void remove_checkpoint() const;
 
     /// @cond
@@ -74,8 +75,8 @@ private:
     /// @endcond
 };
 
-/// Solves for equilibria on sheets of the ranges and in between.
-/// @throws Failure where no actuator has a range, of the options, of the checkpoint; cancelled.
+/// Solves for equilibria on sheets of the input ranges and at further samples between them.
+/// @throws Failure if no actuator has a range, the options or the checkpoint are invalid, or when cancelled.
 [[nodiscard]] PLIANT_API Workspace workspace(const Model& model, const WorkspaceOptions& options = {},
                                              const Watch& watch = {});
 

@@ -1,4 +1,4 @@
-// Arrays of numpy over numbers of the library: what they show is kept alive by them, and cannot be written.
+// Read-only numpy arrays over numbers of the library, which they keep alive.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -25,7 +25,7 @@ py::capsule keep(Owner owner) {
     return {new Owner(std::move(owner)), [](void* pointer) { delete static_cast<Owner*>(pointer); }};
 }
 
-/// Of numbers that belong to `owner`, of which a copy is kept.
+/// An array over numbers that belong to `owner`, of which a copy is kept.
 template <class T, class Owner>
 py::array view(const T* numbers, Shape shape, Owner owner) {
     py::array_t<T> array(std::move(shape), numbers, keep(std::move(owner)));
@@ -33,7 +33,7 @@ py::array view(const T* numbers, Shape shape, Owner owner) {
     return array;
 }
 
-/// The vector itself, no longer the caller's.
+/// An array that takes over the vector.
 template <class T>
 py::array array_of(std::vector<T> numbers) {
     auto* const kept = new std::vector<T>(std::move(numbers));

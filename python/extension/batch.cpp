@@ -22,7 +22,7 @@ struct Many {
     std::vector<Model> models;
     Batch batch;
 
-    /// Calls `use` for one thread at a time, without the interpreter's lock.
+    /// Calls `use` by one thread at a time, without the interpreter's lock.
     template <class Use>
     auto alone(const Use& use) {
         if (owner_ == std::this_thread::get_id())
@@ -43,7 +43,7 @@ private:
     std::atomic<std::thread::id> owner_;
 };
 
-/// None comes as a null pointer.
+/// A Python None is passed as a null pointer.
 template <class T>
 const T& there(const T* thing) {
     if (thing == nullptr) throw Failure(Failure::Kind::input, "one of the robots is None");

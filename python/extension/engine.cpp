@@ -2,7 +2,7 @@
 
 namespace pliant::python {
 
-/// The first stepper is made at once, so that wrong options are told where they are given.
+/// The first stepper is created at once, so that invalid options are reported immediately.
 Engine::Engine(const Model& model, const StepOptions& options) : model_(model), options_(options) {
     idle_.push_back(std::make_unique<Stepper>(model_, options_));
 }

@@ -1,4 +1,4 @@
-// Steppers of one model for as many threads as ask at the same time: any of them gives the same bits.
+// A pool of steppers for one model, shared by threads: any of them gives the same bits.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ public:
     Engine(const Model& model, const StepOptions& options);
 
     [[nodiscard]] const Model& model() const { return model_; }
-    /// Calls `use` with a stepper that nobody else uses meanwhile. Without the interpreter's lock.
+    /// Calls `use` with a stepper that nothing else uses meanwhile. Releases the interpreter's lock.
     template <class Use>
     auto with(const Use& use) {
         Borrowed borrowed(*this);

@@ -1,4 +1,4 @@
-// A Failure of the library as the exception of pliant.errors that belongs to its kind.
+// Converts a Failure of the library to the exception of pliant.errors for its kind.
 #include "parts.hpp"
 
 namespace pliant::python {

@@ -19,7 +19,7 @@
 namespace pliant::python {
 namespace {
 
-/// The long work of `make`, which is called with a Watch and without the interpreter's lock.
+/// Runs `make`, which takes long, with a Watch and without the interpreter's lock.
 template <class Make>
 auto watched(py::object progress, const Make& make) {
     Watcher watcher(std::move(progress));
@@ -142,7 +142,7 @@ void add_identification(py::module_& module) {
     });
 }
 
-/// What a callable of Python makes of the measured numbers of a step: a number and its slopes.
+/// Calls a Python callable with the measured numbers of a step: returns a number and its slopes.
 class Judge {
 public:
     Judge(py::object judge, Watcher& watcher) : judge_(std::move(judge)), watcher_(watcher) {}

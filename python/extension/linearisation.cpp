@@ -1,4 +1,4 @@
-// What a state answers to small changes.
+// Derivatives of a state of equilibrium.
 #include "pliant/linearisation.hpp"
 
 #include <pybind11/stl.h>
@@ -12,7 +12,7 @@
 namespace pliant::python {
 namespace {
 
-/// A Linearisation that threads wait for.
+/// A Linearisation shared by threads, with a lock.
 struct Shared {
     explicit Shared(const State& state) : at(state) {}
     Linearisation at;
@@ -73,7 +73,7 @@ double dot(const std::vector<Point>& a, const std::vector<Point>& b) {
     return sum;
 }
 
-/// (markers, 3, inputs): one solution for each input.
+/// (markers, 3, inputs): one solve per input.
 py::array jacobian(Shared& shared, const std::vector<std::size_t>& markers, const std::vector<std::size_t>& inputs) {
     std::vector<double> numbers(3 * markers.size() * inputs.size());
     locked(shared, [&](Linearisation& at) {

@@ -1,4 +1,4 @@
-// Measures as Python has them: (kind, name, direction).
+// Measures as Python tuples: (kind, name, direction).
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace pliant::python {
 
 using MeasureTuple = std::tuple<std::string, std::string, Point>;
 
-/// Throws where there is no such kind.
+/// Throws if there is no such kind.
 [[nodiscard]] Measure measure_of(const MeasureTuple& tuple);
 
 }  // namespace pliant::python

@@ -1,5 +1,5 @@
-// The parts of the module pliant._pliant. What people use is the Python of python/pliant, which says shapes and units
-// and checks what it is given; this is what lies below.
+// The parts of the low-level module pliant._pliant. Users import the package python/pliant, which documents shapes and
+// units and checks its arguments.
 #pragma once
 
 #include <pybind11/pybind11.h>

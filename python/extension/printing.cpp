@@ -1,4 +1,4 @@
-// Jobs: sliced, planned, checked, printed virtually.
+// Jobs: slicing, planning, checking, virtual printing.
 #include "pliant/printing.hpp"
 
 #include <pybind11/stl.h>
@@ -47,7 +47,7 @@ py::dict plan(const std::filesystem::path& job) {
     return dict_of(plan);
 }
 
-/// (layers, y, x) voxels with what they are made of.
+/// (layers, y, x) voxels with their resins.
 py::object block_of(std::shared_ptr<const CuredBlock> block) {
     if (!block) return py::none();
     const Shape shape = {static_cast<py::ssize_t>(block->size[2]), static_cast<py::ssize_t>(block->size[1]),

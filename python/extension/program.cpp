@@ -1,4 +1,4 @@
-// Whole programs, and the folder of their results.
+// Whole programs and their results folder.
 #include "pliant/program.hpp"
 
 #include <pybind11/stl.h>
@@ -19,7 +19,7 @@ py::tuple tuple_of_step(ProgramStep step) {
                           array_of(std::move(step.positions)));
 }
 
-/// A callable of Python may throw; the run then ends as if it had been cancelled.
+/// If a Python callable throws, the run ends as if it had been cancelled.
 ProgramResult run_program(const Model& model, py::object on_step, const std::filesystem::path& measured,
                           const std::filesystem::path& checkpoint, int checkpoint_every, bool resume,
                           py::object progress) {

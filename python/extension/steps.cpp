@@ -1,4 +1,4 @@
-// Steps from one state to the next, and what can be read off a state.
+// Steps from one state to the next, and observations of a state.
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -13,7 +13,7 @@
 namespace pliant::python {
 namespace {
 
-/// The state of the caller changes while the interpreter's lock is held, all at once: others may look at it meanwhile.
+/// The caller's state is replaced as a whole while the interpreter's lock is held: other threads may read it meanwhile.
 StepResult step(Engine& engine, State& state, const Inputs& inputs, py::object progress) {
     Watcher watcher(std::move(progress));
     const Watch watch = watcher.watch();
@@ -37,7 +37,7 @@ StepResult step_to(Engine& engine, State& state, const InputTuple& inputs, py::o
     return step(engine, state, inputs_of(engine.model(), inputs), std::move(progress));
 }
 
-/// The drives of the state with other numbers.
+/// The drives of the state with other values.
 StepResult step_values(Engine& engine, State& state, const Numbers& values, std::optional<double> time,
                        py::object progress) {
     Inputs inputs = state.inputs();

@@ -1,4 +1,4 @@
-// Inputs as Python has them: (time, kinds, values), cables first.
+// Inputs as Python tuples: (time, kinds, values), cables first.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -17,7 +17,7 @@ namespace py = pybind11;
 using InputTuple = std::tuple<double, std::vector<std::string>, std::vector<double>>;
 
 [[nodiscard]] InputTuple tuple_of(const Inputs& inputs);
-/// Throws where there are not as many kinds as values and actuators, or a kind is none.
+/// Throws if the numbers of kinds, values and actuators differ, or a kind is unknown.
 [[nodiscard]] Inputs inputs_of(const Model& model, const InputTuple& tuple);
 [[nodiscard]] py::dict dict_of(const StepResult& result);
 [[nodiscard]] py::dict dict_of(const Observation& seen);

@@ -1,4 +1,4 @@
-// What the viewer in a notebook is given.
+// Data for the viewer in a notebook.
 #include "pliant/view.hpp"
 
 #include "arrays.hpp"

@@ -10,7 +10,7 @@ constexpr auto interval = std::chrono::milliseconds(50);
 
 }  // namespace
 
-/// Short work never asks; where somebody listens they hear of its beginning.
+/// Short work never calls the callable; it is told the beginning of longer work.
 Watcher::Watcher(py::object progress)
     : progress_(std::move(progress)), next_(progress_.is_none() ? Clock::now() + interval : Clock::now()) {}
 

@@ -1,4 +1,4 @@
-// A Watch for work that Python waits for: Ctrl-C ends it, and a callable hears how far it is.
+// A Watch for work that Python waits for: Ctrl-C cancels it, and a callable receives its progress.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -13,7 +13,7 @@ namespace pliant::python {
 
 namespace py = pybind11;
 
-/// Made and destroyed while the interpreter's lock is held; the work itself is done without it.
+/// Created and destroyed while the interpreter's lock is held; the work itself is done without it.
 class Watcher {
 public:
     /// `progress`: None, or called with (stage, share); if it returns False the work is cancelled.
@@ -21,9 +21,10 @@ public:
     Watcher(const Watcher&) = delete;
     Watcher& operator=(const Watcher&) = delete;
 
-    /// Of use as long as this is there.
+    /// Valid as long as this object exists.
     [[nodiscard]] Watch watch();
-    /// What a callable of the caller threw where nothing may be thrown: thrown again by the watch, or by rethrow().
+    /// Stores an exception of a user callable that must not propagate: it is thrown again by the watch, or by
+    /// rethrow().
     void remember(const py::error_already_set& error) { thrown_ = error; }
     void rethrow() const {
         if (thrown_) throw *thrown_;

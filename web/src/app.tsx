@@ -23,7 +23,7 @@ interface Project {
   folder: string;
 }
 
-/// What a robot looks like, drawn by the studio; a plain sheet where there is no picture of it.
+/// A picture of a robot, drawn by the studio; a placeholder if there is none.
 function Thumbnail({ of }: { of: string }) {
   return (
     <span class="thumb" aria-hidden="true">

@@ -1,14 +1,14 @@
-// What has not been saved is not lost without a question: neither when something else is opened nor when the page is left.
+// Asks before unsaved changes are discarded, whether something else is opened or the page is closed.
 import { computed, signal } from '@preact/signals';
 import { documentState, helm } from './store';
 import { theirs, text, revert } from './simulate/editor';
 
-/// Text that the studio does not have, or that no file has.
+/// True if there is text that the studio does not have, or that is in no file.
 export const unsaved = computed(() => helm.value.you && (text.value !== theirs.value || documentState.value.unsaved));
 
 const question = signal<{ what: string; go: () => void } | null>(null);
 
-/// Does it at once where nothing is lost, else once that has been agreed to.
+/// Runs `go` at once if nothing would be lost, else after confirmation.
 export function unlessLost(what: string, go: () => void) {
   if (unsaved.value) question.value = { what, go };
   else go();

@@ -1,4 +1,4 @@
-// A menu goes when Escape is pressed, or something else is.
+// Closes a menu on Escape, or on a click elsewhere.
 import type { RefObject } from 'preact';
 import { useLayoutEffect } from 'preact/hooks';
 

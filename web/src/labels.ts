@@ -1,12 +1,12 @@
-// Labels of things in a 3D view: elements of the page that go where their points are seen.
+// Labels of things in a 3D view: page elements that follow the projected positions of their points.
 import * as THREE from 'three';
 
 export interface Label {
   element: HTMLElement;
-  at: THREE.Vector3; // in the world
+  at: THREE.Vector3; // in world coordinates
 }
 
-/// Those behind the eye, or out of the picture, are not seen; of two that would cover each other the later one makes way.
+/// Hides labels behind the camera or outside the picture; of two that would overlap, the later one moves.
 export function placeLabels(labels: Label[], camera: THREE.Camera, width: number, height: number) {
   const taken: [number, number, number, number][] = [];
   for (const { element, at } of labels) {

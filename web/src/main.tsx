@@ -11,7 +11,7 @@ window.addEventListener('hashchange', () => {
   const name = location.hash.slice(1).split('?')[0] as store.Section;
   if (['simulate', 'make', 'print'].includes(name)) store.section.value = name;
 });
-// For the tests and for the curious: the state of the page.
+// The state of the page, for tests and debugging.
 const shown = () => shownFrame.value ?? store.frame.value;
 const project = (p: [number, number, number]) => theView.value?.placeOnPage(p);
 Object.assign(window, { pliant: { ...store, robotText: text, shown, project } });

@@ -1,10 +1,11 @@
-// A field for a number. What cannot be is said beside it, with what can; leaving the field puts the last good value back.
+// A number field. An invalid value is explained beside it, with the allowed range; leaving the field restores the last
+// valid value.
 import { useRef, useState } from 'preact/hooks';
 
 export interface Range {
   from: number;
   to: number;
-  open?: boolean; // the ends themselves are out
+  open?: boolean; // the range excludes its ends
 }
 
 export function rangeText({ from, to, open }: Range, unit: string): string {
@@ -23,19 +24,19 @@ interface Props {
   value: number;
   range: Range;
   unit: string;
-  label?: string; // where no <label> stands around it
+  label?: string; // if there is no surrounding <label>
   step?: number | 'any';
   disabled?: boolean;
   testId?: string;
-  /// False, or a promise of it: refused, and the last value is put back.
+  /// False, or a promise of it: rejected, and the last value is restored.
   onValue: (v: number) => void | boolean | Promise<boolean>;
 }
 
 export function NumberField({ value, range, unit, label, step = 'any', disabled, testId, onValue }: Props) {
   const [wrong, setWrong] = useState('');
-  // What is being typed stays, whatever else of the page is drawn anew in the meantime, and if the line is lost.
+  // Text being typed is kept, whatever else on the page is redrawn meanwhile, even if the connection is lost.
   const [typed, setTyped] = useState<string | null>(null);
-  const open = useRef(false); // something typed is not taken yet
+  const open = useRef(false); // a typed value has not been applied yet
   const type = (text: string) => {
     setWrong('');
     setTyped(text);
@@ -54,7 +55,7 @@ export function NumberField({ value, range, unit, label, step = 'any', disabled,
     if (!open.current || disabled) return;
     open.current = false;
     setTyped(null);
-    input.value = String(value); // also where the browser holds what is no number, and says ''
+    input.value = String(value); // also if the browser holds an invalid number, reported as ''
   };
   return (
     <span class="number-field">

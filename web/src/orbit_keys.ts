@@ -1,8 +1,8 @@
-// A view that the mouse turns is turned by the keys too.
+// Keyboard control of a view that is orbited with the mouse.
 import * as THREE from 'three';
 import type { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
-/// Around the target by so many radians, up by so many, and `nearer` times as far away.
+/// Orbits around the target by these angles, in radians, and multiplies the distance by `nearer`.
 export function turnAround(camera: THREE.Camera, controls: OrbitControls, around: number, up: number, nearer: number) {
   const offset = camera.position.clone().sub(controls.target);
   const s = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.x, offset.z, -offset.y));
@@ -14,7 +14,7 @@ export function turnAround(camera: THREE.Camera, controls: OrbitControls, around
   controls.update();
 }
 
-/// Arrows turn, plus and minus come nearer and go away, Home shows all.
+/// Arrows orbit, plus and minus zoom, Home fits the view.
 export function orbitKeys(e: KeyboardEvent, turn: (around: number, up: number, nearer: number) => void, home: () => void) {
   const step = 0.12;
   const moves: Record<string, () => void> = {

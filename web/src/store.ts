@@ -1,4 +1,4 @@
-// The state of the page and its line to the studio.
+// The state of the page and its connection to the studio.
 import { batch, computed, signal } from '@preact/signals';
 import { readPacket } from './packet';
 import type { Accuracy, Frame, FrameHead, Job, Problem, Scene, SceneHead } from './types';
@@ -10,26 +10,26 @@ const asked = location.hash.slice(1).split('?')[0] as Section;
 export const section = signal<Section>(sections.includes(asked) ? asked : 'simulate');
 
 export const online = signal(false);
-/// How often the line has been opened: what was known before the last time may not be so any more.
+/// Number of connections opened so far: what was known before the last one may be outdated.
 export const lines = signal(0);
 export const helm = signal({ you: true, held: true, asked: false, waiting: false, pages: 1 });
 export const mayDrive = computed(() => online.value && helm.value.you);
 
 export const documentState = signal({ name: '', unsaved: false, undo: 0, redo: 0, accuracy: 'automatic' as Accuracy });
 export const scene = signal<Scene | null>(null);
-/// Linear elements: quick, too stiff, and never to be taken for the answer.
+/// The latest frame; with linear elements it is a fast preview, too stiff to be a result.
 export const frame = signal<Frame | null>(null);
 export const isRough = (f: Frame | null) => (f?.head.order ?? scene.value?.head.order) === 1;
 export const rough = computed(() => isRough(frame.value));
 export const building = signal<{ stage: string; fraction: number } | null>(null);
 export const problems = signal<Problem[]>([]);
-/// `layers`: so many can be looked at already.
+/// `layers`: number of layers that can be viewed already.
 export const slicing = signal<{ stage: string; fraction: number; layers?: number } | null>(null);
 export const sliceError = signal('');
 export const job = signal<Job | null>(null);
 export const notice = signal('');
 
-/// What was asked for, by actuator; the frame says what has been reached.
+/// The requested values, by actuator; the frame holds the reached ones.
 export interface Wanted {
   kind: string;
   value: number;
@@ -48,12 +48,12 @@ export function onEvent(listener: (event: Record<string, unknown>) => void) {
 }
 
 let takeBeside: (next: Frame) => void = () => {};
-/// Frames of the robot beside the one that is edited.
+/// Frames of the second robot.
 export function onBesideFrame(listener: (next: Frame) => void) {
   takeBeside = listener;
 }
 
-/// Who this page is, kept over reloads and lost connections.
+/// Identifies this page; kept over reloads and lost connections.
 function pageKey(): string {
   const known = sessionStorage.getItem('pliant_page');
   if (known) return known;
@@ -66,10 +66,10 @@ export const page = pageKey();
 
 let socket: WebSocket | null = null;
 let retry = 250;
-let sceneKnown = false; // frames are of a scene that this line has told of
-let early: Frame | null = null; // the last frame of a scene that is still on its way
+let sceneKnown = false; // this connection has announced the scene of the frames
+let early: Frame | null = null; // the last frame of a scene that is still loading
 let fields: string[] = [];
-// Tags rise from page to page, so that a frame is never taken for the answer to another page's input.
+// Tags increase from page to page, so that a frame is never mistaken for the answer to another page's input.
 let tag = Math.floor(performance.timeOrigin % 5e8);
 const sentAt = new Map<number, number>();
 const frameTimes: number[] = [];
@@ -78,7 +78,7 @@ export function send(message: Record<string, unknown>) {
   if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
 }
 
-/// An input that a frame answers.
+/// Sends an input that is answered by a frame.
 export function sendInput(message: Record<string, unknown>) {
   tag += 1;
   sentAt.set(tag, performance.now());
@@ -102,7 +102,7 @@ export async function api(path: string, options: RequestInit = {}): Promise<Resp
   return response;
 }
 
-/// `tell` hears why it was refused; without it a notice says so.
+/// `tell` receives the reason of a refusal; the default shows a notice.
 export async function post(path: string, body?: unknown, tell: (why: string) => void = say): Promise<boolean> {
   try {
     await api(path, {
@@ -124,9 +124,9 @@ export function say(text: string) {
   noticeTimer = window.setTimeout(() => (notice.value = ''), 6000);
 }
 
-/// Shows where the robot is led, by whomever; not while an input of this page is on its way.
+/// Shows the robot's current target, whoever set it; not while an input of this page is pending.
 function adopt({ wanted: to, lead }: FrameHead) {
-  if (helm.value.you && sentAt.size > 0 && !lead) return; // who leads a marker asks for no actuator
+  if (helm.value.you && sentAt.size > 0 && !lead) return; // while dragging a marker, a page requests no actuator values
   wantedTime.value = to.time;
   following.value = to.actuators.length === 0;
   const known = wanted.peek();
@@ -140,7 +140,7 @@ async function loadScene() {
   const frameResponse = await api('/api/frame');
   const bytes = await frameResponse.arrayBuffer();
   const fetched = bytes.byteLength > 0 ? readPacket<FrameHead>(bytes) : null;
-  // A robot that was built anew in the meantime has its own scene under way.
+  // If the robot was rebuilt meanwhile, a newer scene is being loaded.
   if (sceneKnown && scene.value !== null && loaded.head.revision < scene.value.head.revision) return;
   const known = [fetched, early].filter((f) => f?.head.revision === loaded.head.revision) as Frame[];
   const first = known.sort((a, b) => b.head.sequence - a.head.sequence)[0] ?? null;
@@ -169,7 +169,7 @@ export function driveAll() {
   sendInput({ type: 'drive', time: wantedTime.value, actuators });
 }
 
-/// To rest, by its program again; whatever is on its way there will not be answered.
+/// Returns to rest and to the program; pending inputs will not be answered.
 export function toRest() {
   sentAt.clear();
   send({ type: 'rest' });
@@ -206,7 +206,7 @@ function receiveText(text: string) {
 function receiveFrame(buffer: ArrayBuffer) {
   const next = readPacket<FrameHead>(buffer);
   if (next.head.beside) return takeBeside(next);
-  // A robot at rest sends one frame and no other: it may be here before its scene is.
+  // A robot at rest sends a single frame, which may arrive before its scene.
   if (!sceneKnown || scene.value === null || next.head.revision !== scene.value.head.revision) {
     early = next;
     return;
@@ -226,8 +226,8 @@ function receiveFrame(buffer: ArrayBuffer) {
   });
 }
 
-/// A line has been opened: what the page knows is of the one before, and perhaps of another studio. All of it is told
-/// again; what is not told is not so any more.
+/// On a new connection everything known is outdated, possibly from another studio. The studio sends its whole state
+/// again; anything not sent no longer exists.
 function forget() {
   sceneKnown = false;
   early = null;
@@ -242,7 +242,7 @@ function forget() {
 }
 
 const pingEvery = 5000; // ms
-const mostUnanswered = 3; // pings, before the line counts as dead: a computer may be busy
+const mostUnanswered = 3; // unanswered pings before the connection counts as dead: a computer may be busy
 
 
 export function connect() {
@@ -259,7 +259,7 @@ export function connect() {
     setTimeout(connect, retry);
     retry = Math.min(2 * retry, 4000);
   };
-  // A computer that is gone closes nothing: only its silence tells.
+  // A crashed computer does not close its connections: only missing answers reveal it.
   const ping = window.setInterval(() => {
     if (unanswered >= mostUnanswered) return lost();
     unanswered += 1;
@@ -279,10 +279,10 @@ export function connect() {
   opened.onclose = lost;
 }
 
-/// Whoever closes the page lets go of the helm at once.
+/// Gives up control at once when the page is closed.
 window.addEventListener('pagehide', () => send({ type: 'steer', action: 'leave' }));
 
-/// For the tests: loses the line as a network would.
+/// For tests: drops the connection as a network failure would.
 export function dropLine() {
   socket?.close();
 }

@@ -1,4 +1,4 @@
-// Light and dark: the system's choice unless the page has been told otherwise.
+// Light and dark theme: the system's setting unless the user has chosen one.
 import { signal } from '@preact/signals';
 
 type Theme = 'light' | 'dark';

@@ -1,4 +1,4 @@
-// What the studio says; docs/reference/studio.md describes it.
+// Messages and data of the studio, described in docs/reference/studio.md.
 import type { Packet } from './packet';
 
 export interface Material {
@@ -19,7 +19,7 @@ export interface Actuator {
   rest: number;
 }
 
-/// Elements: linear, quadratic, or linear while a hand moves and quadratic as soon as it rests.
+/// Element order: linear, quadratic, or linear during interaction and quadratic as soon as the input rests.
 export type Accuracy = 'preview' | 'automatic' | 'fine';
 
 export interface SceneHead {
@@ -28,7 +28,7 @@ export interface SceneHead {
   robot: string;
   materials: Material[];
   bodies?: { name: string; material: number }[];
-  unit_mm?: number; // of a coordinate in the robot file
+  unit_mm?: number; // per unit of the robot file's coordinates
   graded: { body: string; material: number; other: number }[];
   actuators: Actuator[];
   cable_points: number[];
@@ -49,13 +49,14 @@ export interface FrameHead {
   sequence: number;
   tag: number;
   time: number;
-  order?: number; // of the elements that this state was found with; missing: those of the scene
-  refining?: boolean; // linear elements have arrived, and quadratic ones are on their way
+  order?: number; // element order of this state; missing: that of the scene
+  refining?: boolean; // the linear result is shown, the quadratic one is being computed
   arrived: boolean;
   stuck: string;
-  warnings: string[]; // where the state should not be trusted
+  warnings: string[]; // reasons not to trust the state
   playing: boolean;
-  wanted: { time: number; actuators: { name: string; kind: string; value: number }[] }; // no actuators: as the program has it
+  wanted: { time: number; actuators: { name: string; kind: string; value: number }[] }; // no actuators: they follow the
+                                                                                        // program
   residual: number;
   min_J: number;
   energy_mJ: number;
@@ -65,22 +66,23 @@ export interface FrameHead {
   chambers: { ratio: number; volume_mm3: number; pressure_kPa: number }[];
   markers: [number, number, number][];
   supports: [number, number, number][];
-  sensors?: number[][]; // as the readings of the scene
+  sensors?: number[][]; // in the order of the scene's readings
   obstacles: [number, number, number, ...number[]][];
-  contacts?: [number, number, number][]; // N, of obstacles on the robot, then of all that touches an object on it
+  contacts?: [number, number, number][]; // N, of obstacles on the robot, then of everything that touches an object on
+                                         // it
   self_contact_N?: number;
-  beside?: boolean; // of the second robot
+  beside?: boolean; // a frame of the second robot
   pull?: { vertex: number; force_N: [number, number, number] };
-  lead?: Lead; // a marker in somebody's hand, which the actuators follow
+  lead?: Lead; // a dragged marker, which the actuators follow
 }
 
 export interface Lead {
   marker: string;
   to_mm: [number, number, number];
-  settled: boolean; // it comes no nearer
+  settled: boolean; // it cannot get closer
   reached: boolean;
   error_mm: number;
-  limits: string[]; // what stops it
+  limits: string[]; // what limits it
 }
 
 export type Scene = Packet<SceneHead>;
@@ -114,7 +116,7 @@ export interface Plan {
   warnings: string[];
 }
 
-/// How images lie on the platform.
+/// Position of images on the platform.
 export interface Projector {
   width: number;
   height: number;
@@ -127,7 +129,7 @@ export interface Projector {
 }
 
 export interface Job {
-  /** Where its images are, where that is not at the job at hand. */
+  /** Source of its images, if not the current job. */
   at?: (layer: number, material: number) => string;
   revision: number;
   file: string;

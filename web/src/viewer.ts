@@ -1,5 +1,5 @@
-// A robot in a page of its own, as notebooks show it: the studio's view, with the states that were put in beside it.
-// The page holds <script type="application/json" id="robot"> with packets in base64; nothing is loaded.
+// A robot on a page of its own, as shown in notebooks: the studio's view, with the states embedded in the page. The
+// page holds <script type="application/json" id="robot"> with packets in base64; nothing is loaded.
 import { orbitHelp, orbitKeys } from './orbit_keys';
 import { readPacket } from './packet';
 import { gradientCss } from './simulate/colormap';

@@ -1,4 +1,4 @@
-// Between the library and its users: errors become exceptions, a Watch a Progress.
+// Connects the library to its users: errors become exceptions, a Watch becomes a Progress.
 #pragma once
 
 #include <atomic>
@@ -24,13 +24,13 @@ inline void check(const Status& status) {
     if (!status) fail(status.error());
 }
 
-/// What a Watch throws ends the work as if it had asked for an end, and is thrown again by rethrow().
+/// An exception from the Watch cancels the work, and is thrown again by rethrow().
 class WatchedProgress final : public Progress {
 public:
     /// `watch` must outlive it.
     explicit WatchedProgress(const Watch& watch) : watch_(watch) {}
     void advance(std::string_view stage, double fraction) override;
-    /// Asks the Watch again, on its own thread.
+    /// Calls the Watch again, but only on its own thread.
     [[nodiscard]] bool cancelled() const override;
     void rethrow() const;
 

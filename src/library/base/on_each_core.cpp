@@ -13,7 +13,7 @@
 namespace pliant {
 namespace {
 
-/// Threads that take one piece of work after the other, until none is left or somebody asks for an end.
+/// Threads that process work items one after the other, until none is left or the work is cancelled.
 class Crew {
 public:
     Crew(std::size_t n, const std::function<void(std::size_t)>& work, const Watch& watch)
@@ -33,7 +33,7 @@ public:
         take(true);
         wait();
     }
-    /// Throws what was thrown.
+    /// Rethrows the exception of a work item.
     void tell() const {
         if (asked_) std::rethrow_exception(asked_);
         for (const std::exception_ptr& one : thrown_)

@@ -11,7 +11,7 @@ namespace {
 constexpr double mm_per_um = 1e-3;
 constexpr std::size_t most_voxels = 4'000'000'000;
 
-/// Pixels that any layer has lit.
+/// The pixels lit by any layer.
 struct Frame {
     int left = std::numeric_limits<int>::max(), right = 0, first = std::numeric_limits<int>::max(), last = 0;
 
@@ -25,7 +25,7 @@ struct Frame {
     }
 };
 
-/// Layers with something in them, from the platform on.
+/// Layers with cured resin, from the platform on.
 std::vector<const twin::CuredLayer*> solid_layers(const std::vector<twin::CuredLayer>& layers) {
     std::vector<const twin::CuredLayer*> solid;
     for (const twin::CuredLayer& layer : layers)
@@ -44,8 +44,7 @@ std::uint8_t number_of(CuredBlock& block, const std::string& resin) {
     return static_cast<std::uint8_t>(block.resins.size());
 }
 
-/// Where a pixel of the projector's image lies in the block: x to the right, y up on the platform, as it is not
-/// mirrored.
+/// Position of a projector pixel in the block: x to the right, y up on the platform, not mirrored.
 class Place {
 public:
     Place(const Frame& frame, const machine::Projector& projector) : frame_(frame), projector_(projector) {}
@@ -53,7 +52,7 @@ public:
     [[nodiscard]] std::size_t x(int column) const {
         return static_cast<std::size_t>(projector_.mirror_x ? frame_.right - 1 - column : column - frame_.left);
     }
-    [[nodiscard]] std::size_t y(int row) const {  // row 0 is the greatest y
+    [[nodiscard]] std::size_t y(int row) const {  // row 0 has the largest y
         return static_cast<std::size_t>(projector_.mirror_y ? row - frame_.first : frame_.last - 1 - row);
     }
     [[nodiscard]] int left() const { return projector_.mirror_x ? projector_.width_px - frame_.right : frame_.left; }
@@ -64,7 +63,7 @@ private:
     const machine::Projector& projector_;
 };
 
-/// One vat's runs in a layer. `most`: of each pixel, what the resin that it is counted to has of it.
+/// Adds one vat's runs in a layer. `most`: for each pixel, the amount of the resin that it is assigned to.
 void add(CuredBlock& block, std::size_t z, const Place& place, const twin::Runs& runs, std::uint8_t resin,
          std::vector<std::uint8_t>& most) {
     const std::size_t width = block.size[0], plane = width * block.size[1];

@@ -9,7 +9,7 @@
 
 namespace pliant::library {
 
-/// Throws where the block has too many voxels.
+/// Throws if the block has too many voxels.
 [[nodiscard]] CuredBlock cured_block(const std::vector<twin::CuredLayer>& layers, const machine::Printer& printer);
 
 }  // namespace pliant::library

@@ -20,7 +20,7 @@ struct Batch::Work {
 
 namespace {
 
-/// One Watch for all robots: asked on the thread that calls, heard on all.
+/// One Watch for all robots: called on the calling thread, its answer is seen by all.
 class SharedWatch {
 public:
     SharedWatch(const Watch& watch, std::size_t robots) : watch_(watch), robots_(robots) {}

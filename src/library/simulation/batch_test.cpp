@@ -1,4 +1,4 @@
-// Many robots at once: the bits of one after the other.
+// Batches of robots give the same bits as separate runs.
 #include "pliant/batch.hpp"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-// What stands behind the values of the library.
+// Implementation data of the library's value types.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,18 +25,18 @@ namespace pliant {
 struct Robot::Data {
     robot::Robot robot;
     std::string text;                  ///< of the robot file
-    std::filesystem::path file;        ///< that it is of, or, of a text, that it would be of
-    std::vector<std::string> changes;  ///< of the text
-    bool has_file = false;             ///< the text is that of the file
+    std::filesystem::path file;        ///< the robot file or, for a text, the file it stands for
+    std::vector<std::string> changes;  ///< overrides applied to the text
+    bool has_file = false;             ///< the text was read from the file
 
-    /// Everything that says what it is: of what a checkpoint is.
+    /// Identifies the robot by everything that defines it: the origin of checkpoints.
     [[nodiscard]] std::string origin() const;
 };
 
 struct Model::Data {
     robot::Scene scene;
     std::shared_ptr<const Robot::Data> robot;
-    std::optional<mesh::TetMesh> given_mesh{};  ///< m, where a program has made it
+    std::optional<mesh::TetMesh> given_mesh{};  ///< m, if supplied by the caller
 };
 
 struct State::Data {
@@ -49,17 +49,17 @@ namespace library {
 [[nodiscard]] std::vector<Point> points_of(std::span<const Vec3> points);
 [[nodiscard]] std::vector<double> list_of(const Eigen::VectorXd& numbers);
 [[nodiscard]] std::vector<Parameter> parameters_of(const std::vector<sim::Parameter>& all);
-/// x, y and z of each.
+/// The points as one array of x, y and z.
 [[nodiscard]] std::span<const double> numbers_of(std::span<const Vec3> points);
-/// As in Inputs and back. Precondition: as many as the model has.
+/// Converts to public Inputs. Precondition: as many drives as the model has.
 [[nodiscard]] Inputs inputs_of(const sim::Model& model, const sim::Inputs& inputs);
-/// Throws where the drives are not those of the model, or not finite.
+/// Converts from public Inputs. Throws if the drives do not match the model, or are not finite.
 [[nodiscard]] sim::Inputs inputs_for(const sim::Model& model, const Inputs& inputs);
 [[nodiscard]] Observation observation_of(const sim::Step& step);
 [[nodiscard]] StepResult result_of(const sim::Step& step);
-/// With further changes, which count after its own.
+/// Reads the robot again with further overrides, which take precedence.
 [[nodiscard]] Result<robot::Robot> read_again(const Robot::Data& robot, const std::vector<std::string>& more);
-/// In metres. Throws where it is no mesh.
+/// In metres. Throws if it is not a valid mesh.
 [[nodiscard]] mesh::TetMesh tet_mesh(const Mesh& given);
 
 }  // namespace library

@@ -22,7 +22,7 @@
 namespace pliant {
 namespace {
 
-/// The objective with its measures by index. What `judge` throws is kept and thrown again where no engine is between.
+/// The objective with its measures by index. An exception of `judge` is stored and rethrown outside the solver.
 class Judge {
 public:
     Judge(const sim::Model& model, const Objective& asked) : asked_(asked) {
@@ -59,7 +59,7 @@ private:
     std::exception_ptr thrown_;
 };
 
-/// Asks for an end once the objective has thrown.
+/// Cancels once the objective has thrown.
 class JudgedProgress final : public Progress {
 public:
     JudgedProgress(Progress& shown, const Judge& judge) : shown_(shown), judge_(judge) {}
@@ -71,7 +71,7 @@ private:
     const Judge& judge_;
 };
 
-/// What the gradient is by: at rest, where names and numbers are those of the whole program.
+/// What the gradient is with respect to: from the rest state, where names and values are those of the whole program.
 void add_names(const sim::Model& model, ProgramGradient& out) {
     const sim::Equilibrium system(model);
     const auto at = library::value_of(sim::Linearisation::create(system, system.rest(), system.controls(0)));
@@ -79,7 +79,7 @@ void add_names(const sim::Model& model, ProgramGradient& out) {
     out.parameters = library::parameters_of(sim::parameters(at));
 }
 
-/// By the numbers of each tet's law, under the names of robot files.
+/// With respect to the constants of each tet's law, named as in robot files.
 std::vector<TetGradient> by_tets(const sim::Model& model, const sim::TetDerivatives& of) {
     const sim::Description& d = model.description();
     std::vector<std::vector<material::LawParameter>> laws;
@@ -107,7 +107,7 @@ std::vector<TetGradient> by_tets(const sim::Model& model, const sim::TetDerivati
     return out;
 }
 
-/// Two robots for each of the numbers that are asked for, and their equations.
+/// Two robots for each of the requested numbers, and their equations.
 struct Numbers {
     std::vector<std::unique_ptr<robot::NumberModels>> models;
     std::vector<std::unique_ptr<sim::Equilibrium>> systems;
@@ -176,7 +176,7 @@ ProgramGradient gradient(const Model& model, const Objective& objective, const G
     if (options.rest_positions) out.by_rest_positions = library::points_of(linalg::points_of(of.by.rest));
     out.guide_points = std::move(guides.shown);
     out.by_guide_points = library::points_of(linalg::points_of(of.by.guides));
-    out.by_guide_points.resize(out.guide_points.size());  // of an objective that depends on nothing
+    out.by_guide_points.resize(out.guide_points.size());  // for an objective that depends on nothing
     if (options.tets) out.by_tets = by_tets(scene.model, of.by.tets);
     for (const auto& instant : of.instants)
         out.instants.push_back({instant.step, instant.time, library::list_of(instant.by_inputs)});

@@ -1,4 +1,4 @@
-// Gradients of a state and of a program, as users of the library see them.
+// Gradients of a state and of a program through the public interface.
 #include "pliant/gradient.hpp"
 
 #include <doctest/doctest.h>
@@ -223,7 +223,7 @@ TEST_CASE("numbers of the drawing have derivatives, whatever follows from them")
     const ProgramGradient of =
         gradient(Model(Robot::parse(text)), at_end(), {.numbers = {"height", "poisson", "ratio"}});
     REQUIRE(of.by_numbers.size() == 3);
-    // Material and pull leave the mesh as it is.
+    // Changes of material and pull keep the mesh.
     const auto by = [&](const std::string& name, double value, double h) {
         return (gradient(with(name, value + h), at_end()).value - gradient(with(name, value - h), at_end()).value) /
                (2 * h);
@@ -247,7 +247,7 @@ TEST_CASE("what the height of a bar does to its cable is what bars of other heig
                                             "mesh.size=3 mm", "program.tolerance=1e-7"})),
                         tension, options);
     };
-    // Each is meshed anew, which by itself changes the tension by a percent or so.
+    // Each variant is meshed anew, which alone changes the tension by a percent or so.
     const double by_others = (of(11.5, {}).value - of(8.5, {}).value) / 3;
     CHECK(of(10, {.numbers = {"height"}}).by_numbers[0] == near(by_others, {.relative = 0.05}));
 }

@@ -1,4 +1,4 @@
-// The guide points that a gradient is wanted by.
+// The guide points for gradients.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ struct Guides {
     std::vector<sim::GuidePoint> points;
 };
 
-/// Throws where one is tied to no tetrahedron.
+/// Throws if one is not attached to a tetrahedron.
 [[nodiscard]] Guides guides_of(const Model::Data& model);
 
 }  // namespace pliant::library

@@ -1,4 +1,4 @@
-// Numbers from measurements, as users of the library see them.
+// Parameter identification through the public interface.
 #include "pliant/identify.hpp"
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ namespace {
 
 const char* const program = "program = { steps = 4, gravity = [0, 0, -9.81] }\n";
 
-/// What the bar of 1 MPa shows.
+/// Synthetic measurements of the bar with 1 MPa.
 Measurements measured() {
     const ProgramResult run = pliant::run(Model(bar(program)));
     Measurements table{"step,tip_z_mm,flexor_tension_N\n", "bar.csv"};

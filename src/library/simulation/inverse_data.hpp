@@ -1,4 +1,4 @@
-// What stands behind an InverseResult.
+// Implementation data of an InverseResult.
 #pragma once
 
 #include <memory>

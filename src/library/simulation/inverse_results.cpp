@@ -1,4 +1,4 @@
-// The folder of an InverseResult: the program that was found is written, read back and run, as its users will.
+// Writes the folder of an InverseResult: the program is written, read back and run, just as users will run it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,10 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a robot that was given as text becomes in the folder, so that its program stands on something.
+/// File name for a robot that was given as text, so that its program can refer to it.
 constexpr const char* robot_name = "robot.toml";
 
-/// With friction the way matters: what was found in one step is repeated in one step.
+/// With friction the path matters: what was found in one step is repeated in one step.
 int steps_per_waypoint(const InverseResult::Data& found) {
     const robot::Robot& robot = found.model->scene.robot;
     const bool has_friction = std::ranges::any_of(robot.cables, [](const auto& c) { return c.friction > 0; }) ||
@@ -34,7 +34,7 @@ int steps_per_waypoint(const InverseResult::Data& found) {
     return has_friction ? 1 : static_cast<int>((fewest + waypoints - 1) / waypoints);
 }
 
-/// A program, and what it stands on where that is no file.
+/// The text of a program, and of the robot it is based on if that is not a file.
 struct ProgramFiles {
     std::string program;
     std::string robot{};  ///< empty: a file
@@ -59,14 +59,14 @@ ProgramFiles program_files(const InverseResult::Data& found, const fs::path& fol
             library::value_of(robot::robot_text(given.text, given.file, given.changes, folder))};
 }
 
-/// The robot of the program, on the mesh that was given or on one that is made anew.
+/// The robot of the program, on the given mesh or a new one.
 robot::Scene scene_of(const InverseResult::Data& found, robot::Robot robot, Progress& progress) {
     const std::optional<mesh::TetMesh>& mesh = found.model->given_mesh;
     return library::value_of(mesh ? robot::build_scene(std::move(robot), *mesh)
                                   : robot::build_scene(std::move(robot), progress));
 }
 
-/// Where the program led elsewhere than the waypoints were found, by more than their goals allow.
+/// Warnings for waypoints where the program deviates from the results by more than the goals' tolerances.
 std::vector<std::string> departures(const InverseResult::Data& found, const sim::Trajectory& run, int steps_each) {
     std::vector<std::string> lines;
     if (!run.converged) lines.push_back("the program that was found does not run to its end: " + run.message);
@@ -88,7 +88,7 @@ std::vector<std::string> departures(const InverseResult::Data& found, const sim:
     return lines;
 }
 
-/// Writes the program, runs it as its file says, and writes all that came of it. Gives what departures() says.
+/// Writes the program, runs it from its file, and writes all results. Returns the warnings of departures().
 std::vector<std::string> fill(const InverseResult::Data& found, const fs::path& folder, const fs::path& final_folder,
                               Progress& progress) {
     const int steps_each = steps_per_waypoint(found);

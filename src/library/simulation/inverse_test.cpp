@@ -1,4 +1,4 @@
-// Goals, workspaces and gradients of programs, as users of the library see them.
+// Goals, workspaces and gradients of programs through the public interface.
 #include "pliant/inverse.hpp"
 
 #include <doctest/doctest.h>

@@ -53,10 +53,10 @@ struct Linearisation::Work {
     sim::Linearisation at;
     std::vector<sim::Parameter> inputs, parameters;
     std::vector<Parameter> shown_inputs, shown_parameters;
-    std::optional<library::Guides> guides;  ///< once they have been asked for
+    std::optional<library::Guides> guides;  ///< created on first request
 };
 
-/// Multipliers of chambers are minus their pressures; patches that loads press on have one too, which nobody sees.
+/// Multipliers of chambers are minus their pressures; those of pressure loads are internal.
 Change Linearisation::Work::shown_change(const sim::Change& change) const {
     const sim::Description& d = model->scene.model.description();
     Change out;

@@ -1,4 +1,4 @@
-// Derivatives of states, against steps that were solved again.
+// Derivatives of states, compared with steps that were solved again.
 #include "pliant/linearisation.hpp"
 
 #include <doctest/doctest.h>
@@ -81,7 +81,7 @@ TEST_CASE("a gradient tells what a cable, a modulus and the rest shape do to a t
     CHECK(gradient.inputs[length] == near(difference, {.relative = 1e-6}));
     CHECK(at.response_to_input(length).positions.size() == bent.model.node_count());
 
-    // The shape of a robot that is shortened by a length does not know its modulus; its tension does.
+    // With a prescribed length the shape does not depend on the modulus; the tension does.
     const std::size_t modulus = index_of(at.parameters(), "material \"soft\": youngs_modulus");
     CHECK(gradient.parameters[modulus] == near(0, {.absolute = 1e-12}));
     Quantity tension;
@@ -91,7 +91,7 @@ TEST_CASE("a gradient tells what a cable, a modulus and the rest shape do to a t
     CHECK(by_modulus == near(tensions / 2000, {.relative = 1e-6}));
     CHECK(at.response_to_parameter(modulus).tensions_N[0] == near(by_modulus, {.relative = 1e-8}));
 
-    // A robot that is moved as a whole, with its clamp and its cable, moves its tip by as much.
+    // Moving the whole robot, with its clamp and its cable, moves its tip by the same amount.
     double moved = 0;
     REQUIRE(gradient.rest_positions.size() == bent.model.node_count());
     for (const Point& p : gradient.rest_positions) moved += p[2];

@@ -1,4 +1,4 @@
-// What can be measured, by name and by index.
+// Converts public measures, by name, to those of the simulation, by index.
 #pragma once
 
 #include "pliant/linearisation.hpp"
@@ -7,7 +7,7 @@
 
 namespace pliant::library {
 
-/// Throws where the robot has nothing of that name, or the direction is not finite.
+/// Throws if the robot has nothing of that name, or the direction is not finite.
 [[nodiscard]] sim::Measure measure_for(const sim::Model& model, const Measure& asked);
 
 }  // namespace pliant::library

@@ -17,7 +17,7 @@
 
 namespace pliant {
 
-/// A report refers to the trajectory: it is made once, and nothing is moved afterwards.
+/// A report refers to the trajectory: it is created once, and must not be moved.
 struct ProgramResult::Data {
     std::shared_ptr<const Model::Data> model;
     sim::Trajectory trajectory;
@@ -35,7 +35,7 @@ double peak_memory_MB() {
     return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-/// Before anything is solved: a slip in the table is told at once.
+/// Read before solving: errors in the table are reported at once.
 Measured read_measured(const std::filesystem::path& file, const sim::Model& model) {
     if (file.empty()) return {};
     const std::string text = library::value_of(read_file(file));
@@ -47,7 +47,7 @@ Measured read_measured(const std::filesystem::path& file, const sim::Model& mode
     return library::value_of(report::parse_measured(text, file.string(), step));
 }
 
-/// Where a run is kept as it goes, and the run that it begins with, if it is one that goes on.
+/// The checkpoint of a run, and the run it continues, if it was resumed.
 struct Kept {
     std::optional<sim::Checkpoint> checkpoint;
     std::optional<sim::RunState> begin;
@@ -101,7 +101,7 @@ report::PictureChoice choice_of(const ResultsOptions& options) {
     return choice;
 }
 
-/// Pictures end early where somebody has seen enough of them.
+/// Drawing stops early once the caller has enough pictures.
 class Drawing final : public Progress {
 public:
     Drawing(Progress& shown, const std::function<bool()>& enough) : shown_(shown), enough_(enough) {}

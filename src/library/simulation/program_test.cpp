@@ -1,4 +1,4 @@
-// A program and what it leaves behind, as users of the library see them.
+// Programs and their results folders through the public interface.
 #include "pliant/program.hpp"
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ namespace {
 
 const char* const short_program = "program = { steps = 6 }\n";
 
-/// A watch that asks for an end when a step is reached.
+/// A watch that cancels when a step is reached.
 Watch until(int step, const int& reached) {
     return [step, &reached](std::string_view, double) { return reached < step; };
 }

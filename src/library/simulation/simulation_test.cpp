@@ -1,4 +1,4 @@
-// The library as its users see it: values that can be copied, kept and compared, and errors with a place.
+// The public interface: values that can be copied, kept and compared, and errors with a location.
 #include "pliant/simulation.hpp"
 
 #include <doctest/doctest.h>
@@ -129,7 +129,7 @@ TEST_CASE("a mesh that a program has made takes the place of a file") {
         load = [{ name = "push", box = [[0, 0, 10], [10, 10, 10]], force = ["0 N", "0 N", "-0.1 N"] }]
         marker = [{ name = "top", point = [5, 5, 10] }]
     )");
-    Mesh cube;  // of 10 mm, in six tets around a diagonal, and a point of no use
+    Mesh cube;  // of 10 mm, in six tets around a diagonal, with an unused point
     for (int k = 0; k < 8; ++k) cube.points.push_back({0.01 * (k & 1), 0.01 * (k >> 1 & 1), 0.01 * (k >> 2)});
     cube.points.push_back({1, 1, 1});
     cube.tets = {0, 1, 3, 7, 0, 3, 2, 7, 0, 2, 6, 7, 0, 6, 4, 7, 0, 4, 5, 7, 0, 5, 1, 7};
@@ -194,7 +194,7 @@ TEST_CASE("a state is a value: copies, bytes and other steppers lead on with the
     stepper.step(state, more);
     CHECK_FALSE(kept == state);
     State aside = stepper.rest();
-    stepper.step(aside, pulled(aside, 0.01));  // something else in between
+    stepper.step(aside, pulled(aside, 0.01));  // another solve in between
     State again = kept;
     stepper.step(again, more);
     CHECK(again == state);

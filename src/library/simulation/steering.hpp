@@ -1,4 +1,4 @@
-// What actuators with a range are called, for those who ask for a motion.
+// Public names and units of actuators with a range.
 #pragma once
 
 #include <vector>

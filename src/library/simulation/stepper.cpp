@@ -15,7 +15,7 @@
 namespace pliant {
 namespace {
 
-/// Inputs change direction at any time: only the last state tells where the next one is.
+/// Inputs change direction at any time: only the last state is useful for prediction.
 sim::StepperOptions options_for(const sim::Program& program, const StepOptions& asked) {
     sim::StepperOptions options = sim::stepper_options(program);
     if (asked.tolerance) options.tolerance = *asked.tolerance;

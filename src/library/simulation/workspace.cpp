@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The pieces that are done, in a folder with what they belong to.
+/// The completed pieces, in a folder with an identification of the search.
 class KeptPieces {
 public:
     static KeptPieces create(const fs::path& folder, const std::string& origin) {

@@ -10,7 +10,7 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 constexpr double half_field = 0.22;  // tangent of half the vertical field of view: a mild perspective
 
-/// The axis that shows most when looked along: little motion, then little extent. A tie goes to Y, then X, then Z.
+/// The axis along which the view shows most: least motion, then least extent. A tie goes to Y, then X, then Z.
 std::size_t view_axis(std::span<const Vec3> rest, std::span<const std::span<const Vec3>> others) {
     Box3 box;
     for (const Vec3& p : rest) box.add(p);
@@ -69,7 +69,7 @@ Camera fitted(Camera camera, std::span<const Vec3> points, double aspect, const 
     camera.half_height = half_field * std::min(1.0, 1.6 / aspect);
     camera.half_width = camera.half_height * aspect;
     // A point fits if |offset| <= tangent * (depth + distance) on every side; the most demanding point of each side
-    // decides. The free margins are narrower tangents on their side.
+    // decides. Margins reduce the tangent on their side.
     const std::array<double, 4> tangents = {
         camera.half_width * (1 - 2 * margins[0]), camera.half_width * (1 - 2 * margins[1]),
         camera.half_height * (1 - 2 * margins[2]), camera.half_height * (1 - 2 * margins[3])};

@@ -1,4 +1,4 @@
-// Where the pictures are taken from: one view of the whole motion, chosen from the motion itself.
+// The camera of the pictures: one view for the whole motion, chosen from the motion itself.
 #pragma once
 
 #include <array>
@@ -22,13 +22,13 @@ struct Camera {
     [[nodiscard]] std::array<double, 3> project(const Vec3& point) const;
 };
 
-/// Looks along the axis in which the points move least (the front, -Y, where axes are about equal), a little from the
-/// side and from above; Z is up on the picture unless it is the axis looked along, then Y. `rest` and each of
-/// `others` are positions of the same points.
+/// Looks along the axis of least motion (the front, -Y, if axes are about equal), a little from the side and from
+/// above; Z is up in the picture unless it is the viewing axis, then Y. `rest` and each of `others` are positions of
+/// the same points.
 [[nodiscard]] Camera choose_view(std::span<const Vec3> rest, std::span<const std::span<const Vec3>> others);
 
-/// From where the user wants: `towards_eye` points from the robot to the eye. Z is up, or Y where that is nearly the
-/// direction itself. Precondition: not zero.
+/// A view requested by the user: `towards_eye` points from the robot to the camera. Z is up, or Y if the direction is
+/// nearly along Z. Precondition: not zero.
 [[nodiscard]] Camera view_from(const Vec3& towards_eye);
 
 /// The same view moved so that all points just fit into a picture of `aspect` (width over height), keeping `margins`

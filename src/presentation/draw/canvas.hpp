@@ -38,13 +38,13 @@ public:
     [[nodiscard]] double width() const { return width_; }
     [[nodiscard]] double height() const { return 1000; }
 
-    /// The only call in pixels; what goes beyond the canvas is cut off.
+    /// The only call in pixels; parts outside the canvas are clipped.
     void image(const Image& image, int x_px, int y_px);
     /// `at` is on the baseline. Text that is not UTF-8 is shown with replacement characters.
     void text(const Point2& at, std::string_view text, const Font& font);
     [[nodiscard]] double text_width(std::string_view text, const Font& font) const;
     void line(std::span<const Point2> points, double width, const Colour& colour, double opacity = 1);
-    /// What a closed border surrounds.
+    /// Fills a closed border.
     void area(std::span<const Point2> border, const Colour& colour, double opacity = 1);
     void box(const Point2& corner, double width, double height, const Colour& colour, double radius = 0,
              double opacity = 1);
@@ -60,7 +60,7 @@ private:
     double width_ = 0;
 };
 
-/// Replaces what is not UTF-8 by U+FFFD and control characters by spaces.
+/// Replaces invalid UTF-8 by U+FFFD and control characters by spaces.
 [[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace pliant::report

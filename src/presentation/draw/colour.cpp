@@ -61,7 +61,7 @@ Colour field_colour(double t) {
     t = std::clamp(std::isnan(t) ? 0.0 : t, 0.0, 1.0);
     const double lightness_of_t = 0.27 + 0.65 * t;
     const double hue = (305 - 203 * t) * std::numbers::pi / 180;
-    const double chroma = 0.097 + 0.19 * (t - 0.45) * (t - 0.45);  // just inside sRGB all the way
+    const double chroma = 0.097 + 0.19 * (t - 0.45) * (t - 0.45);  // just inside the sRGB gamut everywhere
     return to_srgb(oklab_to_linear(lightness_of_t, chroma * std::cos(hue), chroma * std::sin(hue)));
 }
 

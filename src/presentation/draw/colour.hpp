@@ -1,4 +1,4 @@
-// Colours: sRGB for people and files, linear light for shading, and one perceptual map for fields.
+// Colours: sRGB for display and files, linear light for shading, and one perceptual map for fields.
 #pragma once
 
 #include <string>
@@ -35,7 +35,7 @@ inline Colour mix(const Colour& a, const Colour& b, double t) {
 /// "#rrggbb" of an sRGB colour.
 [[nodiscard]] std::string hex(const Colour& srgb);
 
-/// sRGB colours that are told apart with the common colour vision deficiencies; they repeat after eight.
+/// sRGB colours that are distinguishable with the common colour vision deficiencies; they repeat after eight.
 [[nodiscard]] Colour palette(int index);
 
 /// sRGB colour of a field value t in [0, 1], dark violet over teal to yellow. Lightness rises linearly in the OKLab
@@ -43,10 +43,10 @@ inline Colour mix(const Colour& a, const Colour& b, double t) {
 /// map survives a grey print.
 [[nodiscard]] Colour field_colour(double t);
 
-/// What cables are drawn in, sRGB: stands out from every colour of the palette.
+/// Colour of cables, sRGB: stands out from every colour of the palette.
 inline constexpr Colour cable_colour = {0.80, 0.10, 0.14};
 inline constexpr Colour obstacle_colour = {0.70, 0.72, 0.75};
-inline constexpr Colour element_colour = {0.10, 0.55, 0.38};  ///< of empty space that drives an actuator
+inline constexpr Colour element_colour = {0.10, 0.55, 0.38};  ///< of meshed space that drives an actuator
 inline constexpr Colour element_edge_colour = {0.03, 0.24, 0.16};
 inline constexpr Colour measured_colour = {0.80, 0.12, 0.40};  ///< of measured markers
 

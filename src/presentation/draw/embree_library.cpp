@@ -25,7 +25,7 @@ const char* EmbreeLibrary::name() {
     return PLIANT_EMBREE;
 }
 
-/// One that is missing: none is there.
+/// If one function is missing, none is used.
 template <class Function>
 void EmbreeLibrary::find(const char* name, Function& function) {
     if (handle_) function = reinterpret_cast<Function>(dlsym(handle_.get(), name));

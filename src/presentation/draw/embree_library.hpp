@@ -1,5 +1,5 @@
-// Embree, loaded when the first picture is drawn: a large library, which most runs of the program do without, and whose
-// loading takes longer than all else before main.
+// Embree, loaded when the first picture is drawn: it is large, most runs do not need it, and loading it takes longer
+// than everything else before main.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -8,15 +8,15 @@
 
 namespace pliant::report {
 
-/// The functions that are used, by their names there; all are there, or none. Once loaded it stays in the program, so
-/// that the next one of these costs nothing.
+/// The functions in use, by their names in Embree; either all are present, or none. Once loaded the library stays in
+/// the process, so that further objects cost nothing.
 class EmbreeLibrary {
 public:
     EmbreeLibrary();
     EmbreeLibrary(const EmbreeLibrary&) = delete;
     EmbreeLibrary& operator=(const EmbreeLibrary&) = delete;
     [[nodiscard]] bool is_there() const { return handle_ != nullptr; }
-    /// Of the file that is looked for.
+    /// File name of the library.
     [[nodiscard]] static const char* name();
 
     decltype(&rtcNewDevice) new_device = nullptr;

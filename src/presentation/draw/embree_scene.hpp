@@ -1,4 +1,4 @@
-// Embree's device and scenes with owners, and the few questions that the pictures ask of them.
+// Owning wrappers of Embree's device and scenes, with the few queries that the pictures need.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ namespace pliant::report {
 
 struct Hit {
     bool found = false;
-    double distance = 0;    ///< along the ray's direction, in its lengths
-    unsigned geometry = 0;  ///< counted in the order of add_*
+    double distance = 0;    ///< along the ray, in units of its direction
+    unsigned geometry = 0;  ///< index, in the order of add_*
     unsigned primitive = 0;
     double u = 0, v = 0;  ///< barycentric coordinates of corners 1 and 2
     Vec3 normal;          ///< of the geometry, not normalised
@@ -26,7 +26,7 @@ public:
     EmbreeDevice();
     [[nodiscard]] RTCDevice get() const { return device_.get(); }
     [[nodiscard]] const EmbreeLibrary& library() const { return library_; }
-    /// Where it is not sound, scenes are not to be made.
+    /// An error means that no scenes can be created.
     [[nodiscard]] Status status() const;
 
 private:
@@ -43,7 +43,7 @@ public:
     void commit();
 
     [[nodiscard]] Hit closest(const Vec3& origin, const Vec3& direction) const;
-    /// Which of eight directions meet something within `reach` (in lengths of the direction): 1 blocked, 0 free.
+    /// For eight directions, whether something is within `reach` (in units of the direction): 1 blocked, 0 free.
     [[nodiscard]] std::array<bool, 8> blocked(const Vec3& origin, std::span<const Vec3, 8> directions,
                                               double reach) const;
 

@@ -10,9 +10,9 @@
 namespace pliant::report {
 namespace {
 
-constexpr int most_colours = 255;  // one of 256 says that a pixel has not changed
+constexpr int most_colours = 255;  // one of the 256 means that a pixel has not changed
 constexpr GifByteType unchanged = 255;
-constexpr std::size_t looked_at = 400'000;  // pixels of all frames that colours are chosen from
+constexpr std::size_t looked_at = 400'000;  // number of pixels, over all frames, from which colours are chosen
 
 struct CloseGif {
     void operator()(GifFileType* file) const {
@@ -27,7 +27,7 @@ int append(GifFileType* file, const GifByteType* bytes, int count) {
     return count;
 }
 
-/// The colours of a film, and which of them is nearest to any other; that is found once for each.
+/// The colours of a film, and a cache of the nearest palette colour of any other.
 class Palette {
 public:
     [[nodiscard]] static Result<Palette> from(std::span<const Image> frames) {
@@ -73,8 +73,8 @@ public:
 private:
     using Planes = std::array<std::vector<GifByteType>, 3>;
 
-    /// giflib counts in five bits, which tints what is grey: each colour becomes the mean of those that it stands for
-    /// (Lloyd's iteration).
+    /// giflib quantises to five bits, which tints greys: each colour is replaced by the mean of those that it
+    /// represents (Lloyd's iteration).
     void settle(const Planes& planes) {
         constexpr int rounds = 3;
         for (int round = 0; round < rounds; ++round) {
@@ -99,7 +99,7 @@ private:
 
     std::array<GifColorType, 256> colours_{};
     int count_ = 0;
-    std::vector<std::int16_t> nearest_;  ///< (2^24), -1: not asked for yet
+    std::vector<std::int16_t> nearest_;  ///< (2^24), -1: not computed yet
 };
 
 Status write_frame(GifFileType* file, const Image& frame, int ms, Palette& palette, std::vector<GifByteType>& shown) {
@@ -124,7 +124,7 @@ Status write_frame(GifFileType* file, const Image& frame, int ms, Palette& palet
     return {};
 }
 
-/// Netscape's extension, which every viewer knows: again from the beginning, for ever.
+/// The Netscape extension, which every viewer supports: loop for ever.
 Status write_loop(GifFileType* file) {
     const std::array<GifByteType, 3> forever{1, 0, 0};
     if (EGifPutExtensionLeader(file, APPLICATION_EXT_FUNC_CODE) == GIF_ERROR ||

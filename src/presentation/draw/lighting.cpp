@@ -9,13 +9,13 @@ namespace pliant::report {
 namespace {
 
 constexpr int sky_rays = 128, key_rays = 48;               // on the robot
-constexpr int floor_sky_rays = 512, floor_key_rays = 128;  // on the floor, where nothing hides a step of light
+constexpr int floor_sky_rays = 512, floor_key_rays = 128;  // on the floor, where steps in the light would be visible
 constexpr double key_radius = 0.16;                        // tangent of the key light's angular radius
-constexpr double ground_radiance = 0.50;                   // what comes back from below, relative to the zenith
+constexpr double ground_radiance = 0.50;                   // light reflected from below, relative to the zenith
 constexpr Vec3 up{0, 0, 1};
 constexpr double golden_angle = 2.399963229728653;  // pi (3 - sqrt 5)
 
-/// So that eight in a row point about the same way: they go through the scene together.
+/// Sorts rays so that eight consecutive ones have similar directions: they are traced as a packet.
 template <class Ray>
 void bundle(std::span<Ray> rays) {
     if (rays.size() <= 8) return;
@@ -68,7 +68,7 @@ Lighting::Lighting(const Camera& camera, double reach_m)
       on_free_floor_{gathered({}, up, floor_sky_, {}), gathered({}, up, floor_key_, {})},
       reach_m_(reach_m) {}
 
-/// Sum of radiance times cosine over the rays that nothing blocks; the cosines in proportion to `normal`.
+/// Sum of radiance times cosine over the unblocked rays; the cosines are relative to `normal`.
 double Lighting::gathered(const Vec3& origin, const Vec3& normal, std::span<const Ray> rays,
                           const std::optional<Blocking>& blocking) {
     std::array<Vec3, 8> directions;

@@ -12,7 +12,7 @@
 
 namespace pliant::report {
 
-/// How much of each light arrives, relative to a free surface that faces it.
+/// Share of each light that arrives, relative to a free surface facing it.
 struct Light {
     double sky = 1;
     double key = 1;
@@ -20,13 +20,13 @@ struct Light {
 
 class Lighting {
 public:
-    /// `reach_m`: how far off something may be to cast a shadow.
+    /// `reach_m`: largest distance at which something casts a shadow.
     Lighting(const Camera& camera, double reach_m);
 
-    /// At a point whose surface looks along `geometric` and is shaded with `normal` (both unit).
+    /// Light at a point whose geometric normal is `geometric` and whose shading normal is `normal` (both unit).
     [[nodiscard]] Light at(const EmbreeScene& scene, const Vec3& point, const Vec3& normal,
                            const Vec3& geometric) const;
-    /// The same on a floor that looks along +Z, relative to a floor with nothing on it: 1 is no shadow.
+    /// Light on a floor facing +Z, relative to an empty floor: 1 is no shadow.
     [[nodiscard]] Light on_floor(const EmbreeScene& scene, const Vec3& point) const;
     /// Without any shadow.
     [[nodiscard]] Light unshadowed(const Vec3& normal) const;

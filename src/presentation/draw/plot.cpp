@@ -12,10 +12,10 @@ namespace {
 constexpr Colour white = {1, 1, 1};
 constexpr Colour grid = {0.87, 0.88, 0.90};
 constexpr Colour frame = {0.35, 0.38, 0.42};
-// Where the axes stand; the canvas is 1500 by 1000.
+// Position of the axes; the canvas is 1500 by 1000.
 constexpr double left = 140, right = 1460, top = 90, bottom = 880;
 
-/// One axis: values and where they are on the canvas.
+/// One axis: its values and their positions on the canvas.
 struct Axis {
     std::vector<double> marks;
     double from, to;
@@ -44,7 +44,7 @@ Axis axis_for(const Plot& plot, bool log, double Point2::*member, double from, d
     return {log ? log_ticks(low, high) : ticks(low, high), from, to, log};
 }
 
-/// "0.01", "1e-5": powers of ten stay short.
+/// "0.01", "1e-5": short labels for powers of ten.
 std::string label(const Axis& axis, double value) {
     if (axis.log && (value > 2e3 || value < 5e-4)) return fmt::format("1e{:.0f}", std::log10(value));
     return fmt::format("{:.6g}", value);
@@ -75,7 +75,7 @@ void draw_series(Canvas& canvas, const Plot& plot, std::size_t index, const Axis
     if (!series.dots && line.size() > 1) canvas.line(line, 4, colour);
 }
 
-/// At the upper left; what falls by powers of ten passes there, and ends before the lower right.
+/// At the upper left: curves that fall by powers of ten start below it and end at the lower right.
 void draw_legend(Canvas& canvas, const Plot& plot) {
     const double side = plot.log_y ? right - 420 : left;
     double height = plot.log_y ? bottom - 38 * static_cast<double>(plot.series.size()) : top + 40;

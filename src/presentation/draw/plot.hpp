@@ -19,16 +19,16 @@ struct Plot {
     std::string title;
     std::string x_label;
     std::string y_label;
-    std::vector<Series> series;  ///< at least one, with a point; not finite ones are left out
-    bool log_x = false;          ///< by powers of ten; what is not above zero is left out
+    std::vector<Series> series;  ///< at least one, with a point; values that are not finite are skipped
+    bool log_x = false;          ///< logarithmic; values not above zero are skipped
     bool log_y = false;
 };
 
 /// 8-bit RGB, 1200 x 800 pixels.
 [[nodiscard]] Result<std::string> plot_png(const Plot& plot);
 
-/// Powers of ten from at most `low` to at least `high`, both above zero: 2 or more, of which those in between are left
-/// out evenly so that there are at most 11.
+/// Powers of ten from at most `low` to at least `high`, both above zero: 2 to 11 of them, evenly thinned out if there
+/// are more.
 [[nodiscard]] std::vector<double> log_ticks(double low, double high);
 
 /// Round numbers (1, 2, 5 times a power of ten apart) from below `low` to above `high`, 4 to 11 of them.

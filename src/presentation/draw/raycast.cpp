@@ -11,26 +11,27 @@
 namespace pliant::report {
 namespace {
 
-constexpr int grid = 4;           // samples per pixel and direction, where its neighbours differ from it
+constexpr int grid = 4;           // samples per pixel and direction, if its neighbours differ from it
 constexpr int floor_cell_px = 4;  // the floor's soft shadow is computed at every fourth pixel
-constexpr int light_cell_px = 4;  // and so is the light on smooth parts of the body
+constexpr int light_cell_px = 4;  // likewise the light on smooth parts of the body
 constexpr double light_contrast = 0.05;
 constexpr double colour_contrast = 0.024;  // of neighbours, sRGB: six steps of 255
 constexpr double bend_contrast = 0.97;     // cosine between their normals
 constexpr std::size_t rows_at_once = 16;
 constexpr double sky_strength = 0.64;
 constexpr double key_strength = 0.60;
-constexpr double bounced = 0.16;           // light that still reaches the bottom of a slit, off its walls
-constexpr double floor_sky_shadow = 0.42;  // darkening of the backdrop where no sky arrives
+constexpr double bounced = 0.16;           // light that reaches the bottom of a slit by reflection
+constexpr double floor_sky_shadow = 0.42;  // darkening of the backdrop where the sky is blocked
 constexpr double floor_key_shadow = 0.26;
 constexpr double floor_contrast = 0.04;
 constexpr int floor_cells_skipped = 4;
 constexpr double floor_fine_contrast = 0.01;
-constexpr double ghost_clearance = 0.003;            // of the body's size: faces that did not move do not flicker
+constexpr double ghost_clearance = 0.003;            // relative to the body's size: avoids flicker on faces that did
+                                                     // not move
 constexpr double cable_behind = 0.55;                // opacity of a cable inside the body
 constexpr Colour ghost_colour = {0.42, 0.47, 0.54};  // sRGB
 
-/// Where a cell is in an array of rows.
+/// Index of a cell in an array of rows.
 std::size_t cell(int columns, std::size_t row, std::size_t column) {
     return row * static_cast<std::size_t>(columns) + column;
 }
@@ -38,7 +39,7 @@ std::size_t cell(int columns, std::size_t row, std::size_t column) {
 /// Everything that is computed once per picture.
 class Renderer {
 public:
-    /// Precondition: the device is sound.
+    /// Precondition: the device has no error.
     Renderer(const EmbreeDevice& device, const Scene& scene, const Camera& camera, int width, int height)
         : scene_(scene),
           camera_(camera),
@@ -72,7 +73,7 @@ public:
         thing_albedo_ = to_linear(obstacle_colour);
     }
 
-    /// At every fourth cell, and at those between where these differ.
+    /// Computed at every fourth cell, and in between where those differ.
     void prepare_floor(const Progress& progress) {
         constexpr int step = floor_cells_skipped;
         floor_columns_ = (width_ / floor_cell_px / step + 2) * step + 1;
@@ -94,7 +95,7 @@ public:
         });
     }
 
-    /// Where rays through every fourth pixel meet the body, and the light there.
+    /// Hits of rays through every fourth pixel, and the light there.
     void prepare_light(const Progress& progress) {
         light_columns_ = width_ / light_cell_px + 2;
         const int rows = height_ / light_cell_px + 2;
@@ -114,12 +115,12 @@ public:
     [[nodiscard]] std::vector<Colour> rows(int begin, int end) const;
 
 private:
-    /// Where in the pixel a body was met, and the light there: shared by the samples that see the same smooth patch.
+    /// Position in the pixel where the body was hit, and the light there: shared by samples on the same smooth patch.
     struct Patch {
         Vec3 point, normal;
         Light light;
     };
-    /// What the samples of one pixel share.
+    /// Data shared by the samples of one pixel.
     struct Shared {
         std::vector<Patch> patches, thing_patches;
         std::optional<double> floor;
@@ -127,7 +128,7 @@ private:
     /// What one ray sees.
     struct Sample {
         Colour colour;     ///< linear
-        unsigned met = 0;  ///< a bit each for body, ghost, thing, cable
+        unsigned met = 0;  ///< one bit each for body, ghost, thing, cable
         Vec3 normal;       ///< of the body
     };
 
@@ -146,17 +147,17 @@ private:
             if (!thing.open) shade_.add_triangles(thing.place.positions, triangles);
         }
     }
-    /// Of a piece of a plane.
+    /// For a piece of a plane.
     [[nodiscard]] bool faces_the_eye(const Thing& plane) const {
         return dot(camera_.eye - plane.place.positions.front(), plane.place.normals.front()) > 0;
     }
 
-    /// The pixels outside which only backdrop and floor can be seen.
+    /// Finds the pixels outside which only backdrop and floor are visible.
     void find_window() {
         const double bead = 2 * scene_.cable_radius_m;
         const auto widen = [&](const Vec3& p, double radius) {
             const auto [u, v, depth] = camera_.project(p);
-            if (!(depth > 0)) {  // a large thing that reaches behind the eye may be seen anywhere
+            if (!(depth > 0)) {  // a large thing that reaches behind the camera may be visible anywhere
                 window_.add({0, 0, 0});
                 window_.add({static_cast<double>(width_), static_cast<double>(height_), 0});
                 return;
@@ -194,12 +195,12 @@ private:
     void fill_floor_square(int row, int column);
     [[nodiscard]] double floor_at(double x, double y) const;
     [[nodiscard]] std::optional<Patch> light_through(double x, double y) const;
-    /// Between the computed points, if they are of the smooth patch at `point` and their light differs little.
+    /// Interpolated between computed points, if they are on the smooth patch at `point` and their light differs little.
     [[nodiscard]] std::optional<Light> smooth_light(double x, double y, const Vec3& point, const Vec3& normal) const;
     [[nodiscard]] bool is_same_patch(const Patch& patch, const Vec3& point, const Vec3& normal) const {
         return dot(patch.normal, normal) > 0.98 && std::abs(dot(patch.normal, point - patch.point)) < 0.004 * reach_;
     }
-    /// What is seen through the thing at `hit` has `behind`'s colour.
+    /// Blends the thing at `hit` over the colour `behind`.
     [[nodiscard]] Colour with_thing(const Colour& behind, const Hit& hit, const Vec3& direction, Shared& shared) const;
     [[nodiscard]] Colour with_ghost(const Colour& behind, const Hit& hit, const Vec3& direction) const;
     [[nodiscard]] Light patch_light(const Vec3& point, const Vec3& normal, const Vec3& geometric,
@@ -216,7 +217,7 @@ private:
     int width_, height_;
     double reach_;
     Lighting lighting_;
-    EmbreeScene body_, things_, shade_, cables_, ghost_;  // shade_: all that throws shadows
+    EmbreeScene body_, things_, shade_, cables_, ghost_;  // shade_: everything that casts shadows
     std::vector<const Thing*> seen_;                      // in the order of things_
     std::vector<Colour> albedo_;
     Colour cable_albedo_, ghost_albedo_, thing_albedo_, backdrop_top_, backdrop_bottom_;  // linear
@@ -237,7 +238,7 @@ double Renderer::floor_shade(double x, double y) const {
     return 1 - floor_sky_shadow * (1 - light.sky) - floor_key_shadow * (1 - light.key);
 }
 
-/// The cells between the corners of a square: as light as those say where they agree.
+/// Fills the cells between the corners of a square by interpolation, if the corners agree.
 void Renderer::fill_floor_square(int row, int column) {
     constexpr int step = floor_cells_skipped;
     const double a = floor_cell(row, column), b = floor_cell(row, column + step);
@@ -256,7 +257,7 @@ void Renderer::fill_floor_square(int row, int column) {
     }
 }
 
-/// Bilinear between the computed points or, where those differ much (a body touches the floor), computed here.
+/// Bilinear between the computed points or, where those differ much (a body touches the floor), computed exactly.
 double Renderer::floor_at(double x, double y) const {
     const double column = x / floor_cell_px, row = y / floor_cell_px;
     const auto c = static_cast<std::size_t>(column), r = static_cast<std::size_t>(row);
@@ -285,14 +286,14 @@ Colour Renderer::lit(const Colour& albedo, const Vec3& normal, const Vec3& direc
     return (1 + scene_.shading * (full - 1)) * albedo + scene_.shading * gloss * Colour{1, 1, 1};
 }
 
-/// Mean of a vertex quantity at a hit.
+/// Interpolated vertex quantity at a hit.
 template <class T>
 T at_hit(const std::vector<T>& values, const std::array<int, 3>& corners, const Hit& hit) {
     const auto value = [&](std::size_t k) { return values[static_cast<std::size_t>(corners[k])]; };
     return (1 - hit.u - hit.v) * value(0) + hit.u * value(1) + hit.v * value(2);
 }
 
-/// The geometric normal towards the viewer, and the smooth one on the same side of the surface.
+/// The geometric normal facing the viewer, and the smooth one on the same side of the surface.
 std::array<Vec3, 2> seen_normals(const Pose& pose, const std::array<int, 3>& corners, const Hit& hit,
                                  const Vec3& direction) {
     Vec3 geometric = unit(hit.normal);
@@ -420,7 +421,7 @@ bool are_alike(const Colour& a, const Colour& b) {
     return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)}) < colour_contrast;
 }
 
-/// One ray to a pixel and, where it sees something else than those of the pixels around it, many.
+/// One ray per pixel and, where it differs from the surrounding pixels, many.
 std::vector<Colour> Renderer::rows(int begin, int end) const {
     const int first = std::max(begin - 1, 0), last = std::min(end + 1, height_);
     std::vector<Sample> centres;
@@ -460,7 +461,7 @@ Result<Image> render(const Scene& scene, const Camera& camera, int width_px, int
     const EmbreeDevice device;
     if (Status status = device.status(); !status) return tl::unexpected(status.error());
     Renderer renderer(device, scene, camera, width_px, height_px);
-    // A scene that found no memory is one that rays pass through.
+    // If Embree ran out of memory, rays would pass through the scene.
     if (Status status = device.status(); !status) return tl::unexpected(status.error());
     renderer.prepare_floor(progress);
     renderer.prepare_light(progress);

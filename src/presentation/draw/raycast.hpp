@@ -1,8 +1,8 @@
-// Ray-cast stills without a display: sky and key light with soft shadows, a floor that only shows shadows, cables that
-// shine through the body, a translucent ghost. Embree finds the hits.
+// Ray-cast still pictures, without a display: sky and key light with soft shadows, a floor that only shows shadows,
+// cables visible through the body, a translucent ghost. Embree computes the hits.
 //
-// Every light is sampled in the same directions at every point, so that pictures hold no noise, compress well, and are
-// the same bytes on any number of threads.
+// Every light is sampled in the same directions at every point, so that pictures have no noise, compress well, and are
+// byte-identical on any number of threads.
 #pragma once
 
 #include <array>
@@ -33,12 +33,12 @@ struct Cable {
     std::vector<Vec3> points;
 };
 
-/// A rigid thing beside the robot, matte grey.
+/// A rigid body beside the robot, matte grey.
 struct Thing {
     const Surface* surface = nullptr;
     Pose place;
     std::vector<double> opacity;  ///< (v), 0 to 1
-    bool open = false;            ///< a piece of a plane: seen from in front only, throws no shadow
+    bool open = false;            ///< a piece of a plane: visible from the front only, casts no shadow
 };
 
 struct Scene {
@@ -48,14 +48,13 @@ struct Scene {
     std::vector<Thing> things;
     std::vector<Cable> cables;
     double cable_radius_m = 0.001;
-    std::optional<Pose> ghost;  ///< the same surface elsewhere, drawn translucent
+    std::optional<Pose> ghost;  ///< the same surface in another pose, drawn translucent
     double floor_z_m = 0;
-    double shading = 1;  ///< 0: plain colours without light and shadow, as a field's colours are read best
+    double shading = 1;  ///< 0: flat colours without light and shadow, best for reading field values
     Colour backdrop_top{0.975, 0.980, 0.986}, backdrop_bottom{0.900, 0.912, 0.928};  ///< sRGB
 };
 
-/// Renders `width` x `height` pixels with 4 x 4 stratified samples each. Fails if the progress is cancelled or Embree
-/// has no memory.
+/// Renders `width` x `height` pixels with 4 x 4 stratified samples each. Errors: cancelled, or Embree is out of memory.
 [[nodiscard]] Result<Image> render(const Scene& scene, const Camera& camera, int width_px, int height_px,
                                    const Progress& progress);
 

@@ -6,7 +6,7 @@
 namespace pliant::report {
 namespace {
 
-constexpr std::array<double, 4> panel_margins = {0.06, 0.06, 0.10, 0.17};  // the caption goes on top
+constexpr std::array<double, 4> panel_margins = {0.06, 0.06, 0.10, 0.17};  // the top margin holds the caption
 
 double mean_depth(const Camera& camera, std::span<const Vec3> points) {
     Box3 box;

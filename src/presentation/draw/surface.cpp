@@ -78,7 +78,7 @@ bool share_edge_at(int node, const std::array<int, 3>& a, const std::array<int, 
 }
 
 /// Groups the corners around one node: neighbours across an edge belong together unless the edge is sharp or the
-/// material changes. Gives each corner the position, in `corners`, of the first corner of its group.
+/// material changes. For each corner returns the position, in `corners`, of the first corner of its group.
 std::vector<std::size_t> smooth_groups(int node, const std::vector<int>& corners, const Surface& surface,
                                        std::span<const Vec3> normals) {
     std::vector<std::size_t> group(corners.size());

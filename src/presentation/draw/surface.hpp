@@ -1,4 +1,4 @@
-// The outer skin of the solid regions, ready to draw: vertices split along sharp edges, so that a box has flat faces
+// The outer skin of the solid regions, for drawing: vertices are split along sharp edges, so that a box has flat faces
 // and a bent finger a smooth back. Built once at rest; a pose moves it.
 #pragma once
 
@@ -24,7 +24,7 @@ struct Surface {
 /// vertex unless their angle at rest is over 35 degrees.
 [[nodiscard]] Surface outer_surface(const mesh::TetMesh& mesh, std::span<const int> region_material);
 
-/// The same for a rigid thing: its points are the nodes, its material is 0, and there are no tets behind it (-1).
+/// The same for a rigid body: its points are the nodes, its material is 0, and there are no tets behind it (-1).
 [[nodiscard]] Surface rigid_surface(const mesh::TriMesh& mesh);
 
 struct Pose {
@@ -34,8 +34,8 @@ struct Pose {
 
 [[nodiscard]] Pose pose(const Surface& surface, std::span<const Vec3> node_positions);
 
-/// One value per tet as one per vertex: the mean over the solid tets of the vertex's material at its node, weighted by
-/// rest volume (stress jumps between materials, so they are never mixed).
+/// Converts values per tet to values per vertex: the mean over the solid tets of the vertex's material at its node,
+/// weighted by rest volume (stress jumps between materials, so they are never averaged across).
 [[nodiscard]] std::vector<double> at_vertices(const mesh::TetMesh& mesh, std::span<const int> region_material,
                                               const Surface& surface, std::span<const double> tet_values);
 

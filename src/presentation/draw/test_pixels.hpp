@@ -1,4 +1,4 @@
-// What a PNG file shows, for tests of pictures.
+// Decodes a PNG file, for tests of pictures.
 #pragma once
 
 #include <cairo.h>

@@ -8,7 +8,8 @@ namespace {
 
 constexpr int sides = 10;
 
-/// Unit directions of the segments; those of no length take the one before or, at the start, the one after.
+/// Unit directions of the segments; a segment of zero length takes that of the previous one or, at the start, of the
+/// next.
 std::vector<Vec3> segment_directions(std::span<const Vec3> points) {
     std::vector<Vec3> directions(points.size() - 1);
     Vec3 last{1, 0, 0};
@@ -55,7 +56,7 @@ Tube tube_around(std::span<const Vec3> points, double radius_m) {
     Vec3 side = any_perpendicular(segments.front());
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Vec3 along = direction_at(i, segments);
-        side -= dot(side, along) * along;  // carried along without twist
+        side -= dot(side, along) * along;  // parallel transport, without twist
         side = norm(side) > 1e-9 ? unit(side) : any_perpendicular(along);
         const Vec3 other = cross(along, side);
         for (int k = 0; k < sides; ++k) {

@@ -15,7 +15,7 @@ struct Tube {
     std::vector<std::array<int, 3>> triangles;  ///< the same for every polyline of as many points
 };
 
-/// A tube of 10 sides with flat caps. At least two points; segments of no length borrow the direction of a neighbour.
+/// A tube of 10 sides with flat caps. At least two points; segments of zero length take the direction of a neighbour.
 [[nodiscard]] Tube tube_around(std::span<const Vec3> points, double radius_m);
 
 }  // namespace pliant::report

@@ -1,4 +1,4 @@
-// The block as a picture: cells become a surface, the surface is ray-cast.
+// Pictures of the cured block: cells become a surface, which is ray-cast.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,10 +17,10 @@ using twin::CoarsePart;
 
 constexpr int width_px = 1200, height_px = 540, title_px = 64;
 constexpr Colour paper{1, 1, 1};
-constexpr Colour surplus_colour{0.52, 0.04, 0.10}, missing_colour{0.94, 0.36, 0.50};  // of no material
+constexpr Colour surplus_colour{0.52, 0.04, 0.10}, missing_colour{0.94, 0.36, 0.50};  // different from all materials
 constexpr double seen_through = 0.22;
 
-/// Cells as a surface with flat faces, in metres; up is away from the platform, as the job has it.
+/// Cells as a surface with flat faces, in metres; up is away from the platform, as in the job.
 struct Cells {
     Surface surface;
     Pose place;
@@ -54,7 +54,7 @@ public:
     }
 
 private:
-    using Grid = std::vector<char>;  ///< (rows, columns), 1: solid; empty: nothing is
+    using Grid = std::vector<char>;  ///< (rows, columns), 1: solid; empty: no solid cells
 
     [[nodiscard]] std::size_t end_of(std::size_t slab) const {
         return slab + 1 < part_.slabs().size() ? part_.slabs()[slab + 1].first : part_.runs().size();
@@ -79,7 +79,7 @@ private:
     [[nodiscard]] double x(int column) const { return right_ * (column - part_.columns() / 2.0) * cell_m_; }
     [[nodiscard]] double y(int row) const { return down_ * (row - part_.rows() / 2.0) * cell_m_; }
 
-    /// A face of all cells of a run from `begin` to `end`, with this normal.
+    /// A face over all cells of a run from `begin` to `end`, with this normal.
     void quad(const std::array<Vec3, 4>& corners, const Vec3& normal, const Colour& colour) {
         const int first = static_cast<int>(cells_.place.positions.size());
         for (const Vec3& corner : corners) {
@@ -96,7 +96,7 @@ private:
         }
     }
 
-    /// Faces along the run, in as long pieces as nothing covers them.
+    /// Faces along the run, in maximal uncovered pieces.
     void along(const CoarsePart::CellRun& run, const std::function<bool(int column)>& covered,
                const std::function<void(int begin, int end)>& face) {
         for (int c = run.begin; c < run.end;) {
@@ -153,7 +153,7 @@ Colour off_colour(int kind) {
     return kind == 0 ? surplus_colour : missing_colour;
 }
 
-/// All of the picture is of one camera, so that the bodies can be compared.
+/// One camera for all bodies, so that they can be compared.
 Camera camera_for(const std::vector<Vec3>& points, double aspect) {
     return fitted(choose_view(points, {}), points, aspect, {0.05, 0.05, 0.06, 0.06});
 }
@@ -190,7 +190,7 @@ Result<std::string> block_picture(const CuredBlock& block, const job::Manifest& 
     const int wide = width_px / columns, high = height_px - title_px;
     const Camera camera = camera_for(points, static_cast<double>(wide) / high);
     Canvas canvas(width_px, height_px, paper);
-    const double unit = 1000.0 / height_px;  // the canvas is 1000 high
+    const double unit = 1000.0 / height_px;  // the canvas is 1000 units high
     const auto title = [&](int column, const std::string& text, const Colour* swatch) {
         const double x = (column * wide + 40) * unit;
         if (swatch != nullptr) canvas.box({x, 40}, 24, 24, *swatch, 4);
@@ -203,7 +203,7 @@ Result<std::string> block_picture(const CuredBlock& block, const job::Manifest& 
         const Result<Image> image = view_of(cells, c == 2 ? &asked : nullptr, camera, 0, wide, high);
         if (!image) return tl::unexpected(image.error());
         canvas.image(*image, c * wide, title_px);
-        if (!differs) canvas.image(*image, 0, title_px);  // the drawing looks just so
+        if (!differs) canvas.image(*image, 0, title_px);  // the drawing looks the same
     }
     title(0, "as drawn", nullptr);
     title(1, cured.place.positions.empty() ? "nothing has cured" : "as it has cured", nullptr);

@@ -1,4 +1,4 @@
-// The block in words and numbers.
+// The cured block as text and numbers.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t most_lines = 12;
 
-/// What is not as it should be, and was accepted.
+/// Deviations that were accepted.
 std::vector<std::string> accepted(const twin::Report& r) {
     std::vector<std::string> texts;
     for (const twin::Finding& f : r.findings) {
@@ -67,7 +67,7 @@ std::string materials(const twin::Report& r) {
     return out + "</tbody></table></div>\n";
 }
 
-/// Vats that have cured anything.
+/// Resins of the vats that have cured anything.
 std::string resins(const twin::Report& r) {
     std::string out =
         "<div class=\"scroll\"><table><thead><tr><th>resin</th><th>cured</th><th>left in the vat</th><th>foreign share"

@@ -8,7 +8,7 @@ namespace {
 
 using twin::Runs;
 
-/// What `wanted` has more than `have`, pixel by pixel.
+/// Pixels by which `wanted` exceeds `have`.
 Runs lacking(const Runs& wanted, const Runs& have, int width_px) {
     Runs rest;
     std::vector<int> row(static_cast<std::size_t>(width_px));
@@ -31,7 +31,7 @@ Runs lacking(const Runs& wanted, const Runs& have, int width_px) {
     return rest;
 }
 
-/// The layers of a job and of the block, one after the other.
+/// Compares the layers of a job with those of the block, one after the other.
 class Comparison {
 public:
     Comparison(twin::Twin& twin, const job::Manifest& job, CuredBlock& block)
@@ -89,7 +89,7 @@ private:
             surplus.push_back(lacking(is, shall, width_px_));
             missing.push_back(lacking(shall, is, width_px_));
         }
-        // Even where nothing differs: slabs are the same in all three.
+        // Also if nothing differs: all three must have the same slabs.
         block_.off.add(below_um, z_um, 0, surplus.empty() ? Runs{} : twin::sum_of(surplus, width_px_));
         block_.off.add(below_um, z_um, 1, missing.empty() ? Runs{} : twin::sum_of(missing, width_px_));
     }
@@ -105,7 +105,7 @@ private:
     int width_px_;
     std::map<std::string, int> resins_;
     std::vector<int> resin_of_vat_, resin_of_material_;
-    std::map<int, int> shown_;  ///< the material that a resin is drawn as
+    std::map<int, int> shown_;  ///< the material whose colour is used for a resin
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What has cured in the virtual printer, held against the drawing: for the page about a print.
+// The cured part of the virtual printer compared with the drawing, for the print report.
 #pragma once
 
 #include <string>
@@ -15,20 +15,20 @@ struct CuredBlock {
     twin::Report report;
     twin::CoarsePart asked;  ///< by material of the job
     twin::CoarsePart cured;  ///< by the first material of the job that is printed in that resin
-    twin::CoarsePart off;    ///< 0: resin that no image asks for there; 1: missing
+    twin::CoarsePart off;    ///< 0: cured resin where no image asks for it; 1: missing resin
 };
 
-/// Inspects the twin's block, which must grow no more, and makes it coarse enough to draw. Cost: every image is asked
-/// for twice. Errors: an image cannot be had.
+/// Inspects the twin's block, which must be complete, and coarsens it for drawing. Cost: every image is requested
+/// twice. Errors: an image is not available.
 [[nodiscard]] Result<CuredBlock> cured_block(twin::Twin& twin, const job::Manifest& job, const twin::RunSource& images,
                                              const twin::Judgement& judgement = {});
 
-/// Drawing and block side by side from above and in front, 1200 x 540 pixels, PNG; where they differ in shades of red.
-/// What is not as it should be is drawn however little it is. Errors: there is nothing to draw.
+/// Drawing and block side by side, seen from above and in front, 1200 x 540 pixels, PNG; differences in shades of red,
+/// drawn however small they are. Errors: there is nothing to draw.
 [[nodiscard]] Result<std::string> block_picture(const CuredBlock& block, const job::Manifest& job,
                                                 const machine::Projector& projector);
 
-/// The section of the page: verdict, picture (PNG), volumes, contamination, the first deviation.
+/// The section of the report: verdict, picture (PNG), volumes, contamination, the first deviation.
 [[nodiscard]] std::string block_section(const CuredBlock& block, const std::string& png);
 
 }  // namespace pliant::report

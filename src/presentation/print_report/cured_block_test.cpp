@@ -106,7 +106,7 @@ TEST_CASE("a layer without light is missing in the picture and named in words") 
 
 TEST_CASE("what cured in another resin is drawn as that, not as missing") {
     job::Manifest job = square_job();
-    job.materials[0].resin = small_tower().vats[1].resin;  // the vat that printed holds another
+    job.materials[0].resin = small_tower().vats[1].resin;  // the vat that printed holds another resin
     REQUIRE(job.materials[0].resin != small_tower().vats[0].resin);
     const CuredBlock block = printed({0.05, 0.1}, job);
     CHECK(block.report.materials[0].foreign_mm3 == near(2.5, {.relative = 1e-12}));

@@ -18,7 +18,7 @@ constexpr Colour ink{0.16, 0.18, 0.22};
 constexpr int shown_layers = 4;
 constexpr int sheet_columns = 6, sheet_rows = 4;
 
-/// Pixels that any layer lights.
+/// The range of pixels lit by any layer.
 struct Extent {
     int left = INT32_MAX, right = 0, top = INT32_MAX, bottom = 0;
     [[nodiscard]] int width() const { return right - left; }
@@ -30,12 +30,12 @@ struct Shot {
     slice::RunImage image;
 };
 
-/// All that is drawn of a job.
+/// Everything drawn of a job.
 struct Views {
     Extent extent;
     std::vector<std::vector<Shot>> layers;  ///< those shown from above
-    std::vector<int> numbers;               ///< and which they are
-    /// Per layer, per material: light of every column, added up over the rows.
+    std::vector<int> numbers;               ///< their layer numbers
+    /// Per layer, per material: brightness of every column, summed over the rows.
     std::vector<std::vector<std::vector<std::int64_t>>> columns;
 };
 
@@ -84,7 +84,7 @@ Result<Views> look(const job::Archive& archive, int most_shown) {
     return views;
 }
 
-/// A picture whose every pixel is asked for, at `scale` picture pixels per image pixel.
+/// A picture filled pixel by pixel, at `scale` picture pixels per image pixel.
 template <class ColourAt>
 Image paint(int width, int height, const ColourAt& colour_at) {
     Image image{width, height, std::vector<std::uint8_t>(static_cast<std::size_t>(width) * height * 3)};
@@ -108,7 +108,7 @@ Colour colour_of_layer(const std::vector<Shot>& shots, int row, int column) {
     return dark;
 }
 
-/// From the front: what most of the light of a column and a layer belongs to.
+/// From the front: the material with most of the light in a column of a layer.
 Colour colour_of_front(const Views& views, int layer, int column) {
     const auto& materials = views.columns[static_cast<std::size_t>(layer)];
     int owner = -1;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double left = 54, right = 590, top = 8, bottom = 222;
 
-/// 1, 2 or 5 times a power of ten, 3 to 6 of them up to `most`.
+/// Step of the axis marks: 1, 2 or 5 times a power of ten, with 3 to 6 marks up to `most`.
 double step_of(double most) {
     const double decade = std::pow(10, std::floor(std::log10(most)));
     const double share = most / decade;

@@ -1,4 +1,4 @@
-// Lines over the layers of a print, as an SVG drawing in a card of report.css: no script, sharp at any size.
+// A line plot over the layers of a print, as an SVG drawing in a card of report.css: no script, sharp at any size.
 #pragma once
 
 #include <string>
@@ -15,7 +15,8 @@ struct LayerLine {
     bool dashed = false;
 };
 
-/// From 0 to the largest value. `layers` of the whole print, at least 1. Names are escaped, title and unit are not.
+/// The axis runs from 0 to the largest value. `layers` of the whole print, at least 1. Names are escaped, title and
+/// unit are not.
 [[nodiscard]] std::string layer_plot(std::string_view title, std::string_view unit, const std::vector<LayerLine>& lines,
                                      int layers);
 

@@ -16,14 +16,14 @@ namespace {
 constexpr Colour paper{1, 1, 1};
 constexpr Colour ink{0.16, 0.18, 0.22};
 constexpr Colour faint{0.85, 0.87, 0.90};
-constexpr double left = 220;  // of all charts; the names of rows stand before it
+constexpr double left = 220;  // of all charts; row labels are to the left of it
 constexpr double right = 1540;
 constexpr double row_height = 44;
 
 const Font label{.size = 20, .colour = ink, .align = Align::right};
 const Font tick{.size = 17, .colour = ink, .align = Align::centre};
 
-/// A round distance of marks (1, 2 or 5 times a power of ten) that gives at most ten of them, but no less than `least`.
+/// Distance of axis marks (1, 2 or 5 times a power of ten) for at most ten marks, but no less than `least`.
 double mark_step(double length, double least) {
     const double power = std::pow(10, std::floor(std::log10(std::max(length, least) / 10)));
     for (const double step : {power, 2 * power, 5 * power, 10 * power}) {
@@ -55,7 +55,7 @@ void draw_title(Canvas& canvas, double y, std::string_view text) {
     canvas.text({60, y}, text, {.size = 24, .colour = ink, .bold = true});
 }
 
-/// One bar from the beginning to the end of the print, cut where the time goes, with the parts named below it.
+/// One bar from the beginning to the end of the print, divided by activity, with labels below.
 void draw_time(Canvas& canvas, const plan::Seconds& s) {
     draw_title(canvas, 158, "Time");
     const std::array<std::pair<const char*, double>, 4> parts = {

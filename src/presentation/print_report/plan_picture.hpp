@@ -11,10 +11,10 @@
 
 namespace pliant::report {
 
-/// A PNG file of 1600 x 1000 pixels. `swap` is plan::longest_swap(); without stretches its panel says so.
+/// A PNG file of 1600 x 1000 pixels. `swap` is plan::longest_swap(); if it has no phases, its panel says so.
 [[nodiscard]] Result<std::string> plan_picture(const plan::Plan& plan, const plan::SwapTimeline& swap);
 
-/// The runs of consecutive layers [first, last] that print from a vat (an index into Printer::vats).
+/// The ranges of consecutive layers [first, last] printed from a vat (an index into Printer::vats).
 struct LayerRun {
     int first = 0;
     int last = 0;

@@ -44,7 +44,7 @@ struct Printed {
     const PrintExtras& extras;
     PrintStory story;
     plan::Plan plan;
-    std::vector<double> planned_at_s;  ///< of every layer's first light, counted from the first of all
+    std::vector<double> planned_at_s;  ///< of every layer's first exposure, counted from the first of all
 };
 
 std::string swatch(int material) {
@@ -87,7 +87,7 @@ std::vector<double> planned_times(const plan::Plan& plan, const job::Manifest& j
     return at;
 }
 
-/// When the first light of each layer was given; -1: never.
+/// Time of the first exposure of each layer; -1: none.
 std::vector<double> given_times(const PrintStory& story, std::size_t layers) {
     std::vector<double> at(layers, -1);
     for (const auto& [key, light] : story.lights) {
@@ -100,7 +100,7 @@ std::vector<double> given_times(const PrintStory& story, std::size_t layers) {
 
 // --- resin ---------------------------------------------------------------------------------------------------------
 
-/// ml of every material in the layers that have had their light, and in all layers.
+/// ml of every material, in the exposed layers and in all layers.
 struct Resin {
     double printed_ml = 0, all_ml = 0;
 };

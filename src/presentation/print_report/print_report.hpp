@@ -1,5 +1,5 @@
-// report.html of a print: what was printed, plan against what happened, light per layer, faults and how they were
-// survived, resin, journal; one page that needs no network.
+// report.html of a print: what was printed, plan and actual times, exposure per layer, faults and how they were
+// handled, resin, journal; one page that needs no network.
 #pragma once
 
 #include <filesystem>
@@ -16,22 +16,22 @@
 
 namespace pliant::report {
 
-/// What the journal does not hold; empty or below 0: not known.
+/// Facts that the journal does not hold; empty or below 0: unknown.
 struct PrintExtras {
     std::string machine;   ///< "virtual printer", "/dev/ttyACM0"
-    std::string firmware;  ///< as M115 names it
+    std::string firmware;  ///< as reported by M115
     long lines_sent = -1;
     long resends = -1;
-    std::shared_ptr<const CuredBlock> block;  ///< of the virtual printer; null: there is none
+    std::shared_ptr<const CuredBlock> block;  ///< of the virtual printer; null: none
 };
 
-/// The page. Errors: a job that cannot be planned or drawn, a journal that tells of another job. Cost: every image is
-/// decoded twice.
+/// The page. Errors: a job that cannot be planned or drawn, a journal of another job. Cost: every image is decoded
+/// twice.
 [[nodiscard]] Result<std::string> print_report(const job::Archive& archive, const machine::Printer& printer,
                                                const std::vector<host::JournalRecord>& journal,
                                                const PrintExtras& extras);
 
-/// Of a job file and the journal beside it. Errors: neither can be read, the journal is of another job.
+/// For a job file and the journal beside it. Errors: one of them cannot be read, the journal is of another job.
 [[nodiscard]] Result<std::string> print_report(const std::filesystem::path& job, const std::filesystem::path& journal,
                                                const PrintExtras& extras);
 

@@ -39,8 +39,8 @@ void dark(Records& records, long number, double on_s, bool done, const std::stri
         {{"light", std::to_string(number)}, {"on", std::to_string(on_s)}, {"done", done ? "1" : "0"}, {"by", by}});
 }
 
-/// Layer 0 as planned; in the light of layer 1 the host dies after 1 s; another gives the rest after a restart of the
-/// computer, whose clock begins anew.
+/// Layer 0 as planned; during the exposure of layer 1 the host dies after 1 s; another gives the rest after a restart
+/// of the computer, whose clock starts anew.
 Records survived() {
     Records records;
     add(records, "begin", {{"job", "<b>two</b>"}, {"digest", "d"}, {"printer", "tower"}, {"format", "1"}});
@@ -67,7 +67,7 @@ TEST_CASE("a journal is told: light in pieces adds up, the clock counts on, faul
     CHECK(pieces.complete);
     CHECK(pieces.lit_s == near(2.5, {.relative = 1e-12}));
     CHECK(pieces.at_s == near(60, {.relative = 1e-12}));
-    // The second run of the computer counts on from the last light that is known.
+    // The second boot of the computer continues from the last known exposure.
     CHECK(story.lights.at({1, 1}).at_s == near(60 + 30, {.relative = 1e-12}));
     REQUIRE(story.faults == 2);
     CHECK(story.happenings[0].text == "the host died in the light of layer 1; its guard made dark after 1.00 s");
@@ -77,7 +77,7 @@ TEST_CASE("a journal is told: light in pieces adds up, the clock counts on, faul
 
 TEST_CASE("a print that was broken off and left says so; one that is damaged names the record") {
     Records records = survived();
-    records.resize(5);  // the light of layer 1 is on
+    records.resize(5);  // the exposure of layer 1 is on
     const PrintStory story = story_of(records).value();
     CHECK(story.end == PrintEnd::interrupted);
     REQUIRE(story.happenings.size() == 1);

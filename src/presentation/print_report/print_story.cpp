@@ -43,11 +43,11 @@ private:
 
     PrintStory story_;
     std::string boot_;
-    std::optional<double> zero_s_;  ///< on the devices' clock: when the first light of the print would have been
+    std::optional<double> zero_s_;  ///< on the devices' clock: the time of the print's first exposure
     double last_at_s_ = -1;
     int last_layer_ = -1;
-    std::map<long, std::pair<int, int>> open_;      ///< light by record
-    std::map<long, std::pair<double, int>> begun_;  ///< when, and of which layer, each light began, by record
+    std::map<long, std::pair<int, int>> open_;      ///< running exposures, by record
+    std::map<long, std::pair<double, int>> begun_;  ///< start time and layer of each exposure, by record
 };
 
 Status Teller::session(const host::JournalRecord& record) {
@@ -153,7 +153,7 @@ Status Teller::take(const host::JournalRecord& record) {
     return {};
 }
 
-/// A fault has been survived where light was given after it.
+/// A fault was survived if exposures follow it.
 void Teller::say_how_it_went_on(std::size_t index) {
     Happening& h = story_.happenings[index];
     if (!h.fault) return;

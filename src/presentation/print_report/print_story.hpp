@@ -1,5 +1,5 @@
-// What a journal tells of a print, as people would tell it: which light was given when, what went wrong, how it went
-// on.
+// The course of a print, extracted from its journal: which exposure was given when, what went wrong, and how it
+// continued.
 #pragma once
 
 #include <map>
@@ -12,23 +12,23 @@
 
 namespace pliant::report {
 
-/// Light of one image, all its pieces together.
+/// Exposure of one image, all its pieces together.
 struct GivenLight {
     double planned_s = 0;
     double lit_s = 0;
-    double at_s = 0;  ///< when it began, counted from the first light of the print
+    double at_s = 0;  ///< start time, counted from the first exposure of the print
     int pieces = 0;
     bool complete = false;
 };
 
-/// Something that was not just the next light.
+/// An event other than the next exposure.
 struct Happening {
-    long record = 0;   ///< of the journal
-    double at_s = -1;  ///< of the light before it, counted from the first light; -1: before all light
-    int layer = -1;    ///< of that light
+    long record = 0;   ///< record number in the journal
+    double at_s = -1;  ///< time of the exposure before it, counted from the first exposure; -1: before any
+    int layer = -1;    ///< layer of that exposure
     bool fault = false;
     std::string text;
-    std::string then;  ///< how it went on
+    std::string then;  ///< how the print continued
 };
 
 enum class PrintEnd { not_begun, complete, cancelled, interrupted };
@@ -36,15 +36,15 @@ enum class PrintEnd { not_begun, complete, cancelled, interrupted };
 struct PrintStory {
     std::string job, digest, printer;
     PrintEnd end = PrintEnd::not_begun;
-    int sessions = 0;                                  ///< hosts that have worked on it
+    int sessions = 0;                                  ///< number of hosts that have worked on it
     std::map<std::pair<int, int>, GivenLight> lights;  ///< by layer and material
-    std::map<std::pair<int, int>, int> order;          ///< of those: which came first, from 0
+    std::map<std::pair<int, int>, int> order;          ///< for the same keys: the order of the exposures, from 0
     std::vector<Happening> happenings;
     int faults = 0;
 };
 
-/// The clock counts on over sessions of one run of the computer; over a restart the time between counts as none.
-/// Errors: a record without the values of its kind.
+/// Time accumulates over sessions within one boot of the computer; the time between boots counts as zero. Errors: a
+/// record without the values of its kind.
 [[nodiscard]] Result<PrintStory> story_of(const std::vector<host::JournalRecord>& records);
 
 }  // namespace pliant::report

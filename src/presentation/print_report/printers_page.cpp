@@ -70,7 +70,7 @@ std::string figures_table(const std::vector<Printer>& printers) {
     return text + "</table>\n";
 }
 
-/// The bars of one swap as a drawing: a row for every device, a scale in seconds.
+/// A Gantt chart of one swap: a row for every device, a scale in seconds.
 std::string gantt(const plan::SwapTimeline& swap) {
     constexpr double left = 120, width = 900, height = 26;
     const auto rows = static_cast<double>(swap.devices.size());
@@ -151,7 +151,7 @@ Result<std::string> growth_plot(const std::vector<Printer>& printers) {
     return fmt::format("<img alt=\"swap time over vats\" src=\"data:image/png;base64,{}\">\n", base64(*png));
 }
 
-/// Seconds of a swap of the first tower, over the length of its bed and the speed of its motors.
+/// Swap time of the first tower, over the length of its bed and the speed of its motors.
 std::string bed_table(const std::vector<Printer>& printers) {
     const Kinds kinds(printers);
     const Printer* p = kinds.tower != nullptr ? kinds.tower : kinds.wall != nullptr ? kinds.wall : kinds.line;
@@ -199,7 +199,7 @@ std::string cleaning_table() {
                spray.tau_s, sound.reach, sound.tau_s);
 }
 
-/// The row of table 4.2 that disagrees with the weights beside it, and whose shares it has got instead.
+/// The row of table 4.2 that disagrees with the weights beside it, and whose shares it shows instead.
 std::string pyramids() {
     std::string text = "<li><b>The pyramids of table 4.2.</b> The table disagrees with the weights beside it:";
     for (const machine::CleaningTest& t : machine::cleaning_tests()) {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int width_px = 1600, height_px = 800, title_px = 130;
 constexpr Colour paper{1, 1, 1}, ink{0.16, 0.18, 0.22};
-constexpr Colour fixed{0.62, 0.64, 0.68};  // to the platform: it does not get wet
+constexpr Colour fixed{0.62, 0.64, 0.68};  // faces on the platform: they are not sprayed
 constexpr Colour clean{0.80, 0.87, 0.91}, halfway{0.95, 0.74, 0.38}, wet{0.72, 0.13, 0.16};
 
 Colour colour_of(double left) {
@@ -29,7 +29,7 @@ struct Skin {
     std::vector<Colour> colours;
 };
 
-/// Sides of cells as a surface, in metres; turned about x so that the jets' or the platform's side is up.
+/// Sides of cells as a surface, in metres; rotated about x so that the side of the jets or of the platform is up.
 class SkinMaker {
 public:
     SkinMaker(const wash::PartCells& part, bool from_platform)
@@ -97,7 +97,7 @@ Result<Image> view_of(const Skin& skin, int wide, int high) {
     return render(scene, camera, wide, high, Progress{});
 }
 
-/// The colours with what they mean, at the right of the heading.
+/// The colour scale, at the right of the heading.
 void draw_scale(Canvas& canvas) {
     constexpr double x = 1180, y = 34, step = 12;
     constexpr int steps = 30;

@@ -1,4 +1,4 @@
-// What the spray leaves on a part, as a picture.
+// A picture of what the spray leaves on a part.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace pliant::report {
 
-/// A PNG file of 1600 x 800 pixels: the part from the side of the jets and from that of the platform, coloured by the
-/// share of the film that stays. `cleanness` belongs to `faces`. Errors: a part without a face.
+/// A PNG file of 1600 x 800 pixels: the part seen from the jets and from the platform, coloured by the share of the
+/// film that remains. `cleanness` belongs to `faces`. Errors: a part without a face.
 [[nodiscard]] Result<std::string> wash_picture(std::string_view title, const wash::PartCells& part,
                                                const std::vector<wash::Face>& faces, const wash::Cleanness& cleanness);
 

@@ -1,4 +1,4 @@
-// Text files that the build puts into the program for report.html.
+// Text files for report.html, compiled into the program.
 #pragma once
 
 #include <string_view>
@@ -9,6 +9,6 @@ extern const std::string_view report_css;
 extern const std::string_view report_js;
 extern const std::string_view dygraphs_js;  ///< dygraphs, MIT licence
 extern const std::string_view dygraphs_css;
-extern const std::string_view dygraphs_licence;  ///< its copyright notice, which has to go with every copy
+extern const std::string_view dygraphs_licence;  ///< its copyright notice, which must accompany every copy
 
 }  // namespace pliant::report::assets

@@ -36,7 +36,7 @@ double difference_mm(const sim::Step& step, const sim::Trajectory& reference) {
     return 1e3 * largest;
 }
 
-/// Records with a positive number: all but where attempts began.
+/// Number of records with a positive iteration number, without the starts of attempts.
 int count_iterations(const sim::Trajectory& result) {
     return static_cast<int>(
         std::ranges::count_if(result.iterations, [](const sim::IterationRecord& r) { return r.iteration > 0; }));
@@ -112,7 +112,7 @@ Result<std::string> convergence_png(std::span<const SolverRun> runs) {
         for (const sim::IterationRecord& record : run.result.iterations) {
             if (record.step == 1 && record.iteration > 0) series.points.push_back({++count, record.residual});
         }
-        // auto is mostly one of the others: then one line has both names.
+        // auto usually equals one of the others: then one line has both names.
         const auto same = std::ranges::find_if(plot.series, [&](const Series& s) {
             return std::ranges::equal(s.points, series.points,
                                       [](const Point2& a, const Point2& b) { return a.x == b.x && a.y == b.y; });

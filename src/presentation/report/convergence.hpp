@@ -1,4 +1,4 @@
-// How solvers come to rest: one program run by several of them, side by side, and the iterations of one run.
+// Convergence of solvers: one program run by several of them, compared, and the iterations of one run.
 #pragma once
 
 #include <span>
@@ -15,18 +15,18 @@ struct SolverRun {
     sim::Trajectory result;
 };
 
-/// One solver against the reference: Newton, or the first where that one did not take part.
+/// One solver compared with the reference: Newton, or the first one if Newton did not take part.
 struct SolverRow {
     std::string solver;
-    bool converged = false;  ///< the whole program was run
+    bool converged = false;  ///< the program ran to its end
     int steps = 0;           ///< that converged
-    int iterations = 0;      ///< of all steps and attempts, also of those in vain
+    int iterations = 0;      ///< of all steps and attempts, including failed ones
     double solve_s = 0;
-    double residual = 0;       ///< these three at the last step that converged
+    double residual = 0;       ///< this and the next two: at the last step that converged
     double energy_J = 0;       ///< as Step::energy_J
-    double difference_mm = 0;  ///< largest distance of a marker (of a node, without markers) from the reference's at
-                               ///< that step; not a number if the reference has none
-    std::string message;       ///< why it stopped, if it did
+    double difference_mm = 0;  ///< largest distance of a marker (of a node, without markers) from the reference at that
+                               ///< step; NaN if the reference has none
+    std::string message;       ///< why it stopped early
 };
 [[nodiscard]] std::vector<SolverRow> compare(std::span<const SolverRun> runs);
 
@@ -37,15 +37,15 @@ struct SolverRow {
 /// The same as a table; header line first.
 [[nodiscard]] std::string comparison_csv(std::span<const SolverRow> rows);
 
-/// Every iteration of every run: as iterations.csv with a column `run` in front, the solver that was asked for.
+/// Every iteration of every run: like iterations.csv with a leading column `run`, the requested solver.
 [[nodiscard]] std::string convergence_csv(std::span<const SolverRun> runs);
 
-/// Residual over iterations of the first step, where all begin at the same state. Both axes by powers of ten.
-/// PNG as of plot_png.
+/// Residual over iterations of the first step, which all solvers start from the same state. Both axes are logarithmic.
+/// PNG as from plot_png.
 [[nodiscard]] Result<std::string> convergence_png(std::span<const SolverRun> runs);
 
 /// For report.html: {"solvers": [names], "rows": [[number, index of solver, residual], ...]}, at most about 4,000 rows;
-/// where there are more, evenly chosen ones and the last of every attempt.
+/// if there are more, an even selection and the last of every attempt.
 [[nodiscard]] std::string iterations_json(const sim::Trajectory& result);
 
 }  // namespace pliant::report

@@ -59,7 +59,7 @@ TEST_CASE("solvers are compared with Newton at the last step that they share") {
     CHECK(rows[1].difference_mm == 0);
 
     std::swap(runs[0], runs[1]);
-    runs[0].asked = sim::Solver::anderson;  // now the first is the reference, and it stops early
+    runs[0].asked = sim::Solver::anderson;  // now the first one is the reference, and it stops early
     runs[0].result.steps.pop_back();
     runs[0].result.steps.pop_back();
     CHECK(std::isnan(compare(runs)[1].difference_mm));
@@ -84,7 +84,7 @@ TEST_CASE("convergence.csv has every iteration of every run, the picture those o
     const auto picture = convergence_png(runs);
     REQUIRE(picture);
     CHECK(picture->substr(1, 3) == "PNG");
-    // What happens in the second step does not change it, what happens in the first does.
+    // The plot depends on the first step only.
     auto second = runs;
     second[0].result.iterations[8].residual = 0.5;
     REQUIRE(second[0].result.iterations[8].step == 2);

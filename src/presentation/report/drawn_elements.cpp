@@ -9,15 +9,15 @@
 namespace pliant::report {
 namespace {
 
-constexpr double tint = 0.45, edge_opacity = 0.85, edge_width = 1.3;  // of a picture that fills the canvas
+constexpr double tint = 0.45, edge_opacity = 0.85, edge_width = 1.3;  // for a picture that fills the canvas
 
-/// A face in the picture: its border in order, and how far away it is.
+/// A projected face: its border in order, and its distance.
 struct DrawnFace {
-    std::vector<Point2> border;  ///< closed: the first point is the last one, too
+    std::vector<Point2> border;  ///< closed: the last point repeats the first
     double depth_m = 0;
 };
 
-/// Twice the area, positive for a border that runs clockwise on the picture, whose y points down.
+/// Twice the signed area, positive for a clockwise border in picture coordinates, whose y points down.
 double turn_of(const std::vector<Point2>& border) {
     double sum = 0;
     for (std::size_t k = 1; k < border.size(); ++k)
@@ -27,7 +27,7 @@ double turn_of(const std::vector<Point2>& border) {
 
 DrawnFace drawn_face(const mesh::Face& face, std::span<const Vec3> positions, const Frame& frame,
                      const Camera& camera) {
-    // Corners and, where the mesh is quadratic, the nodes in the middle of the edges between them.
+    // Corners and, for a quadratic mesh, the mid-edge nodes between them.
     static constexpr std::array<std::size_t, 7> round = {0, 3, 1, 4, 2, 5, 0};
     DrawnFace drawn;
     for (const std::size_t k : round) {
@@ -48,13 +48,14 @@ void draw_elements(Canvas& canvas, const Frame& frame, const Camera& camera, con
         if (!s.region_actuates[region]) continue;
         for (const mesh::Face& face : mesh::region_faces(s.mesh, static_cast<int>(region))) {
             DrawnFace drawn = drawn_face(face, s.result.steps[step].positions, frame, camera);
-            // Corners run counter-clockwise where their normal, out of the space, looks at the camera.
+            // The border is counter-clockwise if the outward normal faces the camera.
             if (turn_of(drawn.border) < 0) faces.push_back(std::move(drawn));
         }
     }
     std::stable_sort(faces.begin(), faces.end(),
                      [](const DrawnFace& a, const DrawnFace& b) { return a.depth_m > b.depth_m; });
-    const double width = edge_width * std::sqrt(frame.height / canvas.height());  // thinner, but still seen
+    const double width = edge_width * std::sqrt(frame.height / canvas.height());  // thinner in small pictures, but
+                                                                                  // still visible
     for (const DrawnFace& face : faces) {
         canvas.area(face.border, element_colour, tint);
         canvas.line(face.border, width, element_edge_colour, edge_opacity);

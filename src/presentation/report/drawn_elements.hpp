@@ -1,4 +1,4 @@
-// The elements of empty space that drive actuators, as the thesis' figures of gap and air elements show them.
+// Draws the elements of meshed space that drive actuators, like the thesis' figures of gap and air elements.
 #pragma once
 
 #include "presentation/draw/camera.hpp"
@@ -7,14 +7,14 @@
 
 namespace pliant::report {
 
-/// Where on a canvas, in its units, the picture of a camera lies.
+/// Position of a camera's picture on a canvas, in canvas units.
 struct Frame {
     Point2 corner;  ///< top left
     double width = 0, height = 0;
 };
 
-/// The tets' faces on the surface of that space which look at the camera, tinted, with their edges in a darker tone.
-/// They are seen through the body that is in front of them.
+/// Draws the faces on the surface of that space that face the camera, tinted, with their edges in a darker tone. They
+/// are visible through the body in front of them.
 void draw_elements(Canvas& canvas, const Frame& frame, const Camera& camera, const Simulation& simulation,
                    std::size_t step);
 

@@ -8,8 +8,8 @@
 
 namespace pliant::report {
 
-/// One file per step, rest state first, and the collection that gives each its time. Points in mm; point data
-/// displacement_mm; cell data region, material (-1: void), J, von_mises_kPa, max_stretch, energy_density_kPa.
+/// One file per step, rest state first, and the collection with their times. Points in mm; point data displacement_mm;
+/// cell data region, material (-1: void), J, von_mises_kPa, max_stretch, energy_density_kPa.
 [[nodiscard]] Status write_frames(const std::filesystem::path& folder, const Simulation& simulation,
                                   Progress& progress);
 

@@ -21,7 +21,7 @@ Vec3 y_up(const Vec3& v) {
     return {v.x, v.z, -v.y};
 }
 
-/// The same of a turn w, x, y, z, as x, y, z, w.
+/// The same conversion for a rotation, w, x, y, z to x, y, z, w.
 std::array<float, 4> turn_y_up(const std::array<double, 4>& q) {
     const Vec3 axis = y_up({q[1], q[2], q[3]});
     return {static_cast<float>(axis.x), static_cast<float>(axis.y), static_cast<float>(axis.z),
@@ -114,7 +114,7 @@ Json primitive_json(Buffer& buffer, const Motion& motion, int material) {
     return out;
 }
 
-/// The part of the surface of one material in all poses, with vertices counted anew.
+/// The surface of one material in all poses, with renumbered vertices.
 Motion material_motion(const Surface& surface, const std::vector<Pose>& poses, int material) {
     Motion motion;
     std::vector<int> renumbered(surface.vertex_node.size(), -1);
@@ -155,7 +155,7 @@ Motion cable_motion(const Simulation& s, std::size_t cable, const std::vector<st
     return motion;
 }
 
-/// A rigid thing without motion, seen from the point about which it turns; its node moves.
+/// A rigid body relative to its centre of rotation; its node is animated.
 Motion rigid_motion(const Obstacle& obstacle) {
     const Surface surface = rigid_surface(obstacle.surface);
     Pose rest = pose(surface, obstacle.surface.points);
@@ -171,8 +171,8 @@ Json material_json(const std::string& name, const Colour& srgb, double roughness
              {{"baseColorFactor", {c.r, c.g, c.b, 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", roughness}}}};
 }
 
-/// Key times in [0, duration], strictly rising as the format demands: in proportion to the program's own time or, where
-/// that does not rise, evenly spread.
+/// Key times in [0, duration], strictly increasing as the format requires: proportional to program time or, if that
+/// does not increase, evenly spaced.
 std::vector<float> key_times(const Simulation& s, const std::vector<std::size_t>& steps, double duration_s) {
     std::vector<float> times, even;
     const double begin = s.result.steps[steps.front()].time, end = s.result.steps[steps.back()].time;
@@ -185,8 +185,8 @@ std::vector<float> key_times(const Simulation& s, const std::vector<std::size_t>
     return rising ? times : even;
 }
 
-/// Weights one target at a time, so that LINEAR interpolation runs from each kept step to the next. The first `morphed`
-/// nodes have targets, the obstacles' nodes follow and are moved.
+/// Animates the weights of one target at a time, so that LINEAR interpolation leads from each kept step to the next.
+/// The first `morphed` nodes have targets; the obstacles' nodes follow and are moved.
 Json animation_json(Buffer& buffer, const Simulation& s, const std::vector<std::size_t>& steps, double duration_s,
                     std::size_t morphed) {
     std::vector<float> weights;
@@ -291,7 +291,7 @@ private:
         if (!primitives.empty()) add_mesh("cables", std::move(primitives));
     }
 
-    /// A mesh and a node each, which the animation moves.
+    /// One mesh and one animated node for each.
     void add_obstacles() {
         if (s_.obstacles.empty()) return;
         materials_.push_back(material_json("obstacle", obstacle_colour, 0.9));

@@ -45,7 +45,7 @@ std::string table(std::string_view kind, const std::vector<std::string>& header,
     return out + "</tbody></table></div>\n";
 }
 
-/// The lamp beside the name: no green one where there is a warning.
+/// The status lamp beside the name: not green if there are warnings.
 struct Verdict {
     std::string_view kind, text;  ///< a class of report.css, and what it says
 };

@@ -12,7 +12,7 @@ using namespace pliant::report;
 
 namespace {
 
-/// The page without the plotting library, whose own code is of no interest here.
+/// The page without the plotting library.
 std::string page(const Simulation& s) {
     std::string html = report_html(s, {{"final.png", "The <end>", "PNG bytes"}});
     const std::size_t begin = html.find("<script>");

@@ -14,7 +14,7 @@ using sim::identify::Identification;
 
 constexpr std::size_t most_over_time = 3;
 
-/// In the order of time.
+/// In chronological order.
 using Rows = std::vector<Compared>;
 
 /// The values of one unit, by channel.

@@ -1,4 +1,4 @@
-// Measured values beside those that were simulated before and after an identification, as plots.
+// Plots of measured values and those simulated before and after an identification.
 #pragma once
 
 #include <string>
@@ -14,9 +14,9 @@ struct NamedPlot {
     Plot plot;
 };
 
-/// One for each unit. Up to three columns are drawn over time: measured as points, simulated before and after as
-/// lines; of more, simulated over measured values, which all lie on the diagonal where they agree. Lengths and forces
-/// of a column are counted from its first measured value, so that small changes of large coordinates show.
+/// One plot per unit. Up to three columns are drawn over time: measured as points, simulated before and after as lines;
+/// with more columns, simulated over measured values, which lie on the diagonal if they agree. Lengths and forces of a
+/// column are relative to its first measured value, so that small changes of large coordinates are visible.
 [[nodiscard]] std::vector<NamedPlot> identified_plots(const sim::identify::Identification& result);
 
 }  // namespace pliant::report

@@ -21,7 +21,7 @@ using sim::inverse::Waypoint;
 
 constexpr double mm_per_m = 1e3;
 
-/// Of an error; and of what is wanted and got, where that is not a direction.
+/// Unit of an error; and of wanted and reached values, except directions.
 InputUnit unit_of(const Goal& goal) {
     switch (goal.kind) {
         case GoalKind::direction:
@@ -52,7 +52,7 @@ Json points_json(const Goal& goal, const std::vector<Vec3>& points) {
     return list;
 }
 
-/// Of a plane its point; its normal has no unit.
+/// For a plane its point only; its normal has no unit.
 std::vector<Vec3> wanted_points(const Goal& goal, std::size_t waypoint) {
     std::vector<Vec3> points = goal.at(waypoint);
     if (goal.kind == GoalKind::plane) points.resize(1);

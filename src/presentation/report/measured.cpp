@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> suffixes = {"_x_mm", "_y_mm", "_z_mm"};
 
-/// Which columns hold a marker's coordinates.
+/// The columns with a marker's coordinates.
 struct Columns {
     std::size_t marker = 0;
     std::array<std::optional<std::size_t>, 3> at;
@@ -55,7 +55,7 @@ Result<std::vector<Columns>> read_header(const CsvTable& table, const std::vecto
     return found;
 }
 
-/// The point of a row, nothing where all its cells are empty.
+/// The point in a row; empty if all its cells are empty.
 Result<std::optional<Vec3>> read_point(const CsvTable& table, const CsvRow& row, const Columns& columns,
                                        const sim::MarkerState& marker) {
     Vec3 point = marker.position_m;
@@ -156,7 +156,7 @@ Plot measured_plot(const std::vector<MeasuredPath>& paths, const sim::Trajectory
             }
         }
     }
-    std::size_t along = 1;  // of equal ones y, the usual way to look at a robot that bends in x and z
+    std::size_t along = 1;  // on a tie y: the usual view of a robot that bends in x and z
     for (const std::size_t k : {std::size_t{0}, std::size_t{2}}) {
         if (most[k] - least[k] < most[along] - least[along]) along = k;
     }

@@ -1,4 +1,4 @@
-// Trajectories of markers that were measured, or come from elsewhere, beside the simulated ones.
+// Measured marker trajectories, or ones from elsewhere, compared with the simulated ones.
 #pragma once
 
 #include <string>
@@ -17,27 +17,28 @@ struct MeasuredPath {
     std::vector<Vec3> points;  ///< m, in order; at least one
 };
 
-/// The columns of markers.csv: NAME_x_mm, NAME_y_mm, NAME_z_mm of any markers of the simulation, in any order, other
-/// columns (index, time) passed over. A video shows two coordinates: one that has no column, or an empty cell, is that
-/// of the marker at rest. Rows in which all three cells of a marker are empty are left out of its path. Errors: file,
-/// line and what is wrong; no column of a marker of `rest`; a marker that the simulation does not have.
+/// Reads the columns of markers.csv: NAME_x_mm, NAME_y_mm, NAME_z_mm of any markers of the simulation, in any order;
+/// other columns (index, time) are ignored. A missing column, or an empty cell, is replaced by the coordinate of the
+/// marker at rest: a video shows only two coordinates. Rows in which all three cells of a marker are empty are skipped.
+/// Errors, with file and line: no column for any marker of `rest`; a marker that the simulation does not have; invalid
+/// values.
 [[nodiscard]] Result<std::vector<MeasuredPath>> parse_measured(std::string_view text, const std::string& file,
                                                                const sim::Step& rest);
 
-/// How far measured points lie from the simulated way, the polyline through all steps.
+/// Distance of measured points from the simulated path, the polyline through all steps.
 struct Deviation {
     std::string marker;
     std::size_t points = 0;
     double mean_m = 0, largest_m = 0;
-    double way_m = 0;  ///< length of the simulated way
+    double way_m = 0;  ///< length of the simulated path
 };
 [[nodiscard]] std::vector<Deviation> deviations(const std::vector<MeasuredPath>& paths, const sim::Trajectory& result);
 
 /// "marker tip: 12 measured points, 0.8 mm from the simulated way on average, 1.9 mm at most (1.6 % of the way)".
 [[nodiscard]] std::string deviation_line(const Deviation& deviation);
 
-/// Simulated ways as lines and measured points as dots, in mm, seen along the axis in which the markers move least.
-/// `as`: what the points are called.
+/// Simulated paths as lines and measured points as dots, in mm, seen along the axis of least marker motion. `as`: label
+/// of the points.
 [[nodiscard]] Plot measured_plot(const std::vector<MeasuredPath>& paths, const sim::Trajectory& result,
                                  const std::string& as = "measured");
 

@@ -29,7 +29,7 @@ struct Histogram {
     double end;             ///< of the last bin; the first begins at 0
     double tick;            ///< distance of the marks on the axis
     std::size_t poor_low;   ///< bins below are drawn in red
-    std::size_t poor_high;  ///< and from here on
+    std::size_t poor_high;  ///< and bins from here on
 };
 
 void draw_axis(Canvas& canvas, const Frame& frame, const Histogram& h) {

@@ -1,4 +1,4 @@
-// How well shaped are the tets of a mesh? Two histograms on one picture.
+// Shape quality of the tets of a mesh: two histograms in one picture.
 #pragma once
 
 #include <string>

@@ -30,7 +30,7 @@ std::string metres_text(double metres) {
                          : fmt::format("{:g} m", metres);
 }
 
-/// The font, smaller where the text would not fit into `room`.
+/// The font, reduced if the text would not fit into `room`.
 Font fitting(const Canvas& canvas, const std::string& text, double room, Font font) {
     const double width = canvas.text_width(text, font);
     if (width > room) font.size *= room / width;
@@ -56,7 +56,7 @@ void draw_legend(Canvas& canvas, const std::vector<std::pair<Colour, std::string
     const double swatch = 24, baseline = canvas.height() - margin;
     double x = margin;
     for (const auto& [colour, name] : entries) {
-        if (x > 0.66 * canvas.width()) {  // the scale bar has the rest
+        if (x > 0.66 * canvas.width()) {  // the rest is for the scale bar
             canvas.text({x, baseline}, "…", {23, ink});
             return;
         }

@@ -1,4 +1,4 @@
-// What is written over a picture: heading, material legend, scale bar, colour bar, marker paths.
+// Annotations of a picture: heading, material legend, scale bar, colour bar, marker paths.
 #pragma once
 
 #include <string>
@@ -13,23 +13,23 @@ namespace pliant::report {
 
 void draw_heading(Canvas& canvas, const std::string& title, const std::string& line);
 
-/// Two lines over a panel whose top left corner is `corner`, made to fit its width.
+/// Two lines above a panel with its top left corner at `corner`, fitted to its width.
 void draw_panel_caption(Canvas& canvas, const Point2& corner, double width, const std::string& title,
                         const std::string& line);
 
 /// Swatches with names from the bottom left.
 void draw_legend(Canvas& canvas, const std::vector<std::pair<Colour, std::string>>& entries);
 
-/// A bar of a round length, true at the depth of `centre`, at the bottom right.
+/// A bar of a round length, to scale at the depth of `centre`, at the bottom right.
 void draw_scale_bar(Canvas& canvas, const Camera& camera, const Vec3& centre);
 
-/// The colour map from 0 to `top`, at the right; `highest` is the largest value there is.
+/// The colour map from 0 to `top`, at the right; `highest` is the largest value present.
 void draw_colour_bar(Canvas& canvas, const std::string& title, double top, const std::string& unit, double highest);
 
-/// The way of each marker over all steps, with its name at the end.
+/// The path of each marker over all steps, with its name at the end.
 void draw_marker_paths(Canvas& canvas, const Camera& camera, const sim::Trajectory& result);
 
-/// Measured points as rings, with a thin line through those of a marker.
+/// Measured points as rings, with a thin line connecting those of a marker.
 void draw_measured(Canvas& canvas, const Camera& camera, const std::vector<MeasuredPath>& paths);
 
 }  // namespace pliant::report

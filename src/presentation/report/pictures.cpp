@@ -17,13 +17,13 @@
 namespace pliant::report {
 namespace {
 
-constexpr double heading_share = 0.12;  // of the height, over the stages
+constexpr double heading_share = 0.12;  // of the height, above the stages
 constexpr std::array<double, 4> plain_margins = {0.06, 0.06, 0.12, 0.14};
 constexpr std::array<double, 4> bar_margins = {0.06, 0.16, 0.10, 0.14};
 constexpr Colour stage_backdrop = {0.955, 0.962, 0.970};
-constexpr double near_share = 0.25;  // of the robot's size: obstacles this near are in the picture
+constexpr double near_share = 0.25;  // of the robot's size: obstacles this near are included in the picture
 constexpr double closed_opacity = 0.9, plane_opacity = 0.8;
-constexpr std::size_t fitted_steps = 12;  // steps that the view must hold, beside rest
+constexpr std::size_t fitted_steps = 12;  // number of steps that must be in view, in addition to rest
 
 std::string step_title(const Simulation& s, const sim::Step& step) {
     return step.index == 0 ? "at rest" : fmt::format("step {} of {}", step.index, s.result.steps.back().index);
@@ -32,7 +32,7 @@ std::string step_title(const Simulation& s, const sim::Step& step) {
 /// The first two cables and the first two chambers: "flexor 70 %, 71.3 N".
 std::string actuators_line(const sim::Step& step) {
     constexpr std::size_t named = 2;
-    constexpr double no_force_N = 1e-9;  // gap elements at rest pull with what rounding leaves
+    constexpr double no_force_N = 1e-9;  // at rest, gap elements have only rounding errors
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < std::min(named, step.cables.size()); ++i) {
         const auto& c = step.cables[i];
@@ -46,7 +46,7 @@ std::string actuators_line(const sim::Step& step) {
     return fmt::format("{}", fmt::join(parts, " · "));
 }
 
-/// What all pictures share.
+/// Shared by all pictures.
 class Painter {
 public:
     Painter(const Simulation& s, const Surface& surface, const PictureChoice& choice, Progress& progress)
@@ -95,14 +95,14 @@ private:
     PictureSize size_;
     Progress& progress_;
     Camera view_;
-    std::vector<Vec3> points_;                  ///< everything that must be seen
+    std::vector<Vec3> points_;                  ///< everything that must be visible
     Box3 box_;                                  ///< of the robot over its whole motion
     double floor_z_m_ = 0;                      ///< of the robot's and the framed obstacles' motion
     std::vector<Surface> things_;               ///< (obstacles)
     std::vector<std::vector<double>> opacity_;  ///< (obstacles), per vertex
 };
 
-/// Things that are no larger than the robot with its motion and near it; large ones may run out of the picture.
+/// True for things near the robot and no larger than the robot's motion; large ones may extend beyond the picture.
 bool Painter::is_framed(const Obstacle& obstacle, const Box3& at_rest, std::size_t step) const {
     if (obstacle.open || at_rest.diagonal() > box_.diagonal()) return false;
     Vec3 gap;
@@ -113,7 +113,7 @@ bool Painter::is_framed(const Obstacle& obstacle, const Box3& at_rest, std::size
     return norm(gap) < near_share * box_.diagonal();
 }
 
-/// Closed things are all but opaque; a piece of a plane fades out towards its rim.
+/// Closed things are nearly opaque; a piece of a plane fades out towards its rim.
 std::vector<double> opacity_of(const Obstacle& obstacle, const Surface& surface) {
     std::vector<double> opacity(surface.vertex_node.size(), closed_opacity);
     if (!obstacle.open) return opacity;
@@ -239,7 +239,7 @@ Result<Picture> Painter::final() {
     return finished(*canvas, "final.png", "At the end, over the rest shape");
 }
 
-/// On a backdrop of one colour, which keeps films small.
+/// With a uniform backdrop, which keeps films small.
 Result<Image> Painter::film_frame(std::size_t step) {
     const Camera camera = whole_camera(plain_margins);
     Scene scene = scene_of(step);
@@ -282,7 +282,7 @@ Result<Picture> Painter::measured() {
     return Picture{s_.measured_as + ".png", "Markers, simulated and " + s_.measured_as, std::move(*png)};
 }
 
-/// Unit and factor that keep the numbers short.
+/// Unit and factor for short numbers.
 std::pair<std::string, double> stress_unit(double highest_Pa) {
     if (highest_Pa >= 2e6) return {"MPa", 1e-6};
     if (highest_Pa >= 2e3) return {"kPa", 1e-3};

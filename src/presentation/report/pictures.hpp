@@ -1,4 +1,4 @@
-// pictures/*.png: the robot at rest, at the end, on its way, and under stress, all from one point of view.
+// pictures/*.png: the robot at rest, at the end, in between, and its stress, all from one viewpoint.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ struct PictureSize {
 
 enum class PictureSet { none, few, all };
 
-/// A few are a glance at the result that takes less processor time than a simulation of seconds: a quarter of the size.
+/// The small set is a quick look that takes less processor time than a simulation of seconds: a quarter of the size.
 [[nodiscard]] constexpr PictureSize usual_size(PictureSet set) {
     return set == PictureSet::few ? PictureSize{800, 500} : PictureSize{};
 }
@@ -32,24 +32,24 @@ enum class PictureSet { none, few, all };
 struct PictureChoice {
     PictureSet set = PictureSet::few;
     PictureSize size = usual_size(set);
-    std::optional<Vec3> towards_eye{};  ///< none: chosen by how the robot moves
-    bool film = false;                  ///< with film.gif, in its own size
+    std::optional<Vec3> towards_eye{};  ///< empty: chosen by the robot's motion
+    bool film = false;                  ///< also draws film.gif, in its own size
 };
 
 /// few: final.png (rest as a ghost, markers with their paths); all: rest.png, final.png, stages.png and von_mises.png.
-/// Where markers were measured, measured.png too. Text and lines keep their proportions to the picture.
+/// With measured markers, measured.png too. Text and lines scale with the picture.
 [[nodiscard]] Result<std::vector<Picture>> draw_pictures(const Simulation& simulation, const Surface& surface,
                                                          const PictureChoice& choice, Progress& progress);
 
-/// Of a film: small enough for a page or a slide.
+/// Film size: small enough for a page or a slide.
 inline constexpr PictureSize usual_film_size{640, 400};
 
-/// The robot on its way, as an animated GIF: all steps or, of many, 60 of them, which take three seconds, and a pause
-/// at the end.
+/// The motion of the robot as an animated GIF: all steps or, if there are many, 60 of them, over three seconds, with a
+/// pause at the end.
 [[nodiscard]] Result<std::string> draw_film(const Simulation& simulation, const Surface& surface,
                                             const PictureChoice& choice, Progress& progress);
 
-/// One line on the state of a step: "step 30 of 30 · flexor 70 %, 71.3 N", or "at rest · ...".
+/// One line about the state at a step: "step 30 of 30 · flexor 70 %, 71.3 N", or "at rest · ...".
 [[nodiscard]] std::string step_line(const Simulation& simulation, std::size_t step);
 
 /// The smallest of 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not below `value`; 1 for values that

@@ -35,7 +35,7 @@ Status write_pictures(const fs::path& folder, const std::vector<Picture>& pictur
     return {};
 }
 
-/// False: drawing it was cancelled, and there is none.
+/// False: cancelled while drawing; no film was written.
 Result<bool> write_film(const fs::path& folder, const Simulation& s, const Surface& surface, PictureChoice choice,
                         Progress& drawing) {
     choice.size = usual_film_size;
@@ -51,7 +51,7 @@ Result<bool> write_film(const fs::path& folder, const Simulation& s, const Surfa
 Result<Written> write_results(const fs::path& folder, const Simulation& simulation, const PictureChoice& choice,
                               Progress& writing, Progress& drawing) {
     if (Status status = check(simulation); !status) return tl::unexpected(status.error());
-    Simulation s = simulation;  // the mesh and the result are not copied
+    Simulation s = simulation;  // does not copy the mesh and the result
     Stopwatch watch;
     const Surface surface = outer_surface(s.mesh, s.region_material);
     if (Status status = write_data(folder, s, surface, writing); !status) return tl::unexpected(status.error());
@@ -69,7 +69,7 @@ Result<Written> write_results(const fs::path& folder, const Simulation& simulati
     }
     if (!pictures->empty()) s.timing.pictures_s = watch.read_s();
 
-    // Last, because both tell how long the rest took.
+    // Last, because both contain the time of the rest.
     Status status = write_file(folder / "report.html", report_html(s, *pictures));
     if (status) status = write_file(folder / "summary.json", summary_json(s));
     if (status && writing.cancelled()) status = cancelled();

@@ -10,14 +10,14 @@
 namespace pliant::report {
 
 struct Written {
-    Timing timing;                 ///< the simulation's, with that of files and pictures
+    Timing timing;                 ///< of the simulation, with that of files and pictures
     bool drawing_stopped = false;  ///< no pictures, because drawing them was cancelled
 };
 
 /// Writes summary.json, steps.csv, markers.csv, iterations.csv, frames.pvd with frames/*.vtu, robot.glb, pictures/*.png
-/// and report.html into `folder`, which exists and is written aside by the caller (base/core/files.hpp, write_folder).
-/// Ray casting the pictures takes seconds; the rest is quick. Cancelling `drawing` leaves only the pictures out,
-/// cancelling `writing` is an error.
+/// and report.html into `folder`, a temporary folder that the caller has created (base/core/files.hpp, write_folder).
+/// Ray casting the pictures takes seconds; the rest is quick. Cancelling `drawing` only omits the pictures, cancelling
+/// `writing` is an error.
 [[nodiscard]] Result<Written> write_results(const std::filesystem::path& folder, const Simulation& simulation,
                                             const PictureChoice& pictures, Progress& writing, Progress& drawing);
 

@@ -31,7 +31,7 @@ std::vector<std::string> pictures_in(const std::filesystem::path& folder) {
     return names;
 }
 
-/// Cancelled from the start, or once the stage of this name has been told.
+/// Cancelled from the start, or once the stage of this name is reported.
 struct Stop : Progress {
     std::string stage;
     bool stopped = true;

@@ -83,7 +83,7 @@ Status check_obstacles(const Simulation& s) {
     return {};
 }
 
-/// "neo-hookean, E 12 MPa, Poisson ratio 0.45": what the file says, for people.
+/// "neo-hookean, E 12 MPa, Poisson ratio 0.45": the law in the file, for people.
 std::string law_text(const robot::MaterialSpec& material) {
     return fmt::format("{}, E {:.6g} MPa, Poisson ratio {:.4g}", material::name(material.law),
                        material.youngs_modulus_Pa / 1e6, material.poisson_ratio);

@@ -1,4 +1,4 @@
-// What a report is made from: a finished simulation as plain data. Lengths in metres, everything in SI.
+// The input of a report: a finished simulation as plain data. Lengths in metres, everything in SI.
 #pragma once
 
 #include <functional>
@@ -31,13 +31,13 @@ struct Material {
     std::string law;               ///< for people: "neo-Hookean, E 12 MPa, Poisson ratio 0.45"
     std::string resin;             ///< what it is printed in; may be empty
     double density_kg_m3 = 0;      ///< 0: not given
-    std::optional<Colour> colour;  ///< none: a colour of the palette, by index
+    std::optional<Colour> colour;  ///< empty: a colour of the palette, by index
 };
 
-/// Wall time beside that of the solver, which `sim::Trajectory` has.
+/// Wall times in addition to that of the solver, which `sim::Trajectory` has.
 struct Timing {
-    double mesh_s = 0;      ///< reading the robot file and meshing
-    double model_s = 0;     ///< the model of the mesh, before the solver sets up
+    double mesh_s = 0;      ///< reading the robot file, and meshing
+    double model_s = 0;     ///< building the model, before the solver's setup
     double files_s = 0;     ///< tables, frames and robot.glb
     double pictures_s = 0;  ///< drawing and writing them
 };
@@ -52,32 +52,33 @@ struct Simulation {
     /// [step][cable][point], as many steps as the result has; empty where there are no cables.
     std::vector<std::vector<std::vector<Vec3>>> cable_points{};
     std::vector<Obstacle> obstacles{};  ///< in the order of every step's contacts; may be empty
-    /// Pressure of all contacts at a step, (n) Pa, 0 inside; none where nothing can touch.
+    /// Pressure of all contacts at a step, (n) Pa, 0 inside; empty if nothing can touch.
     std::function<std::vector<double>(const sim::Step&)> contact_pressure_Pa{};
     double tolerance = 1e-4;
     double peak_memory_MB = 0;
-    std::vector<std::pair<std::string, std::string>> settings{};  ///< what else the report should list: name, value
+    std::vector<std::pair<std::string, std::string>> settings{};  ///< further settings listed in the report: name,
+                                                                  ///< value
     Timing timing{};
-    /// (regions), true of empty space whose elements drive an actuator: its edges are drawn. May be empty.
+    /// (regions), true for meshed space whose elements drive an actuator: its edges are drawn. May be empty.
     std::vector<bool> region_actuates{};
     std::vector<MeasuredPath> measured{};  ///< of markers of the result; may be empty
-    std::string measured_as = "measured";  ///< what these are called: places that were wanted are "wanted"
+    std::string measured_as = "measured";  ///< label of these; "wanted" for goal positions
 };
 
-/// What a robot's run becomes: everything but timing, memory and measured markers. All arguments must outlive it.
+/// A robot's run as report data: everything except timing, memory and measured markers. All arguments must outlive it.
 [[nodiscard]] Simulation simulation_of(const robot::Robot& robot, const sim::Model& model,
                                        const sim::Trajectory& trajectory);
 
-/// Sizes and indices agree; otherwise an error that names the field.
+/// Checks that sizes and indices agree; the error names the field.
 [[nodiscard]] Status check(const Simulation& simulation);
 
-/// Whether anything could touch: there is an obstacle, or the robot came near itself.
+/// True if anything could touch: there is an obstacle, or the robot came near itself.
 [[nodiscard]] bool has_contact(const sim::Trajectory& result);
 
 /// Which regions' elements drive an actuator.
 [[nodiscard]] std::vector<bool> regions_that_actuate(const sim::Model& model);
 
-/// The material's own colour or that of the palette.
+/// The material's own colour or, without one, that of the palette.
 [[nodiscard]] Colour colour_of(const Simulation& simulation, int material);
 
 }  // namespace pliant::report

@@ -1,4 +1,4 @@
-// summary.json: the figures of a simulation for programs. docs/reference/results.md lists the keys.
+// summary.json: the results of a simulation in machine-readable form. docs/reference/results.md lists the keys.
 #pragma once
 
 #include <string>

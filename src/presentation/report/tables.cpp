@@ -9,7 +9,7 @@
 namespace pliant::report {
 namespace {
 
-/// Collects one line; fields are separated as they come.
+/// Builds one line; inserts separators.
 class Row {
 public:
     void text(std::string_view value) { add(csv_field(value)); }

@@ -1,5 +1,5 @@
-// steps.csv, markers.csv and iterations.csv: what happened, for a spreadsheet or pandas. RFC 4180 quoting, decimal
-// points whatever the locale, 10 significant digits.
+// steps.csv, markers.csv and iterations.csv: results for a spreadsheet or pandas. RFC 4180 quoting, decimal points
+// whatever the locale, 10 significant digits.
 #pragma once
 
 #include <string>
@@ -12,22 +12,22 @@ namespace pliant::report {
 /// One row per step, the rest state first (index 0). Columns: index, time, converged, iterations, substeps, residual,
 /// wall_ms, min_J, solver, then per cable NAME_length_ratio, NAME_length_mm, NAME_tension_N, per chamber
 /// NAME_volume_ratio, NAME_volume_mm3, NAME_pressure_kPa, per support NAME_force_x_N, .._y_N, .._z_N, per obstacle the
-/// same three: its force on the robot. Where anything could touch, self_contact_N and smallest_distance_mm (empty while
+/// same three: its force on the robot. If anything could touch, self_contact_N and smallest_distance_mm (empty while
 /// nothing is near) follow.
 [[nodiscard]] std::string steps_csv(const sim::Trajectory& result);
 
 /// One row per step, the rest state first. Columns: index, time, then per marker NAME_x_mm, NAME_y_mm, NAME_z_mm.
 [[nodiscard]] std::string markers_csv(const sim::Trajectory& result);
 
-/// One row per iteration, in order; iteration 0 is where an attempt began. Columns: step, time, solver, iteration,
+/// One row per iteration, in order; iteration 0 is the start of an attempt. Columns: step, time, solver, iteration,
 /// residual, violation, energy_J, alpha, min_J.
 [[nodiscard]] std::string iterations_csv(const sim::Trajectory& result);
 
 /// The cells of one iteration: "1,0.05,newton,3,...", without a line break.
 [[nodiscard]] std::string iteration_row(const sim::IterationRecord& record);
 
-/// A field, quoted where it holds a comma, a quote or a line break. A leading =, +, -, @ gets an apostrophe, so that no
-/// spreadsheet takes a name for a formula.
+/// A field, quoted if it contains a comma, a quote or a line break. A leading =, +, -, @ is prefixed with an
+/// apostrophe, so that no spreadsheet takes a name for a formula.
 [[nodiscard]] std::string csv_field(std::string_view text);
 
 }  // namespace pliant::report

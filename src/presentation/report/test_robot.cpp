@@ -32,7 +32,7 @@ mesh::TetMesh bar() {
                 ++corner[static_cast<std::size_t>(orders[o][s])];
                 tet[s + 1] = index(corner[0], corner[1], corner[2]);
             }
-            if (o >= 3) std::swap(tet[1], tet[2]);  // odd orders turn the tet inside out
+            if (o >= 3) std::swap(tet[1], tet[2]);  // odd permutations invert the tet
             mesh.nodes.insert(mesh.nodes.end(), tet.begin(), tet.end());
             mesh.region.push_back(at[0] < cells[0] * 3 / 5 ? 0 : 1);
         }

@@ -1,4 +1,4 @@
-// The robot of the report's tests: a bar of two materials that bends into a circle, written down in closed form.
+// The robot of the report's tests: a bar of two materials that bends into a circle, in closed form.
 #pragma once
 
 #include "presentation/report/simulation.hpp"

@@ -36,7 +36,7 @@ std::vector<std::string> header(const WorkspaceReport& r) {
     return cells;
 }
 
-/// Columns of what a sample has beside its inputs; empty cells where there is no equilibrium.
+/// Columns of a sample after its inputs; empty cells if there is no equilibrium.
 std::string row(const WorkspaceReport& r, std::size_t piece, const WorkspaceSample& sample, std::size_t columns) {
     std::vector<std::string> cells = {fmt::format("{}", piece + 1), sample.found ? "1" : "0"};
     const auto number = [&](double value) { cells.push_back(fmt::format("{:.10g}", value)); };
@@ -91,7 +91,7 @@ Sheets sheets_of(const Workspace& workspace) {
     return sheets;
 }
 
-/// VTK takes no blanks in the names of fields.
+/// VTK does not allow blanks in field names.
 std::string field_name(std::string name) {
     for (char& c : name) {
         if (c == ' ' || c == '\t' || c == '\n') c = '_';

@@ -1,4 +1,4 @@
-// Where markers can get: a table, and the sheets as surfaces.
+// The workspace of markers: a table, and the sheets as surfaces.
 #pragma once
 
 #include <string>
@@ -17,12 +17,12 @@ struct WorkspaceReport {
     const sim::inverse::Workspace& workspace;
 };
 
-/// A row per sample: piece, inputs, found, markers, tensions, pressures.
+/// One row per sample: piece, inputs, found, markers, tensions, pressures.
 [[nodiscard]] std::string workspace_csv(const WorkspaceReport& report);
-/// Samples, how many of them have an equilibrium, and the box of each marker, mm.
+/// Number of samples, how many have an equilibrium, and the bounding box of each marker, mm.
 [[nodiscard]] std::string workspace_json(const WorkspaceReport& report, int indent = 2);
-/// The sheets that a marker can get to, m: two triangles for every four neighbours that have an equilibrium. Empty
-/// where there are none.
+/// The sheets reached by a marker, m: two triangles for every four neighbours with an equilibrium. Empty if there are
+/// none.
 [[nodiscard]] mesh::TriMesh workspace_surface(const sim::inverse::Workspace& workspace, std::size_t marker);
 /// The same, and lines of a single input, as legacy VTK with inputs, tensions (N) and pressures (kPa) at every point,
 /// mm.

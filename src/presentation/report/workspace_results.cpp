@@ -35,7 +35,7 @@ std::vector<MeasuredPath> lines_of(const WorkspaceReport& report, std::size_t ma
     return lines;
 }
 
-/// The robot at rest, with where its first marker can get.
+/// The robot at rest, with the workspace of its first marker.
 Result<std::string> picture(const robot::Robot& robot, const WorkspaceReport& report, Progress& progress) {
     const sim::Stepper stepper(report.model, sim::stepper_options(robot.program));
     const sim::RobotState rest = stepper.rest();

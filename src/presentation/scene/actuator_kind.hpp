@@ -1,4 +1,4 @@
-// How the page names what drives an actuator, and in which unit it counts it.
+// Names and units of actuator drives on the page.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace pliant::view {
 
 struct ActuatorKind {
     const char* name;     ///< as in messages: length_ratio, shortening_mm, ...
-    double per_unit = 1;  ///< what the page shows for one SI unit
+    double per_unit = 1;  ///< value on the page for one SI unit
 };
 
 [[nodiscard]] ActuatorKind kind_of(const sim::CableTarget& target);

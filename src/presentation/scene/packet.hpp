@@ -1,10 +1,10 @@
-// What goes to the page in binary: a JSON head and arrays of numbers behind it, so that a browser can view them without
-// copying. Little-endian throughout:
+// Binary packets for the page: a JSON head followed by arrays of numbers, which a browser can view without copying.
+// Little-endian throughout:
 //
 //     bytes 0-3    "PLN1"
 //     bytes 4-7    length of the head, a multiple of 4
-//     head         JSON, {"head": ..., "arrays": [{"name": "positions", "type": "f32", "count": 300}, ...]}, then
-//     blanks arrays       one after the other, 4 bytes a number
+//     head         JSON, {"head": ..., "arrays": [{"name": "positions", "type": "f32", "count": 300}, ...]}, blanks
+//     arrays       one after the other, 4 bytes a number
 #pragma once
 
 #include <cstdint>

@@ -74,7 +74,7 @@ double wall_volume(const sim::Wall& wall, const std::vector<Vec3>& positions) {
     return std::abs(volume);
 }
 
-/// A curved face as four flat ones.
+/// Appends a curved face as four flat ones.
 void append_faces(const sim::Wall& wall, std::uint32_t first, std::vector<std::uint32_t>& triangles) {
     for (const sim::WallFace& f : wall.faces) {
         const auto add = [&](int a, int b, int c) {
@@ -114,7 +114,7 @@ Scene::Scene(const robot::Robot& robot, const sim::Model& model) : robot_(robot)
     obstacles_ = report::obstacles_of(model, rest);
 }
 
-/// Each material has a closed surface of its own, so that they can be cut and drawn apart.
+/// Each material has a closed surface of its own, so that materials can be cut and drawn separately.
 void Scene::add_materials() {
     for (std::size_t m = 0; m < robot_.materials.size(); ++m) {
         std::vector<int> shown = region_material_;
@@ -129,7 +129,7 @@ void Scene::add_materials() {
     }
 }
 
-/// Graded bodies are drawn in the colours that they change between.
+/// Graded bodies are drawn with a gradient between the colours of their materials.
 void Scene::add_grades() {
     const bool any =
         std::any_of(robot_.bodies.begin(), robot_.bodies.end(), [](auto& b) { return b.blend.has_value(); });

@@ -1,5 +1,5 @@
-// What the page draws of a robot: surfaces of every material, cables, chambers, supports, obstacles, markers. Built
-// once for a model; a frame moves it. Lengths leave in mm.
+// Data for drawing a robot on the page: surfaces of every material, cables, chambers, supports, obstacles, markers.
+// Built once for a model; a frame moves it. Output lengths are in mm.
 #pragma once
 
 #include <set>
@@ -17,7 +17,7 @@
 
 namespace pliant::view {
 
-/// Fields that a frame can carry beside positions; displacement is the page's own.
+/// True for a field that a frame can carry in addition to positions; the page itself computes displacement.
 [[nodiscard]] bool is_field(const std::string& name);
 
 class Scene {
@@ -28,11 +28,11 @@ public:
     /// Everything that does not move, docs/reference/studio.md; `extra` is added to the head, JSON members with a comma
     /// in front, or nothing.
     [[nodiscard]] std::string packet(const std::string& extra) const;
-    /// Positions, cables, chambers and the fields that are wanted. `head`: JSON of the frame.
+    /// Positions, cables, chambers and the requested fields. `head`: JSON of the frame.
     [[nodiscard]] std::string frame(const sim::Step& step, const std::set<std::string>& fields,
                                     const std::string& head) const;
-    /// Where obstacles are: JSON, [[x, y, z] mm of offset]; then objects, where the nodes are at `positions`:
-    /// [x, y, z, and the unit quaternion x, y, z, w by which their points are turned before].
+    /// Positions of the obstacles, JSON: [[x, y, z] offset in mm]; then of the objects, for nodes at `positions`: [x,
+    /// y, z, and the unit quaternion x, y, z, w of the rotation applied first].
     [[nodiscard]] std::string obstacle_offsets(double time, std::span<const Vec3> positions) const;
 
     [[nodiscard]] std::size_t vertex_count() const { return surface_.vertex_node.size(); }
@@ -51,10 +51,10 @@ private:
     std::vector<int> region_material_;
     report::Surface surface_;              ///< of all materials, one after the other
     std::vector<report::Surface> parts_;   ///< (materials)
-    std::vector<std::vector<int>> shown_;  ///< (materials) region_material with all others void
+    std::vector<std::vector<int>> shown_;  ///< (materials) region_material with all other materials void
     std::vector<std::uint32_t> material_;  ///< (vertices)
-    std::vector<std::uint32_t> other_;     ///< (vertices) what a graded body changes into, else its own material
-    std::vector<float> share_;             ///< (vertices) of that; empty: no body is graded
+    std::vector<std::uint32_t> other_;     ///< (vertices) second material of a graded body, else its own
+    std::vector<float> share_;             ///< (vertices) share of the second material; empty: no body is graded
     std::vector<report::Obstacle> obstacles_;
 };
 

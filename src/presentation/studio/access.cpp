@@ -7,7 +7,7 @@
 namespace pliant::studio {
 namespace {
 
-/// Takes as long for any two texts of one length.
+/// Constant-time comparison for texts of equal length.
 bool equal(std::string_view a, std::string_view b) {
     if (a.size() != b.size()) return false;
     unsigned difference = 0;

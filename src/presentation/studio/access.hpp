@@ -1,5 +1,5 @@
-// Who may talk to the studio. Loopback needs no password, but a browser brings pages of others along: their requests
-// carry another Host (a name that was made to point here) or another Origin.
+// Access control of the studio. Loopback needs no password, but a browser may also send requests of other sites' pages:
+// these carry another Host (a name that was made to resolve to this machine) or another Origin.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@ namespace pliant::studio {
 
 struct AccessRules {
     int port = 0;
-    std::string token;  ///< empty: bound to loopback only, where none is needed
+    std::string token;  ///< empty: bound to loopback only, no token needed
 };
 
-/// What of a request decides.
+/// The parts of a request that decide about access.
 struct Credentials {
     std::string_view host;    ///< header Host
-    std::string_view origin;  ///< header Origin; empty where there is none
+    std::string_view origin;  ///< header Origin; empty if missing
     std::string_view cookie;  ///< header Cookie
     std::string_view bearer;  ///< of the header Authorization
     std::string_view query_token;
@@ -24,8 +24,9 @@ struct Credentials {
 
 enum class Access { granted, wrong_host, wrong_origin, no_token };
 
-/// Without a token only loopback names with the right port are hosts. An origin must be this very page; a WebSocket
-/// needs one. With a token any host will do, and the token must come in the query, a cookie or as a bearer.
+/// Without a token only loopback names with the right port are accepted as Host. An Origin must be this very page; a
+/// WebSocket must have one. With a token any Host is accepted, and the token must be in the query, a cookie or a bearer
+/// header.
 [[nodiscard]] Access check_access(const AccessRules& rules, const Credentials& credentials);
 
 /// 32 letters and digits from the system's source of randomness.
@@ -33,7 +34,7 @@ enum class Access { granted, wrong_host, wrong_origin, no_token };
 
 inline constexpr std::string_view cookie_name = "pliant_token";
 
-/// "http://camera:8080" of "http://camera:8080/stream?fps=5"; "" of what is no plain address by http or https: letters,
+/// "http://camera:8080" for "http://camera:8080/stream?fps=5"; "" if it is not a plain http or https address: letters,
 /// digits, dots, hyphens, a port.
 [[nodiscard]] std::string origin_of(std::string_view address);
 

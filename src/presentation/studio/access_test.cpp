@@ -1,4 +1,4 @@
-// Who is let in: the table of what browsers and others send.
+// Access control: a table of requests from browsers and others.
 #include "presentation/studio/access.hpp"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-// Robots and printers that are built into the program, so that the studio opens from anywhere.
+// Robots and printers that are compiled into the program, so that the studio opens from anywhere.
 #pragma once
 
 #include <span>
@@ -17,7 +17,7 @@ struct BuiltInFile {
 /// The file of that name, or nullptr.
 [[nodiscard]] const BuiltInFile* find_file(std::span<const BuiltInFile> files, std::string_view name);
 
-/// A file of the page, packed with gzip.
+/// A file of the page, compressed with gzip.
 struct PageFile {
     std::string_view path;  ///< "/", "/assets/main-x.js"
     std::string_view type;

@@ -1,4 +1,4 @@
-// What a file of geometry holds, for a page that is about to make bodies of it.
+// The contents of a geometry file, for a page that is about to create bodies from it.
 #pragma once
 
 #include <filesystem>
@@ -12,16 +12,16 @@ namespace pliant::studio {
 
 struct GeometryContent {
     std::string kind;    ///< "surface", "step", "3mf" or "tets"
-    double unit_mm = 0;  ///< of its coordinates; 0: the file does not say
+    double unit_mm = 0;  ///< unit of its coordinates; 0: not in the file
     Box3 box;            ///< in that unit
     std::string text;    ///< for people: "surface, 12 triangles"
-    /// What a body may name: regions of a tet mesh, materials of a 3MF file. Empty: the file is one body.
+    /// What a body may refer to: regions of a tet mesh, materials of a 3MF file. Empty: the file is one body.
     std::vector<std::string> parts{};
-    std::vector<std::string> notes{};  ///< what was odd, a sentence each
+    std::vector<std::string> notes{};  ///< defects found, one sentence each
 };
 
-/// Read whole by the reader of its format, which the content decides. Errors: those of the readers; slices instead of
-/// surfaces, which are for printing only.
+/// Reads the whole file, in the format recognised from its content. Errors: those of the readers; slices instead of
+/// surfaces, which can only be printed.
 [[nodiscard]] Result<GeometryContent> geometry_content(const std::filesystem::path& path);
 
 }  // namespace pliant::studio

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// All that could be moved, each once, and the lengths and volumes of all actuators at rest.
+/// All actuators that could be moved, each once, and the lengths and volumes of all at rest.
 struct Possible {
     std::vector<double> rest_measures;
     std::vector<sim::Steered> inputs;
@@ -26,7 +26,7 @@ Possible possible_inputs(const Built& built) {
     return possible;
 }
 
-/// Lengths, volumes and ratios have to stay above nothing, and no cable pushes.
+/// Lengths, volumes and ratios must be positive, and cables cannot push.
 bool is_possible(const sim::Steered& input, const view::ActuatorKind& kind, double rest) {
     const std::string_view name = kind.name;
     if (name == "shortening_mm") return input.high < rest;

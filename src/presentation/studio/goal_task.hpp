@@ -1,4 +1,4 @@
-// A page's goal as a task for the robot at hand.
+// Converts a goal set on the page into an inverse task for the current robot.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace pliant::studio {
 
-/// At the end of the robot's program, waypoint by waypoint. Errors: there is no such marker or actuator; an empty
-/// range, or one that the actuator cannot have; a robot that moves in time.
+/// The waypoints, at the end of the robot's program. Errors: there is no such marker or actuator; a range that is empty
+/// or impossible for the actuator; a robot that moves in time.
 [[nodiscard]] Result<sim::InverseTask> goal_task(const Built& built, const GoalOrder& order);
 
-/// Where the markers can get with these inputs, at the end of the program. Errors: as above; no marker.
+/// The workspace task for these inputs, at the end of the program. Errors: as above; no marker.
 [[nodiscard]] Result<sim::InverseTask> workspace_task(const Built& built, const WorkspaceOrder& order);
 
 /// JSON: the actuators that may be moved, with their ranges in the file or those of the page's sliders, in the units of

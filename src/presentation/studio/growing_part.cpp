@@ -12,7 +12,7 @@
 namespace pliant::studio {
 namespace {
 
-constexpr std::size_t most_at_once = 50;  // layers or images: the pages hear of something in between
+constexpr std::size_t most_at_once = 50;  // layers or images, so that pages are updated in between
 constexpr std::uintmax_t largest_journal = 256 << 20;
 
 twin::CoarsePart empty_part(const operate::ReadyJob& job) {
@@ -21,7 +21,7 @@ twin::CoarsePart empty_part(const operate::ReadyJob& job) {
     return {p.width_px, p.height_px, p.pixel_um, layers.empty() ? 0 : layers.back().z_um};
 }
 
-/// The first material that is printed in each vat; one beyond the last for vats that print none.
+/// The first material printed in each vat; an index past the end for unused vats.
 std::vector<int> materials_of_vats(const operate::ReadyJob& job) {
     std::vector<int> materials(job.printer.vats.size(), static_cast<int>(job.job.materials.size()));
     for (const plan::VatUse& use : job.plan.vats) {
@@ -109,7 +109,7 @@ Result<std::string> GrowingPart::image(int layer, int material) {
     return input_error("layer {} has no image of material {}", layer, material);
 }
 
-/// Decodes what has been exposed; an image that cannot be read is left out.
+/// Decodes the exposed images; unreadable ones are skipped.
 void GrowingPart::take_exposed() {
     for (std::size_t k = 0; k < most_at_once; ++k) {
         host::Given given;

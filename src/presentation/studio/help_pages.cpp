@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view prefix = "/help/";
 
-/// What browsers are told; a file of any other kind is no part of the pages.
+/// MIME type; files of other types are not served.
 std::string_view type_of(const fs::path& file) {
     static constexpr std::array<std::pair<std::string_view, std::string_view>, 16> types{{
         {".html", "text/html; charset=utf-8"},
@@ -40,7 +40,7 @@ std::string_view type_of(const fs::path& file) {
     return "";
 }
 
-/// The path below the folder, or nothing where a part of it could lead out.
+/// The path below the folder; empty if a part of it could lead outside.
 std::optional<fs::path> below(std::string_view path) {
     if (path.find('\\') != std::string_view::npos || path.find('\0') != std::string_view::npos) return std::nullopt;
     fs::path file;

@@ -1,4 +1,4 @@
-// Requests and responses as the routes see them, whatever carries them.
+// Requests and responses as the routes see them, independent of the server.
 #pragma once
 
 #include <functional>
@@ -14,12 +14,12 @@ struct Request {
     std::string method;  ///< "GET", "POST", "PUT"
     std::string path;    ///< decoded, without the query
     std::map<std::string, std::string> query{};
-    std::map<std::string, std::string> parts{};  ///< of the path, as the route names them
-    std::string page{};                          ///< header X-Pliant-Page: who asks
+    std::map<std::string, std::string> parts{};  ///< parameters in the path, by their names in the route
+    std::string page{};                          ///< header X-Pliant-Page: the requesting page
     std::string body{};
-    /// Of a route that streams: the next bytes of the body, 0 at its end, negative where the line broke.
+    /// For a streaming route: reads the next bytes of the body; 0 at its end, negative if the connection broke.
     std::function<long long(char* into, std::size_t most)> more{};
-    long long length = -1;  ///< of that body; negative where it is not known
+    long long length = -1;  ///< of that body; negative if unknown
 };
 
 struct Response {
@@ -27,18 +27,18 @@ struct Response {
     std::string type = "application/json";
     std::string body{};
     std::string file_name{};    ///< not empty: the browser saves it under this name
-    bool packed = false;        ///< body is gzip
-    bool keep = false;          ///< may be kept for good: its address changes with its content
-    std::string images_from{};  ///< origin that the page may also show images from
-    std::string location{};     ///< not empty: where the browser goes instead
+    bool packed = false;        ///< the body is compressed with gzip
+    bool keep = false;          ///< may be cached for ever: its address changes with its content
+    std::string images_from{};  ///< further origin that the page may load images from
+    std::string location{};     ///< not empty: redirect to this address
 };
 
 [[nodiscard]] Response json_response(std::string json);
-/// {"error": "..."} with 422 for bad input, 409 for failed work.
+/// {"error": "..."} with status 422 for bad input, 409 for failed work.
 [[nodiscard]] Response error_response(const Error& error);
 [[nodiscard]] Response error_response(int status, std::string_view text);
 
-/// Uploads beyond this are refused before they are read.
+/// Larger uploads are refused before they are read.
 inline constexpr long long largest_body = 4 << 20;
 
 }  // namespace pliant::studio

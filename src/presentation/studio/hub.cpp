@@ -8,7 +8,7 @@
 namespace pliant::studio {
 namespace {
 
-constexpr std::size_t most_texts = 1000;  // a page that takes nothing any more is cut off
+constexpr std::size_t most_texts = 1000;  // a page that stops reading is disconnected
 constexpr std::chrono::seconds helm_kept{10};
 
 }  // namespace
@@ -22,7 +22,7 @@ std::optional<Connection::Outgoing> Connection::next() {
         texts_.pop_front();
         return out;
     }
-    // By turns, so that neither robot waits for the other.
+    // Alternately, so that neither robot waits for the other.
     const bool beside = beside_ && (beside_next_ || !frame_);
     beside_next_ = !beside;
     return Outgoing{std::exchange(beside ? beside_ : frame_, nullptr), true};

@@ -1,7 +1,7 @@
-// The pages that look on, and the one that steers.
+// The connected pages, one of which controls the robot while the others only view.
 //
-// Every connection has a queue: texts in order, and one place for the latest frame of each robot, so that a slow page
-// sees fewer frames and never old ones. What writes to the wire waits on its connection and belongs to the server.
+// Every connection has a queue: texts in order, and one slot for the latest frame of each robot, so that a slow page
+// sees fewer frames but never old ones. Writing to the network is done by the server's thread of each connection.
 #pragma once
 
 #include <chrono>
@@ -27,16 +27,16 @@ public:
         Bytes bytes;
         bool binary = false;
     };
-    /// Waits for something to send; nothing once the connection has been closed.
+    /// Waits for something to send; empty once the connection has been closed.
     [[nodiscard]] std::optional<Outgoing> next();
     void send_text(Bytes text);
     void send_frame(Bytes frame);
-    /// Of the robot beside, which has a place of its own.
+    /// A frame of the second robot, which has a slot of its own.
     void send_frame_beside(Bytes frame);
     void close();
 
-    std::string page;              ///< who it is; empty before its hello. Guarded by the hub
-    std::set<std::string> fields;  ///< that it wants to see. Guarded by the hub
+    std::string page;              ///< identifies the page; empty before its hello. Guarded by the hub
+    std::set<std::string> fields;  ///< requested by the page. Guarded by the hub
 
 private:
     std::mutex mutex_;
@@ -50,21 +50,22 @@ private:
 class Hub {
 public:
     using Clock = std::chrono::steady_clock;
-    /// `now` tells the time; a test may turn it.
+    /// `now` is the clock; tests may replace it.
     explicit Hub(std::function<Clock::time_point()> now = Clock::now) : now_(std::move(now)) {}
 
     [[nodiscard]] std::shared_ptr<Connection> join();
     void leave(const std::shared_ptr<Connection>& connection);
-    /// A page without a helmsman takes the helm. Everybody is told.
+    /// Registers a page; if no page is in control, this one takes control. All pages are told.
     void hello(const std::shared_ptr<Connection>& connection, const std::string& page);
     void want_fields(const std::shared_ptr<Connection>& connection, std::set<std::string> fields);
 
-    /// Asks for the helm: free, it is taken; else whoever has it is asked.
+    /// Requests control: taken at once if free, otherwise the page in control is asked.
     void ask(const std::shared_ptr<Connection>& connection);
-    /// Hands the helm to who asked first.
+    /// Passes control to the page that asked first.
     void give(const std::shared_ptr<Connection>& connection);
     void let_go(const std::shared_ptr<Connection>& connection);
-    /// True for who steers and, while nobody does, for anyone. A page that has been gone for 10 s steers no more.
+    /// True for the page in control and, while there is none, for any page. A page loses control after 10 s without a
+    /// connection.
     [[nodiscard]] bool may_steer(const std::string& page);
 
     void send_text(const std::string& json);
@@ -81,8 +82,8 @@ private:
     std::function<Clock::time_point()> now_;
     std::mutex mutex_;
     std::set<std::shared_ptr<Connection>> connections_;
-    std::string helm_;                            ///< page that steers; empty: nobody
-    std::optional<Clock::time_point> helm_lost_;  ///< when its last connection went
+    std::string helm_;                            ///< page in control; empty: none
+    std::optional<Clock::time_point> helm_lost_;  ///< when its last connection closed
     std::deque<std::string> asking_;
 };
 

@@ -1,4 +1,4 @@
-// Who steers, and what a slow page gets to see.
+// Which page is in control, and what a slow page receives.
 #include "presentation/studio/hub.hpp"
 
 #include <doctest/doctest.h>
@@ -35,7 +35,7 @@ TEST_CASE("the first page steers, others ask, the helm is handed over") {
     CHECK(hub.may_steer("page_aaaa"));
     CHECK_FALSE(hub.may_steer("page_bbbb"));
     CHECK_FALSE(hub.may_steer(""));
-    hub.give(b);  // has nothing to give
+    hub.give(b);  // b is not in control
     hub.ask(b);
     CHECK_FALSE(hub.may_steer("page_bbbb"));
     CHECK(says(last_text(a), R"("asked":true)"));
@@ -66,7 +66,7 @@ TEST_CASE("a lost page keeps the helm for ten seconds") {
     now += std::chrono::seconds(11);
     CHECK(hub.may_steer("page_bbbb"));
 
-    hub.hello(hub.join(), "page_aaaa");  // comes back too late, when nobody has taken it
+    hub.hello(hub.join(), "page_aaaa");  // returns too late, but nobody has taken control
     CHECK(hub.may_steer("page_aaaa"));
     hub.ask(b);
     CHECK_FALSE(hub.may_steer("page_bbbb"));

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The number behind `words`, or -1.
+/// The number after `words`, or -1.
 int number_behind(const std::string& text, const std::string& words) {
     const std::size_t at = text.find(words);
     if (at == std::string::npos) return -1;
@@ -24,7 +24,7 @@ int number_behind(const std::string& text, const std::string& words) {
     return number;
 }
 
-/// Where in the stack a remark of the slicer belongs, or -1.
+/// The layer that a remark of the slicer refers to, or -1.
 int layer_of(const std::string& remark) {
     for (const char* words : {"in layer ", "is layer ", "in layers ", "from layer ", "layer "}) {
         if (const int layer = number_behind(remark, words); layer >= 0) return layer;
@@ -32,7 +32,7 @@ int layer_of(const std::string& remark) {
     return -1;
 }
 
-/// The same text with layers counted from 1, as the page counts them; the slicer's own count from 0.
+/// The same text with layers counted from 1, as on the page; the slicer counts from 0.
 std::string from_one(const std::string& text) {
     static const std::regex layers(R"(\b(layers? )(\d+)( to )?(\d+)?)");
     const auto next = [](const std::string& digits) { return std::to_string(std::stol(digits) + 1); };
@@ -47,7 +47,7 @@ std::string from_one(const std::string& text) {
     return out + text.substr(at);
 }
 
-/// What the slicer has found, with a place; then its remarks.
+/// Findings of the slicer with a position; then its other remarks.
 Json issues_json(const job::Manifest& manifest) {
     static const std::map<std::string, const char*> names = {{"island", "island in mid-air"},
                                                              {"trap", "resin trap, closed for good"},

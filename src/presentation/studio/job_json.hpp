@@ -1,4 +1,4 @@
-// A job as a page is told of it: manifest, plan, what the slicer has found.
+// A job in JSON for the page: manifest, plan, findings of the slicer.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace pliant::studio {
 
-/// What GET /api/job answers. `saved`: it lies in the project folder. Cost: that of a plan.
+/// The answer of GET /api/job. `saved`: it is in the project folder. Cost: that of a plan.
 [[nodiscard]] std::string job_json(const OpenJob& open, bool saved);
 
-/// The image of the layer and the material that the request's path names.
+/// The image of the layer and material named in the request's path.
 [[nodiscard]] Response layer_image(OpenJob& open, const Request& request);
 
-/// A whole number without anything around it; -1 for anything else.
+/// A whole number without any other characters; -1 for anything else.
 [[nodiscard]] int whole_number(std::string_view text);
 
 }  // namespace pliant::studio

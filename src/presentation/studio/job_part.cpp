@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t most_images = 250;
 
-/// Layers that stand for those up to the next: all of them, or every so many.
+/// Number of layers represented by one: 1, or more if there are many.
 std::size_t layers_a_step(const job::Manifest& manifest) {
     std::size_t images = 0;
     for (const job::Layer& layer : manifest.layers) images += layer.images.size();

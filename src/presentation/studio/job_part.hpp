@@ -1,4 +1,4 @@
-// A job as it will stand, coarse enough to be sent to a page and drawn in one piece.
+// The part that a job prints, coarse enough to be sent to a page and drawn at once.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace pliant::studio {
 
-/// A packet as GrowingPart::packet() makes it, of kind "drawn", kept with the job. Of many layers every so many are
-/// looked at: some 250 images are decoded, which takes a second or two for full HD. Errors: an image cannot be read.
+/// A packet in the format of GrowingPart::packet(), of kind "drawn", cached with the job. If there are many layers only
+/// some 250 of them are decoded, which takes a second or two for full HD. Errors: an image cannot be read.
 [[nodiscard]] Result<std::string> job_part(OpenJob& open);
 
 }  // namespace pliant::studio

@@ -33,7 +33,7 @@ void JobUnderWay::add(const job::Manifest& so_far, int count, const std::vector<
     if (kept_.size() > most_kept) thin_out();
 }
 
-/// Every second one goes.
+/// Drops every second one.
 void JobUnderWay::thin_out() {
     every_ *= 2;
     std::erase_if(kept_, [&](const auto& entry) { return entry.first % every_ != 0; });

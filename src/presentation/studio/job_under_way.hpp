@@ -1,4 +1,4 @@
-// The layers of a job while it is being sliced: seen before the job is whole.
+// The layers of a job that is still being sliced, for a preview.
 #pragma once
 
 #include <map>
@@ -11,21 +11,22 @@
 
 namespace pliant::studio {
 
-/// From any thread. Of many layers every so many are kept, so that a large job takes no more memory than a small one.
+/// Thread-safe. If there are many layers only every n-th is kept, so that a large job takes no more memory than a small
+/// one.
 class JobUnderWay {
 public:
-    /// Nothing is under way any more, or something new is.
+    /// Clears it: nothing is being sliced any more, or a new job is.
     void clear();
-    /// One more layer is stored. `images`: of the last layer of `so_far`. `colours`: of its materials.
+    /// Stores one more layer. `images`: of the last layer of `so_far`. `colours`: of its materials.
     void add(const job::Manifest& so_far, int count, const std::vector<job::EncodedImage>& images,
              const std::vector<std::string>& colours);
 
-    /// Layers that are stored, all of them.
+    /// Number of sliced layers, whether kept or not.
     [[nodiscard]] int layers() const;
-    /// {"layers", "count", "colours", "manifest"}: the manifest lists the layers that are kept, from the platform up,
-    /// each with its "number" (from 0) in the job; null while there are none.
+    /// {"layers", "count", "colours", "manifest"}: the manifest lists the kept layers, from the platform up, each with
+    /// its "number" (from 0) in the job; null if there are none.
     [[nodiscard]] std::string json() const;
-    /// PNG of the layer with this number in the job. Errors: it is not kept.
+    /// PNG of the layer with this number in the job. Errors: it was not kept.
     [[nodiscard]] Result<std::string> image(int layer, int material) const;
 
     static constexpr std::size_t most_kept = 200;
@@ -41,7 +42,7 @@ private:
     job::Manifest head_;  ///< without layers
     std::vector<std::string> colours_;
     std::map<int, Kept> kept_;  ///< by number
-    int every_ = 1;             ///< those whose number is a multiple of this
+    int every_ = 1;             ///< layers whose number is a multiple of this are kept
     int layers_ = 0, count_ = 0;
 };
 

@@ -14,7 +14,7 @@ std::string without(std::string_view text, std::string_view end) {
     return std::string(text.ends_with(end) ? text.substr(0, text.size() - end.size()) : text);
 }
 
-/// Without the date that keep_journal() puts there.
+/// Removes the date inserted by keep_journal().
 std::string undated(const std::string& text) {
     static const std::regex date(R"(\.\d{4}-\d{2}-\d{2}_\d{6}$)");
     return std::regex_replace(text, date, "");

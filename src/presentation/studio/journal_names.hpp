@@ -1,4 +1,4 @@
-// How the journals of prints are called in the project folder, and the jobs that they are of.
+// File names of print journals in the project folder, and of their jobs.
 #pragma once
 
 #include <filesystem>
@@ -7,15 +7,15 @@
 
 namespace pliant::studio {
 
-/// JOB.zip.virtual.journal: of prints on the virtual printer; a real machine knows nothing of them.
+/// JOB.zip.virtual.journal: for prints on the virtual printer; real machines do not use it.
 [[nodiscard]] std::filesystem::path virtual_journal(const std::filesystem::path& job);
 
-/// JOB.zip of JOB.zip.journal, JOB.zip.virtual.journal, and of either as keep_journal() names it.
+/// JOB.zip for JOB.zip.journal, JOB.zip.virtual.journal, and either as renamed by keep_journal().
 [[nodiscard]] std::string job_of_journal(std::string_view journal);
 [[nodiscard]] bool is_virtual_journal(std::string_view journal);
 
-/// Before a new print takes the place of one that is over: its journal becomes JOB.zip.DATE.journal (when it ended,
-/// UTC), and stays in the print history. What cannot be renamed, or is there already, is left alone.
+/// Preserves the journal of a finished print before a new one starts: it is renamed to JOB.zip.DATE.journal (end of the
+/// print, UTC), and remains in the print history. If it cannot be renamed, or the name exists, it is left alone.
 void keep_journal(const std::filesystem::path& journal);
 
 }  // namespace pliant::studio

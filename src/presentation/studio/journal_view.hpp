@@ -1,4 +1,4 @@
-// The journals of prints, as the page lists and shows them; docs/reference/journal.md.
+// Print journals as the page lists and shows them; docs/reference/journal.md.
 #pragma once
 
 #include <filesystem>
@@ -9,12 +9,12 @@
 
 namespace pliant::studio {
 
-/// One line of a list, JSON: `name`, `job`, `printer`, `state` ("complete", "cancelled", "interrupted", "not begun",
-/// or "damaged" with `error`), `lights` given, `layer` of the last (-1: none).
+/// An entry of the list, JSON: `name`, `job`, `printer`, `state` ("complete", "cancelled", "interrupted", "not begun",
+/// or "damaged" with `error`), `lights` (number of exposures), `layer` of the last (-1: none).
 [[nodiscard]] std::string journal_line_json(const std::filesystem::path& file, const std::string& name);
 
-/// The same with `records`: `number`, `kind`, `text`, the last 2000 of them, and `open_light`: a light whose end is not
-/// in the journal. Errors: no such file, damaged.
+/// The same with `records`: `number`, `kind`, `text`, the last 2000 of them, and `open_light`: an exposure whose end is
+/// not in the journal. Errors: no such file, damaged.
 [[nodiscard]] Result<std::string> journal_json(const std::filesystem::path& file, const std::string& name);
 
 }  // namespace pliant::studio

@@ -1,4 +1,4 @@
-// Keys of a JSON object that a page has sent: bounded in size and depth, and told by name where they are wrong.
+// Reads the keys of a JSON object sent by a page: limited in size and depth, with errors that name the key.
 #pragma once
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 
 namespace pliant::studio {
 
-/// Reads keys of one object and keeps the first thing that is wrong.
+/// Reads keys of one object and keeps the first error.
 class Keys {
 public:
     /// `what` is for messages. Both must outlive it.
@@ -62,7 +62,7 @@ public:
         return all;
     }
     std::array<double, 3> point(const char* key) { return point(key, list(key)); }
-    /// `value`: what stands under the key, or in a list there.
+    /// `value`: the value under the key, or an element of a list there.
     std::array<double, 3> point(const char* key, const nlohmann::json& value) {
         std::array<double, 3> point{};
         for (std::size_t k = 0; k < 3; ++k) {
@@ -82,7 +82,7 @@ private:
     std::string error_;
 };
 
-/// Errors: longer than `longest` bytes, nested too deep, no object.
+/// Errors: longer than `longest` bytes, nested too deeply, not an object.
 [[nodiscard]] Result<nlohmann::json> parse_object(const char* what, std::string_view text, std::size_t longest);
 
 }  // namespace pliant::studio

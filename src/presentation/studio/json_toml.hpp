@@ -1,4 +1,4 @@
-// A value that a page sends, as it is written into a TOML file.
+// Converts a value sent by a page to TOML.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -6,7 +6,7 @@
 
 namespace pliant::studio {
 
-/// On one line; "" for null, which TOML has not.
+/// On one line; "" for null, which TOML lacks.
 [[nodiscard]] std::string toml_text(const nlohmann::json& value);
 
 }  // namespace pliant::studio

@@ -14,7 +14,7 @@ namespace {
 using sim::CableTarget;
 using sim::ChamberTarget;
 
-/// As far as the sliders of the page go.
+/// The range of the page's sliders.
 std::pair<double, double> usual_range(const CableTarget& target, double rest_m) {
     switch (target.kind) {
         case CableTarget::Kind::shortening_m:

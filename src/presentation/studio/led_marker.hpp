@@ -1,4 +1,4 @@
-// A marker that the page leads: the actuators follow, and the page is told what they do and what stops them.
+// A marker dragged on the page: the actuators follow, and the page is told their values and what limits them.
 #pragma once
 
 #include <optional>
@@ -12,20 +12,20 @@
 
 namespace pliant::studio {
 
-/// The actuators that may follow: those that have a range in the file; where none has one, all, as far as their sliders
-/// go. Empty: the robot has none.
+/// The actuators that may follow: those that have a range in the file; if none has one, all, within the range of their
+/// sliders. Empty: the robot has none.
 [[nodiscard]] std::vector<sim::Steered> led_inputs(const robot::Robot& robot, const sim::Model& model,
                                                    const std::vector<double>& rest_measures);
 
 class LedMarker {
 public:
-    /// `live` must outlive it, and stay where it is. Preconditions: at least one input, a marker of the model.
+    /// `live` must outlive it, and not be moved. Preconditions: at least one input, a marker of the model.
     LedMarker(sim::Live& live, const sim::Model& model, std::vector<sim::Steered> inputs, std::size_t marker);
 
     [[nodiscard]] std::size_t marker() const { return drag_.marker(); }
-    /// A piece of the way to where it is wanted.
+    /// One increment towards the wanted position.
     [[nodiscard]] sim::LiveProgress lead(const Vec3& wanted_m, const Progress& progress);
-    /// What the actuators are now, as a page would have asked for it.
+    /// The current actuator values, in the format of a page's request.
     [[nodiscard]] std::vector<ActuatorValue> actuators() const;
     /// JSON: {"marker": "tip", "to_mm": [x, y, z], "settled": true, "reached": false, "error_mm": 1.2, "limits": [...]}
     [[nodiscard]] std::string json() const;

@@ -6,9 +6,9 @@ namespace pliant::studio {
 namespace {
 
 constexpr double mm = 1e3;
-constexpr double patch_share = 0.04;  // of the robot's size: what a hand takes hold of
+constexpr double patch_share = 0.04;  // of the robot's size: radius of the pulled patch
 
-/// The thesis' elements know lengths and volumes only.
+/// The thesis' elements support lengths and volumes only.
 bool is_by_elements(const sim::Model& model, std::size_t actuator) {
     return std::ranges::any_of(model.description().growths, [&](const sim::Growth& growth) {
         return growth.actuator == static_cast<int>(actuator);

@@ -1,4 +1,4 @@
-// A model in somebody's hand: where a page wants it, in the page's units, and its way there.
+// An interactively controlled model: its target, in the page's units, and the motion towards it.
 #pragma once
 
 #include <optional>
@@ -13,44 +13,44 @@
 
 namespace pliant::studio {
 
-/// A point of the body that a hand pulls at.
+/// A point of the body that the user pulls.
 struct Pulled {
-    int vertex = 0;  ///< of the page's surface
+    int vertex = 0;  ///< of the page's surface mesh
     Vec3 rest_m;
     Vec3 to_m;
 };
 
 class LiveRobot {
 public:
-    /// At rest. `robot` and `model` must outlive it; `size_m` is how large the robot is.
+    /// At rest. `robot` and `model` must outlive it; `size_m` is the size of the robot.
     LiveRobot(const robot::Robot& robot, const sim::Model& model, double size_m);
     LiveRobot(const LiveRobot&) = delete;
     LiveRobot& operator=(const LiveRobot&) = delete;
 
     void to_rest();
-    /// All of it where the program has it at `time`.
+    /// Sets everything to the program at `time`.
     void follow(double time);
-    /// False for what cannot be: strange names and kinds, a length below nothing.
+    /// False for impossible values: unknown names and kinds, negative lengths.
     [[nodiscard]] bool can_be(const ActuatorValue& value) const;
-    /// Loads and supports where the program has them at `time`, these actuators where they are asked for, all others as
-    /// they are wanted already. What cannot be is left out.
+    /// Sets loads and supports to the program at `time`, and these actuators to the requested values; all others keep
+    /// their targets. Impossible values are skipped.
     void drive(double time, const std::vector<ActuatorValue>& actuators);
     void pull(const std::optional<Pulled>& pulled);
-    /// Brings a marker to where it is wanted. False, and nothing happens, if there is no such marker or no actuator.
+    /// Drags a marker to the wanted position. False, without effect, if there is no such marker or no actuator.
     bool lead(const LeadMessage& message);
     [[nodiscard]] bool is_led() const { return led_.has_value(); }
-    /// Nobody leads it any more; what it is driven by stays as it was wanted before.
+    /// Ends dragging; the targets before it apply again.
     void stop_leading() { led_.reset(); }
-    /// Everything stays where the hand has led it.
+    /// Ends all interaction; everything stays where it was dragged to.
     void let_go();
 
-    /// A piece of the way.
+    /// One increment of the motion.
     [[nodiscard]] sim::LiveProgress advance(const Progress& progress);
 
     [[nodiscard]] const sim::Model& model() const { return *model_; }
     [[nodiscard]] const sim::Live& live() const { return live_; }
     [[nodiscard]] const sim::LiveTarget& target() const { return target_; }
-    /// What the target has by hand; empty: all of it follows the program.
+    /// Manually set targets; empty: everything follows the program.
     [[nodiscard]] const std::vector<ActuatorValue>& driven() const { return driven_; }
     [[nodiscard]] const std::optional<LedMarker>& led() const { return led_; }
     [[nodiscard]] int pulled_vertex() const { return pulled_vertex_; }
@@ -60,7 +60,7 @@ private:
         std::size_t actuator = 0;
         sim::Drive drive;
     };
-    /// Nothing for what cannot be.
+    /// Empty for an impossible value.
     [[nodiscard]] std::optional<ActuatorDrive> drive_of(const ActuatorValue& value) const;
     [[nodiscard]] std::optional<ActuatorDrive> cable_drive(std::size_t cable, const ActuatorValue& value) const;
     [[nodiscard]] std::optional<ActuatorDrive> chamber_drive(std::size_t chamber, const ActuatorValue& value) const;
@@ -71,7 +71,7 @@ private:
     sim::Live live_;
     sim::Attacher attacher_;
     sim::LiveTarget target_;
-    std::optional<LedMarker> led_;  ///< a marker in somebody's hand
+    std::optional<LedMarker> led_;  ///< the dragged marker
     Vec3 led_to_m_;
     std::vector<ActuatorValue> driven_;
     int pulled_vertex_ = -1;

@@ -64,7 +64,7 @@ Status MakeSession::save(const std::filesystem::path& file) {
     const Result<std::string> bytes = read_file(job->file);
     if (!bytes) return tl::unexpected(bytes.error());
     if (Status written = write_file(file, *bytes); !written) return written;
-    std::shared_ptr<OpenJob> before;  // the same under another name is no other job
+    std::shared_ptr<OpenJob> before;  // saving under another name does not make it another job
     {
         const std::lock_guard lock(mutex_);
         before = before_;
@@ -112,7 +112,7 @@ void MakeSession::work(const SliceOrder& order) {
     Result<std::vector<std::string>> colours = slice_robot(order, file, watch, under_way_);
     Status status = colours ? adopt(file, std::move(*colours)) : Status(tl::unexpected(colours.error()));
     under_way_.clear();
-    slicing_ = false;  // before it is told: whoever hears of the end may begin the next
+    slicing_ = false;  // before the pages are told: they may start the next one at once
     tell_(event({{"type", "slicing"},
                  {"stage", ""},
                  {"fraction", 1},
@@ -148,7 +148,7 @@ std::shared_ptr<OpenJob> MakeSession::job() const {
 
 std::vector<std::string> MakeSession::news() const {
     const std::lock_guard lock(mutex_);
-    // That there is none is news too: to a page that knew a job before the studio was started again.
+    // "No job" is news too: for a page that knew a job before the studio was restarted.
     return {event({{"type", "job"}, {"revision", job_ ? revision_ : 0}})};
 }
 

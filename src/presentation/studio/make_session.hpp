@@ -1,4 +1,4 @@
-// The job at hand: opened from a file, or sliced from the robot in the editor, on a thread of its own.
+// The current job: opened from a file, or sliced from the robot in the editor, on a thread of its own.
 #pragma once
 
 #include <atomic>
@@ -25,7 +25,7 @@ struct SliceOrder {
     prepare::Order order;  ///< its inputs are the robot's
 };
 
-/// A job with the machine that it was made for.
+/// A job and the machine that it was made for.
 struct OpenJob {
     OpenJob(job::Archive archive_, machine::Printer printer_, std::filesystem::path file_, int revision_)
         : archive(std::move(archive_)), printer(std::move(printer_)), file(std::move(file_)), revision(revision_) {}
@@ -34,8 +34,8 @@ struct OpenJob {
     std::filesystem::path file;
     int revision;
     std::vector<std::string> colours{};  ///< (materials)
-    std::mutex mutex{};                  ///< an archive is for one thread at a time
-    std::string part{};                  ///< see job_part(); "": nobody has asked for it yet
+    std::mutex mutex{};                  ///< an archive must be used by one thread at a time
+    std::string part{};                  ///< see job_part(); "": not requested yet
 };
 
 class MakeSession {
@@ -46,16 +46,17 @@ public:
     MakeSession& operator=(const MakeSession&) = delete;
 
     [[nodiscard]] Status open(const std::filesystem::path& file);
-    /// The job at hand as a file of its own, which takes its place. Errors: there is none, the file exists, the disk.
+    /// Saves the current job to a file, which it uses from then on. Errors: there is none, the file exists, it cannot
+    /// be written.
     [[nodiscard]] Status save(const std::filesystem::path& file);
-    /// Begins; the pages hear of its progress and of its end. Errors: it is slicing already.
+    /// Starts slicing; the pages are told of its progress and its end. Errors: it is slicing already.
     [[nodiscard]] Status slice(SliceOrder order);
     void cancel();
     [[nodiscard]] std::shared_ptr<OpenJob> job() const;
-    /// The layers of what is being sliced.
+    /// The layers of the job that is being sliced.
     [[nodiscard]] const JobUnderWay& under_way() const { return under_way_; }
-    /// A job to hold the one at hand against: the one that was at hand before, or `file`. Its revision is below 0.
-    /// Errors: there was none before; not a job.
+    /// A job to compare the current one with: the previous one, or `file`. Its revision is below 0. Errors: there was
+    /// none before; not a job.
     [[nodiscard]] Result<std::shared_ptr<OpenJob>> other(const std::filesystem::path& file = {});
     [[nodiscard]] std::vector<std::string> news() const;
 
@@ -66,7 +67,7 @@ private:
 
     std::function<void(const std::string& json)> tell_;
     std::string version_;
-    std::filesystem::path scratch_;  ///< folder for sliced jobs; gone with the session
+    std::filesystem::path scratch_;  ///< folder for sliced jobs; deleted with the session
     mutable std::mutex mutex_;
     std::shared_ptr<OpenJob> job_, before_, other_;
     int revision_ = 0, others_ = 0;

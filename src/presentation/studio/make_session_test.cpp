@@ -33,7 +33,8 @@ TEST_CASE("a robot becomes a job with the colours of its materials, in a file th
         CHECK(job->printer.projector.width_px == 96);
         CHECK(session.news() == std::vector<std::string>{R"({"revision":1,"type":"job"})"});
         scratch = job->file.parent_path();
-        CHECK((fs::status(scratch).permissions() & fs::perms::mask) == fs::perms::owner_all);  // nobody else's
+        CHECK((fs::status(scratch).permissions() & fs::perms::mask) == fs::perms::owner_all);  // readable by the owner
+                                                                                               // only
     }
     CHECK_FALSE(fs::exists(scratch));
 }
@@ -84,7 +85,7 @@ TEST_CASE("one job is sliced at a time; one that is cancelled ends without an er
     Events events;
     std::promise<void> go;
     std::shared_future<void> may_go(go.get_future());
-    // The session's thread waits at its first word, so that it is at work for as long as the test wants.
+    // The session's thread blocks at its first event, so that it is busy as long as the test needs.
     MakeSession session(
         [&](const std::string& json) {
             events.add(json);

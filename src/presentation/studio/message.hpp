@@ -1,8 +1,8 @@
-// What a page says over its WebSocket: JSON texts, one object each, told apart by "type".
+// Messages that a page sends over its WebSocket: JSON texts, one object each, distinguished by "type".
 //
-//     {"type": "hello", "page": "k3J..."}                       who it is; the same again after a lost connection
+//     {"type": "hello", "page": "k3J..."}                       identifies the page; repeated after a lost connection
 //     {"type": "drive", "tag": 7, "time": 0.5, "actuators": [{"name": "flexor", "kind": "length_ratio", "value": 0.8}]}
-//     {"type": "follow", "tag": 8, "time": 0.5}                 all actuators where the program has them
+//     {"type": "follow", "tag": 8, "time": 0.5}                 all actuators follow the program at this time
 //     {"type": "play", "on": true}      {"type": "rest"}
 //     {"type": "pull", "vertex": 12, "to": [10, 0, 5]}          millimetres      {"type": "release"}
 //     {"type": "lead", "marker": "tip", "to": [10, 0, 5]}       millimetres; the actuators follow, until "release"
@@ -33,8 +33,8 @@ struct ActuatorValue {
     double value = 0;
 };
 struct DriveMessage {
-    double tag = 0;    ///< of the input, comes back with the frame that shows it
-    double time = -1;  ///< of the program, for loads and supports; -1: stays
+    double tag = 0;    ///< of the input; returned with the frame that shows it
+    double time = -1;  ///< program time, for loads and supports; -1: unchanged
     std::vector<ActuatorValue> actuators;
 };
 struct Follow {

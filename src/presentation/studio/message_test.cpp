@@ -1,4 +1,4 @@
-// What a page may say, and what is refused.
+// Valid and invalid messages of a page.
 #include "presentation/studio/message.hpp"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
-// The whole program of a robot, run as `pliant simulate` runs it, for a page that plays it: in seconds where the robot
-// moves in time.
+// The whole program of a robot, run like `pliant simulate`, for playback on the page: in seconds if the robot moves in
+// time.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ namespace pliant::studio {
 
 class Motion {
 public:
-    /// Errors: not one step could be done, and why; cancelled.
+    /// Errors: not even one step converged, with the reason; cancelled.
     [[nodiscard]] static Result<std::shared_ptr<const Motion>> run(std::shared_ptr<const Built> built,
                                                                    Progress& progress);
     [[nodiscard]] std::size_t count() const { return trajectory_.steps.size(); }

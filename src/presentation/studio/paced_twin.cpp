@@ -8,7 +8,7 @@ namespace {
 
 constexpr double most_at_once_s = 0.05;  // of wall time: an emergency stop must not wait longer
 
-/// The host's end of the wire. Waiting moves the twin's clock on.
+/// The host's end of the wire. Waiting advances the twin's clock.
 class TwinWire final : public host::Wire {
 public:
     TwinWire(SharedTwin& shared, Pace& pace) : shared_(shared), pace_(pace) {}
@@ -53,7 +53,7 @@ void Pace::wait_for(double virtual_s) {
     const auto now = std::chrono::steady_clock::now();
     const std::chrono::duration<double> owed((virtual_s - last_virtual_s_) / speed_);
     last_virtual_s_ = virtual_s;
-    // Time that the program itself has taken is not made up for by running faster later.
+    // Time that the program itself has used is not made up for by running faster later.
     due_ = std::max(due_, now - std::chrono::milliseconds(100)) +
            std::chrono::duration_cast<std::chrono::steady_clock::duration>(owed);
     while (!free_ && std::chrono::steady_clock::now() < due_) {

@@ -1,5 +1,5 @@
-// The virtual printer in this program, in the time of people: its clock runs at most `speed` times as fast as the
-// wall's, so that a print can be watched.
+// The virtual printer in this program, slowed down for viewing: its clock runs at most `speed` times as fast as the
+// wall clock.
 #pragma once
 
 #include <atomic>
@@ -12,18 +12,18 @@
 
 namespace pliant::studio {
 
-/// Holds the thread back until the wall's clock has caught up.
+/// Blocks the thread until the wall clock has caught up.
 class Pace {
 public:
     explicit Pace(double speed) : speed_(speed) {}
-    /// From any thread; from now on.
+    /// Thread-safe; applies from now on.
     void set_speed(double speed) { speed_ = speed; }
     [[nodiscard]] double speed() const { return speed_; }
-    /// Nobody is held back any more: the print is to end.
+    /// Stops pacing, so that the print can end quickly.
     void let_go() { free_ = true; }
-    /// Before anybody waits: the twin is at `virtual_s`, and nobody has to make up for it.
+    /// Called before anything waits: the twin is at `virtual_s`, and this time is not waited for.
     void begin_at(double virtual_s) { last_virtual_s_ = virtual_s; }
-    /// The twin is at `virtual_s`.
+    /// Waits for the wall clock; the twin is at `virtual_s`.
     void wait_for(double virtual_s);
 
 private:
@@ -33,7 +33,7 @@ private:
     std::chrono::steady_clock::time_point due_ = std::chrono::steady_clock::now();
 };
 
-/// The twin, for one at a time: who serves the print, who opens its door, who looks at its block.
+/// The twin with a lock: used by the print, the door control and the display of the block.
 struct SharedTwin {
     explicit SharedTwin(const machine::Printer& printer, twin::Options options) : twin(printer, std::move(options)) {}
     std::mutex mutex;
@@ -51,7 +51,7 @@ public:
     [[nodiscard]] host::Projector& projector() { return projector_; }
     [[nodiscard]] host::Clock& clock() { return clock_; }
     [[nodiscard]] Pace& pace() { return pace_; }
-    /// From any thread; the print stands still meanwhile.
+    /// Thread-safe; the print is paused meanwhile.
     template <class Do>
     auto with(const Do& todo) {
         const std::lock_guard lock(shared_.mutex);

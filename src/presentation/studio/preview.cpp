@@ -7,7 +7,7 @@
 namespace pliant::studio {
 namespace {
 
-/// (nodes) numbers of the corners, in their order; -1 of mid-edge nodes.
+/// (nodes) consecutive numbers of the corners; -1 for mid-edge nodes.
 std::vector<int> number_corners(const mesh::TetMesh& fine) {
     std::vector<int> corner(fine.points.size(), -1);
     for (std::size_t t = 0; t < fine.tet_count(); ++t)

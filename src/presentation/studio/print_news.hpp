@@ -1,4 +1,5 @@
-// What a person who is not at the machine wants to hear of a print: that it has ended, how, and that it waits for them.
+// Notifications about a print for people away from the machine: that it has ended, with which result, or that it waits
+// for them.
 #pragma once
 
 #include <optional>
@@ -14,11 +15,11 @@ struct PrintNews {
     std::string text;   ///< one line
 };
 
-/// What has happened between two looks at a print; nullopt: nothing that anybody must be told.
+/// The notification due to the change between two snapshots of a print; nullopt: none.
 [[nodiscard]] std::optional<PrintNews> news_between(const host::Snapshot& before, const host::Snapshot& now);
 
-/// Starts `command` by the shell, with PLIANT_EVENT, PLIANT_TEXT and PLIANT_JOB in its environment, and does not wait
-/// for it. Errors: no shell.
+/// Runs `command` in the shell, with PLIANT_EVENT, PLIANT_TEXT and PLIANT_JOB in its environment, and does not wait for
+/// it. Errors: no shell.
 [[nodiscard]] Status tell_by_command(const std::string& command, const PrintNews& news, const std::string& job);
 
 }  // namespace pliant::studio

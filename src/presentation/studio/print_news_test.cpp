@@ -52,7 +52,7 @@ TEST_CASE("what somebody far from the machine is told: the end, a stop, that it 
     REQUIRE(news_between(before, failed));
     CHECK(news_between(before, failed)->event == "failed");
 
-    // A person who has paused knows it; one who is asked for resin does not.
+    // A person who has paused the print knows it; one who must refill resin does not.
     host::Snapshot paused = before;
     paused.state = host::State::paused;
     CHECK_FALSE(news_between(before, paused));

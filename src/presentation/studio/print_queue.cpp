@@ -17,7 +17,7 @@ std::string dumped(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// The total of the plan that the job carries; nullopt: it carries none.
+/// The total time in the job's plan; nullopt: it has none.
 std::optional<double> planned_s(const job::Archive& archive) {
     const Result<std::string> text = archive.file("plan.json");
     if (!text) return std::nullopt;
@@ -95,7 +95,7 @@ void PrintQueue::begun(const std::string& job) {
     const auto found = std::find(rest.begin(), rest.end(), job);
     if (found == rest.end()) return;
     rest.erase(found);
-    (void)set(std::move(rest));  // one that cannot be written is asked for again
+    (void)set(std::move(rest));  // if writing fails, it is asked for again
 }
 
 std::string PrintQueue::json() const {

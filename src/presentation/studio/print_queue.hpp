@@ -1,4 +1,4 @@
-// Jobs that wait to be printed, in their order, in a file of the project folder: they outlive the studio.
+// The queue of jobs to be printed, stored in a file of the project folder, so that it outlives the studio.
 #pragma once
 
 #include <functional>
@@ -13,14 +13,14 @@ namespace pliant::studio {
 
 class PrintQueue {
 public:
-    /// `tell` sends a JSON event to all pages. A file that is none of ours counts as an empty queue.
+    /// `tell` sends a JSON event to all pages. An invalid file counts as an empty queue.
     PrintQueue(const ProjectFolder& folder, std::function<void(const std::string& json)> tell);
 
-    /// Names of jobs, relative to the folder; one may come several times.
+    /// Names of jobs, relative to the folder; a name may occur several times.
     [[nodiscard]] std::vector<std::string> jobs() const;
-    /// Another list in its place. Errors: more than `most_jobs`, a name that is no job of the folder, the disk.
+    /// Replaces the list. Errors: more than `most_jobs`, a name that is not a job of the folder, a write error.
     [[nodiscard]] Status set(std::vector<std::string> jobs);
-    /// The first of that name goes: its print has begun. Nothing if it does not wait.
+    /// Removes the first entry of that name: its print has begun. No effect if there is none.
     void begun(const std::string& job);
 
     /// For pages: {"jobs": [{"name", "error" or "title", "printer", "layers", "seconds"}]}. Cost: each job is opened.

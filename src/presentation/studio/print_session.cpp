@@ -33,7 +33,7 @@ double mm(int um) {
     return um / 1e3;
 }
 
-/// `{"current": ...}` as an event of the page.
+/// `{"current": ...}` as an event for the pages.
 std::string event_of(const std::string& message) {
     return R"({"type":"print",)" + message.substr(1);
 }
@@ -44,7 +44,7 @@ bool under_way(host::State state) {
            state == State::cancelling || state == State::working;
 }
 
-/// What watches over the machine, as far as its file says: switches with their names on the wire, door, emergency line.
+/// Safety devices according to the machine's file: switches with their names on the wire, door, emergency line.
 void add_safety(Json& json, const machine::Printer& p) {
     Json switches = Json::array();
     for (const machine::LimitSwitch& s : p.limit_switches)
@@ -57,7 +57,7 @@ void add_safety(Json& json, const machine::Printer& p) {
     json["emergency"] = {{"signal", machine::signal_name(line.signal)}, {"device", line.device}, {"pin", line.pin}};
 }
 
-/// How images lie on the platform.
+/// Position of images on the platform.
 Json json_of(const machine::Projector& p) {
     return {{"width", p.width_px},
             {"height", p.height_px},
@@ -69,7 +69,7 @@ Json json_of(const machine::Projector& p) {
             {"offset_y", p.offset_y_um / 1e3}};
 }
 
-/// What the page draws the machine from.
+/// Data for drawing the machine.
 Json printer_json(const machine::Printer& p) {
     Json axes = Json::object(), vats = Json::array();
     for (const machine::Axis axis : machine::all_axes) {
@@ -101,7 +101,7 @@ Json printer_json(const machine::Printer& p) {
     return json;
 }
 
-/// The journal is of a print that is complete, or was cancelled for good.
+/// True if the journal's print is complete or cancelled for good.
 bool is_over(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::exists(path, error)) return false;
@@ -110,8 +110,8 @@ bool is_over(const std::filesystem::path& path) {
     return facts && (facts->ended || facts->cancelled);
 }
 
-/// A virtual light ends with the program that it was in; what of it was not journaled was not given when the twin was
-/// brought back to its place.
+/// A virtual exposure ends with the program that it was in; the part of it that was not journaled did not take place
+/// when the twin was restored.
 class RecalledGuard final : public host::Guard {
 public:
     void announced(long light) override { last_ = light; }
@@ -122,7 +122,7 @@ public:
     }
 
 private:
-    long last_ = 0;  ///< of this session
+    long last_ = 0;  ///< in this session
 };
 
 /// The command of a request to the host's control, "" if it has none.
@@ -135,7 +135,7 @@ std::string command_of(std::string_view body) {
 
 }  // namespace
 
-/// Either a twin or a port.
+/// Either a twin or a machine at a port.
 struct PrintSession::Machine {
     Machine(const Order& order, operate::ReadyJob ready_, twin::Options options, double speed)
         : file(order.job),
@@ -172,7 +172,7 @@ struct PrintSession::Machine {
                 {},
                 "virtual"};
     }
-    /// Nothing of a print is under way, nor waits to be gone on with.
+    /// True if there is neither a running nor an interrupted print.
     [[nodiscard]] bool is_free() const {
         const host::Snapshot now = control.snapshot();
         return !under_way(now.state) && !now.can_resume;
@@ -185,12 +185,12 @@ struct PrintSession::Machine {
     std::unique_ptr<operate::PortStation> port;
     std::string device;
     RecalledGuard guard;
-    bool keeps_journal = false;  ///< beside the job, where the print history finds it
+    bool keeps_journal = false;  ///< beside the job, as part of the print history
     GrowingPart part;
     host::Control control;
     std::atomic<bool> ending = false;
     std::mutex block_mutex;
-    std::shared_ptr<const report::CuredBlock> block;  ///< of the last complete print; null: nobody has asked yet
+    std::shared_ptr<const report::CuredBlock> block;  ///< of the last complete print; null: not requested yet
     std::thread worker, watcher;
 };
 
@@ -222,7 +222,7 @@ report::PrintExtras PrintSession::extras() const {
     const host::Snapshot now = machine->control.snapshot();
     report::PrintExtras extras{machine->twin ? "virtual printer" : machine->device, now.firmware, now.lines_sent,
                                now.resends, nullptr};
-    // A block that still grows is not judged.
+    // A block that still grows is not compared.
     if (machine->twin && machine->is_free()) extras.block = block_of(*machine->twin, machine->file);
     return extras;
 }
@@ -235,7 +235,7 @@ std::string PrintSession::verdict() const {
         {{"passed", block->report.passed}, {"reasons", Json::parse(twin::report_json(block->report))["reasons"]}});
 }
 
-/// Null: the print is not complete, or it is at a port.
+/// Null: the print is not complete, or on a real machine.
 std::shared_ptr<const report::CuredBlock> PrintSession::finished_block(Machine& machine) {
     if (!machine.twin || !machine.is_free() || !machine.control.snapshot().finished) return nullptr;
     const std::lock_guard lock(machine.block_mutex);
@@ -265,7 +265,7 @@ Status PrintSession::take_twin(const Order& order, double speed) {
     std::filesystem::permissions(scratch_, std::filesystem::perms::owner_all, error);
     ready->job.journal =
         order.journal.empty() ? scratch_ / fmt::format("twin_{}.journal", taken_.load()) : order.journal;
-    ready->job.sync_journal = false;  // power cuts do not happen to a virtual machine alone
+    ready->job.sync_journal = false;  // a virtual machine needs no protection against power cuts
     ++taken_;
     const auto made = std::make_shared<Machine>(order, std::move(*ready), std::move(options), speed);
     made->keeps_journal = !order.journal.empty();
@@ -273,7 +273,7 @@ Status PrintSession::take_twin(const Order& order, double speed) {
     return take(made);
 }
 
-/// Brings the twin to where an interrupted print has left it.
+/// Restores the twin to the state at which a print was interrupted.
 Status PrintSession::recall(Machine& machine) {
     const std::filesystem::path& path = machine.ready.job.journal;
     std::error_code error;
@@ -312,7 +312,7 @@ Status PrintSession::take_port(const Order& order, const operate::PortOptions& p
 Status PrintSession::take(const std::shared_ptr<Machine>& made) {
     if (Status loaded = made->control.load(made->ready.job); !loaded) return loaded;
     made->control.serve_until_idle();
-    // Nothing is said to a machine that an interrupted print has left: going on is what speaks to it first.
+    // Nothing is sent to a machine with an interrupted print: resuming must be the first contact.
     if (!made->control.snapshot().can_resume) {
         if (Status status = made->control.connect(); !status) return status;
     } else if (made->port) {
@@ -328,7 +328,7 @@ Status PrintSession::take(const std::shared_ptr<Machine>& made) {
     return {};
 }
 
-/// Sends what has changed a few times a second.
+/// Sends changes a few times a second.
 void PrintSession::watch(const std::shared_ptr<Machine>& machine) {
     machine->watcher = std::thread([this, m = machine.get()] {
         long last = 0;
@@ -379,7 +379,7 @@ Status PrintSession::leave() {
         machine_.reset();
     }
     end(machine);
-    machine.reset();  // its device is free before anybody hears of it
+    machine.reset();  // its device must be free before the pages are told
     tell_(R"({"type":"machine"})");
     return {};
 }
@@ -413,8 +413,7 @@ Status PrintSession::set_door(bool open) {
     return {};
 }
 
-/// A print that begins anew finds the platform clean and, in the virtual printer, the vats full: that is what the page
-/// has asked for before it.
+/// A new print finds a clean platform and, in the virtual printer, full vats: the page has asked for this before.
 void PrintSession::prepare_start(Machine& machine) {
     if (machine.twin) make_ready(machine);
     machine.part.clear();
@@ -432,7 +431,7 @@ void PrintSession::make_ready(Machine& machine) {
     });
 }
 
-/// Whoever says that a vat is filled has filled the virtual one.
+/// Confirming that a vat is filled fills the virtual one.
 void PrintSession::pour(Machine& machine) {
     const std::string prompt = machine.control.snapshot().prompt;
     if (!machine.twin || prompt.empty()) return;
@@ -451,7 +450,7 @@ host::ApiAnswer PrintSession::ask(std::string_view method, std::string_view path
     const auto machine = this->machine();
     if (!machine) return {404, R"({"error":"no machine is connected"})"};
     if (method == "POST" && path == "/api/job") {
-        // Two who start at once: the second must not clear what the first has begun.
+        // If two pages start at once, the second must not clear what the first has begun.
         const std::lock_guard one_at_a_time(orders_);
         const std::string command = command_of(body);
         const host::Snapshot now = machine->control.snapshot();
@@ -511,7 +510,7 @@ std::string PrintSession::part(int revision, std::size_t from) const {
     return machine ? machine->part.packet(revision, from) : "";
 }
 
-/// That there is none is news too: to a page that knew a machine before the studio was started again.
+/// "No machine" is news too: for a page that knew a machine before the studio was restarted.
 std::vector<std::string> PrintSession::news() const {
     return {R"({"type":"machine"})"};
 }

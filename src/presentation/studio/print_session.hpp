@@ -1,4 +1,4 @@
-// A print that pages watch and steer: a job, a machine (virtual or at a port) and the host's control over both.
+// A print that pages view and control: a job, a machine (virtual or at a port) and the host's control of both.
 #pragma once
 
 #include <atomic>
@@ -22,59 +22,59 @@ namespace pliant::studio {
 
 class PrintSession {
 public:
-    /// `tell` sends a JSON event to all pages.
-    /// `notify`: a command that hears of what news_between() finds; "": none.
+    /// `tell` sends a JSON event to all pages. `notify`: the command for notifications of news_between(); "": none.
     explicit PrintSession(std::function<void(const std::string& json)> tell, std::string notify = "");
     ~PrintSession();  ///< a print under way is suspended
     PrintSession(const PrintSession&) = delete;
     PrintSession& operator=(const PrintSession&) = delete;
 
-    /// A job, and what its materials are drawn in.
+    /// A job, and the display colours of its materials.
     struct Order {
         std::filesystem::path job;
         std::vector<std::string> colours;
-        std::filesystem::path journal{};  ///< of a virtual print; "": one that goes with the session
+        std::filesystem::path journal{};  ///< of a virtual print; "": a temporary one, deleted with the session
     };
-    /// Takes the machine that the job was made for, as a twin. Refused while a print is under way. If the journal holds
-    /// an interrupted print of this job, the twin is brought to where that one was left, and it can be gone on with; a
-    /// journal of another job is put aside (".old"). Errors: the job cannot be printed.
+    /// Connects to a twin of the machine that the job was made for. Refused during a print. If the journal holds an
+    /// interrupted print of this job, the twin is restored to the state at the interruption, and the print can be
+    /// resumed; a journal of another job is put aside (".old"). Errors: the job cannot be printed.
     [[nodiscard]] Status take_twin(const Order& order, double speed);
-    /// Takes the machine at a serial port. The journal stands beside the job, so that an interrupted print is gone on
-    /// with. Whether the port answers shows in the state. Errors: the job cannot be printed, the device is none, no
-    /// such projector.
+    /// Connects to the machine at a serial port. The journal is beside the job, so that an interrupted print can be
+    /// resumed. Whether the port answers is shown in the state. Errors: the job cannot be printed, the device does not
+    /// exist, no such projector.
     [[nodiscard]] Status take_port(const Order& order, const operate::PortOptions& port);
-    /// Gives the machine back; a print under way is refused.
+    /// Disconnects the machine; refused during a print.
     [[nodiscard]] Status give_back();
-    /// An interrupted print on the virtual printer is not gone on with: its journal goes, and the next print begins
-    /// anew. (A real machine has to be parked: that is a command to its control.) Errors: none waits, none is virtual.
+    /// Discards an interrupted print on the virtual printer: its journal is deleted, and the next print starts anew. (A
+    /// real machine must be parked, by a command to its control.) Errors: no interrupted print, or not a virtual
+    /// printer.
     [[nodiscard]] Status discard();
-    /// Of the virtual printer.
+    /// Speed factor of the virtual printer.
     [[nodiscard]] Status set_speed(double speed);
-    /// Opens or shuts the door of the virtual printer. Errors: there is none, or it has no door.
+    /// Opens or closes the door of the virtual printer. Errors: no virtual printer, or it has no door.
     [[nodiscard]] Status set_door(bool open);
 
-    /// One request of docs/reference/host-api.md; 404 while there is no machine.
+    /// One request of docs/reference/host-api.md; 404 if no machine is connected.
     [[nodiscard]] host::ApiAnswer ask(std::string_view method, std::string_view path, std::string_view body);
     /// The machine and the job for the page: JSON.
     [[nodiscard]] std::string describe() const;
-    /// The part as far as it is printed, a packet (see GrowingPart): what has cured in the virtual printer, what has
-    /// been exposed at a port. From slab `from` on if the page knows that `revision`, else from the first. "": there is
-    /// no machine.
+    /// The part printed so far, a packet (see GrowingPart): what has cured in the virtual printer, or what has been
+    /// exposed on a real machine. From slab `from` on if the page has that `revision`, else from the first. "": no
+    /// machine is connected.
     [[nodiscard]] std::string part(int revision, std::size_t from) const;
-    /// An image of the job that is printed, PNG: another one may be at hand meanwhile. Errors: there is none.
+    /// An image of the job being printed, PNG; it may differ from the current job of the page. Errors: there is none.
     [[nodiscard]] Result<std::string> image(int layer, int material) const;
     [[nodiscard]] std::vector<std::string> news() const;
-    /// Job and journal of the machine at hand; both empty while there is none.
+    /// Job and journal of the connected machine; both empty if there is none.
     struct Files {
         std::filesystem::path job, journal;
     };
     [[nodiscard]] Files files() const;
-    /// What its journal does not hold.
+    /// Facts for the report that the journal does not hold.
     [[nodiscard]] report::PrintExtras extras() const;
-    /// What has come of a print that is complete, JSON: {"passed", "reasons": [...]}, null where nobody can know (at a
-    /// port, in mid-print). Cost: as report::cured_block(), once a print.
+    /// The verdict on a completed print, JSON: {"passed", "reasons": [...]}; null if unknown (on a real machine, during
+    /// a print). Cost: that of report::cured_block(), once per print.
     [[nodiscard]] std::string verdict() const;
-    /// The cured block beside the drawing, PNG. Errors: as verdict() is null; nothing to draw.
+    /// The cured block beside the drawing, PNG. Errors: the verdict is null; nothing to draw.
     [[nodiscard]] Result<std::string> verdict_picture() const;
 
 private:
@@ -93,20 +93,21 @@ private:
 
     std::function<void(const std::string& json)> tell_;
     std::string notify_;
-    std::filesystem::path scratch_;  ///< folder for the journals of virtual printers; gone with the session
-    std::atomic<int> taken_ = 0;     ///< machines, so far
-    std::mutex orders_;              ///< held while a machine is taken or left, or a print is begun: one at a time
+    std::filesystem::path scratch_;  ///< folder for the journals of virtual printers; deleted with the session
+    std::atomic<int> taken_ = 0;     ///< number of machines connected so far
+    std::mutex orders_;              ///< serialises connecting, disconnecting and starting a print
     mutable std::mutex mutex_;
     std::shared_ptr<Machine> machine_;
 };
 
-/// A page may name no file but a terminal's: what is opened is written to. Errors: there is none, it is no terminal.
+/// Only terminal devices are allowed, because the opened device is written to. Errors: it does not exist, or is not a
+/// terminal.
 [[nodiscard]] Status check_device(const std::string& device);
 
-/// How the machine's images lie on its platform, for pages that draw them: JSON.
+/// Position of the machine's images on its platform, for drawing on pages: JSON.
 [[nodiscard]] std::string projector_json(const machine::Projector& projector);
 
-/// The ports that have something behind them and the displays that a projector may be: JSON.
+/// The ports with a device and the displays that may be projectors: JSON.
 [[nodiscard]] std::string ports_json();
 
 }  // namespace pliant::studio

@@ -35,7 +35,7 @@ struct Bench {
         return session.ask("POST", "/api/job", R"({"command":")" + text + "\"}");
     }
     [[nodiscard]] Json about() const { return Json::parse(session.describe()); }
-    /// Waits until the print has come to its end and has been judged.
+    /// Waits for the end of the print and its verdict.
     [[nodiscard]] std::string verdict() const {
         for (int i = 0; i < 6000; ++i) {
             if (std::string said = session.verdict(); said != "null") return said;
@@ -141,12 +141,12 @@ TEST_CASE("a virtual print with a journal beside its job is gone on with by the 
             if (layer_of(about).is_number() && layer_of(about) >= 3) break;
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
-    }  // ends in mid-print
+    }  // ends during the print
     REQUIRE(fs::exists(b.order.journal));
     const std::string broken_off = read_file(b.order.journal).value();
     REQUIRE(b.session.take_twin(b.order, 10000).has_value());
     CHECK(b.about()["now"]["job"]["canResume"] == true);
-    CHECK(b.session.part(0, 0).size() > 200);  // what was printed is there again
+    CHECK(b.session.part(0, 0).size() > 200);  // the printed part is available again
     REQUIRE(b.session.ask("POST", "/api/job", R"({"command":"start","resume":true})").status == 204);
     CHECK(Json::parse(b.verdict())["passed"] == true);
     CHECK(b.session.discard().error().message == "there is no interrupted print");

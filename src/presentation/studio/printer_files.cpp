@@ -68,7 +68,7 @@ Json resins_json(const machine::Printer& p) {
     return resins;
 }
 
-/// The text of a printer and where its mask lies.
+/// The text of a printer and the folder of its mask.
 Result<std::pair<std::string, std::filesystem::path>> text_of(const ProjectFolder& folder, const std::string& name) {
     if (const BuiltInFile* known = find_file(example_printers(), name))
         return std::pair(std::string(known->text), std::filesystem::path(name + ".toml"));

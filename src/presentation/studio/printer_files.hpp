@@ -1,4 +1,4 @@
-// Printer files of the project folder, made from a built-in one and changed value by value: what a wizard writes.
+// Printer files of the project folder, created from a built-in one and changed value by value by the setup wizard.
 #pragma once
 
 #include <string>
@@ -12,28 +12,28 @@
 
 namespace pliant::studio {
 
-/// Built-in ("tower") or of the folder ("mine.toml"), with its mask, which must lie in the folder too. Errors: there is
-/// none, what is wrong with it.
+/// A built-in printer ("tower") or one of the folder ("mine.toml"), with its mask, which must be in the folder too.
+/// Errors: it does not exist, or is invalid.
 [[nodiscard]] Result<prepare::PrinterFile> read_printer(const ProjectFolder& folder, const std::string& name);
 
-/// A printer file of that name with the text of another. Errors: the name does not end with .toml, exists, leads out of
-/// the folder; no such printer.
+/// Creates a printer file of that name with the text of another. Errors: the name does not end with .toml, exists,
+/// leads out of the folder; no such printer.
 [[nodiscard]] Status new_printer(const ProjectFolder& folder, const std::string& from, const std::string& name);
 
 /// Keys as of config::with_value(), values in TOML.
 using PrinterChanges = std::vector<std::pair<std::string, std::string>>;
-/// Changes values where they stand, with comments and order kept, and writes the file. Errors, and then nothing is
-/// written: a built-in printer, what toml_edit refuses, a printer that would be wrong with them.
+/// Changes values in place, keeping comments and order, and writes the file. Errors, in which case nothing is written:
+/// a built-in printer, a change that toml_edit refuses, a printer that would become invalid.
 [[nodiscard]] Status change_printer(const ProjectFolder& folder, const std::string& name,
                                     const PrinterChanges& changes);
 
-/// What a page sets up: its axes, store, vats, resins, projector, port, switches, as JSON.
+/// The settings of a printer in the wizard: axes, store, vats, resins, projector, port, switches, as JSON.
 [[nodiscard]] std::string printer_setup_json(const std::string& name, const machine::Printer& printer, bool built_in);
 
-/// Printers to begin with: [{"name", "title", "store", "slots", "vats", "size_mm", "pixel_um", "dialect"}].
+/// Printers to start from: [{"name", "title", "store", "slots", "vats", "size_mm", "pixel_um", "dialect"}].
 [[nodiscard]] std::string built_in_printers_json();
 
-/// What a board has answered, against the machine that it is to drive: {"firmware", "capabilities", "switches",
+/// A board's answers compared with the machine that it should drive: {"firmware", "capabilities", "switches",
 /// "problems"}.
 [[nodiscard]] std::string board_json(const std::string& answers, const machine::Printer& printer);
 

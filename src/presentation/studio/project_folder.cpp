@@ -103,7 +103,7 @@ std::vector<std::string> ProjectFolder::texts_leading_outside(std::string_view t
     if (!document) return outside;
     visit_texts(document->root, [&](const std::string& text) {
         const bool a_name = text.find('/') == std::string::npos && text != "..";
-        if (a_name && text.size() > longest_name) return;  // no file can be called so
+        if (a_name && text.size() > longest_name) return;  // too long for a file name
         if (!holds(file.parent_path() / text)) outside.push_back(text);
     });
     return outside;

@@ -1,4 +1,4 @@
-// The folder that the studio may read and write: nothing a page asks for lies outside of it.
+// The folder that the studio may read and write: pages have no access outside it.
 #pragma once
 
 #include <filesystem>
@@ -16,20 +16,20 @@ public:
     [[nodiscard]] static Result<ProjectFolder> open(const std::filesystem::path& folder);
 
     [[nodiscard]] const std::filesystem::path& path() const { return root_; }
-    /// A relative path as a page writes it, with '/'. Errors: empty, absolute, "." or ".." among its parts, backslashes
-    /// or control characters, or a symbolic link on the way that leads outside.
+    /// Resolves a relative path sent by a page, with '/'. Errors: empty, absolute, "." or ".." among its parts,
+    /// backslashes or control characters, or a symbolic link in it that leads outside.
     [[nodiscard]] Result<std::filesystem::path> resolve(std::string_view relative) const;
-    /// True if the path, links followed, lies in the folder.
+    /// True if the path, with links resolved, is inside the folder.
     [[nodiscard]] bool holds(const std::filesystem::path& path) const;
-    /// Robot files and jobs (.toml, .zip), relative, sorted; two levels deep, at most 500, hidden ones left out.
+    /// Robot files and jobs (.toml, .zip), relative, sorted; two levels deep, at most 500, without hidden ones.
     [[nodiscard]] std::vector<std::string> files() const;
     /// Journals of prints (.journal), listed likewise.
     [[nodiscard]] std::vector<std::string> journals() const;
-    /// The text values of a TOML document that, taken as paths beside `file`, lead outside: found before anything is
-    /// read that the document names. A document with mistakes has none.
+    /// The strings in a TOML document that, taken as paths beside `file`, lead outside: checked before any file that
+    /// the document names is read. Empty for an invalid document.
     [[nodiscard]] std::vector<std::string> texts_leading_outside(std::string_view toml,
                                                                  const std::filesystem::path& file) const;
-    /// Something that changes when a file changes that the document, beside `file`, names: "" where it names none.
+    /// A fingerprint that changes when a file that the document, beside `file`, names changes: "" if it names none.
     [[nodiscard]] std::string stamps_of(std::string_view toml, const std::filesystem::path& file) const;
 
 private:

@@ -1,4 +1,4 @@
-// No path leads out of the project folder.
+// Paths cannot lead out of the project folder.
 #include "presentation/studio/project_folder.hpp"
 
 #include <doctest/doctest.h>
@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A project with a neighbour that it must not see.
+/// A project beside a folder that it must not access.
 struct Place {
     pliant::test::Folder folder{"project"};
     fs::path base = folder.path();

@@ -1,4 +1,4 @@
-// Test patterns on a projector, for those who set it up from a page: focus, size.
+// Test patterns on a projector, for its setup from a page: focus, size.
 #pragma once
 
 #include <memory>
@@ -17,14 +17,14 @@ public:
         std::string where;    ///< number of a display, or a folder that exists
         std::string pattern;  ///< as host::pattern_names() lists them
         int square_px = 1;    ///< of the checkerboard
-        double seconds = 0;   ///< above 0, at most `longest_s`: then it is dark by itself
+        double seconds = 0;   ///< above 0, at most `longest_s`; after this time the projector turns dark
     };
     static constexpr double longest_s = 600;
 
-    /// Shows a pattern of the printer's size, in place of the one before. Errors: no such pattern or display, one of
-    /// another size, in use by a print.
+    /// Shows a pattern of the printer's size, replacing the previous one. Errors: no such pattern or display, a display
+    /// of another size or in use by a print.
     [[nodiscard]] Status show(const Order& order, const machine::Projector& projector);
-    /// Dark, and given back: a print may take it. Harmless when there is none.
+    /// Turns dark and releases the projector, so that a print may use it. No effect if there is none.
     void dark();
 
 private:

@@ -17,7 +17,7 @@ constexpr std::size_t longest_name = 120;
 constexpr std::array<std::string_view, 12> endings = {".stl", ".obj", ".ply", ".off",  ".3mf", ".step",
                                                       ".stp", ".vtk", ".vtu", ".mesh", ".msh", ".inp"};
 
-/// A file that is gone when this goes, unless it was kept.
+/// A temporary file that is deleted with this object, unless it was kept.
 class Aside {
 public:
     explicit Aside(fs::path path) : path_(std::move(path)) {}
@@ -73,7 +73,7 @@ bool same_bytes(const fs::path& a, const fs::path& b) {
                       std::istreambuf_iterator<char>(other), std::istreambuf_iterator<char>());
 }
 
-/// The reader knows the file by where it lies now: people know it by its name.
+/// The reader names the temporary path: replace it by the file's own name.
 Error renamed(Error error, const std::string& path, const std::string& name) {
     for (std::size_t at = error.message.find(path); at != std::string::npos; at = error.message.find(path, at))
         error.message.replace(at, path.size(), name);

@@ -1,5 +1,5 @@
-// A file of geometry that a page sends: written aside piece by piece, read by its reader, and only then put into the
-// project folder under its name.
+// Receives a geometry file from a page: writes it to a temporary file piece by piece, checks it with its reader, and
+// only then moves it into the project folder.
 #pragma once
 
 #include <functional>
@@ -11,14 +11,14 @@
 
 namespace pliant::studio {
 
-/// More than this is refused, and nothing of it stays.
+/// Larger files are refused and deleted.
 inline constexpr long long largest_geometry = 256LL << 20;
 
-/// The next bytes of a body; 0 at its end, negative where the line broke.
+/// Reads the next bytes of a body; 0 at its end, negative if the connection broke.
 using ReadMore = std::function<long long(char* into, std::size_t most)>;
 
-/// A plain name with the ending of a format that is read: no folders, nothing hidden, no control characters. Errors say
-/// what would be right.
+/// A plain file name with the extension of a supported format: no folders, no hidden files, no control characters.
+/// Errors say what would be right.
 [[nodiscard]] Status check_geometry_name(std::string_view name);
 
 enum class Received { written, same_as_there, name_is_taken };
@@ -28,9 +28,9 @@ struct ReceivedGeometry {
     GeometryContent content;
 };
 
-/// `length`: of the body, negative where it is not known. A file of that name stays unless `replace`; one of the same
-/// bytes counts as received. Errors: the name; too large; the line broke; the disk; those of the reader, in which the
-/// file has its own name.
+/// `length`: of the body, negative if unknown. An existing file is kept unless `replace`; one with the same bytes
+/// counts as received. Errors: the name; too large; a broken connection; a write error; those of the reader, with the
+/// file's own name.
 [[nodiscard]] Result<ReceivedGeometry> receive_geometry(const ProjectFolder& folder, const std::string& name,
                                                         bool replace, long long length, const ReadMore& more,
                                                         long long largest = largest_geometry);

@@ -1,4 +1,4 @@
-// Files of geometry that a page sends.
+// Geometry files uploaded by a page.
 #include "presentation/studio/received_file.hpp"
 
 #include <doctest/doctest.h>

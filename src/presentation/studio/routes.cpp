@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The next segment, and the rest behind its '/'.
+/// The next segment of a path; leaves the rest after its '/'.
 std::string_view next_segment(std::string_view& path) {
     const std::size_t end = std::min(path.find('/'), path.size());
     const std::string_view segment = path.substr(0, end);

@@ -1,4 +1,4 @@
-// The table of everything that can be asked for over HTTP. The OpenAPI description is made from it.
+// The table of all HTTP routes. The OpenAPI description is generated from it.
 #pragma once
 
 #include <functional>
@@ -13,10 +13,10 @@ class Studio;
 
 struct Route {
     std::string method;
-    std::string path;     ///< "/api/job/layers/{layer}"; a part in braces is one path segment
-    std::string summary;  ///< for the description
-    std::string answers;  ///< media type
-    bool steers = false;  ///< only the page that steers may ask
+    std::string path;     ///< "/api/job/layers/{layer}"; {name} matches one path segment
+    std::string summary;  ///< for the OpenAPI description
+    std::string answers;  ///< media type of the response
+    bool steers = false;  ///< only allowed for the page in control
     std::function<Response(Studio&, const Request&)> answer;
     std::string takes = {};  ///< media type of the body, "" for none
     bool streams = false;    ///< reads the body itself, piece by piece
@@ -32,7 +32,7 @@ void add_make_routes(std::vector<Route>& routes);
 void add_print_routes(std::vector<Route>& routes);
 void add_printer_routes(std::vector<Route>& routes);
 
-/// Whether the path fits; fills request.parts.
+/// True if the path matches; fills request.parts.
 [[nodiscard]] bool matches(const Route& route, Request& request);
 /// OpenAPI 3.0, JSON.
 [[nodiscard]] std::string open_api(const std::vector<Route>& routes, const std::string& version);

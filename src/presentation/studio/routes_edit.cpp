@@ -1,4 +1,4 @@
-// Changes of the robot file that are not typed: numbers, entries; and what is wrong with a text that is.
+// Edits of the robot file other than typing: numbers, entries; and checks of a typed text.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Files of geometry that a page sends into the folder, and small pictures of the robots that can be opened.
+// Geometry files uploaded into the folder, and thumbnails of the robots that can be opened.
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"

@@ -61,7 +61,7 @@ Response image(Studio& studio, const Request& request) {
     return open ? layer_image(*open, request) : no_job();
 }
 
-/// The job to compare with: ?name= of the folder, or without it the one that was at hand before.
+/// The job to compare with: ?name= in the folder, or by default the previous one.
 Result<std::shared_ptr<OpenJob>> other_job(Studio& studio, const Request& request) {
     const auto name = request.query.find("name");
     if (name == request.query.end() || name->second.empty()) return studio.make().other();
@@ -123,11 +123,11 @@ Response save(Studio& studio, const Request& request) {
     return saved ? json_response("{}") : error_response(saved.error());
 }
 
-/// The same job on every machine that is built in.
+/// Plans the same job for every built-in machine.
 Response compare(Studio& studio, const Request&) {
     const auto open = studio.make().job();
     if (!open) return no_job();
-    // What machines are compared by is not what happens to be in their vats.
+    // The contents of vats must not affect the comparison of machines.
     job::Manifest manifest = open->archive.manifest();
     manifest.any_vat = true;
     Json rows = Json::array();
@@ -158,7 +158,7 @@ Result<SliceOrder> read_order(Studio& studio, const Request& request) {
     Result<prepare::PrinterFile> printer = read_printer(studio.folder(), *name);
     if (!printer) return tl::unexpected(printer.error());
     Studio::Document d = studio.document();
-    // A robot of its own, as of a wizard, is no document: it lies nowhere.
+    // A robot of its own, as from a wizard, is not the document and has no file.
     const Result<std::optional<std::string>> own = robot_text_of(request.body);
     if (!own) return tl::unexpected(own.error());
     if (*own) {
@@ -178,7 +178,7 @@ Response slice(Studio& studio, const Request& request) {
     return status ? json_response("{}") : error_response(status.error());
 }
 
-/// What it will take, before it is sliced.
+/// Estimate of time and resin before slicing.
 Response estimate(Studio& studio, const Request& request) {
     Result<SliceOrder> order = read_order(studio, request);
     if (!order) return error_response(order.error());
@@ -190,7 +190,7 @@ Response estimate(Studio& studio, const Request& request) {
         {{"layers", plan->layers}, {"seconds", plan->seconds.total}, {"swaps", plan->swaps}, {"resin_ml", resin}}));
 }
 
-/// What a form about slicing for it wants to know.
+/// Data of a printer for the slicing form.
 Response printer(Studio& studio, const Request& request) {
     const auto name = request.query.find("name");
     const Result<prepare::PrinterFile> file =

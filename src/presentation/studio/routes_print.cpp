@@ -1,4 +1,4 @@
-// The print: which machine, and what the host's control may be asked for, docs/reference/host-api.md.
+// The print: the choice of machine, and requests to the host's control, docs/reference/host-api.md.
 #include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
@@ -25,13 +25,13 @@ double speed_of(const Request& request) {
 Response take_twin(Studio& studio, const Request& request) {
     const auto job = studio.make().job();
     if (!job) return error_response(404, "there is no job yet: slice the robot, or open a job file");
-    // A job that lies nowhere yet has no place for a journal either.
+    // A job that was never saved has no place for a journal either.
     const bool lies = studio.folder().holds(job->file);
     return done(studio.print().take_twin(
         {job->file, job->colours, lies ? virtual_journal(job->file) : std::filesystem::path()}, speed_of(request)));
 }
 
-/// Device and projector as `pliant print` takes them; a folder of the projector lies in the project and is made.
+/// Device and projector as for `pliant print`; a projector folder is created in the project.
 Response take_port(Studio& studio, const Request& request) {
     const auto job = studio.make().job();
     if (!job) return error_response(404, "there is no job yet: slice the robot, or open a job file");
@@ -77,7 +77,7 @@ Response journal(Studio& studio, const Request& request) {
     return json ? json_response(std::move(*json)) : error_response(json.error());
 }
 
-/// Of the machine at hand, or of a journal of the folder and the job beside it.
+/// For the connected machine, or for a journal in the folder and the job beside it.
 Response report_page(Studio& studio, const Request& request) {
     const auto name = request.query.find("name");
     PrintSession::Files files = studio.print().files();
@@ -105,7 +105,7 @@ Response set_door(Studio& studio, const Request& request) {
     return done(studio.print().set_door(json["open"].get<bool>()));
 }
 
-/// A number of the query, 0 if it is none.
+/// A number in the query, 0 if invalid.
 std::size_t number_of(const Request& request, const char* key) {
     const auto found = request.query.find(key);
     std::size_t number = 0;
@@ -133,7 +133,7 @@ Response image(Studio& studio, const Request& request) {
     return {200, "image/png", std::move(*png)};
 }
 
-/// A print that begins waits no longer.
+/// Removes a started print from the queue.
 void leave_queue(Studio& studio, const std::string& body) {
     const Json json = Json::parse(body, nullptr, false);
     if (!json.is_object() || json.value("command", Json()) != "start") return;
@@ -206,7 +206,7 @@ void add_print_routes(std::vector<Route>& routes) {
                       "application/octet-stream", false, part});
     routes.push_back({"GET", "/api/print/image/{layer}/{material}", "an image of the job that is printed", "image/png",
                       false, image});
-    // Whoever sees that something goes wrong may stop it.
+    // Every page may stop the print, not only the one in control.
     routes.push_back(
         {"POST", "/api/print/stop", "emergency stop, by any page", json, false, [](Studio& s, const Request&) {
              const host::ApiAnswer answer = s.print().ask("POST", "/api/printer/stop", "");

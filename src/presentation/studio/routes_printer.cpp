@@ -1,4 +1,4 @@
-// Setting a machine up: printer files of the folder, the board at a port, test patterns on the projector.
+// Machine setup: printer files of the folder, the board at a port, test patterns on the projector.
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
@@ -66,7 +66,7 @@ Response change(Studio& studio, const Request& request) {
     return done(change_printer(studio.folder(), text_at(json, "name"), changes));
 }
 
-/// What answers at a port. Nothing moves: only questions are asked. Not beside a machine that is connected.
+/// Queries the board at a port. Nothing moves: only questions are asked. Refused while a machine is connected.
 Response probe(Studio& studio, const Request& request) {
     const Json json = Json::parse(request.body, nullptr, false);
     const auto file = read_printer(studio.folder(), text_at(json, "name"));
@@ -106,7 +106,7 @@ Response picture(Studio& studio, const Request& request) {
     return {200, "image/png", std::move(*png)};
 }
 
-/// Distances that were measured on the pattern "border", as the size of a pixel.
+/// Converts distances measured on the pattern "border" to the pixel size.
 Response measured(Studio& studio, const Request& request) {
     const Json json = Json::parse(request.body, nullptr, false);
     const auto file = read_printer(studio.folder(), text_at(json, "name"));

@@ -1,4 +1,4 @@
-// Files: the robot file as text, saving, undo, what else lies in the folder.
+// Files: the robot file as text, saving, undo, and the contents of the folder.
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
@@ -14,14 +14,14 @@ Response done(const Status& status) {
     return status ? json_response("{}") : error_response(status.error());
 }
 
-/// A text under `key` of the JSON body; "" if it is not there.
+/// The text under `key` in the JSON body; "" if missing.
 std::string body_text(const Request& request, const char* key) {
     const Json json = Json::parse(request.body, nullptr, false);
     if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return "";
     return json[key].get<std::string>();
 }
 
-/// Printer files of the folder: other TOML files have no projector.
+/// Adds the printer files of the folder: other TOML files have no projector.
 void add_own_printers(const ProjectFolder& folder, Json& printers) {
     constexpr std::uintmax_t largest = 1 << 20;
     for (const std::string& name : folder.files()) {

@@ -1,4 +1,4 @@
-// Goals and identification: what may be asked for, the search, its result.
+// Goals and identification: options, the search, its result.
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -78,7 +78,7 @@ Response begin_motion(Studio& studio, const Request&) {
     return begun ? json_response("{}") : error_response(begun.error());
 }
 
-/// A whole number in a path; nothing where it is none.
+/// A whole number in a path; empty if invalid.
 std::optional<std::size_t> index_in(const std::string& text) {
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);

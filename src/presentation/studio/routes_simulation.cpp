@@ -1,4 +1,4 @@
-// The live robot: its scene, and what can be taken home from it.
+// The interactive robot: its scene, and exports of its state.
 #include <unistd.h>
 
 #include <atomic>
@@ -19,7 +19,7 @@ Response scene(Studio& studio, const Request&) {
 }
 
 Response frame(Studio& studio, const Request&) {
-    // A robot that has just been built has no state yet: that is no error.
+    // A newly built robot has no state yet: that is not an error.
     if (const auto packet = studio.simulation().last_frame()) return {200, "application/octet-stream", *packet};
     if (studio.simulation().scene()) return {200, "application/octet-stream", ""};
     return error_response(404, "no robot has been built yet");
@@ -45,7 +45,7 @@ Response glb(Studio& studio, const Request&) {
             report::robot_glb(simulation, report::outer_surface(built->model.mesh(), regions)), "robot.glb"};
 }
 
-/// The state at hand. The writer makes files, so a folder is lent to it.
+/// The current state. The writer needs a folder, so a temporary one is used.
 Response vtu(Studio& studio, const Request&) {
     const auto built = studio.simulation().built();
     sim::Trajectory history = studio.simulation().history();

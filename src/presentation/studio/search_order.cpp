@@ -31,7 +31,7 @@ int whole(Keys& keys, const char* key, int fallback, int least, int most, const 
     return static_cast<int>(value);
 }
 
-/// Letters and what stands between them, as in "kg/m^3": nothing that could become a path or another value.
+/// Letters and unit operators, as in "kg/m^3": nothing that could become a path or another value.
 bool is_unit(std::string_view text) {
     const auto plain = [](char c) { return is_letter(c) || is_digit(c) || c == '^' || c == '/' || c == '-'; };
     return text.size() <= 16 && std::ranges::all_of(text, plain);

@@ -1,4 +1,4 @@
-// What a page asks the studio to look for: inputs that bring a marker somewhere, or numbers that explain measurements.
+// Search requests from a page: inputs that bring a marker somewhere, or parameters that explain measurements.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace pliant::studio {
 
-/// An actuator that may be moved, in the units that the page shows it in.
+/// An actuator that may be moved, in the display units of the page.
 struct InputRange {
     std::string name;
     double low = 0, high = 0;
@@ -31,17 +31,17 @@ struct IdentifyOrder {
     std::string judge;  ///< "", "every-second" or "second-half"
 };
 
-/// {"inputs": [{"name", "low", "high"}, ...], "side": 9, "between": 50}: where the markers can get.
+/// {"inputs": [{"name", "low", "high"}, ...], "side": 9, "between": 50}: the workspace of the markers.
 struct WorkspaceOrder {
     std::vector<InputRange> inputs;  ///< at least one
-    int side = 9;                    ///< places along each input, 2 to 60
+    int side = 9;                    ///< samples along each input, 2 to 60
     int between = 50;                ///< 0 to 2000
 };
 
-/// A number of the robot file, by its key as of --set, and the values that it gets.
+/// A number of the robot file, by its key as for --set, and the values that it takes.
 struct SweepAxis {
     std::string key;
-    std::string unit;            ///< "" of a plain number
+    std::string unit;            ///< "" if dimensionless
     std::vector<double> values;  ///< at least one
 };
 

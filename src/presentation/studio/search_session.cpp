@@ -36,7 +36,7 @@ Result<SearchResult> found_inputs(const Built& built, const sim::InverseTask& ta
     return SearchResult{dumped({{"kind", "goal"}, {"revision", built.revision}, {"found", std::move(json)}})};
 }
 
-/// The robot at hand with other numbers, as fine as the page has it.
+/// The current robot with other parameters, on the page's current mesh.
 sim::identify::Source source_of(const RobotText& robot, mesh::TetMesh mesh) {
     return {[robot](const std::vector<std::string>& more) {
                 std::vector<std::string> all;
@@ -85,12 +85,12 @@ Result<SearchResult> identified(const Built& built, const IdentifyOrder& order, 
 Json numbers_mm(const std::vector<Vec3>& points_m) {
     Json list = Json::array();
     for (const Vec3& p : points_m) {
-        for (const double v : {p.x, p.y, p.z}) list.push_back(std::round(1e6 * v) / 1e3);  // a micrometre
+        for (const double v : {p.x, p.y, p.z}) list.push_back(std::round(1e6 * v) / 1e3);  // rounded to a micrometre
     }
     return list;
 }
 
-/// Of a marker: the sheets, and all places.
+/// The workspace of a marker: the sheets, and all positions.
 Json reach_of(const report::WorkspaceReport& report, std::size_t marker) {
     const mesh::TriMesh sheets = report::workspace_surface(report.workspace, marker);
     std::vector<Vec3> all;
@@ -203,7 +203,7 @@ Status SearchSession::begin(const char* kind, std::function<Result<SearchResult>
             error = found.error().message;
         }
         const std::vector<std::string> news = this->news();
-        running_ = false;  // before it is told: whoever hears of the end may begin the next
+        running_ = false;  // before the pages are told: they may start the next one at once
         tell_(dumped({{"type", "search"}, {"kind", kind_}, {"stage", ""}, {"fraction", 1}, {"error", error}}));
         for (const std::string& one : news) tell_(one);
     });

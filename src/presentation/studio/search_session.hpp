@@ -1,4 +1,4 @@
-// A search that a page has asked for, on a thread of its own: one at a time, with progress, and its result until the
+// Searches requested by a page, on a thread of their own: one at a time, with progress; the result is kept until the
 // next one.
 #pragma once
 
@@ -17,36 +17,36 @@
 
 namespace pliant::studio {
 
-/// What a search came to.
+/// Result of a search.
 struct SearchResult {
     std::string json;  ///< {"kind": "goal", "identify", "workspace", "sweep" or "motion", "revision", "found": ...}
     struct Plot {
         std::string unit;  ///< of the values
         std::string png;
     };
-    std::vector<Plot> plots{};               ///< of an identification
-    std::shared_ptr<const Motion> motion{};  ///< of a motion
+    std::vector<Plot> plots{};               ///< for an identification
+    std::shared_ptr<const Motion> motion{};  ///< for a motion
 };
 
 class SearchSession {
 public:
-    /// `tell`: events for the pages, from the search's thread.
+    /// `tell` sends events to the pages, from the search's thread.
     explicit SearchSession(std::function<void(const std::string& json)> tell) : tell_(std::move(tell)) {}
     ~SearchSession();
     SearchSession(const SearchSession&) = delete;
     SearchSession& operator=(const SearchSession&) = delete;
 
-    /// Begins; the pages hear of its progress and of its end. Errors: one is running already.
+    /// Starts the search; the pages are told of its progress and its end. Errors: one is running already.
     [[nodiscard]] Status find_inputs(std::shared_ptr<const Built> built, sim::InverseTask task);
     [[nodiscard]] Status identify(std::shared_ptr<const Built> built, IdentifyOrder order);
     [[nodiscard]] Status find_workspace(std::shared_ptr<const Built> built, sim::InverseTask task,
                                         const WorkspaceOrder& order);
     [[nodiscard]] Status sweep(std::shared_ptr<const Built> built, SweepOrder order);
-    /// The whole program, to be played.
+    /// Runs the whole program, for playback.
     [[nodiscard]] Status run_motion(std::shared_ptr<const Built> built);
     void cancel() { cancelled_ = true; }
 
-    /// Of the last search that came to an end; null before there is one.
+    /// Result of the last completed search; null if there is none.
     [[nodiscard]] std::shared_ptr<const SearchResult> result() const;
     [[nodiscard]] std::vector<std::string> news() const;
 

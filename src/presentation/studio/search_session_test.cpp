@@ -1,4 +1,4 @@
-// Goals and identifications that a page asks for.
+// Goals and identifications requested by a page.
 #include "presentation/studio/search_session.hpp"
 
 #include <doctest/doctest.h>
@@ -33,7 +33,7 @@ GoalOrder goal_at(double z_mm) {
 struct Bench {
     Events events;
     SearchSession session{[this](const std::string& json) { events.add(json); }};
-    /// What the end of the search said.
+    /// The final message of the search.
     std::string end() {
         const Json last = events.wait_for([](const Json& e) { return e["type"] == "search" && e["stage"] == ""; });
         return last["error"];
@@ -130,7 +130,7 @@ TEST_CASE("a workspace holds what the actuators reach, marker by marker") {
     const Json& reach = found["reach"][0];
     CHECK(reach["name"] == "tip");
     REQUIRE(reach["points"].size() == 15);
-    // Without a pull the tip is where it rests.
+    // Without actuation the tip is at its rest position.
     bool at_rest = false;
     for (std::size_t k = 0; k < 15; k += 3)
         at_rest = at_rest || (reach["points"][k].get<double>() == near(4, {.absolute = 1e-3}) &&

@@ -47,7 +47,7 @@ const char* reason(int status) {
     }
 }
 
-/// Nothing from elsewhere, in no frame of others, and types as we say.
+/// Security headers: no content from elsewhere, no embedding in other pages, no MIME sniffing.
 constexpr const char* safety_headers =
     "X-Content-Type-Options: nosniff\r\n"
     "Referrer-Policy: no-referrer\r\n"
@@ -89,7 +89,7 @@ std::map<std::string, std::string> read_query(const char* text) {
     return query;
 }
 
-/// The whole body, or nothing where it is too large or breaks off.
+/// Reads the whole body; false if it is too large or incomplete.
 bool read_body(mg_connection* wire, long long length, std::string& body) {
     if (length > largest_body) return false;
     char piece[16384];
@@ -111,7 +111,7 @@ bool is_loopback(const std::string& address) {
 struct Server::State {
     Studio& studio;
     AccessRules rules;
-    std::filesystem::path help;  ///< empty: there are no pages
+    std::filesystem::path help;  ///< empty: no help pages
     mg_context* context = nullptr;
 
     [[nodiscard]] Access access(mg_connection* wire, const std::string& query_token, bool websocket) const {
@@ -161,7 +161,7 @@ struct Server::State {
         return response.status;
     }
 
-    /// From the address bar into a cookie, so that it does not stay in the history.
+    /// Moves the token from the address into a cookie, so that it does not stay in the history.
     static int settle_token(mg_connection* wire, const std::string& token) {
         Response response{302, "text/plain"};
         response.location = "/";
@@ -185,7 +185,7 @@ struct Server::State {
 
 namespace {
 
-/// What belongs to one WebSocket: its place in the hub and the thread that writes.
+/// State of one WebSocket: its connection in the hub and the thread that writes.
 struct Socket {
     std::shared_ptr<Connection> connection;
     std::thread writer;
@@ -265,7 +265,7 @@ Result<std::unique_ptr<Server>> Server::start(Studio& studio, const ServerSettin
             const int opcode = bits & 0xf;
             if (opcode == MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE) return 0;
             if (opcode == MG_WEBSOCKET_OPCODE_PING || opcode == MG_WEBSOCKET_OPCODE_PONG) return 1;
-            const bool whole = (bits & 0x80) != 0;  // messages are short: nothing comes in pieces
+            const bool whole = (bits & 0x80) != 0;  // messages are short: fragmented ones are not accepted
             if (opcode != MG_WEBSOCKET_OPCODE_TEXT || !whole || length > longest_message) return 0;
             static_cast<State*>(data)->studio.receive(socket->connection, {text, length});
             return 1;

@@ -1,4 +1,4 @@
-// The studio on a socket: HTTP and WebSocket through civetweb, on loopback unless it is bound elsewhere.
+// The studio as a server: HTTP and WebSocket through civetweb, on loopback unless bound elsewhere.
 #pragma once
 
 #include <filesystem>
@@ -12,16 +12,16 @@ namespace pliant::studio {
 
 struct ServerSettings {
     std::string address = "127.0.0.1";
-    int port = 0;       ///< 0: any that is free
-    std::string token;  ///< needed from every page; must not be empty unless the address is loopback
-    std::filesystem::path program_folder{};  ///< from which the pages of /help/ are found
+    int port = 0;       ///< 0: any free port
+    std::string token;  ///< required from every page; must not be empty unless the address is loopback
+    std::filesystem::path program_folder{};  ///< used to find the pages of /help/
 };
 
 class Server {
 public:
-    /// Listens once it returns. Errors: the port is taken, no such address.
+    /// The server is listening when this returns. Errors: the port is taken, no such address.
     [[nodiscard]] static Result<std::unique_ptr<Server>> start(Studio& studio, const ServerSettings& settings);
-    /// Ends all connections and waits for their threads.
+    /// Closes all connections and waits for their threads.
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;

@@ -19,9 +19,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double mm = 1e3;
 constexpr std::size_t history_bytes = std::size_t{96} << 20;
-constexpr std::chrono::milliseconds frame_gap{15};  // more than a screen shows is not worth sending
-constexpr std::chrono::milliseconds pause{80};      // of a hand that rests: several inputs would have come
-constexpr double quick_s = 0.05;                    // of a piece: frames of a hand that moves
+constexpr std::chrono::milliseconds frame_gap{15};  // sending faster than the display rate is useless
+constexpr std::chrono::milliseconds pause{80};      // after the last input before refining; during interaction inputs
+                                                    // come faster
+constexpr double quick_s = 0.05;                    // per increment: fast enough for interaction
 constexpr double slow_s = 0.15;
 
 std::string dumped(const Json& json) {
@@ -39,7 +40,7 @@ double diagonal(const std::vector<Vec3>& points) {
     return norm(high - low);
 }
 
-/// The last value of an actuator is the one that counts.
+/// Only the last value of an actuator counts.
 void put(std::vector<ActuatorValue>& values, const ActuatorValue& value) {
     std::erase_if(values, [&](const ActuatorValue& v) { return v.name == value.name; });
     values.push_back(value);
@@ -76,10 +77,10 @@ Built::Built(RobotText source_, robot::Scene scene_, int revision_)
       size_m(diagonal(model.mesh().points)),
       warnings(sim::warnings_at_rest(model)) {}
 
-/// Reports building, and stops it when something else is to be built.
+/// Reports progress of building, and cancels it if something else is to be built.
 class SimulationSession::Watch final : public Progress {
 public:
-    /// `any_input`: stops it too.
+    /// `any_input`: any new input cancels it too.
     explicit Watch(SimulationSession& session, bool any_input = false) : session_(session), any_input_(any_input) {}
     void advance(std::string_view stage, double fraction) override {
         if (Clock::now() - last_ < std::chrono::milliseconds(100)) return;
@@ -234,7 +235,7 @@ void SimulationSession::tell(const std::string& key, const std::string& json) {
     if (!json.empty()) events_.text(json);
 }
 
-/// A robot stays where it is wanted already when it is asked for what cannot be.
+/// Drops impossible requests: the robot keeps its previous target.
 void SimulationSession::take_what_can_be() {
     if (hand_ == nullptr) return;
     for (const ActuatorValue& value : wanted_.asked)
@@ -287,7 +288,7 @@ void SimulationSession::build(RobotText source) {
         events_.text(R"({"type":"build","stage":"","fraction":1})");
         if (!problem.empty()) tell("problem", problem);
         const std::lock_guard lock(mutex_);
-        built_once_ = !to_build_;  // who waits, waits for the last
+        built_once_ = !to_build_;  // waiting callers wait for the last build
         changed_.notify_all();
     };
     const auto refuse = [&](const Error& error) {
@@ -313,7 +314,7 @@ void SimulationSession::build(RobotText source) {
     }
     forget_history();
     tell("scene", dumped({{"type", "scene"}, {"revision", built->revision}}));
-    publish({true, !is_input_waiting(), 0, 0, ""}, *fine_);  // rest is not where a robot is wanted that was elsewhere
+    publish({true, !is_input_waiting(), 0, 0, ""}, *fine_);  // rest is not the target of a robot that was elsewhere
     finished("");
 }
 
@@ -335,7 +336,7 @@ void SimulationSession::start(const std::shared_ptr<const Built>& built) {
     refining_ = catching_up_ = false;
 }
 
-/// Names tell whether what was wanted of the robot before still says something.
+/// The previous targets still apply if the actuators have the same names.
 void SimulationSession::want_as_before(const Built* before, const Built& now) {
     const auto names = [](const Built& b) {
         const sim::Description& d = b.model.description();
@@ -385,7 +386,7 @@ void SimulationSession::move_by_hand(const Wanted& wanted) {
     hand_->pull(pulled(wanted.pull));
 }
 
-/// The sliders stay where the hand has led the actuators.
+/// The sliders keep the positions to which dragging moved the actuators.
 void SimulationSession::let_go_of_marker() {
     hand_->let_go();
     {
@@ -436,7 +437,7 @@ void SimulationSession::advance() {
     catching_up_ = catching_up_ && !settled_;
     if (hand_ != fine_.get()) {
         refining_ = settled_ && !playing_ && !hand_->is_led();
-        progress.arrived = false;  // whether there is an equilibrium only the finer one knows
+        progress.arrived = false;  // only the fine robot can tell whether there is an equilibrium
         progress.reason.clear();
     }
     const bool slow = progress.wall_s > slow_s;
@@ -445,12 +446,12 @@ void SimulationSession::advance() {
     if (preview_ && hand_ == fine_.get() && slow && !settled_ && !hand_->is_led()) give_way();
 }
 
-/// Rests: nothing moves, and nobody holds a marker.
+/// True if nothing moves and no marker is dragged.
 bool SimulationSession::may_refine() const {
     return refining_ && settled_ && !playing_ && hand_ != nullptr && !hand_->is_led();
 }
 
-/// The answer of the finer robot to what is wanted, unless something else is wanted meanwhile.
+/// Solves the fine robot for the current target, unless a new input arrives.
 void SimulationSession::refine() {
     Watch watch(*this, true);
     fine_->follow(now_.followed);
@@ -471,7 +472,7 @@ void SimulationSession::refine() {
     if (slowest_s > 0 && slowest_s < quick_s) hand_ = fine_.get();
 }
 
-/// The finer robot is too slow for this hand.
+/// The fine robot is too slow for this interaction: switch to the preview.
 void SimulationSession::give_way() {
     hand_ = preview_.get();
     catching_up_ = true;
@@ -485,7 +486,7 @@ void SimulationSession::publish(const sim::LiveProgress& progress, const LiveRob
     shown_ = &shown == fine_.get() ? fine_.get() : preview_.get();
     sim::Step step = shown.live().describe();
     const std::string head = frame_head(step, progress, shown);
-    // What is taken home of a robot that has a preview is never the preview's.
+    // With a preview, exported states are only those of the fine robot.
     if (progress.moved && shown_ == fine_.get() && !refining_) remember(step);
     if (shown_ == preview_.get()) step.positions = built_->preview->lifted(step.positions);
     auto frame = std::make_shared<const std::string>(built_->scene.frame(step, events_.fields(), head));
@@ -509,7 +510,7 @@ void SimulationSession::remember(const sim::Step& step) {
     history_.steps.push_back(step);
     history_.steps.back().index = static_cast<int>(history_seen_) - 1;
     if (history_.steps.size() * step.positions.size() * sizeof(Vec3) < history_bytes) return;
-    std::vector<sim::Step> kept;  // every other one, rest always among them
+    std::vector<sim::Step> kept;  // every other one, always including rest
     for (std::size_t k = 0; k < history_.steps.size(); k += 2) kept.push_back(std::move(history_.steps[k]));
     history_.steps = std::move(kept);
     history_stride_ *= 2;
@@ -544,7 +545,7 @@ std::string SimulationSession::frame_head(const sim::Step& step, const sim::Live
     return text;
 }
 
-/// Where the robot is led, so that every page shows that and not what it has asked for itself.
+/// The current target, so that every page shows it rather than its own last request.
 std::string SimulationSession::wanted_json() const {
     Json actuators = Json::array();
     for (const ActuatorValue& v : hand_->driven())

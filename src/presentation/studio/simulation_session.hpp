@@ -1,5 +1,5 @@
-// The robot that is bent live: builds it from its file, follows what the page asks for, tells what came of it. All work
-// is done on a thread of its own; the latest input wins.
+// The interactive robot: builds it from its file, follows the inputs of the page, and reports the results. All work is
+// done on a thread of its own; the latest input wins.
 #pragma once
 
 #include <atomic>
@@ -24,27 +24,27 @@
 
 namespace pliant::studio {
 
-/// How fine: linear tets answer at once and bend too little; quadratic ones are those of `pliant simulate`.
-/// `automatic`: linear ones while a hand moves, where the quadratic ones are not quick enough for that, and quadratic
-/// ones as soon as it rests.
+/// Mesh order used: linear tets answer at once but are too stiff; quadratic ones are those of `pliant simulate`.
+/// `automatic`: linear ones during interaction, if quadratic ones are not fast enough for it, and quadratic ones as
+/// soon as the input rests.
 enum class Accuracy { preview, automatic, fine };
 [[nodiscard]] std::string_view name(Accuracy accuracy);
 [[nodiscard]] std::optional<Accuracy> accuracy_named(std::string_view name);
 
-/// Where a robot goes once it has been built: one that was only changed goes where the one before was wanted.
+/// Target of a newly built robot: rest, or, for a robot that was only changed, the target of the previous one.
 enum class After { from_rest, as_before };
 
-/// What is wrong, as JSON: a list of {"line", "text"}; line 0 where it is about no line.
+/// Errors as JSON: a list of {"line", "text"}; line 0 if not about a line.
 [[nodiscard]] std::string problem_lines(const Error& error);
 
-/// A robot file as the studio has it.
+/// The text of a robot file.
 struct RobotText {
-    std::filesystem::path file;  ///< what messages call it, and what paths in it are relative to
+    std::filesystem::path file;  ///< name in messages, and base of its relative paths
     std::string text;
     Accuracy accuracy = Accuracy::automatic;
 };
 
-/// Everything that belongs to one robot; immutable once it has been made.
+/// Everything that belongs to one robot; immutable once built.
 struct Built {
     Built(RobotText source_, robot::Scene scene_, int revision_);
     RobotText source;
@@ -52,7 +52,7 @@ struct Built {
     sim::Model model;
     int revision;
     view::Scene scene;
-    std::unique_ptr<const Preview> preview;  ///< null: there is one model, for everything
+    std::unique_ptr<const Preview> preview;  ///< null: one model is used for everything
     double size_m;
     std::vector<std::string> warnings;  ///< at rest, see sim::warnings_at_rest()
 };
@@ -61,8 +61,8 @@ struct Built {
 struct SessionEvents {
     std::function<void(const std::string& json)> text;
     std::function<void(std::shared_ptr<const std::string> packet)> frame;
-    std::function<std::set<std::string>()> fields;  ///< that some page wants to see
-    bool beside = false;  ///< it is the robot beside the one that is edited, and its frames say so
+    std::function<std::set<std::string>()> fields;  ///< fields that some page shows
+    bool beside = false;  ///< it is the second robot, compared with the edited one, and its frames say so
 };
 
 class SimulationSession {
@@ -72,8 +72,8 @@ public:
     SimulationSession(const SimulationSession&) = delete;
     SimulationSession& operator=(const SimulationSession&) = delete;
 
-    /// Builds this robot; what is being built is given up. Nothing is heard of the old one once the new one is there.
-    /// With other actuators than before it starts from rest in any case.
+    /// Builds this robot; a build in progress is cancelled. There are no events of the old robot once the new one is
+    /// built. If its actuators differ from the old ones it starts from rest in any case.
     void open(RobotText source, After after = After::from_rest);
     void drive(const DriveMessage& message);
     void follow(const Follow& message);
@@ -81,46 +81,46 @@ public:
     void rest();
     void pull(const PullMessage& message);
     void lead(const LeadMessage& message);
-    /// Of what is pulled or led.
+    /// Releases a pulled point or dragged marker.
     void release();
-    /// Sends the present state once more, as when a page wants to see another field.
+    /// Sends the current state again, as when a page requests another field.
     void show_again();
 
     /// Null before the first robot has been built.
     [[nodiscard]] std::shared_ptr<const Built> built() const;
     [[nodiscard]] std::shared_ptr<const std::string> scene() const;
     [[nodiscard]] std::shared_ptr<const std::string> last_frame() const;
-    /// What is being done, or what was wrong with the last file: JSON events for a page that has just come.
+    /// The current activity, or the errors of the last file: JSON events for a newly connected page.
     [[nodiscard]] std::vector<std::string> news() const;
-    /// The converged states since rest, rest first; thinned out where there are too many.
+    /// The converged states since rest, rest first; thinned out if there are too many.
     [[nodiscard]] sim::Trajectory history() const;
-    /// Waits until a robot has been built or refused; for tests and programs.
+    /// Waits until a robot has been built or rejected; for tests and programs.
     [[nodiscard]] bool wait_until_built() const;
 
 private:
     class Watch;
-    /// What the page wants; kept in its own units until the robot is at hand.
+    /// The requested inputs, in page units until the robot is built.
     struct Wanted {
         double tag = 0;
         double time = 0;
-        double followed = 0;  ///< time to which the program itself was followed; of actuators that are not listed
+        double followed = 0;  ///< program time of the last "follow", for actuators that are not listed
         std::vector<ActuatorValue> actuators;
-        std::vector<ActuatorValue> asked;  ///< since they were last looked at; some of it may be impossible
+        std::vector<ActuatorValue> asked;  ///< requests since they were last processed; may be impossible
         std::optional<PullMessage> pull;
         std::optional<LeadMessage> lead;
         bool playing = false;
-        bool changed = false;  ///< it is another wish than the last one
+        bool changed = false;  ///< differs from the last one
         bool to_rest = false;
         bool show_again = false;
         bool follow = false;
-        bool let_go = false;  ///< of a marker that was led: everything stays where it is
-        bool again = false;   ///< all of it, by a robot that has just been built
+        bool let_go = false;  ///< a dragged marker was released: everything stays where it is
+        bool again = false;   ///< apply everything again, to a newly built robot
     };
 
     void work();
-    /// Under the lock: something else is wanted.
+    /// Called under the lock: the inputs have changed.
     void take_input();
-    /// Under the lock.
+    /// Called under the lock: drops impossible values.
     void take_what_can_be();
     void build(RobotText source);
     void start(const std::shared_ptr<const Built>& built);
@@ -150,7 +150,7 @@ private:
     mutable std::condition_variable changed_;
     std::optional<RobotText> to_build_;
     Wanted wanted_;
-    bool input_ = false;  ///< `wanted_` holds something new
+    bool input_ = false;  ///< `wanted_` has changed
     std::atomic<bool> stopping_ = false;
     bool built_once_ = false;
     std::shared_ptr<const Built> built_;
@@ -159,16 +159,16 @@ private:
     sim::Trajectory history_;
     std::size_t history_stride_ = 1, history_seen_ = 0;
 
-    // Of the thread alone.
-    std::unique_ptr<LiveRobot> fine_;     ///< its answers are those of the robot that was built
-    std::unique_ptr<LiveRobot> preview_;  ///< of Built::preview; null without one
-    LiveRobot* hand_ = nullptr;           ///< the one of the two that follows the hand
-    LiveRobot* shown_ = nullptr;          ///< the one of the two that was published last
-    Wanted now_;                          ///< what was applied last
+    // Used by the session's thread only.
+    std::unique_ptr<LiveRobot> fine_;     ///< gives the final results, on the model as built
+    std::unique_ptr<LiveRobot> preview_;  ///< on Built::preview; null without one
+    LiveRobot* hand_ = nullptr;           ///< the one that follows the interaction
+    LiveRobot* shown_ = nullptr;          ///< the one published last
+    Wanted now_;                          ///< the inputs applied last
     double tag_ = 0;
     bool settled_ = true, playing_ = false;
-    bool refining_ = false;     ///< the hand's robot has arrived, and the finer one has not
-    bool catching_up_ = false;  ///< the hand's robot is behind what was shown
+    bool refining_ = false;     ///< the interactive robot has arrived, the fine one has not
+    bool catching_up_ = false;  ///< the interactive robot is behind what was shown
     int revision_ = 0;
     std::uint64_t sequence_ = 0;
     std::chrono::steady_clock::time_point last_frame_at_{};

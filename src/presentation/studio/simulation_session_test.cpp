@@ -131,7 +131,7 @@ TEST_CASE("a marker that is led takes the cable along, and stays where it is let
 }
 
 TEST_CASE("by itself the answer is that of quadratic tets, and linear ones are named as such") {
-    // Coarse and nearly incompressible: linear tets lock, and pull three times as hard.
+    // Coarse and nearly incompressible: linear tets lock, and their tension is three times as large.
     const auto tension = [](const Json& f) { return f["cables"][0]["tension_N"].get<double>(); };
     Bench fine, linear, automatic;
     fine.open(bar, Accuracy::fine);
@@ -151,7 +151,7 @@ TEST_CASE("by itself the answer is that of quadratic tets, and linear ones are n
     CHECK(before["arrived"] == false);
     CHECK(tension(before) == near(tension(rough), {.relative = 1e-3}));
     CHECK(before["sequence"] < answer["sequence"]);
-    // What is exported is never the preview's.
+    // Exported states never come from the preview.
     for (const sim::Step& step : automatic.session.history().steps)
         CHECK(step.positions.size() == automatic.session.built()->model.mesh().points.size());
     CHECK(automatic.session.history().steps.back().cables[0].tension_N == near(tension(right), {.relative = 1e-3}));
@@ -175,7 +175,7 @@ TEST_CASE("a hand that moves again has an answer to where it is last, and to whe
         both([&](SimulationSession& s) { s.drive({1.0 * i, -1, {{"flexor", "shortening_mm", 0.01 * i}}}); });
     same(30);
     both([](SimulationSession& s) { s.pull({31, 3, {4.5, 2, 2.5}}); });
-    same(31, 0.02);  // a spring comes to rest within a share of its force
+    same(31, 0.02);  // a spring settles to within a share of its force
     both([](SimulationSession& s) { s.release(); });
     both([](SimulationSession& s) { s.follow({32, 0.5}); });
     same(32);
@@ -227,7 +227,7 @@ TEST_CASE("a mistake is told with its line, the robot before stays, and a good t
     CHECK(b.session.wait_until_built());
     CHECK(b.problem() == nullptr);
     CHECK(b.session.built()->robot.name == "third");
-    CHECK(b.session.built()->revision == 2);  // the wrong one has none
+    CHECK(b.session.built()->revision == 2);  // the invalid one has none
 }
 
 TEST_CASE("a first robot that is wrong leaves none") {
@@ -245,7 +245,7 @@ TEST_CASE("a robot that is replaced while it is built is given up, and who waits
     SimulationSession session({[&](const std::string& json) {
                                    if (!holds(json, "\"read\"") || !first) return;
                                    first = false;
-                                   may_go.wait();  // the first one is being built until the second has come
+                                   may_go.wait();  // the first build lasts until the second request has arrived
                                },
                                [](const std::shared_ptr<const std::string>&) {},
                                [] { return std::set<std::string>{}; }});

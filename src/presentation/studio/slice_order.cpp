@@ -68,7 +68,7 @@ Status take_at(const Json& value, Order& order) {
     return {};
 }
 
-/// The table that `pliant slice --support-paint` reads.
+/// The table of `pliant slice --support-paint`.
 Status take_paint(const Json& value, Order& order) {
     constexpr std::size_t longest_table = 3 << 20;
     if (!value.is_string() || value.get_ref<const std::string&>().size() > longest_table)
@@ -77,7 +77,7 @@ Status take_paint(const Json& value, Order& order) {
     return {};
 }
 
-/// The keys that are no texts.
+/// Keys whose values are not strings.
 Status take_other(const std::string& key, const Json& value, Order& order) {
     if (key == "printer" || key == "robot") return {};
     if (key == "layer_um") {

@@ -1,4 +1,4 @@
-// What a page asks for when it slices: JSON with the options of `pliant slice` as docs/reference/studio.md lists them.
+// Slicing requests of a page: JSON with the options of `pliant slice`, listed in docs/reference/studio.md.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,12 @@
 
 namespace pliant::studio {
 
-/// Errors name the key as `--option` of the command line, so that the page finds its field: no object, an unknown key,
-/// a value of another type. What a text means is checked by prepare.
+/// Errors name the key as the command-line option `--option`, so that the page finds its field: not an object, an
+/// unknown key, a value of the wrong type. The values themselves are checked by prepare.
 [[nodiscard]] Result<prepare::Order> read_slice_order(std::string_view json);
 
-/// The text of a robot that is to be sliced in place of the one in the editor, key "robot"; nullopt without it. Errors:
-/// it is no text.
+/// The robot text to slice instead of the one in the editor, key "robot"; nullopt without it. Errors: it is not a
+/// string.
 [[nodiscard]] Result<std::optional<std::string>> robot_text_of(std::string_view json);
 
 /// The value of the key "printer", "tower" without it.

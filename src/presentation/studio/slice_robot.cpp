@@ -8,7 +8,7 @@
 namespace pliant::studio {
 namespace {
 
-/// One that was made for a body's own light has the colour of its material. "": the robot has no such material.
+/// A material created for a body's own exposure has the colour of the original. "": the robot has no such material.
 std::string colour_of_material(const std::string& name, const robot::Robot& robot) {
     for (std::size_t m = 0; m < robot.materials.size(); ++m) {
         const std::string& known = robot.materials[m].name;
@@ -17,7 +17,7 @@ std::string colour_of_material(const std::string& name, const robot::Robot& robo
     return "";
 }
 
-/// Of the job's materials; those that are printed together have the colour of the first.
+/// Colours of the job's materials; those printed together have the colour of the first.
 std::vector<std::string> colours_of(const job::Manifest& manifest, const robot::Robot& robot) {
     std::vector<std::string> colours;
     for (std::size_t m = 0; m < manifest.materials.size(); ++m) {

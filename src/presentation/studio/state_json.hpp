@@ -1,4 +1,4 @@
-// A state of a robot as the head of a frame tells it.
+// A state of a robot as the JSON head of a frame.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -24,13 +24,13 @@ std::string document_event(const Studio::Document& d) {
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// "" where there is no second robot.
+/// "" if there is no second robot.
 std::string comparison_event(const std::string& title) {
     const nlohmann::json json = {{"type", "comparison"}, {"title", title}};
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// A printer file has its own place.
+/// Refuses a printer file, which is opened elsewhere.
 Status check_kind(const std::string& text, const std::filesystem::path& file) {
     if (!machine::parse_printer(text, file)) return {};
     return input_error("{} is a printer file: choose it under Prepare, when the robot is sliced",
@@ -60,7 +60,7 @@ Studio::Studio(ProjectFolder folder, Start start)
 }
 
 Studio::~Studio() {
-    beside_.reset();  // its thread speaks to the hub
+    beside_.reset();  // its thread uses the hub
 }
 
 Status Studio::start(const std::filesystem::path& file) {
@@ -76,7 +76,7 @@ Status Studio::start(const std::filesystem::path& file) {
     if (Status status = check_kind(*text, file); !status) return status;
     const std::string name = file.filename().string();
     document_ = {name, folder_.path() / name, *text, *text, {}, {}, Accuracy::automatic, {}};
-    // What the user's own file names lies where the user wants it.
+    // Files named by the user's own file are allowed wherever they are.
     document_.outside = folder_.texts_leading_outside(*text, document_.file);
     rebuild(After::from_rest);
     return {};
@@ -92,7 +92,7 @@ void Studio::rebuild(After after) {
     hub_.send_text(document_event(document_));
 }
 
-/// A text that came over the wire must not make the program read what lies outside of the folder.
+/// A text received over the network must not make the program read files outside the folder.
 Status Studio::check_files(const std::string& text) const {
     for (const std::string& path : folder_.texts_leading_outside(text, document_.file)) {
         const auto& known = document_.outside;
@@ -250,7 +250,7 @@ Status Studio::compare(const std::string& name, const std::string& example) {
         title_beside_ = title;
         before = std::exchange(beside_, session);
     }
-    before.reset();  // its thread ends before the new one speaks
+    before.reset();  // its thread must end before the new one sends
     hub_.send_text(comparison_event(title));
     session->open(source);
     return {};
@@ -297,7 +297,7 @@ void Studio::greet(const std::shared_ptr<Connection>& connection) {
         connection->send_text(std::make_shared<const std::string>(json));
     };
     {
-        // Sent under the lock: a change that comes meanwhile is told after it, not before.
+        // Sent under the lock, so that a later change is also sent later.
         const std::lock_guard lock(mutex_);
         send(document_event(document_));
     }
@@ -319,7 +319,7 @@ void Studio::greet(const std::shared_ptr<Connection>& connection) {
     if (const auto frame = simulation_->last_frame()) connection->send_frame(frame);
 }
 
-/// Hands at the body of one robot are not at the other; actuators that it has not are left out.
+/// Pulling one robot does not affect the other; actuators that it lacks are skipped.
 void Studio::steer(const Message& message, SimulationSession& simulation, bool beside) {
     if (const auto* drive = std::get_if<DriveMessage>(&message)) simulation.drive(*drive);
     if (const auto* follow = std::get_if<Follow>(&message)) simulation.follow(*follow);

@@ -1,4 +1,5 @@
-// The studio without its wire: what it holds, and what it answers. `server.hpp` puts it on a socket.
+// The studio without its network server: its contents, and its answers to requests. `server.hpp` connects it to a
+// socket.
 #pragma once
 
 #include <filesystem>
@@ -23,30 +24,30 @@
 namespace pliant::studio {
 
 struct Start {
-    std::filesystem::path file;  ///< robot file or job; empty: the example that is built in
+    std::filesystem::path file;  ///< robot file or job; empty: the built-in example
     std::string version;
-    std::string notify{};  ///< command that hears of the end of a print, and of what it waits for; "": none
-    std::string webcam{};  ///< address of a picture of the machine, http or https; "": none
+    std::string notify{};  ///< command that is run when a print ends or waits for a person; "": none
+    std::string webcam{};  ///< address of a camera image of the machine, http or https; "": none
 };
 
 class Studio {
 public:
-    /// Errors: the file cannot be read, or is neither a robot file nor a job. A robot file with mistakes is opened: the
+    /// Errors: the file cannot be read, or is neither a robot file nor a job. A robot file with errors is opened: the
     /// page shows them.
     [[nodiscard]] static Result<std::unique_ptr<Studio>> open(const Start& start);
     ~Studio();
     Studio(const Studio&) = delete;
     Studio& operator=(const Studio&) = delete;
 
-    /// Whoever asks has been let in. From any thread.
+    /// Answers a request that has passed access control. Thread-safe.
     [[nodiscard]] Response handle(const Request& request);
-    /// Whether the answer reads the body itself, by Request::more.
+    /// True if the route reads the body itself, by Request::more.
     [[nodiscard]] bool streams(const Request& request) const;
     [[nodiscard]] std::shared_ptr<Connection> join() { return hub_.join(); }
     void leave(const std::shared_ptr<Connection>& connection) { hub_.leave(connection); }
-    /// A text of a page. What cannot be understood or is not allowed is answered with {"type": "error"}.
+    /// Processes a message of a page. Invalid or forbidden ones are answered with {"type": "error"}.
     void receive(const std::shared_ptr<Connection>& connection, std::string_view text);
-    /// Ends all connections.
+    /// Closes all connections.
     void close() { hub_.close_all(); }
 
     [[nodiscard]] Hub& hub() { return hub_; }
@@ -62,46 +63,46 @@ public:
     [[nodiscard]] const std::string& webcam() const { return start_.webcam; }
     [[nodiscard]] const std::vector<Route>& routes() const { return routes_; }
 
-    /// The robot file that is being edited: what was opened, as it is now, and what it was before.
+    /// The robot file being edited: as opened, its current text, and earlier ones.
     struct Document {
-        std::string name;  ///< relative to the folder; empty: not saved yet
+        std::string name;  ///< relative to the folder; empty: never saved
         std::filesystem::path file;
         std::string text, saved;
         std::vector<std::string> undo, redo;
         Accuracy accuracy = Accuracy::automatic;
-        std::vector<std::string> outside;  ///< paths out of the folder that the user's own file names
+        std::vector<std::string> outside;  ///< paths outside the folder in the file with which the studio was started
     };
     [[nodiscard]] Document document();
-    /// Checks and builds the new text. `because` tells the pages who did it.
+    /// Checks and builds the new text. `because` tells the pages the cause of the change.
     [[nodiscard]] Status edit(const std::string& text);
-    /// What is wrong with a text, without building it.
+    /// The errors of a text, without building it.
     [[nodiscard]] Status check(const std::string& text);
     [[nodiscard]] Status undo();
     [[nodiscard]] Status redo();
     [[nodiscard]] Status save(const std::string& name);
     [[nodiscard]] Status open_file(const std::string& name);
     void open_example(const std::string& name);
-    /// A robot that is in no file yet. Errors: as of edit().
+    /// Opens a robot that has no file yet. Errors: as for edit().
     [[nodiscard]] Status open_new(const std::string& text);
     void set_accuracy(Accuracy accuracy);
 
-    /// A second robot in the same hands: it gets every input that the first one gets, and has a scene and frames of its
-    /// own. `name`: a robot file of the folder; or an example; both empty: the robot as it stands now, which then stays
-    /// as it is while the first one is edited. Errors: as of open_file(); there is no such example.
+    /// Adds a second robot for comparison: it receives every input of the first one, and has a scene and frames of its
+    /// own. `name`: a robot file of the folder; or an example; both empty: the current robot, which then stays
+    /// unchanged while the first one is edited. Errors: as for open_file(); there is no such example.
     [[nodiscard]] Status compare(const std::string& name, const std::string& example);
     void stop_comparing();
-    /// Null while there is none.
+    /// Null if there is none.
     [[nodiscard]] std::shared_ptr<SimulationSession> beside();
 
 private:
     Studio(ProjectFolder folder, Start start);
     [[nodiscard]] Status start(const std::filesystem::path& file);
     [[nodiscard]] Status check_files(const std::string& text) const;
-    /// Goes to the last text of `from`; what there was goes to the end of `to`.
+    /// Undo or redo: restores the last text of `from`; the current one is appended to `to`.
     void take_back(std::vector<std::string>& from, std::vector<std::string>& to);
     void rebuild(After after);
     [[nodiscard]] SessionEvents events_beside();
-    /// What a page asks of both robots.
+    /// Applies a page's message to one of the robots.
     void steer(const Message& message, SimulationSession& simulation, bool beside);
     void greet(const std::shared_ptr<Connection>& connection);
 
@@ -119,8 +120,8 @@ private:
     std::mutex mutex_;  ///< guards what follows
     Document document_;
     RobotText text_beside_;
-    std::string title_beside_;                   ///< what the second robot was opened from
-    std::shared_ptr<SimulationSession> beside_;  ///< null: there is none
+    std::string title_beside_;                   ///< file that the second robot was opened from
+    std::shared_ptr<SimulationSession> beside_;  ///< null: no second robot
 };
 
 }  // namespace pliant::studio

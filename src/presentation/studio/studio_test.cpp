@@ -1,4 +1,4 @@
-// The studio without its wire: files, edits, live states, routes.
+// The studio without its network server: files, edits, live states, routes.
 #include "presentation/studio/studio.hpp"
 
 #include <doctest/doctest.h>
@@ -42,7 +42,7 @@ struct Project {
     }
 };
 
-/// A studio with nothing in it, or with a file.
+/// An empty studio, or one with a file.
 std::unique_ptr<Studio> opened(const fs::path& file = {}) {
     auto studio = Studio::open({file, "test"});
     REQUIRE(studio);
@@ -61,7 +61,7 @@ std::unique_ptr<Studio> built(const Project& project, const std::string& robot =
     return studio;
 }
 
-/// A page that has said its name.
+/// A page that has identified itself.
 std::shared_ptr<Connection> joined(Studio& studio, const std::string& name) {
     auto page = studio.join();
     studio.receive(page, Json{{"type", "hello"}, {"page", name}}.dump());
@@ -187,7 +187,7 @@ TEST_CASE("a robot that was changed goes where the one before was wanted; anothe
     const Json fresh = arrived_anew(4, 0);
     CHECK(fresh["cables"][0]["length_mm"].get<double>() == near(40, {.relative = 1e-12}));
     CHECK(fresh["wanted"]["time"] == 0);
-    // What cannot be leads the robot nowhere, and no page is told that it does.
+    // Impossible values do not move the robot, and are not reported to any page.
     studio.receive(page,
                    R"({"type":"drive","tag":3,"actuators":[{"name":"flexor","kind":"length_ratio","value":-3}]})");
     CHECK(arrived(studio, page, 3)["wanted"]["actuators"].empty());
@@ -335,7 +335,7 @@ TEST_CASE("a robot is sliced, its layers and plan are there, and slicing can be 
     CHECK(drawn["kind"] == "drawn");
     CHECK(drawn["height_mm"] == job["manifest"]["layers"].back()["z_um"].get<double>() / 1000);
     CHECK(part.body == ask(studio, "GET", "/api/job/part").body);
-    // What it takes was told before it was sliced.
+    // The estimate before slicing agrees.
     const Json estimate =
         Json::parse(ask(studio, "POST", "/api/job/estimate", R"({"printer":"tower","layer_um":500})").body);
     CHECK(estimate["layers"] == job["plan"]["layers"]);
@@ -461,7 +461,7 @@ TEST_CASE("a second robot stands beside the first one, and follows the same hand
     CHECK(ask(studio, "POST", "/api/compare", R"({"example":"no such"})").status == 422);
     REQUIRE(ask(studio, "POST", "/api/compare", "{}").status == 200);
     REQUIRE(studio.beside()->wait_until_built());
-    // The first one is made stiffer; the second one stays as it was.
+    // The first robot is made stiffer; the second one stays unchanged.
     std::string stiffer = bar;
     stiffer.replace(stiffer.find("1 MPa"), 5, "2 MPa");
     const auto page = joined(studio, "first_page");

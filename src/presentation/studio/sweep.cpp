@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 constexpr double mm = 1e3;
 
-/// A part of the work of the whole.
+/// Progress of a part of the whole work.
 class Part final : public Progress {
 public:
     Part(Progress& whole, std::size_t index, std::size_t count) : whole_(whole), index_(index), count_(count) {}
@@ -33,7 +33,7 @@ private:
     std::size_t index_, count_;
 };
 
-/// All results of a state, and what they are called.
+/// All results of a state, and their names.
 struct Row {
     std::vector<SweepColumn> columns;
     std::vector<double> values;
@@ -135,7 +135,7 @@ Result<Sweep> run_sweep(const RobotText& source, const SweepOrder& order, Progre
         if (!row && row.error().cause == Cause::cancelled) return tl::unexpected(row.error());
         if (!row && !first) first = row.error();
         if (row && sweep.columns.empty()) sweep.columns = row->columns;
-        // A key may add or take away results, as where it repeats something: a plot needs the same ones everywhere.
+        // A key may add or remove results, such as a repeat count: a plot needs the same ones everywhere.
         const bool same = row && row->columns.size() == sweep.columns.size();
         sweep.runs.push_back({all[k], same ? std::move(row->values) : std::vector<double>(),
                               row ? (same ? "" : "its results are not those of the first run") : row.error().message});

@@ -1,5 +1,5 @@
-// One or two numbers of a robot over their ranges, and what its program comes to with each: the points of a response
-// plot.
+// A parameter sweep: one or two numbers of a robot over their ranges, with the results of its program for each, for
+// response plots.
 #pragma once
 
 #include <string>
@@ -12,14 +12,14 @@
 namespace pliant::studio {
 
 struct SweepColumn {
-    std::string key, label, unit;  ///< as the plots of the page name them: "flexor_tension_N", "flexor: tension", "N"
+    std::string key, label, unit;  ///< as named in the plots of the page: "flexor_tension_N", "flexor: tension", "N"
 };
 
 /// The end of one program.
 struct SweepRun {
     std::vector<double> inputs;   ///< (axes)
-    std::vector<double> results;  ///< (columns); empty where there is no equilibrium
-    std::string why;              ///< there is none
+    std::vector<double> results;  ///< (columns); empty if there is no equilibrium
+    std::string why;              ///< reason if there is none
 };
 
 struct Sweep {
@@ -27,11 +27,11 @@ struct Sweep {
     std::vector<SweepRun> runs;  ///< the last axis changes first
 };
 
-/// The robot of `source` with every combination of values, each from rest. The mesh is kept where no key changes it.
-/// Errors: no combination has an equilibrium, and then why the first has not; cancelled.
+/// Runs the robot of `source` with every combination of values, each from rest. The mesh is reused if no key changes
+/// it. Errors: no combination has an equilibrium, with the reason for the first one; cancelled.
 [[nodiscard]] Result<Sweep> run_sweep(const RobotText& source, const SweepOrder& order, Progress& progress);
 
-/// Whether a key says something about the shapes, or about how finely they are meshed.
+/// True if a key affects the geometry, or the mesh size.
 [[nodiscard]] bool changes_mesh(const std::string& key);
 
 /// {"axes": [{"key", "unit", "values"}], "columns": [{"key", "label", "unit"}], "runs": [{"inputs", "results", "why"}]}

@@ -1,4 +1,4 @@
-// Sweeps: what a program comes to over one or two numbers.
+// Parameter sweeps: results of a program over one or two numbers.
 #include "presentation/studio/sweep.hpp"
 
 #include <doctest/doctest.h>
@@ -52,7 +52,7 @@ TEST_CASE("each run of a sweep is the program with --set, and stiffness scales t
     CHECK(sweep->columns[tension].unit == "N");
     for (std::size_t k = 0; k < 3; ++k) {
         CHECK(sweep->runs[k].inputs == std::vector<double>{order.axes[0].values[k]});
-        // The same displacements ask for forces in proportion to the modulus.
+        // For the same displacements, forces are proportional to the modulus.
         CHECK(sweep->runs[k].results[tension] ==
               near(order.axes[0].values[k] * sweep->runs[0].results[tension], {.relative = 1e-3}));
     }
@@ -69,7 +69,7 @@ TEST_CASE("two numbers give every combination, the second one first, and a mesh 
     CHECK(sweep->runs[1].inputs == std::vector<double>{0.1, 1});
     CHECK(sweep->runs[2].inputs == std::vector<double>{0.2, 1.5});
     const std::size_t tension = column(*sweep, "flexor_tension_N");
-    // Linear tets are the less stiff the finer they are.
+    // Linear tets become less stiff with refinement.
     CHECK(sweep->runs[1].results[tension] < sweep->runs[0].results[tension]);
     CHECK(sweep->runs[3].results[tension] ==
           near(simulated_tension({"mesh.order=1", "mesh.size=1 mm"}), {.relative = 1e-9}));

@@ -1,4 +1,4 @@
-// A small robot and what a session tells, for the tests of the studio's sessions.
+// A small robot and a recorder of events, for the tests of the studio's sessions.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -32,7 +32,7 @@ points = [[0, 1.5, 1.8], [2, 1.5, 1.8], [4, 1.5, 1.8]]
 target = { shortening = "0.2 mm" }
 )";
 
-/// The events of a session, in their order, from whichever thread.
+/// The events of a session, in order, from any thread.
 class Events {
 public:
     void add(const std::string& json) {
@@ -40,7 +40,7 @@ public:
         all_.push_back(Json::parse(json));
         changed_.notify_all();
     }
-    /// The first event that is `wanted`; waits for it.
+    /// Waits for the first event that satisfies `wanted`, and returns it.
     Json wait_for(const std::function<bool(const Json&)>& wanted) {
         std::unique_lock lock(mutex_);
         Json found;
@@ -70,12 +70,12 @@ private:
     std::vector<Json> all_;
 };
 
-/// What slicing said at its end: "" where it went well.
+/// Waits for the end of slicing and returns its error; "" on success.
 inline std::string end_of_slicing(Events& events) {
     return events.wait_for([](const Json& e) { return e["type"] == "slicing" && e["stage"] == ""; })["error"];
 }
 
-/// To slice `robot` for a tower with few and large pixels, in layers of 50 um.
+/// An order to slice `robot` for a tower with few and large pixels, in layers of 50 um.
 inline SliceOrder slice_order(const std::string& robot = bar) {
     SliceOrder order;
     order.robot_text = robot;
@@ -88,7 +88,7 @@ inline SliceOrder slice_order(const std::string& robot = bar) {
     }
     order.printer.printer = machine::parse_printer(order.printer.text, "tower.toml").value();
     order.order.inputs = {"bar.toml"};
-    order.order.layer = "50 um";  // thicker ones would not cure through
+    order.order.layer = "50 um";  // thicker layers would not cure through
     return order;
 }
 

@@ -1,6 +1,6 @@
-// Debian's civetweb gives its threads stacks of 100 kB. What a program has as thread-local variables comes out of a
-// thread's stack, and CGAL's and METIS' take 95 kB of it: the first call would end the program. The size cannot be set
-// from outside, so the function that sets it is given a lower bound here, for the whole program.
+// Debian's civetweb creates its threads with stacks of 100 kB. Thread-local variables are allocated on a thread's
+// stack, and those of CGAL and METIS take 95 kB: the first call would crash. The size cannot be configured, so the
+// function that sets it is replaced here by one with a lower bound, for the whole program.
 #include <dlfcn.h>
 #include <pthread.h>
 
@@ -16,7 +16,7 @@ extern "C" int pthread_attr_setstacksize(pthread_attr_t* attributes, std::size_t
 
 namespace pliant::studio {
 
-/// Makes the linker take this file along.
+/// Makes the linker include this file.
 void use_large_thread_stacks() {}
 
 }  // namespace pliant::studio

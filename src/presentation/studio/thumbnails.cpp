@@ -20,7 +20,7 @@ constexpr int width_px = 240, height_px = 150;
 constexpr std::size_t most_kept = 200;
 constexpr std::chrono::seconds longest{15};
 
-/// Ends what would keep everybody waiting.
+/// Cancels drawing that takes too long.
 class Hurry final : public Progress {
 public:
     [[nodiscard]] bool cancelled() const override { return std::chrono::steady_clock::now() > end_; }
@@ -34,7 +34,7 @@ report::Colour colour_of(const robot::Robot& robot, int material) {
     return own ? report::Colour{(*own)[0], (*own)[1], (*own)[2]} : report::palette(material);
 }
 
-/// All bodies as one surface, with the material of each of its points.
+/// All bodies as one surface, with the material of each point.
 struct Drawn {
     mesh::TriMesh surface;
     std::vector<int> material;

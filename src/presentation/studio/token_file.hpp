@@ -1,4 +1,4 @@
-// A token that stays: for a studio whose address should be the same after a restart.
+// A persistent token, for a studio whose address should stay the same after a restart.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,9 @@
 
 namespace pliant::studio {
 
-/// The token in the file, which is made with a random one, for its owner alone, where there is none. Errors: a file
-/// that others than its owner and its group can read; a token that is not 16 to 256 letters and digits; a file that
-/// cannot be read or made.
+/// Reads the token from the file; if there is no file it is created with a random token, readable by its owner alone.
+/// Errors: a file that others than its owner and group can read; a token that is not 16 to 256 letters and digits; a
+/// file that cannot be read or created.
 [[nodiscard]] Result<std::string> read_or_make_token(const std::filesystem::path& file);
 
 }  // namespace pliant::studio

@@ -1,4 +1,4 @@
-// Plots of a study: its results over its keys.
+// Response plots of a study: its results over its keys.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@
 namespace pliant::report {
 
 struct ResponsePlot {
-    std::string file;  ///< "tension over modulus.png", with letters that every file system takes
+    std::string file;  ///< "tension over modulus.png", with characters allowed on every file system
     std::string png;
 };
 
-/// At most so many are drawn: those of the first results.
+/// Limit: only the plots of the first results are drawn.
 inline constexpr std::size_t most_response_plots = 60;
 
-/// One for each result and each key of numbers: a point for each row that is done; a line where one key alone varies.
+/// One plot for each result and each numeric key: a point for each completed row; a line if only one key varies.
 [[nodiscard]] Result<std::vector<ResponsePlot>> response_plots(const study::Plan& plan, const study::Collected& rows);
 
 }  // namespace pliant::report

@@ -15,7 +15,7 @@ void add_once(std::vector<std::string>& names, const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-/// What a part may be called: materials, then objects.
+/// Possible names of a part: materials, then objects.
 std::vector<std::string> part_names(const threemf::ThreeMf& file) {
     std::vector<std::string> names;
     for (const threemf::Body& body : file.bodies) add_once(names, body.material);

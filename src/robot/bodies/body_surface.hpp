@@ -1,4 +1,4 @@
-// The triangles of a body that comes from a file.
+// The triangles of a body that is read from a file.
 #pragma once
 
 #include <string>
@@ -12,12 +12,12 @@ namespace pliant::robot {
 
 struct BodyTriangles {
     mesh::TriMesh mesh;              ///< in length units
-    std::vector<std::string> notes;  ///< what was odd or mended; each begins with the file's name
+    std::vector<std::string> notes;  ///< defects found or repaired; each begins with the file's name
 };
 
-/// STL, OBJ, PLY, OFF (in length units) or 3MF (which says its own unit), by content, put where the placement says;
-/// `unit_m`: metres per length unit.
-/// Errors name the file, and for a part that is not there those that are. A 3MF file of several materials needs a part.
+/// Reads STL, OBJ, PLY, OFF (in length units) or 3MF (which has its own unit), recognised by content, and applies the
+/// placement; `unit_m`: metres per length unit. Errors name the file and, for a missing part, the parts that exist. A
+/// 3MF file of several materials needs a part.
 [[nodiscard]] Result<BodyTriangles> read_triangles(const SurfaceFile& file, double unit_m);
 
 }  // namespace pliant::robot

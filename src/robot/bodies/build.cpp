@@ -16,7 +16,7 @@
 namespace pliant::robot {
 namespace {
 
-/// A thing of the robot file, as problems name it.
+/// Location of a thing in the robot file, for problem messages.
 Diagnostic place(const Robot& robot, int line, std::string_view kind, std::string_view name) {
     return {robot.file.string(), line, name.empty() ? std::string(kind) : fmt::format("{} \"{}\"", kind, name), ""};
 }
@@ -26,7 +26,7 @@ Error at(Diagnostic place, const Error& error) {
     return error_of(error.cause, {std::move(place)});
 }
 
-/// Adds to `notes` what was odd or mended.
+/// Adds defects and repairs to `notes`.
 Result<mesh::TriMesh> read_body_surface(const Robot& robot, const BodySpec& body, const SurfaceFile& file,
                                         std::vector<std::string>& notes) {
     Result<BodyTriangles> surface = read_triangles(file, robot.unit_m);
@@ -35,7 +35,7 @@ Result<mesh::TriMesh> read_body_surface(const Robot& robot, const BodySpec& body
     return std::move(surface->mesh);
 }
 
-/// What was odd or mended in the surfaces of chambers, which are read again when the model is built.
+/// Defects and repairs in the surfaces of chambers, which are read again when the model is built.
 std::vector<std::string> notes_on_chambers(const Robot& robot) {
     std::vector<std::string> notes;
     for (const ChamberSpec& chamber : robot.chambers) {
@@ -58,7 +58,7 @@ double automatic_size(const std::vector<mesh::BodyGeometry>& bodies) {
     return std::max({box.size().x, box.size().y, box.size().z}) / 24;
 }
 
-/// The drawn air of all chambers and gaps that is cut out of the bodies. Enclosed air is outside them as it is.
+/// The drawn air of all chambers and gaps, which is cut out of the bodies. Enclosed air is already outside them.
 std::vector<mesh::Solid> drawn_air(const Robot& robot) {
     std::vector<mesh::Solid> solids;
     for (const Region& region : regions_of(robot)) {
@@ -69,7 +69,7 @@ std::vector<mesh::Solid> drawn_air(const Robot& robot) {
     return solids;
 }
 
-/// Where drawn bodies overlap the later one is printed, as it is the later one that is meshed.
+/// Where drawn bodies overlap, the later one is printed, just as it is the later one that is meshed.
 std::vector<mesh::Solid> cut_from(const Robot& robot, std::size_t body, std::vector<mesh::Solid> air) {
     const auto& own = std::get<mesh::Solid>(robot.bodies[body].geometry);
     for (std::size_t b = body + 1; b < robot.bodies.size(); ++b) {
@@ -89,7 +89,7 @@ mesh::Solid without_air(const mesh::Solid& body, const std::vector<mesh::Solid>&
 
 using Shape = std::variant<mesh::Solid, mesh::TriMesh>;
 
-/// A body without the air that is cut out of it; triangles where nothing is, or where they are too many to be cut.
+/// A body with its air cut out; triangles if nothing is cut, or if there are too many to cut.
 Result<Shape> body_shape(const Robot& robot, const BodySpec& body, const std::vector<mesh::Solid>& air,
                          std::vector<std::string>& notes) {
     if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) return without_air(*solid, air);
@@ -104,7 +104,7 @@ Result<Shape> body_shape(const Robot& robot, const BodySpec& body, const std::ve
     return std::move(*surface);
 }
 
-/// A size that the file gives is taken at its word; without one, walls get three elements.
+/// A size in the file is used as given; without one, walls get three elements.
 mesh::MeshSettings mesh_settings(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies) {
     mesh::MeshSettings settings;
     settings.size = robot.mesh.size > 0 ? robot.mesh.size : automatic_size(bodies);
@@ -117,13 +117,13 @@ mesh::MeshSettings mesh_settings(const Robot& robot, const std::vector<mesh::Bod
     return settings;
 }
 
-/// Where the file asks for no size, thin walls and many fingers must not make a mesh on which every step takes minutes:
-/// one of more nodes is meshed again with fewer elements through walls and then longer edges, and a note says so.
+/// If the file gives no size, thin walls and many fingers must not produce a mesh on which every step takes minutes: a
+/// mesh with too many nodes is rebuilt with fewer elements through walls and then longer edges, and a note says so.
 Result<mesh::TetMesh> mesh_within_budget(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies,
                                          Progress& progress) {
     constexpr std::size_t most_automatic_nodes = 20000;
     constexpr int tries = 3;
-    constexpr double most_coarser = 1.6;  // at once: what remains of a notch or wall should still be meshed well
+    constexpr double most_coarser = 1.6;  // per attempt: notches and walls should still be meshed well
     mesh::MeshSettings settings = mesh_settings(robot, bodies);
     Result<mesh::TetMesh> mesh = mesh::mesh_bodies(bodies, settings, progress);
     const bool asked = robot.mesh.size > 0 || robot.mesh.elements_through_wall || robot.mesh.size_near_cables > 0;
@@ -162,7 +162,7 @@ Result<mesh::Solid> notches_of(const Robot& robot, const std::vector<mesh::BodyG
     return crossed_notches(robot, walls, air);
 }
 
-/// The mesher says which body, chamber or gap it is about, if it is about one.
+/// The mesher's error names the body, chamber or gap concerned, if any.
 Diagnostic place_of(const Robot& robot, const Error& error) {
     for (const Region& region : regions_of(robot)) {
         if (!error.problems.empty() && error.problems.back().key == region.name)
@@ -199,7 +199,7 @@ bool box_holds_centroid(const BoxSelector& box, const mesh::TetMesh& mesh, std::
     return Box3{box.low, box.high}.contains(centroid, 0);
 }
 
-/// Gives user `u` the tets of its region. A region has one user, but a box may take tets from those before it.
+/// Assigns to user `u` the tets of its region. A region has one user, but a box may take tets from earlier users.
 Status claim_tets(const Robot& robot, const mesh::TetMesh& mesh, const std::vector<Region>& users, std::size_t u,
                   std::vector<int>& user_of_tet) {
     const Region& user = users[u];
@@ -224,7 +224,7 @@ Status claim_tets(const Robot& robot, const mesh::TetMesh& mesh, const std::vect
     return wrong(fmt::format("the mesh has no region \"{}\"; it has {}", wanted.name, join_names(mesh.region_names)));
 }
 
-/// Gives every region of a ready mesh to the body, chamber or gap that names it.
+/// Assigns every region of a given mesh to the body, chamber or gap that names it.
 Result<mesh::TetMesh> give_regions(const Robot& robot, mesh::TetMesh mesh) {
     const std::vector<Region> users = regions_of(robot);
     std::vector<int> user_of_tet(mesh.tet_count(), -1);
@@ -276,7 +276,7 @@ Result<mesh::TetMesh> take_mesh(const Robot& robot, mesh::TetMesh mesh_m) {
 }
 
 Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& progress) {
-    constexpr double printable_m = 10e-6;  // chords may leave a curve by a fraction of a pixel
+    constexpr double printable_m = 10e-6;  // chords may deviate from a curve by a fraction of a pixel
     const std::vector<mesh::Solid> air = drawn_air(robot);
     std::vector<BodySurface> surfaces;
     Result<mesh::TetMesh> regions;

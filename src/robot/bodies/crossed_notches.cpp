@@ -9,7 +9,7 @@
 namespace pliant::robot {
 namespace {
 
-/// Of the surface in which notches are looked for, as a share of the robot's size: about 48 chords a turn.
+/// Tolerance of the surface used to find notches, as a share of the robot's size: about 48 chords per turn.
 constexpr double surface_share = 2e-3;
 
 mesh::Solid solid(decltype(mesh::SolidNode::shape) shape) {

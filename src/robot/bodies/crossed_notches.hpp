@@ -1,4 +1,4 @@
-// The notches that cables cross which ask for gap elements there.
+// The notches crossed by cables that request gap elements there.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace pliant::robot {
 
-/// The empty space of all of them, in length units. `bodies`: every body as it is meshed; `air`: what is drawn as air,
-/// which is not filled again. An error names the cable that crosses none, with file and line.
+/// The empty space of all of them, in length units. `bodies`: every body as it is meshed; `air`: solids drawn as air,
+/// which stay empty. The error names a cable that crosses no notch, with file and line.
 [[nodiscard]] Result<mesh::Solid> crossed_notches(const Robot& robot, const std::vector<mesh::Solid>& bodies,
                                                   const std::vector<mesh::Solid>& air);
 

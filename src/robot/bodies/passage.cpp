@@ -7,7 +7,7 @@
 namespace pliant::robot {
 namespace {
 
-/// The share [begin, end] of the way from a to b that lies in a tet; empty if begin >= end.
+/// The share [begin, end] of the segment from a to b inside a tet; empty if begin >= end.
 std::pair<double, double> clip(const std::array<Vec3, 4>& corner, const Vec3& a, const Vec3& b) {
     double begin = 0;
     double end = 1;

@@ -1,4 +1,4 @@
-// Where a cable passes the gaps that the thesis' gap elements close (T3.5).
+// Where a cable passes through the gaps that the thesis' gap elements close (T3.5).
 #pragma once
 
 #include <vector>
@@ -11,10 +11,10 @@ namespace pliant::robot {
 /// The part of a polyline that lies inside one region of a mesh of straight tets.
 struct Passage {
     double length = 0;
-    Vec3 direction;  ///< of length 1: the mean over the passage; zero where there is none
-    Vec3 center;     ///< the mean of its points
+    Vec3 direction;  ///< mean direction of the passage, of length 1; zero if there is none
+    Vec3 center;     ///< mean of its points
 };
-/// In the unit of the mesh, in which `points` stand too. Takes time in proportion to tets times points.
+/// In the unit of the mesh and of `points`. Cost: proportional to tets times points.
 [[nodiscard]] Passage passage_through(const mesh::TetMesh& mesh, int region, const std::vector<Vec3>& points);
 
 }  // namespace pliant::robot

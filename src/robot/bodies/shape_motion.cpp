@@ -16,7 +16,7 @@ namespace {
 
 using mesh::SurfacePiece;
 
-/// Of the robot's size: how near to a surface a node of it is.
+/// Tolerance for a node on a surface, as a share of the robot's size.
 constexpr double on_surface = 1e-6;
 
 /// In metres.
@@ -44,22 +44,22 @@ bool has_file_geometry(const Robot& robot) {
         robot.bodies, [](const BodySpec& body) { return !std::holds_alternative<mesh::Solid>(body.geometry); });
 }
 
-/// What holds a node: v . normals = rates.
+/// Constraints of a node: v . normals = rates.
 struct Held {
     Eigen::Matrix<double, Eigen::Dynamic, 3> normals;
     Eigen::VectorXd rates;
 };
 
-/// The directions that are left free (3, free), and the least motion that the rest asks for.
+/// The free directions (3, free), and the smallest motion that satisfies the constraints.
 struct Freedom {
     Eigen::Matrix<double, 3, Eigen::Dynamic> free;
     Eigen::Vector3d given = Eigen::Vector3d::Zero();
-    double contradiction = 0;  ///< by how much what holds the node disagrees
+    double contradiction = 0;  ///< inconsistency of the constraints
 };
 
 Freedom freedom_of(const Held& held) {
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(held.normals, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    constexpr double tangent = 1e-6;  // surfaces that touch at a smaller angle hold in one direction
+    constexpr double tangent = 1e-6;  // surfaces that meet at a smaller angle constrain only one direction
     Eigen::Index rank = 0;
     for (; rank < svd.singularValues().size() && svd.singularValues()[rank] > tangent; ++rank) {
     }
@@ -109,7 +109,7 @@ private:
         return {};
     }
 
-    /// On the surface of a body, and where two regions meet.
+    /// (nodes) true on the surface of a body, and where two regions meet.
     [[nodiscard]] std::vector<char> on_faces() const {
         std::vector<char> found(mesh_.points.size(), 0);
         const std::size_t width = mesh_.order == 2 ? 6 : 3;
@@ -161,7 +161,7 @@ private:
         return {};
     }
 
-    /// Of corner nodes: least squares of the motion's gradient, as linear tets have it.
+    /// Extends the motion to all corner nodes: least squares of its gradient, on linear tets.
     void extend() {
         motion_.assign(mesh_.points.size(), Vec3{});
         if (fastest_ == 0) return;
@@ -218,7 +218,7 @@ private:
         }
     }
 
-    /// Nodes between two corners: with them, and on curved surfaces where those go.
+    /// Mid-edge nodes: the mean of their ends, or on curved surfaces the motion of the surface.
     void place_middles() {
         if (mesh_.order != 2) return;
         constexpr std::array<std::array<std::size_t, 2>, 6> edges = {{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};

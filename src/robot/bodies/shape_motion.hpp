@@ -1,8 +1,8 @@
-// How the nodes of a mesh move with a number of the drawing that it was made from.
+// How the nodes of a mesh move when a number of the drawing that it was made from changes.
 //
-// A node on the surface stays on the planes, spheres and cylinders that it is on; where they meet, on all of them. What
-// that leaves free, and the inside, moves as smoothly as it can: least squares of its gradient (a harmonic motion). The
-// mesh keeps its topology. docs/theory.md, "Gradients", says what for.
+// A node on the surface stays on its planes, spheres and cylinders, and on all of them where they meet. The remaining
+// freedom, and the interior, follows a harmonic motion: least squares of its gradient. The mesh keeps its topology.
+// docs/theory.md, "Gradients", explains the use.
 #pragma once
 
 #include <vector>
@@ -13,16 +13,16 @@
 
 namespace pliant::robot {
 
-/// A robot that was read with the number a little larger and a little smaller; `step`: how much they differ.
+/// A robot read with the number slightly larger and slightly smaller; `step`: the difference.
 struct DrawnAround {
     const Robot& more;
     const Robot& less;
     double step = 0;  ///< above zero
 };
 
-/// (nodes) m for each unit of the number. `mesh`: of build_mesh(robot, ...), in metres. Errors: bodies come apart, or
-/// into each other, so that no motion of this mesh follows them; the number moves geometry of a file; a robot with a
-/// mesh of its own whose places it moves has none that could follow, and gives no motion.
+/// (nodes) m per unit of the number. `mesh`: from build_mesh(robot, ...), in metres. Zero for a robot with a mesh of
+/// its own, which cannot follow a number that moves its features. Errors: bodies separate or overlap, so that no motion
+/// of this mesh follows them; the number changes geometry read from a file.
 [[nodiscard]] Result<std::vector<Vec3>> shape_motion(const Robot& robot, const DrawnAround& around,
                                                      const mesh::TetMesh& mesh);
 

@@ -1,4 +1,4 @@
-// How meshes follow the numbers of a drawing.
+// Motion of meshes with the numbers of a drawing.
 #include "robot/bodies/shape_motion.hpp"
 
 #include <doctest/doctest.h>
@@ -71,7 +71,7 @@ TEST_CASE("a part that is moved or turned moves as a whole") {
     const Moved about = moved(
         body("{ rotate = \"= p\", axis = [0, 0, 1], center = [0, 0, 0], of = { box = [[0, 0, 0], [9, 6, 6]] } }"), 20);
     const double rate = M_PI / 180;
-    // Faces may slide in themselves: across them they turn with the part.
+    // Nodes may slide within faces: normal to them they rotate with the part.
     REQUIRE_MESSAGE(about.motion, (about.motion ? "" : about.motion.error().message));
     const double c = std::cos(20 * rate), s = std::sin(20 * rate);
     int checked = 0;

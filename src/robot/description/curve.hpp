@@ -1,4 +1,4 @@
-// A quantity over the time of a program: straight lines between keys.
+// A quantity over the time of a program: piecewise linear between keys.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a robot is wanted to reach, and how far its actuators may go for it.
+// The goals of a robot, and how far its actuators may go to reach them.
 #pragma once
 
 #include <optional>
@@ -9,16 +9,16 @@
 
 namespace pliant::robot {
 
-/// How far an actuator may go, in what its target names: a ratio, or a quantity in SI.
+/// Range of an actuator, in the quantity of its target: a ratio, or a value in SI.
 struct SteeringSpec {
     double low = 0, high = 0;
-    std::optional<double> rate;  ///< largest change from one waypoint to the next, or per second where goals have times
-    double effort_price = 0;     ///< of its tension or pressure, beside that of the others
-    double change_price = 0;     ///< of its change since the last waypoint
+    std::optional<double> rate;  ///< largest change from one waypoint to the next, or per second if goals have times
+    double effort_price = 0;     ///< penalty weight of its tension or pressure, relative to other actuators
+    double change_price = 0;     ///< penalty weight of its change since the last waypoint
     int line = 0;
 };
 
-/// Waypoints are reached one after the other, all goals together.
+/// Waypoints are reached one after the other, all goals simultaneously.
 struct GoalSpec {
     enum class Kind {
         position,       ///< of one marker, or of several: a shape
@@ -31,13 +31,13 @@ struct GoalSpec {
     Kind kind = Kind::position;
     std::vector<std::string> markers;
     std::string on;             ///< the obstacle or support of a force
-    bool sum_of_sizes = false;  ///< of a contact force: how hard it presses in all, whatever the directions
-    /// (waypoints) of a position a point for each marker, in length units; of a plane a point, in length units, and a
-    /// normal; a direction; a force, N, or its size as the first number.
+    bool sum_of_sizes = false;  ///< for a contact force: the sum of magnitudes, whatever the directions
+    /// (waypoints) for a position one point per marker, in length units; for a plane a point, in length units, and a
+    /// normal; a direction; a force, N, or its magnitude as the first number.
     std::vector<std::vector<Vec3>> wanted;
-    std::vector<double> times;  ///< (waypoints) of the program, s; empty: at its end
+    std::vector<double> times;  ///< (waypoints) program time, s; empty: at its end
     double tolerance = 0;       ///< m, rad or N
-    double weight = 1;          ///< beside other goals, where not all can be reached
+    double weight = 1;          ///< relative to other goals, if not all can be reached
     int line = 0;
 };
 

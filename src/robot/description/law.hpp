@@ -1,11 +1,11 @@
-// Elastic laws as values: their constants, moduli and names. What they do at a point is in
+// Elastic laws as values: their constants, moduli and names. Their response at a point is in
 // simulation/material/response.hpp.
 //
-// Notation: F deformation gradient, J = det F, psi energy per rest volume (J/m^3), P = d psi / dF first
-// Piola-Kirchhoff stress (Pa), K bulk modulus, mu shear modulus (Pa).
+// Notation: F deformation gradient, J = det F, psi energy per rest volume (J/m^3), P = d psi / dF first Piola-Kirchhoff
+// stress (Pa), K bulk modulus, mu shear modulus (Pa).
 //
-// To add a law: a struct of its constants, its moduli and name in law.cpp, a line in Law, its four functions
-// (declared in simulation/material/point.hpp), its constants in law_parameters.cpp there, and a line in law_test.cpp.
+// To add a law: a struct of its constants, its moduli and name in law.cpp, a line in Law, its four functions (declared
+// in simulation/material/point.hpp), its constants in law_parameters.cpp there, and a line in law_test.cpp.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ struct Moduli {
 [[nodiscard]] double youngs_modulus(const Moduli& moduli);  ///< 9 K mu / (3 K + mu)
 [[nodiscard]] double poisson_ratio(const Moduli& moduli);   ///< (3 K - 2 mu) / (6 K + 2 mu)
 
-/// psi = mu/2 (J^(-2/3) tr F^T F - 3) + K/2 (J - 1)^2: what Abaqus and CalculiX call NEO HOOKE (mu = 2 C10, K = 2/D1).
+/// psi = mu/2 (J^(-2/3) tr F^T F - 3) + K/2 (J - 1)^2: NEO HOOKE of Abaqus and CalculiX (mu = 2 C10, K = 2/D1).
 struct NeoHookean {
     double shear_Pa;
     double bulk_Pa;
@@ -41,7 +41,7 @@ struct ShapeBlend {
 };
 
 /// psi = mu E:E + lambda/2 (tr E)^2 with the Green strain E = (F^T F - I) / 2: Hooke's law for large rotations and
-/// small strains; it has no resistance to being crushed. CalculiX' *ELASTIC with NLGEOM.
+/// small strains; its resistance vanishes under extreme compression. CalculiX' *ELASTIC with NLGEOM.
 struct StVenantKirchhoff {
     double shear_Pa;
     double lame_Pa;  ///< lambda = K - 2 mu / 3
@@ -72,22 +72,23 @@ struct Yeoh {
 struct Ogden {
     static constexpr int most_terms = 6;
     int terms;
-    std::array<double, most_terms> mu_Pa;  ///< the first `terms` count
+    std::array<double, most_terms> mu_Pa;  ///< the first `terms` are used
     std::array<double, most_terms> alpha;
     double bulk_Pa;
 };
 
-/// psi = mu |F - R|^2 + lambda/2 (J - 1)^2 with the rotation R nearest to F: Hooke's law in the frame that turns with
-/// the material. The volume term is in J, not in tr(R^T F - I): both are Hooke's law for small strains, but only J
-/// keeps the true volume of a nearly incompressible body at large ones (Stomakhin et al., SCA 2012, "fixed corotated").
+/// psi = mu |F - R|^2 + lambda/2 (J - 1)^2 with the rotation R nearest to F: Hooke's law in the frame that rotates with
+/// the material. The volume term uses J, not tr(R^T F - I): both are Hooke's law for small strains, but only J
+/// preserves the true volume of a nearly incompressible body at large ones (Stomakhin et al., SCA 2012, "fixed
+/// corotated").
 struct Corotated {
     double shear_Pa;
     double lame_Pa;  ///< lambda = K - 2 mu / 3
 };
 
 /// psi = mu eps:eps + lambda/2 (tr eps)^2 with eps = (F + F^T) / 2 - I: Hooke's law of small displacements, the model
-/// without rotation (Fig. 3.2 b). It takes a rotation for a strain: a body that turns by an angle t seems to grow by
-/// 1 / cos t, so what has turned by more than a few degrees looks unreal. To show that, and for small displacements.
+/// without rotation (Fig. 3.2 b). It mistakes a rotation for a strain: a body rotated by an angle t appears to grow by
+/// 1 / cos t, so rotations of more than a few degrees are wrong. For demonstration, and for small displacements.
 struct Linear {
     double shear_Pa;
     double lame_Pa;  ///< lambda = K - 2 mu / 3
@@ -99,16 +100,16 @@ using Law = std::variant<NeoHookean, ShapeBlend, StVenantKirchhoff, MooneyRivlin
 [[nodiscard]] StVenantKirchhoff st_venant_kirchhoff(double youngs_modulus_Pa, double poisson_ratio);
 [[nodiscard]] Corotated corotated(double youngs_modulus_Pa, double poisson_ratio);
 [[nodiscard]] Linear linear(double youngs_modulus_Pa, double poisson_ratio);
-/// The blend with the same small-strain moduli: w = 3K, a = (1 - 2 nu) / (1 + nu).
+/// The shape-blend law with the same small-strain moduli: w = 3K, a = (1 - 2 nu) / (1 + nu).
 [[nodiscard]] ShapeBlend shape_blend(double youngs_modulus_Pa, double poisson_ratio);
 
-/// The thesis' fit for 30 % strain of one specimen (T3.8), of the material ratio R_m = E_A / E_B.
+/// The thesis' fit for one specimen at 30 % strain (T3.8), as a function of the material ratio R_m = E_A / E_B.
 [[nodiscard]] double shape_parameter_of_thesis(double material_ratio);
 /// The same for small strains of any specimen: R_omega = (3 R_m - 1) / 2.
 [[nodiscard]] double shape_parameter_small_strain(double material_ratio);
 
-/// What neo-Hookean, Mooney-Rivlin and Yeoh have in common:
-/// psi = sum_i ci0 (I1_bar - 3)^i + c01 (I2_bar - 3) + K/2 (J - 1)^2. Nothing for laws of another form.
+/// The common form of neo-Hookean, Mooney-Rivlin and Yeoh:
+/// psi = sum_i ci0 (I1_bar - 3)^i + c01 (I2_bar - 3) + K/2 (J - 1)^2. Empty for other laws.
 struct InvariantForm {
     double c10_Pa = 0, c20_Pa = 0, c30_Pa = 0;
     double c01_Pa = 0;
@@ -117,9 +118,9 @@ struct InvariantForm {
 [[nodiscard]] std::optional<InvariantForm> invariant_form(const Law& law);
 
 [[nodiscard]] bool has_energy(const Law& law);
-/// Whether a rotation of the body leaves its energy: of all laws but Linear.
+/// True if the energy is invariant under rotations of the body: for all laws but Linear.
 [[nodiscard]] bool is_objective(const Law& law);
-/// Of small strains from rest.
+/// For small strains from rest.
 [[nodiscard]] Moduli moduli(const Law& law);
 /// Largest eigenvalue of the tangent at rest (3K for the isotropic laws): the weight of the local-global iteration.
 [[nodiscard]] double stiffness_bound(const Law& law);

@@ -3,7 +3,7 @@
 namespace pliant::material {
 namespace {
 
-/// Means of the constants of two laws of one kind, where that is the mean of their energies.
+/// Means of the constants of two laws of the same kind, if that is equivalent to the mean of their energies.
 struct Mean {
     double s;
 

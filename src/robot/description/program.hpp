@@ -1,4 +1,4 @@
-// What a robot is made to do: how many steps, by which solver, at rest or in time.
+// The program of a robot: how many steps, by which solver, quasi-static or in time.
 #pragma once
 
 #include <optional>
@@ -13,31 +13,31 @@ struct Damping {
     double stiffness_s = 0;
 };
 
-/// How a step in time leads on.
+/// Time integration scheme.
 enum class Integrator {
-    bdf2,               ///< takes a little energy out of what it does not resolve, and never adds any
-    energy_conserving,  ///< keeps the energy of what is neither damped nor touches anything
+    bdf2,               ///< slightly dissipates unresolved motion, and never adds energy
+    energy_conserving,  ///< conserves the energy of undamped motion without contact
 };
 
-/// Motion in time instead of rest at every instant.
+/// Motion in time instead of quasi-static steps.
 struct Dynamics {
     Damping damping;
     Integrator integrator = Integrator::bdf2;
-    double time_tolerance_m = 0;  ///< above 0: steps are as long as this error of each allows
+    double time_tolerance_m = 0;  ///< above 0: adapts the step length so that the error of each step stays below this
 };
 
 struct Program {
     int steps = 30;
-    double duration = 1;  ///< time at the end; steps are equally long
+    double duration = 1;  ///< end time; steps have equal length
     double tolerance = 1e-4;
     Solver solver = Solver::automatic;
     std::optional<Dynamics> dynamics = std::nullopt;
-    int iteration_limit = 0;  ///< per solved step; 0: the solver's own
-    /// Where an equilibrium turns out to be unstable: it is left by this largest motion of a node, for the stable one
-    /// that the energy then falls to. 0: only a warning.
+    int iteration_limit = 0;  ///< per solved step; 0: the default of the solver
+    /// How to leave an unstable equilibrium: the state is disturbed by this largest motion of a node and settles at the
+    /// stable one that the energy then decreases to. 0: only a warning.
     double imperfection_m = 0;
-    /// Whether the results are looked at for instability and for surfaces that cross, which takes as long as a few
-    /// steps. Off only to time the solver.
+    /// Checks results for instability and intersecting surfaces, which takes as long as a few steps. Off only for
+    /// timing the solver.
     bool checks = true;
 };
 

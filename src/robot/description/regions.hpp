@@ -1,4 +1,4 @@
-// The regions of a robot's mesh: first the bodies, then the air of chambers, then gaps.
+// The regions of a robot's mesh: bodies first, then the air of chambers, then gaps.
 #pragma once
 
 #include <string>
@@ -17,11 +17,12 @@ struct Region {
     std::string_view name;
     const Geometry* geometry = nullptr;
     int line = 0;
-    bool has_elements = true;  ///< carries a material, or a target shape of the thesis' actuators; else it is cut out
+    bool has_elements = true;  ///< has a material, or is a target-shape element of the thesis' actuators; else it is
+                               ///< empty
 };
 
-/// In the order of the mesh's regions; the robot must outlive it. A chamber whose wall is a surface file or a cavity of
-/// the bodies has none.
+/// In the order of the mesh's regions; the robot must outlive the result. A chamber whose wall is a surface file or a
+/// cavity of the bodies has no region.
 [[nodiscard]] std::vector<Region> regions_of(const Robot& robot);
 
 /// Young's modulus of the softest body at small strains, Pa; infinity where there is no body.

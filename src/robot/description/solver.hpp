@@ -1,4 +1,4 @@
-// The solvers by name. docs/theory.md, "The step solver", tells them apart.
+// The names of the solvers. docs/theory.md, "The step solver", compares them.
 #pragma once
 
 #include <array>
@@ -9,11 +9,11 @@ namespace pliant::robot {
 
 enum class Solver { automatic, newton, quasi_newton, anderson, local_global };
 
-/// From the thesis' iteration to the one that converges fastest, then the choice that is made where nobody chooses.
+/// From the thesis' iteration to the one that converges fastest, then the automatic choice.
 inline constexpr std::array<Solver, 5> all_solvers = {Solver::local_global, Solver::anderson, Solver::quasi_newton,
                                                       Solver::newton, Solver::automatic};
 
-/// As robot files and results write it.
+/// The name in robot files and results.
 [[nodiscard]] constexpr std::string_view name(Solver solver) {
     switch (solver) {
         case Solver::newton:

@@ -16,7 +16,7 @@ using config::Reader;
 
 CableTarget read_target(Reader& cable) {
     using Kind = CableTarget::Kind;
-    Reader reader = cable.table("target", !cable.has("range"));  // without one it is as at rest
+    Reader reader = cable.table("target", !cable.has("range"));  // default: the rest value
     CableTarget target;
     const int given = int{reader.has("length_ratio")} + int{reader.has("shortening")} + int{reader.has("tension")};
     if (cable.has("target") && given != 1) reader.problem("", "takes one of length_ratio, shortening and tension");
@@ -62,7 +62,7 @@ SteeredBy steered_by(const ChamberTarget& target) {
     }
 }
 
-/// `points`, of what `kind` is.
+/// Reads `points`; `kind` is for messages.
 std::vector<Vec3> read_path(Reader& reader, std::string_view kind) {
     std::vector<Vec3> points = reader.vectors("points");
     if (reader.has("points") && points.size() < 2)
@@ -79,7 +79,7 @@ Anchor read_anchor(Reader& reader) {
     return anchor == "first" ? Anchor::first : (anchor == "last" ? Anchor::last : Anchor::none);
 }
 
-/// How hard gap or air elements are held to their target (A.4), beside the softest body.
+/// Stiffness with which gap or air elements are held to their target (A.4), relative to the softest body.
 std::optional<double> read_weight(Reader& reader) {
     if (!reader.has("weight")) return std::nullopt;
     const double weight = reader.number("weight");
@@ -175,7 +175,7 @@ std::optional<Geometry> read_drawn_air(Reader& reader, Context& context) {
     return air;
 }
 
-/// The air between the drawn bodies and the cap, which is meshed.
+/// The air between the drawn bodies and the cap, as a region to be meshed.
 Geometry enclosed_by_bodies(Reader& reader, const Vec3& point, std::vector<mesh::Solid> walls, const Context& context) {
     for (const BodySpec& body : context.robot.bodies) {
         if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
@@ -191,7 +191,7 @@ Geometry enclosed_by_bodies(Reader& reader, const Vec3& point, std::vector<mesh:
     return std::make_shared<const mesh::SolidNode>(mesh::SolidNode{mesh::EnclosedSolid{point, std::move(walls)}});
 }
 
-/// inside = [x, y, z], and cap = { shape } where the cavity has a mouth.
+/// inside = [x, y, z], and cap = { shape } if the cavity has a mouth.
 Geometry read_cavity(Reader& reader, Context& context, bool meshed) {
     const Vec3 point = reader.vector("inside");
     std::vector<mesh::Solid> caps;
@@ -245,7 +245,7 @@ void read_gap(Reader& reader, Context& context, GapSpec& gap) {
     gap.weight = read_weight(reader);
 }
 
-/// One gap for all notches, beside those of the file.
+/// Adds one gap for all notches, in addition to those of the file.
 void add_notches(Reader& root, Robot& robot) {
     const auto asks =
         std::find_if(robot.cables.begin(), robot.cables.end(), [](const CableSpec& c) { return c.fill_notches; });

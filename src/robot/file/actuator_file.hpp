@@ -1,4 +1,4 @@
-// [[cable]], [[spring]], [[chamber]] and [[gap]] of a robot file: what moves it.
+// Reads [[cable]], [[spring]], [[chamber]] and [[gap]] of a robot file.
 #pragma once
 
 #include "robot/file/reading.hpp"

@@ -57,7 +57,7 @@ double read_size(Reader& reader, std::string_view key, const Context& context) {
     return size;
 }
 
-/// Up to which width gaps between bodies are closed.
+/// The largest width of gaps between bodies that are closed.
 void read_close_gaps(Reader& reader, Context& context) {
     if (!reader.has("close_gaps")) {
         (void)reader.raw("close_gaps");
@@ -106,7 +106,7 @@ void read_mesh(Reader& root, Context& context) {
     reader.finish();
 }
 
-/// A material of the robot file, or else of the library.
+/// A material of the robot file or, failing that, of the library.
 int find_material(Reader& reader, Context& context) {
     const std::string wanted = reader.text("material");
     std::vector<MaterialSpec>& materials = context.robot.materials;
@@ -115,7 +115,7 @@ int find_material(Reader& reader, Context& context) {
         names.push_back(materials[i].name);
         if (names.back() == wanted) return static_cast<int>(i);
     }
-    if (wanted.empty()) {  // what is missing, or no text, has been told already
+    if (wanted.empty()) {  // a missing or invalid value has already been reported
         const config::Value* given = reader.raw("material");
         if (given != nullptr && std::holds_alternative<std::string>(given->data))
             reader.problem("material", "is empty; name a material of this file or of the library");
@@ -152,8 +152,7 @@ mesh::Solid placed_solid(Reader& reader, mesh::Solid solid, const mesh::Placemen
     return all.parts.size() == 1 ? solid : make(std::move(all));
 }
 
-/// A STEP file becomes a solid like those that are drawn here; the rest are triangles, which are read when they are
-/// needed.
+/// A STEP file becomes a solid like drawn ones; other files are triangles, which are read when needed.
 Geometry read_file_body(Reader& reader, const std::string& file, Context& context) {
     const std::filesystem::path path = need_file(reader, "geometry", file, context);
     const std::string part = reader.has("part") ? reader.text("part") : "";
@@ -198,7 +197,7 @@ Geometry read_geometry(Reader& reader, Context& context) {
     return read_shape(reader, context);
 }
 
-/// What the body turns into on the way, when it is printed.
+/// The gradient of a printed body towards another material.
 std::optional<PrintBlend> read_blend(Reader& body, Context& context) {
     if (!body.has("blend")) return (void)body.raw("blend"), std::nullopt;
     Reader reader = body.table("blend");

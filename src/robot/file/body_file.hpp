@@ -1,11 +1,11 @@
-// [material], [mesh] and [[body]] of a robot file: what it is made of.
+// Reads [material], [mesh] and [[body]] of a robot file.
 #pragma once
 
 #include "robot/file/reading.hpp"
 
 namespace pliant::robot {
 
-/// Reads all three into the robot, which also takes from the library what its bodies name there.
+/// Reads all three into the robot, including materials of the library that its bodies name.
 void read_bodies(config::Reader& root, Context& context);
 
 }  // namespace pliant::robot

@@ -48,7 +48,7 @@ std::variant<mesh::Solid, SurfaceFile> read_object_shape(Reader& reader, Context
     return shape;
 }
 
-/// Either of the two; the other one is 0.
+/// Reads mass or density; the other one is 0.
 void read_weight(Reader& reader, ObjectSpec& object) {
     object.density_kg_m3 = reader.quantity("density", Dimension::density, 0);
     object.mass_kg = reader.quantity("mass", Dimension::mass, 0);

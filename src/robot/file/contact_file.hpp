@@ -1,4 +1,4 @@
-// [contact], [[obstacle]] and [[object]] of a robot file.
+// Reads [contact], [[obstacle]], [[object]] and [fluid] of a robot file.
 #pragma once
 
 #include "robot/file/reading.hpp"

@@ -47,7 +47,7 @@ std::vector<std::string> read_marker_names(Reader& reader, const Context& contex
     return names;
 }
 
-/// A column of coordinates: in length units, or in the unit that its name gives in brackets.
+/// A column of coordinates: in length units, or in the unit given in brackets in its name.
 Result<std::vector<double>> read_column(const CsvTable& table, std::size_t column, double unit_m) {
     double factor = 1;
     if (const std::string_view unit = csv_unit(table.columns[column]); !unit.empty()) {
@@ -66,7 +66,7 @@ Result<std::vector<double>> read_column(const CsvTable& table, std::size_t colum
     return values;
 }
 
-/// The column of this name, whatever unit follows in brackets.
+/// The column of this name, with or without a unit in brackets.
 std::optional<std::size_t> find_column(const CsvTable& table, std::string_view name) {
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
         std::string_view column = table.columns[c];
@@ -78,7 +78,7 @@ std::optional<std::size_t> find_column(const CsvTable& table, std::string_view n
     return std::nullopt;
 }
 
-/// Columns x, y, z; of several markers tip_x, tip_y and so on. A column `time` gives the times.
+/// Columns x, y, z; for several markers tip_x, tip_y and so on. A column `time` gives the times.
 Status read_path_table(const CsvTable& table, double unit_m, GoalSpec& goal) {
     const std::size_t count = goal.markers.size();
     goal.wanted.assign(table.rows.size(), std::vector<Vec3>(count));
@@ -108,7 +108,7 @@ Status read_path_table(const CsvTable& table, double unit_m, GoalSpec& goal) {
 void read_path_file(Reader& reader, const Context& context, const std::string& file, GoalSpec& goal) {
     const std::filesystem::path path = need_file(reader, "path", file, context);
     const Result<std::string> text = read_file(path);
-    if (!text) return;  // said already
+    if (!text) return;  // already reported
     const Result<CsvTable> table = parse_csv(*text, path.string(), "x,y,z");
     const Status read =
         table ? read_path_table(*table, context.robot.unit_m, goal) : Status(tl::unexpected(table.error()));
@@ -249,7 +249,7 @@ void read_goal(Reader& reader, Context& context, GoalSpec& goal) {
         reader.problem("path", fmt::format("has {} waypoints; {} are possible", goal.wanted.size(), most_waypoints));
 }
 
-/// Goals of one waypoint hold at all of them.
+/// Goals with one waypoint apply to all of them.
 void check_together(Reader& root, Robot& robot) {
     std::size_t waypoints = 1;
     std::vector<double> times;

@@ -1,4 +1,4 @@
-// [[goal]]; and range, rate and price of actuators.
+// Reads [[goal]], and range, rate and price of actuators.
 #pragma once
 
 #include <optional>
@@ -7,15 +7,15 @@
 
 namespace pliant::robot {
 
-/// What `range`, `rate` and `price` of an actuator are written in, and what is possible.
+/// Unit and limits of `range`, `rate` and `price` of an actuator.
 struct SteeredBy {
-    std::optional<Dimension> dimension;  ///< none: a plain number
-    double low = 0, high = 1e300;        ///< of a range
-    std::string_view possible;           ///< in words: "above 0, at most 1"
-    std::string_view effort;             ///< the price's key: "tension" or "pressure"
+    std::optional<Dimension> dimension;  ///< empty: dimensionless
+    double low = 0, high = 1e300;        ///< limits of a range
+    std::string_view possible;           ///< the limits in words: "above 0, at most 1"
+    std::string_view effort;             ///< the key of its penalty: "tension" or "pressure"
 };
 
-/// Nothing where the actuator has no range.
+/// Empty if the actuator has no range.
 [[nodiscard]] std::optional<SteeringSpec> read_steering(config::Reader& actuator, const SteeredBy& by);
 
 /// Precondition: markers, supports, obstacles and actuators have been read.

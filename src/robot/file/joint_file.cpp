@@ -53,7 +53,7 @@ void read_between(Reader& reader, const Robot& robot, JointSpec& joint) {
         reader.problem("between", fmt::format("joins \"{}\" to itself; name two things", given[0]));
 }
 
-/// angle and torque of what turns, position and force of what slides: one of them, and only where something is driven.
+/// angle and torque of rotating joints, position and force of sliding ones: at most one, and only for driven joints.
 void read_drive(Reader& reader, JointSpec& joint) {
     const bool slides = joint.kind == Kind::slider, is_driven = joint.kind == Kind::motor || slides;
     const std::string_view place = slides ? "position" : "angle", force = slides ? "force" : "torque";

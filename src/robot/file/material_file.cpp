@@ -27,7 +27,7 @@ std::optional<std::array<double, 3>> read_colour(Reader& reader) {
     return rgb;
 }
 
-/// False, and a problem, where no solid has this Poisson ratio.
+/// False, and a problem, if no solid can have this Poisson ratio.
 bool check_poisson_ratio(Reader& reader, double nu) {
     if (nu > -1 && nu < 0.5) return true;
     reader.problem("poisson_ratio",
@@ -35,11 +35,11 @@ bool check_poisson_ratio(Reader& reader, double nu) {
     return false;
 }
 
-/// The largest R_omega. Of a target shape that is softer still less than a thousandth of the rest shape is left: it
-/// resists a change of volume and nothing else, so that no shape is better than another and no solver finds one.
+/// The largest R_omega. A softer target shape keeps less than a thousandth of the rest shape: it resists only a change
+/// of volume, so that the equilibrium shape is not unique and no solver converges.
 constexpr double softest_R = 1000;
 
-/// R_omega of a ratio of moduli, R_m >= 1, by the name of a map.
+/// R_omega from a ratio of moduli, R_m >= 1, by the named map.
 double shape_parameter_by(Reader& reader, const std::string& map, double R_m) {
     if (map == "calibrated") {
         const std::vector<double> c = reader.numbers("shape_curve", 3);
@@ -52,8 +52,8 @@ double shape_parameter_by(Reader& reader, const std::string& map, double R_m) {
     return map == "thesis" ? material::shape_parameter_of_thesis(R_m) : material::shape_parameter_small_strain(R_m);
 }
 
-/// R_omega from two moduli: that of the material, and that of the stiffest, whose target is rigid and whose modulus is
-/// then the weight of all.
+/// R_omega from two moduli: that of the material, and that of the stiffest one, whose target is rigid and whose modulus
+/// determines the common weight.
 material::ShapeBlend read_named_blend(Reader& reader, double E) {
     const std::string map = reader.choice("shape_parameter", {"thesis", "small-strain", "calibrated"});
     if (map != "calibrated" && reader.has("shape_curve"))
@@ -93,7 +93,7 @@ material::Law read_shape_blend(Reader& reader, MaterialSpec& material) {
     }
     material::ShapeBlend blend = material::shape_blend(material.youngs_modulus_Pa, nu);
     if (given != nullptr) {
-        // The thesis' way: one weight for all materials, R_omega tells them apart.
+        // The thesis' convention: one weight for all materials, which differ in R_omega.
         const double R = reader.number("shape_parameter", 1);
         if (R >= 1 && R <= softest_R)
             blend.a = 1 / R;
@@ -110,7 +110,7 @@ material::Law read_shape_blend(Reader& reader, MaterialSpec& material) {
     return blend;
 }
 
-/// The laws that Young's modulus and Poisson ratio determine.
+/// The laws that are determined by Young's modulus and Poisson ratio.
 void read_two_moduli(Reader& reader, const std::string& law, MaterialSpec& material) {
     const double nu = material.poisson_ratio = reader.number("poisson_ratio", 0.45);
     const double E = material.youngs_modulus_Pa = reader.has("youngs_modulus")
@@ -125,7 +125,7 @@ void read_two_moduli(Reader& reader, const std::string& law, MaterialSpec& mater
     if (law == "shape-blend") material.law = read_shape_blend(reader, material);
 }
 
-/// Bulk modulus as given, or from the Poisson ratio at small strains. Precondition: shear_Pa > 0.
+/// The given bulk modulus, or that from the small-strain Poisson ratio. Precondition: shear_Pa > 0.
 double read_bulk(Reader& reader, double shear_Pa) {
     if (!reader.has("bulk_modulus")) {
         (void)reader.raw("bulk_modulus");
@@ -168,7 +168,7 @@ material::Ogden read_ogden(Reader& reader) {
     return law;
 }
 
-/// The constants alone, with the bulk modulus still zero.
+/// The constants only, with the bulk modulus still zero.
 material::Law read_constants(Reader& reader, const std::string& law) {
     if (law == "mooney-rivlin") return material::MooneyRivlin{pressure(reader, "c10"), pressure(reader, "c01"), 0};
     if (law == "ogden") return read_ogden(reader);

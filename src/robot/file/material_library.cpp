@@ -98,7 +98,7 @@ config::Value with_base(const config::Value& own, std::string_view base) {
     if (!document) return merged;
     for (config::Entry entry : std::get<config::Table>(document->root.data)) {
         if (replaced(keys, entry.first)) continue;
-        set_line(entry.second, own.line);  // what is wrong with it is wrong here
+        set_line(entry.second, own.line);  // errors in it are reported at this line
         table.push_back(std::move(entry));
     }
     if (!has_key(table, "resin")) table.emplace_back("resin", config::Value{std::string(base), own.line});

@@ -1,4 +1,4 @@
-// The library of materials: data/materials, put into the program when it is built.
+// The library of materials: data/materials, compiled into the program.
 #pragma once
 
 #include <array>
@@ -19,24 +19,24 @@ struct LibraryFile {
 /// By name.
 [[nodiscard]] std::span<const LibraryFile> library_files();
 
-/// A material of the library with what is known of it.
+/// A material of the library and its documentation.
 struct LibraryMaterial {
     MaterialSpec spec;
     std::string title;              ///< product and maker
     std::string hardness;           ///< "Shore 00-30"; empty: not published
     std::string source;             ///< where the constants and the density come from
-    std::string derivation;         ///< how they follow from the source, and for what they should not be taken
-    std::array<double, 2> stretch;  ///< for which the constants were measured
+    std::string derivation;         ///< how they follow from the source, and what they are not valid for
+    std::array<double, 2> stretch;  ///< range in which the constants were measured
 };
-/// An error names file and line, for a name that is not there the near ones.
+/// Errors name file and line; for an unknown name they suggest similar ones.
 [[nodiscard]] Result<LibraryMaterial> library_material(std::string_view name);
 
-/// "; did you mean ...?" with up to four names of the library that resemble `name`, or how to list them all.
+/// "; did you mean ...?" with up to four similar names of the library, or how to list them all.
 [[nodiscard]] std::string library_hint(std::string_view name);
 
-/// The table of a material that builds on another one of the library: the keys of `own` above those of the library.
-/// A `law` in `own` drops the library's elastic constants; `bulk_modulus` and `poisson_ratio` displace each other.
-/// Precondition: `base` is in the library.
+/// The table of a material based on one of the library: the keys of `own` override those of the library. A `law` in
+/// `own` drops the library's elastic constants; `bulk_modulus` and `poisson_ratio` replace each other. Precondition:
+/// `base` is in the library.
 [[nodiscard]] config::Value with_base(const config::Value& own, std::string_view base);
 
 /// The whole library for people, one line each.

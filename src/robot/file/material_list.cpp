@@ -1,4 +1,4 @@
-// The library as people and programs read it.
+// Listings of the library: text and JSON.
 #include <nlohmann/json.hpp>
 
 #include "robot/file/material_library.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 using Constants = std::vector<std::pair<std::string, double>>;
 
-/// Names as in the robot file, in Pa; exponents are pure numbers.
+/// Names as in the robot file, in Pa; exponents are dimensionless.
 struct ConstantsOf {
     const MaterialSpec& spec;
     Constants two_moduli() const {

@@ -132,7 +132,7 @@ LoadPlace read_load_selector(Reader& reader, const Context& context) {
     return selector;
 }
 
-/// A selector, points, a line, a plate or an object: one of them.
+/// Exactly one of: a selector, points, a line, a plate or an object.
 LoadPlace read_load_place(Reader& reader, const Context& context) {
     std::vector<std::string> given;
     if (has_selector(reader)) given.emplace_back("box, plane, sphere, surface, nodes");
@@ -202,13 +202,13 @@ void read_marker(Reader& reader, Context&, MarkerSpec& marker) {
     }
 }
 
-/// Principal moments of a box of these edges, evenly filled, over its mass.
+/// Principal moments of inertia per mass of a homogeneous box with these edges.
 Vec3 gyration_of_box(const Vec3& size) {
     const Vec3 square{size.x * size.x, size.y * size.y, size.z * size.z};
     return {(square.y + square.z) / 12, (square.x + square.z) / 12, (square.x + square.y) / 12};
 }
 
-/// `size`: of a box, or `inertia`: three principal moments; about `axes`.
+/// `size` of a box, or `inertia`: three principal moments; about `axes`.
 void read_inertia(Reader& reader, const Context& context, MassSpec& mass) {
     if (reader.has("size") && reader.has("inertia")) reader.problem("inertia", "give either size or inertia");
     if (reader.has("size")) {

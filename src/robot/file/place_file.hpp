@@ -1,11 +1,11 @@
-// [[fixed]], [[plate]], [[load]] and [[marker]] of a robot file: what is tied to a place of the robot.
+// Reads [[fixed]], [[plate]], [[load]] and [[marker]] of a robot file: everything attached to a place of the robot.
 #pragma once
 
 #include "robot/file/reading.hpp"
 
 namespace pliant::robot {
 
-/// Reads [[fixed]], [[plate]] and [[load]] into the robot; without a support there is a problem.
+/// Reads [[fixed]], [[plate]] and [[load]] into the robot; a robot without a support is a problem.
 void read_places(config::Reader& root, Context& context);
 
 /// `box`, `plane`, `sphere`, `surface` or `nodes`; a problem unless it is one of them.

@@ -13,12 +13,12 @@ namespace {
 
 using config::Reader;
 
-/// Something that keys can drive: how its value is written, where it starts, and where its curve goes.
+/// Something that keys can drive: its unit, initial value, and the destination of its curve.
 struct Driven {
     std::string name;
-    std::optional<Dimension> dimension;  ///< of the value; a plain number where there is none
+    std::optional<Dimension> dimension;  ///< of the value; empty: dimensionless
     double rest = 0;
-    double end = 1;       ///< where it goes without keys
+    double end = 1;       ///< final value without keys
     double low = -1e300;  ///< values outside are refused
     double high = 1e300;
     std::function<void(Curve)> drive;
@@ -85,7 +85,7 @@ double read_value(Reader& key, const Driven& d) {
     return value;
 }
 
-/// The times of the keys, ascending. Keys are in order, or it would be unclear what the robot does between them.
+/// The times of the keys, which must be ascending, or the motion between them would be ambiguous.
 std::vector<double> read_times(std::vector<Reader>& keys) {
     std::vector<double> times;
     for (Reader& key : keys) {
@@ -97,12 +97,12 @@ std::vector<double> read_times(std::vector<Reader>& keys) {
     return times;
 }
 
-/// The curve through the keys that name `d`; from rest at time 0, and without keys straight to its end.
+/// The curve through the keys that name `d`; from rest at time 0, and without keys a ramp to its end.
 Curve read_curve(std::vector<Reader>& keys, const std::vector<double>& times, const Driven& d, double duration) {
     Curve curve{{0}, {d.rest}};
     bool named = false;
     for (std::size_t k = 0; k < keys.size(); ++k) {
-        (void)keys[k].raw(d.name);  // so that a misspelt name is told this one
+        (void)keys[k].raw(d.name);  // marks the key as read, so that only misspelt names are reported
         if (!keys[k].has(d.name)) continue;
         named = true;
         const double value = read_value(keys[k], d);
@@ -110,7 +110,7 @@ Curve read_curve(std::vector<Reader>& keys, const std::vector<double>& times, co
             curve.value[0] = value;
             continue;
         }
-        if (times[k] <= curve.time.back()) continue;  // out of order: already said
+        if (times[k] <= curve.time.back()) continue;  // out of order: already reported
         curve.time.push_back(times[k]);
         curve.value.push_back(value);
     }
@@ -141,7 +141,7 @@ void read_keys(Reader& program, Robot& robot) {
     for (Reader& key : keys) key.finish();
 }
 
-/// What is prescribed does work on the robot that no energy of the robot's knows.
+/// Prescribed motion does work on the robot that is not part of its energy.
 void check_conserving(Reader& program, const Robot& robot) {
     for (const CableSpec& cable : robot.cables) {
         if (cable.target.kind != CableTarget::Kind::tension_N)
@@ -160,7 +160,7 @@ void check_conserving(Reader& program, const Robot& robot) {
     }
 }
 
-/// Mass and damping take part where a time step is given. Gravity then acts from the beginning.
+/// With a time step, mass and damping take part. Gravity then acts from the beginning.
 void read_dynamics(Reader& program, Robot& robot) {
     const bool moving = program.has("time_step");
     if (moving) robot.program.dynamics = Dynamics{};
@@ -182,7 +182,7 @@ void read_dynamics(Reader& program, Robot& robot) {
                                           tolerance > 0 ? tolerance : 0};
 }
 
-/// As many steps of `time_step` as fit into the duration.
+/// Divides the duration into steps of `time_step`.
 void spread_steps(Reader& program, Robot& robot) {
     const double step = program.quantity("time_step", Dimension::time);
     if (program.has("steps")) program.problem("steps", "follows from time_step and duration; give one of them");

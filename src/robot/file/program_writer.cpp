@@ -13,15 +13,15 @@
 namespace pliant::robot {
 namespace {
 
-/// TOML's basic strings are JSON's.
+/// TOML's basic strings have the syntax of JSON strings.
 std::string quoted(const std::string& text) {
     return nlohmann::json(text).dump();
 }
 
-/// What a key may drive: its value over the robot's own program, and how it is written.
+/// Something that a key may drive: its value over the robot's own program, and its format.
 struct Driven {
     std::string name;
-    std::string unit;  ///< empty: a plain number
+    std::string unit;  ///< empty: dimensionless
     double rest = 0;
     std::function<double(double time)> at;
 };
@@ -71,7 +71,7 @@ std::vector<Driven> everything_driven(const Robot& robot) {
     return list;
 }
 
-/// Of one thing at every point.
+/// The values of one thing at every point.
 struct Column {
     const Driven* of = nullptr;
     std::vector<double> values;
@@ -87,14 +87,14 @@ std::vector<Column> columns_of(const std::vector<Driven>& all, const std::vector
             column.values.push_back(given != point.values.end() ? given->second : one.at(point.time));
         }
         const auto is_rest = [&](double value) { return value == one.rest; };
-        // Without keys the program leads straight to the end of the file's own.
+        // Without keys the program ramps to the end value of the file itself.
         const bool needs_none = std::ranges::all_of(column.values, is_rest) && is_rest(one.at(1e300));
         if (!needs_none) columns.push_back(std::move(column));
     }
     return columns;
 }
 
-/// One that moves nothing, such as a support that stays, needs no key.
+/// False for things without effect, such as a support that does not move, which need no key.
 bool does_something(const Robot& robot, const std::string& name) {
     for (const FixedSpec& fixed : robot.fixed) {
         if (fixed.name == name) return fixed.rotate_deg != 0 || !(fixed.move == Vec3{});

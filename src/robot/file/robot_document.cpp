@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 using config::Problems;
 using config::Reader;
 
-/// The values of `from` in place of those of `into`, and beside them; as `--set` would bring them in, without lines.
+/// Merges the values of `from` into `into`, replacing existing ones, as `--set` does; without line numbers.
 void put_over(config::Table& into, config::Table from) {
     for (auto& [key, value] : from) {
         const auto is_it = [&key = key](const config::Entry& entry) { return entry.first == key; };
@@ -36,7 +36,7 @@ void forget_lines(config::Value& value) {
     }
 }
 
-/// Keys that name files, wherever they stand.
+/// Keys whose values are file names, in any table.
 constexpr std::array<std::string_view, 4> path_keys = {"geometry", "surface", "file", "path"};
 
 void lead_paths(config::Value& value, const fs::path& from, const fs::path& to) {
@@ -90,7 +90,7 @@ Result<config::Document> on_base(config::Document document) {
 
 namespace {
 
-/// With what it stands on and what is changed in it.
+/// Including its base file and overrides.
 Result<config::Document> whole_document(std::string_view text, const fs::path& file,
                                         const std::vector<std::string>& assignments) {
     Result<config::Document> document = config::parse(text, file);

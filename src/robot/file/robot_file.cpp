@@ -77,14 +77,14 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
     return robot;
 }
 
-/// Told by its content: people hand over the drawing itself.
+/// Recognised by content, for users who pass the drawing itself.
 bool is_geometry(const fs::path& file) {
     const Result<std::string> bytes = read_file(file);
     if (!bytes) return false;
     const mesh::GeometryKind kind = mesh::geometry_kind(*bytes);
     if (kind == mesh::GeometryKind::unknown) return false;
     if (kind == mesh::GeometryKind::step || kind == mesh::GeometryKind::threemf) return true;
-    // A robot file with a slip may look like a mesh format that is plain text.
+    // Text-based mesh formats are excluded: a robot file with an error may look like one.
     return bytes->find('\0') != std::string::npos || bytes->starts_with("solid ") || bytes->starts_with("ply\n");
 }
 

@@ -29,7 +29,7 @@ double read_radius(Reader& reader, const Context& context) {
     return radius;
 }
 
-/// The index of the thing that `key` names; a problem lists what there is.
+/// The index of the thing named by `key`; the problem message lists those that exist.
 template <class Thing>
 std::optional<std::size_t> read_thing(Reader& reader, std::string_view key, const std::vector<Thing>& things) {
     const std::string name = reader.text(key);
@@ -80,7 +80,7 @@ DistanceSensorSpec read_distance(Reader& reader, const Context& context) {
     return sensor;
 }
 
-/// At a `point`, at that of a `marker`, or on an `object`.
+/// At a `point`, at a `marker`, or on an `object`.
 MotionSensorSpec read_motion(Reader& reader, const Context& context) {
     MotionSensorSpec sensor;
     const int given = int{reader.has("point")} + int{reader.has("marker")} + int{reader.has("object")};

@@ -1,4 +1,4 @@
-// range, rate and price of actuators.
+// Reads range, rate and price of actuators.
 #include <fmt/format.h>
 
 #include "robot/file/goal_file.hpp"

@@ -11,7 +11,7 @@ namespace pliant::sim {
 namespace {
 
 constexpr std::size_t largest_patch = 64;
-constexpr double reach_beyond = 1.05;  // of the farthest node of the tet that holds the point
+constexpr double reach_beyond = 1.05;  // times the distance of the farthest node of the tet that contains the point
 
 /// Keeps the nearest nodes and an even sample of the others.
 void thin_out(std::vector<int>& nodes, const std::vector<Vec3>& points, const Vec3& center) {
@@ -26,8 +26,8 @@ void thin_out(std::vector<int>& nodes, const std::vector<Vec3>& points, const Ve
     nodes = std::move(kept);
 }
 
-/// How far beyond the nearest point of a tet `point` lies, in its barycentric coordinates there (sum 0); none where the
-/// tet is so flat that this would be more than once through it.
+/// Barycentric offset (sum 0) from the nearest point of a tet to `point`; zero if the tet is so flat that this would
+/// exceed its own size.
 std::array<double, 4> beyond(const mesh::TetMesh& mesh, const mesh::TetLocator::Location& at, const Vec3& point) {
     const auto nodes = mesh::nodes_of(mesh, static_cast<std::size_t>(at.tet));
     const auto column = mesh::curved_derivative(nodes, at.barycentric);
@@ -42,7 +42,7 @@ std::array<double, 4> beyond(const mesh::TetMesh& mesh, const mesh::TetLocator::
     return {-d.sum(), d[0], d[1], d[2]};
 }
 
-/// The shape functions at `b`, gone on with along their slope by `step`.
+/// The shape functions at `b`, extrapolated linearly by `step`.
 std::vector<double> weights_beyond(int order, const std::array<double, 4>& b, const std::array<double, 4>& step) {
     std::vector<double> weights = mesh::shape_functions(order, b);
     for (std::size_t k = 0; k < 4; ++k) weights[k] += order == 1 ? step[k] : (4 * b[k] - 1) * step[k];
@@ -70,24 +70,24 @@ public:
         a_ = matrix_.ldlt().solve(Eigen::Vector4d::Unit(0));
         weights_ = kernel_.asDiagonal() * (moments_ * a_);
     }
-    /// They reproduce affine functions.
+    /// True if they reproduce affine functions.
     [[nodiscard]] bool good() const {
         return weights_.allFinite() && !((moments_.transpose() * weights_ - Eigen::Vector4d::Unit(0)).norm() > 1e-9);
     }
     [[nodiscard]] const Eigen::VectorXd& weights() const { return weights_; }
-    /// (nodes, 3) 1/m: of the affine motion that fits best, what each node has in its slope.
+    /// (nodes, 3) 1/m: contribution of each node to the gradient of the best-fitting affine motion.
     [[nodiscard]] Eigen::MatrixXd gradients() const {
         const Eigen::Matrix<double, 4, 3> slopes = matrix_.ldlt().solve(Eigen::Matrix<double, 4, 3>(
             (Eigen::Matrix<double, 4, 3>() << Eigen::RowVector3d::Zero(), Eigen::Matrix3d::Identity()).finished()));
         return kernel_.asDiagonal() * (moments_ * slopes) / reach_;
     }
-    /// The gradients reproduce affine functions.
+    /// True if the gradients reproduce affine functions.
     [[nodiscard]] bool good_slope() const {
         const Eigen::MatrixXd sums = moments_.transpose() * gradients() * reach_;
         return sums.allFinite() && !(sums.topRows<1>().norm() > 1e-9) &&
                !((sums.bottomRows<3>() - Eigen::Matrix3d::Identity()).norm() > 1e-9);
     }
-    /// How fast the weights change as the point moves along `direction` and the reach grows by `of_reach`.
+    /// Derivative of the weights as the point moves along `direction` and the reach grows by `of_reach`.
     [[nodiscard]] Eigen::VectorXd change(const Eigen::Vector3d& direction, double of_reach) const {
         const Eigen::MatrixXd offsets = moments_.rightCols<3>();
         Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(moments_.rows(), 4);
@@ -120,7 +120,7 @@ Attachment AffinePatch::at(const Vec3& point) const {
     return attachment;
 }
 
-/// w(p) = k_i m_i . M^-1 (1, p - c) with M = sum k_i m_i m_i^T and m_i = (1, X_i - c), all over the reach.
+/// w(p) = k_i m_i . M^-1 (1, p - c) with M = sum k_i m_i m_i^T and m_i = (1, X_i - c), lengths divided by the reach.
 std::optional<AffinePatch> fitted_patch(std::vector<int> nodes, std::span<const double> importance,
                                         const std::vector<Vec3>& points, const Vec3& center) {
     constexpr double flat = 1e-9;
@@ -278,7 +278,8 @@ Result<AttachmentSlope> Attacher::slope(const Vec3& point, double radius, double
     return slope;
 }
 
-/// Outside a tet its shape functions go on along their slope at the nearest point, so that there the slope is that one.
+/// Outside a tet its shape functions are extrapolated linearly from the nearest point, so the slope is that at this
+/// point.
 AttachmentSlope Attacher::slope_in_tet(const mesh::TetLocator::Location& at) const {
     const auto corners = mesh::nodes_of(*mesh_, static_cast<std::size_t>(at.tet));
     const auto column = mesh::curved_derivative(corners, at.barycentric);

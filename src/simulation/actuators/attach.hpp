@@ -1,4 +1,4 @@
-// Ties points of space to the mesh that carries them.
+// Attaches points of space to the mesh that carries them.
 #pragma once
 
 #include <optional>
@@ -12,38 +12,37 @@
 
 namespace pliant::sim {
 
-/// How an attachment changes with the rest position of its point: of each node the change of its weight, 1/m. Without
-/// nodes the point is fixed in space and moves itself.
+/// Derivative of an attachment with respect to the rest position of its point: the change of each node's weight, 1/m.
+/// Without nodes the point is fixed in space and moves itself.
 struct AttachmentSlope {
     std::vector<int> nodes;
     std::vector<Vec3> weights;
 };
 
-/// A patch of nodes whose mean affine motion carries every point near its centre: weights that are linear in where the
-/// point is.
+/// A patch of nodes whose mean affine motion carries every point near its centre: the weights are linear in the
+/// position of the point.
 struct AffinePatch {
-    std::vector<int> nodes;       ///< none: fixed in space
+    std::vector<int> nodes;       ///< empty: fixed in space
     std::vector<double> weights;  ///< of the centre
-    std::vector<Vec3> slopes;     ///< how they change with where the point is, 1/m
+    std::vector<Vec3> slopes;     ///< their derivative with respect to the position, 1/m
     Vec3 center;                  ///< metres
-    double reach = 0;             ///< about how far the patch goes
+    double reach = 0;             ///< approximate radius of the patch
     [[nodiscard]] Attachment at(const Vec3& point) const;
 };
 
-/// The patch that fits the motion of these nodes best, each as important as it weighs; nothing where they lie in one
-/// plane.
+/// The patch whose affine motion best fits that of these nodes, each weighted; empty if the nodes lie in one plane.
 [[nodiscard]] std::optional<AffinePatch> fitted_patch(std::vector<int> nodes, std::span<const double> importance,
                                                       const std::vector<Vec3>& points, const Vec3& center);
 
-/// Built once per mesh; the mesh must outlive it. Lengths are in the mesh's unit.
+/// Built once per mesh, which must outlive it. Lengths are in the mesh's unit.
 class Attacher {
 public:
     explicit Attacher(const mesh::TetMesh& mesh);
 
-    /// The point moves with the tet that holds it. An error gives the distance of a point that lies outside by more
-    /// than `tolerance`. Within it, the nearest tet carries the point as if it went on beyond its face: where the point
-    /// is at rest is kept, and its motion is that of the face and its slope. A tet that is too flat for that carries
-    /// its own nearest point instead.
+    /// Attaches a point to the tet that contains it. Errors: the point lies outside the mesh by more than `tolerance`;
+    /// the message gives the distance. Within the tolerance the nearest tet carries the point by extrapolation beyond
+    /// its face: the rest position of the point is kept, and its motion is that of the face and its slope. If the tet
+    /// is too flat for that, its nearest own point is used instead.
     [[nodiscard]] Result<Attachment> carried_by_tet(const Vec3& point, double tolerance) const;
 
     /// How far a point lies outside the mesh; 0 inside.
@@ -55,23 +54,23 @@ public:
     /// uses at most 64 nodes.
     [[nodiscard]] Result<Attachment> spread(const Vec3& point, double radius, double tolerance) const;
 
-    /// The material within `radius` of a point, as spread() takes it. Errors: those of spread(), and nodes in one
+    /// The material within `radius` of a point, chosen as in spread(). Errors: those of spread(), and nodes in one
     /// plane.
     [[nodiscard]] Result<AffinePatch> patch(const Vec3& point, double radius, double tolerance) const;
 
-    /// The mean affine motion of the material within `radius`: that of the same patch, by the same fit, and where no
-    /// patch has one that of the tet that holds the point.
+    /// The mean affine motion of the material within `radius`: from the same patch and fit, or, if the patch has none,
+    /// from the tet that contains the point.
     [[nodiscard]] Result<AttachedFrame> frame(const Vec3& point, double radius, double tolerance) const;
 
-    /// How the attachment that spread() gives changes with the point, for as long as the nodes of its patch, or the tet
-    /// that holds the point, stay the same. Its errors.
+    /// Derivative of the attachment from spread() with respect to the point, valid as long as the nodes of its patch,
+    /// or the tet that contains the point, stay the same. Errors: those of spread().
     [[nodiscard]] Result<AttachmentSlope> slope(const Vec3& point, double radius, double tolerance) const;
 
 private:
     struct Patch {
         std::vector<int> nodes;
         double reach = 0;
-        int farthest = -1;  ///< node of the tet that the reach is about; -1: it is the radius
+        int farthest = -1;  ///< node of the tet that limits the reach; -1: the radius does
     };
     [[nodiscard]] Patch patch_at(int tet, const Vec3& point, double radius) const;
     [[nodiscard]] AttachmentSlope slope_in_tet(const mesh::TetLocator::Location& at) const;
@@ -81,12 +80,11 @@ private:
     const mesh::TetMesh* mesh_;
     mesh::TetLocator locator_;
     std::vector<int> tet_start_;  ///< (n + 1)
-    std::vector<int> tets_;       ///< tets of every node
+    std::vector<int> tets_;       ///< tets at each node
 };
 
-/// The wall that faces form, their nodes as points. `index` (nodes of the mesh that the faces come from) says which
-/// node of the robot each is; where it is -1 the point stays where it is: in the mouth of a chamber that a support
-/// closes.
+/// The wall formed by faces, whose nodes become its points. `index` (nodes of the mesh that the faces come from) gives
+/// each node of the robot; -1: the point does not move, as in the mouth of a chamber that a support closes.
 [[nodiscard]] Wall wall_of_faces(const mesh::TetMesh& mesh, std::span<const mesh::Face> faces,
                                  std::span<const int> index);
 

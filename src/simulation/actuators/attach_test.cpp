@@ -14,7 +14,7 @@ using namespace pliant::sim;
 
 namespace {
 
-/// Where the attachment goes when every node follows an affine map.
+/// Position of the attachment if every node follows an affine map.
 Vec3 mapped(const Attachment& point, const mesh::TetMesh& mesh) {
     const auto map = [](const Vec3& p) {
         return Vec3{1.1 * p.x - 0.3 * p.y + 2, 0.2 * p.x + 0.9 * p.y - 0.1 * p.z, p.z + 0.5 * p.y - 1};
@@ -104,7 +104,7 @@ TEST_CASE("points in curved tets are where they were put, and a cable round a bo
         cable.points.push_back(*point);
     }
     CHECK(farthest < 1e-9);
-    // The first and the last segment differ in direction by one turn less than the guides.
+    // The directions of the first and the last segment differ by one step less than the number of guides.
     const CablePath path(cable.points, rest);
     const double left = path.tension_shares(rest, friction, true).back();
     CHECK(left == near(std::exp(-friction * turn * (guides - 2) / (guides - 1)), {.relative = 1e-12}));

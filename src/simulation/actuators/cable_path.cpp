@@ -51,11 +51,11 @@ double CablePath::length(std::span<const double> x, std::span<const double> shar
 std::vector<double> CablePath::tension_shares(std::span<const double> x, double friction, bool pulled_at_first) const {
     std::vector<double> shares(segments_.size(), 1.0);
     double share = 1;
-    Vec3 before;  // direction of the segment towards the pulled end; zero until there is one
+    Vec3 before;  // direction of the last segment towards the pulled end; zero before the first
     for (std::size_t step = 0; step < segments_.size(); ++step) {
         const std::size_t k = pulled_at_first ? step : segments_.size() - 1 - step;
         const Vec3 d = vector_of(segments_[k], x);
-        if (norm(d) >= met_length_m_) {  // points that have met turn nothing
+        if (norm(d) >= met_length_m_) {  // points that have met do not bend the cable
             const Vec3 direction = unit(d);
             if (norm(before) > 0)
                 share *= std::exp(-friction * std::acos(std::clamp(dot(before, direction), -1.0, 1.0)));

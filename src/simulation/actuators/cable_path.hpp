@@ -22,28 +22,28 @@ public:
     /// `points`: at least two. `rest` (3n): node positions at rest.
     CablePath(std::span<const Attachment> points, std::span<const double> rest);
 
-    /// With `shares` (segments) all three are those of the weighted length sum of shares[k] |d_k|; else all shares
-    /// are 1.
+    /// With `shares` (segments) all three are for the weighted length, sum of shares[k] |d_k|; default: all shares are
+    /// 1.
     [[nodiscard]] double length(std::span<const double> x, std::span<const double> shares = {}) const;
     /// forces (3n) += factor * dL/dx.
     void add_gradient(std::span<const double> x, double factor, std::span<double> forces,
                       std::span<const double> shares = {}) const;
-    using NodeGradient = std::pair<int, Vec3>;  ///< a node and dL by its position
+    using NodeGradient = std::pair<int, Vec3>;  ///< a node and dL with respect to its position
     /// dL/dx of all nodes that the path depends on, ascending.
     [[nodiscard]] std::vector<NodeGradient> gradient(std::span<const double> x) const;
-    /// Those nodes, ascending.
+    /// The nodes that the path depends on, ascending.
     [[nodiscard]] std::vector<int> nodes() const;
     /// values += factor * second gradient, for a pattern over free nodes (block 3) that holds cliques().
     void add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
                      const linalg::SymmetricPattern& pattern, std::span<double> values,
                      std::span<const double> shares = {}) const;
-    /// (segments) the tension in each as a share of that in the first (or the last, where that one is pulled), if the
-    /// cable slides with friction through its guide points: exp(-friction * sum of the angles that it has turned
-    /// since). A negative friction is that of a cable that is let go. Source: Euler 1769, Eytelwein 1808.
+    /// (segments) tension in each segment as a share of that in the first (or the last, if the cable is pulled there),
+    /// for a cable that slides with friction through its guide points: exp(-friction * accumulated turning angle). A
+    /// negative friction is that of a cable being released. Source: Euler 1769, Eytelwein 1808.
     [[nodiscard]] std::vector<double> tension_shares(std::span<const double> x, double friction,
                                                      bool pulled_at_first) const;
     [[nodiscard]] std::size_t segment_count() const { return segments_.size(); }
-    /// d_k, m; and how it moves as the nodes move (3n).
+    /// d_k, m; and its change as the nodes move (3n).
     [[nodiscard]] Vec3 segment_vector(std::size_t k, std::span<const double> x) const {
         return vector_of(segments_[k], x);
     }
@@ -51,7 +51,7 @@ public:
         return vector_of(segments_[k], motion) - segments_[k].offset;
     }
     [[nodiscard]] double met_length_m() const { return met_length_m_; }
-    /// The first segment whose ends have met (its index from 0), or -1.
+    /// The first segment whose end points have met (index from 0), or -1.
     [[nodiscard]] int closed_segment(std::span<const double> x) const;
     void append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const;
 

@@ -37,8 +37,8 @@ Sample sample_quadratic(double weight, const std::array<double, 3>& b) {
     return s;
 }
 
-/// A point position times a normal is of degree 1 over a plane face (one point) and of degree 4 over a curved one (six
-/// points; Dunavant 1985).
+/// The integrand, position times normal, is of degree 1 on a plane face (one point) and of degree 4 on a curved one
+/// (six points; Dunavant 1985).
 const std::vector<Sample>& samples(bool quadratic) {
     static const std::vector<Sample> one = {sample_linear(0.5, {1.0 / 3, 1.0 / 3, 1.0 / 3})};
     static const std::vector<Sample> six = [] {
@@ -82,7 +82,7 @@ Matrix3 cross_matrix(const Vec3& a) {
 
 using FaceMatrix = std::array<std::array<Matrix3, 6>, 6>;
 
-/// factor * d(dV/dx_i)/dx_j of one face, not symmetric. Only the blocks of points that the face has are set.
+/// factor * d(dV/dx_i)/dx_j of one face, not symmetric. Only blocks of points that exist on the face are set.
 FaceMatrix second_gradient(const WallFace& face, double factor, const std::vector<Vec3>& points) {
     FaceMatrix between;
     const std::size_t count = points_of(face);
@@ -98,7 +98,7 @@ FaceMatrix second_gradient(const WallFace& face, double factor, const std::vecto
     return between;
 }
 
-/// (3 count, 3 count), the nearest positive semi-definite one where asked for.
+/// (3 count, 3 count), projected to the nearest positive semi-definite matrix on request.
 Eigen::MatrixXd symmetric_part(const FaceMatrix& blocks, Eigen::Index count, bool project) {
     Eigen::MatrixXd matrix(3 * count, 3 * count);
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -200,7 +200,7 @@ void ChamberSurface::add_pair(int first, int second, const linalg::Matrix3& bloc
 void ChamberSurface::apply_skew(std::span<const double> x, double factor, std::span<const double> v,
                                 std::span<double> result) const {
     const std::vector<Vec3> points = points_at(x);
-    std::vector<Vec3> motion;  // v is a motion: points that are fixed in space have none
+    std::vector<Vec3> motion;  // v is a motion: zero for points fixed in space
     for (const Attachment& point : wall_.points) motion.push_back(point.nodes.empty() ? Vec3{} : position(point, v));
     std::vector<Vec3> on_points(points.size());
     for (const WallFace& face : wall_.faces) {

@@ -1,5 +1,5 @@
-// The geometry of a chamber's wall: its volume and how the volume changes with the nodes. Pressed patches of the outer
-// surface are walls too, but open ones.
+// The wall of a chamber: its volume, and the derivatives of the volume with respect to the nodes. Pressure patches on
+// the outer surface are walls too, but open ones.
 #pragma once
 
 #include <array>
@@ -32,10 +32,10 @@ public:
     /// `project`, each face adds the nearest positive semi-definite matrix instead.
     void add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
                      const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const;
-    /// result (3n) += factor * (what the second gradient lacks where it is made symmetric) * v; zero for closed walls.
+    /// result (3n) += factor * (the skew part that symmetrising the second gradient drops) * v; zero for closed walls.
     void apply_skew(std::span<const double> x, double factor, std::span<const double> v,
                     std::span<double> result) const;
-    /// The same as a matrix, of which values += the blocks at and below the diagonal; those above are minus their
+    /// The same part as a matrix: values += its blocks at and below the diagonal; those above are minus their
     /// transposes.
     void add_skew(std::span<const double> x, double factor, const std::vector<int>& index,
                   const linalg::SymmetricPattern& pattern, std::span<double> values) const;
@@ -44,7 +44,7 @@ public:
 private:
     [[nodiscard]] std::vector<Vec3> points_at(std::span<const double> x) const;
     void spread(std::span<const Vec3> on_points, std::span<double> on_nodes) const;
-    /// Spreads the block of two wall points over the nodes that carry them.
+    /// Distributes the block of two wall points to the nodes that carry them.
     void add_pair(int first, int second, const linalg::Matrix3& block, const std::vector<int>& free_index,
                   const linalg::SymmetricPattern& pattern, std::span<double> values) const;
 
@@ -52,7 +52,7 @@ private:
     Vec3 centre_;
 };
 
-/// The points on edges that are not used once in each direction, ascending: where an open wall ends.
+/// Points on edges that are not used once in each direction, ascending: the rim of an open wall.
 [[nodiscard]] std::vector<int> rim_points(const Wall& wall);
 [[nodiscard]] inline bool is_closed(const Wall& wall) {
     return rim_points(wall).empty();

@@ -14,7 +14,7 @@ using linalg::Matrix9;
 using linalg::Vector3;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
-/// Barycentric coordinates of a rule of degree 2 on a triangle; each point has a third of it.
+/// Barycentric coordinates of a quadrature rule of degree 2 on a triangle, with equal weights.
 constexpr std::array<std::array<double, 3>, 3> rule{
     {{2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};
 
@@ -24,7 +24,7 @@ Matrix3 cross_matrix(const Vector3& v) {
     return m;
 }
 
-/// Which way is down, and how heavy the fluid is.
+/// The direction of gravity, and the specific weight of the fluid.
 struct Weight {
     Vector3 down = Vector3::Zero();
     double N_m3 = 0;
@@ -55,7 +55,7 @@ Corners corners(std::span<const double> x, const std::array<int, 3>& t) {
     return {{linalg::view(x, t[0]), linalg::view(x, t[1]), linalg::view(x, t[2])}};
 }
 
-/// E = weight * s * Q, s the area that is seen from below and Q the mean of depth^2/2.
+/// E = weight * s * Q, with s the projected area and Q the mean of depth^2/2.
 struct Sunk {
     double s = 0, Q = 0;
     Vector9 ds = Vector9::Zero(), dQ = Vector9::Zero();
@@ -129,7 +129,7 @@ void FluidForces::visit_buoyancy(std::span<const double> x, const Vector3& gravi
     }
 }
 
-/// A triangle in the stream: rho/2 A of what of it is under water, and its velocity along and across the normal.
+/// A triangle in the flow: rho/2 A of its submerged part, and its velocity along and across the normal.
 struct FluidForces::Piece {
     double factor = 0;
     Vector3 normal = Vector3::Zero(), across = Vector3::Zero();

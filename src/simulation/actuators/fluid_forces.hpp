@@ -1,16 +1,15 @@
 // Buoyancy and drag on the skin of bodies and objects in a fluid.
 //
-// Buoyancy is the gradient of the energy of the fluid that is displaced, E = rho g * integral of the depth over the
-// part of the body below the level. For a closed skin that is
-//     E = rho g * integral over the skin of depth^2/2 (down . n) dA,    depth below zero counting as zero,
-// so that it needs no volume, and its force is the pressure on the skin.
+// Buoyancy is the gradient of the energy of the displaced fluid, E = rho g * integral of the depth over the part of the
+// body below the level. For a closed skin this equals
+//     E = rho g * integral over the skin of depth^2/2 (down . n) dA,    with depth = 0 above the level,
+// which needs no volume, and its force is the pressure on the skin.
 //
-// Drag on a piece of skin of area A and normal n that moves with u through the fluid is
-//     rho/2 A (c_n |u_n| u_n + c_t |u_t| u_t),    u_n along n and u_t across it,
-// on both sides of a body: a sphere has the coefficient of drag c_n, a thin plate across its way 2 c_n. Areas and
-// normals are those at the start of a step, so that drag in a step is the gradient of a convex potential, rho/6 A (c_n
-// |u_n|^3 + c_t |u_t|^3) over the rate of the velocity: it takes energy out of what moves through a fluid at rest,
-// however long the step.
+// Drag on a piece of skin of area A and normal n that moves with velocity u through the fluid is
+//     rho/2 A (c_n |u_n| u_n + c_t |u_t| u_t),    u_n along n and u_t tangential,
+// on both sides of a body: a sphere has the drag coefficient c_n, a thin plate across the flow 2 c_n. Areas and normals
+// are those at the start of a step, so that drag in a step is the gradient of a convex potential, rho/6 A (c_n |u_n|^3
+// + c_t |u_t|^3) divided by the rate of the velocity: it dissipates energy for any step length.
 #pragma once
 
 #include <array>
@@ -25,7 +24,7 @@ namespace pliant::sim {
 
 class FluidForces {
 public:
-    /// `skin`: triangles of contact's nodes, seen from outside counter-clockwise.
+    /// `skin`: triangles of contact nodes, counter-clockwise seen from outside.
     FluidForces(const Fluid& fluid, std::vector<std::array<int, 3>> skin) : fluid_(fluid), skin_(std::move(skin)) {}
 
     [[nodiscard]] const std::vector<std::array<int, 3>>& skin() const { return skin_; }
@@ -33,19 +32,19 @@ public:
 
     using Blocks = std::function<void(int, int, const linalg::Matrix3&)>;
 
-    /// J; x (3 nodes), gravity m/s^2.
+    /// Energy, J; x (3 nodes), gravity m/s^2.
     [[nodiscard]] double buoyancy_energy(std::span<const double> x, const linalg::Vector3& gravity) const;
     /// forces (3 nodes) += gradient of the energy.
     void add_buoyancy(std::span<const double> x, const linalg::Vector3& gravity, std::span<double> forces) const;
-    /// Every 3 x 3 block of every triangle; `project`: each triangle without negative eigenvalues.
+    /// Visits the 3 x 3 blocks of each triangle; `project`: each triangle without negative eigenvalues.
     void visit_buoyancy(std::span<const double> x, const linalg::Vector3& gravity, bool project,
                         const Blocks& visit) const;
 
-    /// Of a step that begins at `start`: velocities v (3 nodes), which change with positions by `rate`.
+    /// Motion in a step that begins at `start`: velocities v (3 nodes), dv/dx = `rate`.
     struct Motion {
         std::span<const double> start, v;
         double rate;
-        linalg::Vector3 gravity;  ///< where the level is
+        linalg::Vector3 gravity;  ///< defines the direction of the level
     };
     [[nodiscard]] double drag_energy(const Motion& motion) const;
     void add_drag(const Motion& motion, std::span<double> forces) const;

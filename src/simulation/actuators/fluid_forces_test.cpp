@@ -1,4 +1,4 @@
-// Forces of a fluid are what their energies change by, and their tangents what the forces do.
+// Fluid forces against differences of their energies, and their tangents against differences of the forces.
 #include "simulation/actuators/fluid_forces.hpp"
 
 #include <doctest/doctest.h>
@@ -63,7 +63,7 @@ TEST_CASE("buoyancy is the change of the energy of the water that is displaced")
                 forces.visit_buoyancy(at, gravity, false, visit);
             });
         if (level) continue;
-        // Under water all over: the weight of its volume, upwards.
+        // Fully submerged: the weight of the displaced volume, upwards.
         linalg::Vector3 sum = linalg::Vector3::Zero();
         for (std::size_t k = 0; k < 4; ++k) sum += linalg::Vector3(on[3 * k], on[3 * k + 1], on[3 * k + 2]);
         Eigen::Matrix3d arms;
@@ -78,7 +78,7 @@ TEST_CASE("buoyancy is the change of the energy of the water that is displaced")
     }
 }
 
-TEST_CASE("drag is the change of its potential, and brakes") {
+TEST_CASE("drag is the gradient of its potential, and dissipates energy") {
     Fluid fluid{1000, 0.7, 0.2, {}, {}, {}};
     fluid.current_m_s = {0.1, -0.2, 0.05};
     const FluidForces forces(fluid, faces);
@@ -113,5 +113,5 @@ TEST_CASE("drag is the change of its potential, and brakes") {
         CHECK(on[k] == near((energy(x, k, 1e-7) - energy(x, k, -1e-7)) / 2e-7, {.absolute = 1e-4}));
         power += on[k] * (v[k] - fluid.current_m_s[k % 3]);
     }
-    CHECK(power > 0);  // `on` is what resists, minus the force on the body
+    CHECK(power > 0);  // `on` is the resistance, minus the force on the body
 }

@@ -11,16 +11,15 @@
 
 namespace pliant::sim {
 
-/// E = k/2 (L - L0)^2 with the path's length L (m), its stiffness k (N/m) and its length L0 without force; 0 where a
-/// spring that only pulls is shorter. Gradient: k (L - L0) dL/dx. Second gradient:
-/// k dL/dx dL/dx^T + k (L - L0) d2L/dx2.
+/// E = k/2 (L - L0)^2 with path length L (m), stiffness k (N/m) and free length L0; E = 0 if a spring that only pulls
+/// is shorter than L0. Gradient: k (L - L0) dL/dx. Second gradient: k dL/dx dL/dx^T + k (L - L0) d2L/dx2.
 class SpringPath {
 public:
     /// `rest` (3n): node positions at rest. Precondition: the spring passed Model::create.
     SpringPath(const Spring& spring, std::span<const double> rest);
 
     [[nodiscard]] double length(std::span<const double> x) const { return path_.length(x); }
-    /// N, positive where it pulls.
+    /// Force, N; positive if it pulls.
     [[nodiscard]] double force(std::span<const double> x) const;
     [[nodiscard]] double energy(std::span<const double> x) const;
     /// forces (3n) += gradient of the energy.
@@ -30,8 +29,8 @@ public:
         path_.add_gradient(x, factor, forces);
     }
     [[nodiscard]] double free_length() const { return free_length_m_; }
-    /// For a pattern over free nodes (block 3) that holds the clique. With `project` without the part that makes the
-    /// second gradient of a pressed spring indefinite.
+    /// For a pattern over free nodes (block 3) that holds the clique. `project` leaves out the part that makes the
+    /// second gradient of a compressed spring indefinite.
     void add_hessian(std::span<const double> x, const std::vector<int>& free_index,
                      const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const;
     void append_clique(const std::vector<int>& free_index, linalg::Lists& cliques) const;

@@ -45,8 +45,8 @@ void TorqueForces::subtract_from(std::span<const double> x, const Vector3& torqu
     }
 }
 
-/// With J w = torque the change of w is -J^-1 B_j dx_j, B_j = 2 w r_j^T - (r_j . w) 1 - r_j w^T; the mean of dx drops
-/// out of it because the r sum to zero.
+/// With J w = torque the change of w is -J^-1 B_j dx_j, B_j = 2 w r_j^T - (r_j . w) 1 - r_j w^T; the mean of dx has no
+/// effect because the r sum to zero.
 void TorqueForces::add_tangent(std::span<const double> x, const Vector3& torque_Nm, Part part,
                                const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
                                std::span<double> values) const {

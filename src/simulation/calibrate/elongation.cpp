@@ -16,7 +16,7 @@ double nominal_shape(double stretch) {
     return stretch - 1 / (stretch * stretch);
 }
 
-/// Which columns hold a test, and what turns their numbers into m.
+/// The columns of a test, and their factors to m.
 struct Columns {
     static constexpr std::array<std::string_view, 4> names = {"length", "interface", "elongation", "joint"};
     std::array<std::size_t, 4> at{};
@@ -76,7 +76,7 @@ Result<ElongationRow> evaluate(const ElongationTest& t) {
 Result<double> match_shape_parameter(const ElongationTest& test, std::array<int, 3> cells) {
     const Result<ElongationRow> row = evaluate(test);
     if (!row) return tl::unexpected(row.error());
-    // The bar's stiff part is the held one; a test with the softer one there is the same seen from its other end.
+    // In the bar of ratio.hpp the stiff part is held; if the softer one is, look at the test from its other end.
     const bool held_is_soft = row->neo_hookean < 1;
     RatioOptions options;
     options.cells = cells;

@@ -1,9 +1,9 @@
-// The ratio of two Young's moduli from an elongation test (T3.7): a bar of two materials in series, held at one end and
-// pulled at the other, and how far the joint between them moves.
+// The ratio of two Young's moduli from an elongation test (T3.7): a bar of two materials in series is held at one end
+// and pulled at the other, and the displacement of their joint is measured.
 //
-// T3.7 takes both parts for linear springs of equal cross-sections, so it errs by the strain. The same test read as
-// that of two incompressible neo-Hookean bars in series has a closed form too: equal nominal stress, E_A g(l_A) = E_B
-// g(l_B) with g(l) = l - 1 / l^2 and the stretches l_A = 1 + dL1 / L1, l_B = 1 + (dL - dL1) / (L - L1).
+// T3.7 takes both parts for linear springs of equal cross-sections, so its error is of the order of the strain. For two
+// incompressible neo-Hookean bars in series there is a closed form too: equal nominal stress, E_A g(l_A) = E_B g(l_B)
+// with g(l) = l - 1 / l^2 and the stretches l_A = 1 + dL1 / L1, l_B = 1 + (dL - dL1) / (L - L1).
 #pragma once
 
 #include <array>
@@ -31,15 +31,15 @@ struct ElongationRow {
     std::optional<double> shape_parameter;  ///< R_omega of the softer part, if it was searched for
 
     [[nodiscard]] double strain() const { return test.elongation_m / test.length_m; }
-    /// By how much T3.7 is too large, as a share.
+    /// Relative error of T3.7; positive: too large.
     [[nodiscard]] double error() const { return linear / neo_hookean - 1; }
 };
 
-/// Error: lengths that no bar has, a joint that moves backwards or farther than the end.
+/// Errors: lengths that no bar can have, a joint that moves backwards or farther than the end.
 [[nodiscard]] Result<ElongationRow> evaluate(const ElongationTest& test);
 
-/// R_omega with which the softer part of the bar of target shapes moves the joint as measured (section 3.4.2, with the
-/// test in place of Abaqus). On the bar of ratio.hpp, clamped at its ends: 100 x 10 x 10 mm scaled to the test's
+/// R_omega with which the softer part of a bar of target shapes moves the joint as measured (section 3.4.2, with the
+/// test in place of Abaqus). Uses the bar of ratio.hpp, clamped at its ends: 100 x 10 x 10 mm scaled to the test's
 /// length.
 [[nodiscard]] Result<double> match_shape_parameter(const ElongationTest& test, std::array<int, 3> cells = {48, 5, 5});
 

@@ -13,7 +13,7 @@ using namespace pliant::calibrate;
 
 namespace {
 
-/// Where the joint of two incompressible neo-Hookean bars in series comes to rest, by bisection on equal stress.
+/// Equilibrium of the joint of two incompressible neo-Hookean bars in series, by bisection on equal stress.
 double joint_of(double ratio, double L, double L1, double dL) {
     double low = 0, high = dL;
     for (int i = 0; i < 200; ++i) {
@@ -100,7 +100,7 @@ TEST_CASE("tables of tests, in any unit of length") {
 TEST_CASE("several tests have a mean and its interval") {
     const auto rows = parse_elongation_csv(header + "100,50,0.002,0.0005\n100,50,0.002,0.0004\n", "t.csv");
     REQUIRE(rows);
-    // Ratios 3 and 4 for springs, which bars are to 1e-4 at strains of 4e-5: mean 3.5, t(1) 12.706 times 0.5.
+    // Ratios 3 and 4 for springs, which bars match to 1e-4 at strains of 4e-5: mean 3.5, t(1) 12.706 times 0.5.
     const auto json = nlohmann::json::parse(elongation_json(*rows));
     CHECK(json["material_ratio"].get<double>() == near(3.5, {.relative = 1e-4}));
     CHECK(json["half_width_95"].get<double>() == near(6.353, {.relative = 2e-4}));

@@ -1,4 +1,4 @@
-// An elongation test as people, spreadsheets and programs read it.
+// Output of an elongation test: text, CSV and JSON.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@ namespace {
 
 struct Mean {
     double value = 0;
-    double half_width = 0;  ///< of the 95 % interval; 0: of one test
+    double half_width = 0;  ///< of the 95 % interval; 0 for a single test
 };
 
 template <class Of>
@@ -33,7 +33,7 @@ std::string text_of(const Mean& m) {
                              : fmt::format("{:.4g} +- {:.2g} (95 %)", m.value, m.half_width);
 }
 
-/// Stiffer over softer.
+/// The ratio or its inverse, whichever is above 1.
 double above_one(double ratio) {
     return std::max(ratio, 1 / ratio);
 }

@@ -19,7 +19,7 @@ Eigen::Map<const VectorXd> map(const std::vector<double>& values) {
     return {values.data(), static_cast<Index>(values.size())};
 }
 
-/// Change of the nominal stress with each constant of the laws that are linear in them.
+/// Derivative of the nominal stress with respect to each constant, for laws that are linear in them.
 MatrixXd linear_design(FitLaw law, const std::vector<double>& stretch) {
     const Index columns = law == FitLaw::neo_hookean ? 1 : (law == FitLaw::mooney_rivlin ? 2 : 3);
     MatrixXd A(static_cast<Index>(stretch.size()), columns);
@@ -27,15 +27,15 @@ MatrixXd linear_design(FitLaw law, const std::vector<double>& stretch) {
         const double l = stretch[static_cast<std::size_t>(i)];
         const double g = l - 1 / (l * l);
         const double x = l * l + 2 / l - 3;
-        if (law == FitLaw::neo_hookean) A.row(i) << g / 3;  // of E = 3 mu
+        if (law == FitLaw::neo_hookean) A.row(i) << g / 3;  // for E = 3 mu
         if (law == FitLaw::mooney_rivlin) A.row(i) << 2 * g, 2 * g / l;
         if (law == FitLaw::yeoh) A.row(i) << 2 * g, 4 * g * x, 6 * g * x * x;
     }
     return A;
 }
 
-/// (2 / alpha) (l^(alpha-1) - l^(-alpha/2-1)), and its derivative with alpha. The limit at alpha = 0 is not needed:
-/// steps of the fit do not land there.
+/// (2 / alpha) (l^(alpha-1) - l^(-alpha/2-1)), and its derivative with respect to alpha. The limit at alpha = 0 is not
+/// needed: iterations do not hit it exactly.
 double ogden_shape(double l, double a) {
     return 2 / a * (std::pow(l, a - 1) - std::pow(l, -a / 2 - 1));
 }
@@ -78,7 +78,7 @@ struct OgdenResiduals {
     }
 };
 
-/// Starting exponents: a spread of pairs of small and large, of both signs. The best end of all counts.
+/// Starting exponents: several pairs of small and large ones, of both signs. The best fit is used.
 std::vector<std::vector<double>> ogden_starts(int terms) {
     if (terms == 1) return {{1.3}, {2}, {3}, {5}, {10}, {-2}};
     if (terms == 2) return {{1.3, 5}, {2, -2}, {2, 6}, {3, -3}, {1, 10}, {1.5, 3}};
@@ -102,7 +102,7 @@ VectorXd ogden_start(const TensileTest& test, const std::vector<double>& alpha, 
     return x;
 }
 
-/// What both ways of fitting end with: the constants, in Pa or 1, and the change of the stress with them.
+/// Common result of both fits: the constants, in Pa or 1, and the derivatives of the stress.
 struct Solution {
     VectorXd x;
     MatrixXd J;
@@ -184,7 +184,7 @@ std::vector<std::string> constant_names(const FitOptions& options) {
     return names;
 }
 
-/// Rows that count: at stretch 1 every law gives zero stress, so such a row tells nothing of the constants.
+/// Number of informative rows: at stretch 1 every law gives zero stress, whatever its constants.
 std::size_t useful_rows(const TensileTest& test) {
     return static_cast<std::size_t>(
         std::count_if(test.stretch.begin(), test.stretch.end(), [](double l) { return std::fabs(l - 1) > 1e-9; }));
@@ -204,7 +204,7 @@ void add_warnings(const TensileTest& test, Fit& fit) {
 }  // namespace
 
 double uniaxial_stress_Pa(const material::Law& law, double l) {
-    // The volume stays, so the law's own pressure is zero or cancels here.
+    // The deformation is isochoric, so the law's own pressure is zero or cancels.
     const material::Matrix3 F = Eigen::Vector3d(l, 1 / std::sqrt(l), 1 / std::sqrt(l)).asDiagonal();
     const material::Matrix3 P = material::stress(law, F);
     return P(0, 0) - P(1, 1) * std::pow(l, -1.5);
@@ -246,7 +246,7 @@ Result<Fit> fit(const TensileTest& test, const FitOptions& options) {
     result.r_squared = spread > 0 ? 1 - squares / spread : 0;
     const auto freedom = static_cast<int>(test.stretch.size()) - static_cast<int>(names.size());
     const double s = std::sqrt(squares / freedom);
-    // Columns of unequal size (Pa, exponents) are brought to one length before the inverse is taken.
+    // Columns of different scale (Pa, exponents) are normalised before the inverse is computed.
     const VectorXd length = solution.J.colwise().norm();
     const MatrixXd unit = solution.J * length.cwiseInverse().asDiagonal();
     const MatrixXd C = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();

@@ -2,9 +2,9 @@
 //
 // With stretches l, l^(-1/2), l^(-1/2) the nominal stress is P = (dW/dl1) - l^(-3/2) (dW/dl2). It is linear in the
 // constants of neo-Hookean, Mooney-Rivlin and Yeoh (solved by QR) and in Ogden's mu but not in alpha
-// (Levenberg-Marquardt). Intervals are those of the linear theory at the solution: value +- t s sqrt(C_ii),
-// C = (J^T J)^-1, s^2 = sum of squares / (rows - constants), t Student's 97.5 % point (Seber and Wild, Nonlinear
-// Regression, 1989, section 2.1.2). They tell of noise in the data only, not of a law that does not fit.
+// (Levenberg-Marquardt). Intervals are those of the linear theory at the solution: value +- t s sqrt(C_ii), C = (J^T
+// J)^-1, s^2 = sum of squares / (rows - constants), t Student's 97.5 % point (Seber and Wild, Nonlinear Regression,
+// 1989, section 2.1.2). They reflect noise in the data only, not a law that does not fit.
 #pragma once
 
 #include <string>
@@ -36,10 +36,10 @@ struct Fit {
     double rms_error_Pa = 0;
     double r_squared = 0;
     std::vector<double> stress_Pa;      ///< of the fit, for each row of the test
-    std::vector<std::string> warnings;  ///< for people: where the law is not stable, where constants mean nothing
+    std::vector<std::string> warnings;  ///< for people: where the law is unstable, which constants are meaningless
 };
 
-/// An error where the test has too few rows, or no stretch but 1.
+/// Errors: too few rows, or no stretch other than 1.
 [[nodiscard]] Result<Fit> fit(const TensileTest& test, const FitOptions& options);
 
 /// Nominal stress of an incompressible bar of the law, stretched by l > 0.
@@ -48,9 +48,9 @@ struct Fit {
 /// Student's t: 95 % of its values lie within +- this. Precondition: freedom >= 1. To 0.2 %.
 [[nodiscard]] double student_t_95(int freedom);
 
-/// Where in [low, high] of stretch Drucker's criterion fails: the increments of true stress and logarithmic strain
-/// of an incompressible body must have a positive product, in tension and compression, balloon and planar shear. One
-/// line for each way of loading that fails, empty if the law is stable.
+/// Checks Drucker's criterion for stretches in [low, high]: increments of true stress and logarithmic strain of an
+/// incompressible body must have a positive product, in uniaxial tension and compression, equibiaxial tension and
+/// planar shear. One line for each mode of loading that fails; empty if the law is stable.
 [[nodiscard]] std::vector<std::string> unstable_ranges(const material::Law& law, double low, double high);
 
 /// The [material.NAME] table of a robot file.

@@ -105,7 +105,7 @@ TEST_CASE("a law that loses stability inside the data is reported, one that keep
     REQUIRE(found.size() == 3);
     CHECK(found[0].find("pull or push") != std::string::npos);
     CHECK(unstable_ranges(soft, 1, 1.2).empty());
-    // Negative c01: pulled it is stable, as a balloon it is not.
+    // Negative c01: stable in uniaxial tension, unstable in equibiaxial tension.
     const auto balloon = unstable_ranges(material::MooneyRivlin{0.2e6, -0.02e6, 1e7}, 1, 3.5);
     CHECK(std::any_of(balloon.begin(), balloon.end(),
                       [](const std::string& text) { return text.find("balloon") != std::string::npos; }));

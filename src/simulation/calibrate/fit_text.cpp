@@ -1,4 +1,4 @@
-// A fit as people, robot files and programs read it.
+// Output of a fit: text, robot file and JSON.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -16,7 +16,7 @@ std::string pressure(double value_Pa) {
     return fmt::format("{:.5g} Pa", value_Pa);
 }
 
-/// A key of TOML: quoted where it is more than letters, digits, - and _.
+/// A TOML key: quoted if it has characters other than letters, digits, - and _.
 std::string toml_key(const std::string& name) {
     const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
         return std::isalnum(c) != 0 || c == '-' || c == '_';

@@ -15,14 +15,14 @@ constexpr double length_m = 0.1;
 constexpr double width_m = 0.01;
 constexpr double soft_Pa = 12e6;  // only the ratio matters: no force is prescribed
 
-/// The cell boundary nearest to the interface, of those between the ends, as a share of the length.
+/// The interior cell boundary nearest to the interface, as a share of the length.
 double interface_of_cells(const RatioOptions& options) {
     const int cells = options.cells[0];
     return std::clamp(static_cast<int>(std::lround(options.interface * cells)), 1, cells - 1) /
            static_cast<double>(cells);
 }
 
-/// Cells end where the materials do: both parts of the bar are stretched so that a boundary of cells is the interface.
+/// Stretches the cells of both parts of the bar so that a cell boundary is the interface.
 void move_interface(mesh::TetMesh& mesh, const RatioOptions& options) {
     const double from = interface_of_cells(options), to = options.interface;
     if (std::fabs(from - to) < 1e-9) return;
@@ -110,8 +110,8 @@ Result<double> blend_displacement_mm(const RatioOptions& options, double shape_p
 }
 
 Result<double> match_shape_parameter(const RatioOptions& options, double interface_mm, double guess) {
-    // The stiff part stretches less the softer the other one is: displacement falls with R_omega, nearly as a power of
-    // it. So the secant runs in logarithms, within brackets that only shrink.
+    // The softer the other part is, the less the stiff part stretches: the displacement decreases with R_omega, nearly
+    // as a power law. So the secant method works in logarithms, with brackets that only shrink.
     constexpr double most = 1000;
     double low = 0;
     double high = std::log(most);

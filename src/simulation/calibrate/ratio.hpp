@@ -1,8 +1,9 @@
-// The thesis' calibration (section 3.4.2): which shape parameter R_omega makes a bar of two target-shape materials,
-// stretched at its ends, move its interface as far as a bar of two neo-Hookean ones does.
+// The thesis' calibration (section 3.4.2): the shape parameter R_omega with which a bar of two target-shape materials,
+// stretched at its ends, moves its interface as far as a bar of two neo-Hookean materials.
 //
-// Bar 100 x 10 x 10 mm, the left part stiff (a = 1), the right soft (a = 1 / R_omega), the same weight in both: only
-// R_omega then tells them apart. The left end is held, the right one moved by strain times the length, both clamped.
+// Bar of 100 x 10 x 10 mm, the left part stiff (a = 1), the right soft (a = 1 / R_omega), with the same weight in both,
+// so that only R_omega distinguishes them. The left end is held, the right one moved by strain times the length, both
+// clamped.
 #pragma once
 
 #include <array>
@@ -37,17 +38,16 @@ struct RatioResult {
     std::optional<std::array<double, 3>> curve;
 };
 
-/// What a bar can be: strain, Poisson ratio, cells and interface, but no ratios.
+/// Checks strain, Poisson ratio, cells and interface, but not the ratios.
 [[nodiscard]] Status check_bar(const RatioOptions& options);
 
 [[nodiscard]] Result<RatioResult> calibrate_ratio(const RatioOptions& options, Progress& progress);
 
-/// Mean displacement of the interface in mm: of the neo-Hookean bar on quadratic tets,
+/// Mean displacement of the interface of the neo-Hookean bar on quadratic tets, mm.
 [[nodiscard]] Result<double> reference_displacement_mm(const RatioOptions& options, double material_ratio);
-/// and of the target-shape bar on linear ones.
+/// The same for the target-shape bar on linear tets, mm.
 [[nodiscard]] Result<double> blend_displacement_mm(const RatioOptions& options, double shape_parameter);
-/// R_omega for which the target-shape bar moves its interface by that much. An error where none between 1 and 1000
-/// does.
+/// R_omega for which the target-shape bar has that interface displacement. Errors: there is none between 1 and 1000.
 [[nodiscard]] Result<double> match_shape_parameter(const RatioOptions& options, double interface_mm, double guess);
 
 [[nodiscard]] std::string ratio_text(const RatioResult& result);

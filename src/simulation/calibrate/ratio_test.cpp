@@ -34,18 +34,19 @@ TEST_CASE("a match gives the displacement that was asked for") {
     const auto u = blend_displacement_mm(options, *R);
     REQUIRE(u);
     CHECK(*u == near(6, {.relative = 2e-5}));
-    CHECK_FALSE(match_shape_parameter(options, 16, 3));  // more than half: the soft part would have to be the stiffer
+    CHECK_FALSE(match_shape_parameter(options, 16, 3));  // more than half: the soft part would have to be stiffer
 }
 
 TEST_CASE("small strains of a long bar follow the map of moduli at Poisson ratio 0, where no clamp disturbs") {
-    // Uniaxial stiffness of the blend is 3 w a / (2 + a): of the halves w and 3 w a / (2 + a), so u ratio is known.
+    // The uniaxial stiffness of the blend is 3 w a / (2 + a): w and 3 w a / (2 + a) for the two halves, so the ratio of
+    // their stretches is known.
     RatioOptions options = coarse();
     options.strain = 1e-3;
     const double R = 4;
     const auto u = blend_displacement_mm(options, R);
     REQUIRE(u);
     const double soft = 3 / (2 * R + 1);
-    // The clamped ends and the interface hold back sideways motion, which ideal bars do not know.
+    // The clamped ends and the interface restrain lateral contraction, unlike in ideal bars.
     CHECK(*u == near(0.1 * soft / (1 + soft), {.relative = 0.04}));
 }
 
@@ -59,7 +60,7 @@ TEST_CASE("the interface may lie anywhere: cells are stretched so that they end 
         options.cells[0] = 24;  // 7.2 and 16.8 cells
         CHECK(*reference_displacement_mm(options, 4) / *exact == near(1, {.relative = 1e-2}));
     }
-    // Without stretched cells it would jump from one boundary to the next.
+    // Without stretched cells the result would jump from one boundary to the next.
     options.interface = 0.26;
     const double a = *reference_displacement_mm(options, 4);
     options.interface = 0.28;

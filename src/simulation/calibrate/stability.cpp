@@ -1,4 +1,4 @@
-// Drucker's criterion, as Abaqus checks it: of an incompressible body with logarithmic strains (e1, e2), the matrix of
+// Drucker's criterion, as Abaqus checks it: for an incompressible body with logarithmic strains (e1, e2), the matrix of
 // d(s_i - s_3) / d e_j, s the true stresses, must be positive definite.
 #include <Eigen/Dense>
 #include <cmath>

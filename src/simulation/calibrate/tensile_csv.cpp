@@ -9,7 +9,7 @@
 namespace pliant::calibrate {
 namespace {
 
-/// Which columns hold the test, and what turns their numbers into stretch and Pa.
+/// The columns of the test, and their factors to stretch and Pa.
 struct Columns {
     std::size_t strain = 0;
     std::size_t stress = 0;

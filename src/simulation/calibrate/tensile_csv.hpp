@@ -16,9 +16,9 @@ struct TensileTest {
 };
 
 /// Columns are separated by commas, semicolons or tabs, numbers have a decimal point; lines that begin with # are
-/// comments. The first line names the columns: one is "stretch" or "strain" (a pure number, or with unit %), one is
+/// comments. The first line names the columns: one is "stretch" or "strain" (dimensionless, or with unit %), one is
 /// "stress" with its unit, such as "stress (MPa)" or "nominal stress [kPa]"; other columns, and those of true strain or
-/// stress, are passed over. An error names file and line. Text over 64 MB is refused.
+/// stress, are ignored. Errors name file and line. Text over 64 MB is refused.
 [[nodiscard]] Result<TensileTest> parse_tensile_csv(std::string_view text, const std::string& file);
 
 }  // namespace pliant::calibrate

@@ -4,7 +4,7 @@
 
 namespace pliant::sim::contact {
 
-/// A function of one variable and its derivatives by that variable.
+/// Value and derivatives of a function of one variable.
 struct Curve {
     double value = 0, slope = 0, curvature = 0;
 };

@@ -6,8 +6,8 @@ namespace pliant::sim::contact {
 
 namespace {
 
-// Of the longest edge there. A notch whose flanks meet at an angle of 2 degrees is 0.035 wide one edge from its tip: it
-// stays two surfaces. No mesh of something real has gaps of a 10,000th of its edges.
+// Relative to the longest edge there. A notch with an opening angle of 2 degrees is 0.035 wide one edge from its tip,
+// so its flanks count as two surfaces. No realistic mesh has gaps of 1/10,000 of its edges.
 constexpr double joined_share = 0.02;
 constexpr double any_share = 1e-4;
 
@@ -38,7 +38,7 @@ std::span<const int> Belonging::neighbours(int node) const {
     return {neighbours_.data() + first_neighbour_[node], first_neighbour_[node + 1] - first_neighbour_[node]};
 }
 
-/// By two edges at most: each lists itself, so that one edge, or none, shows too.
+/// True if joined by at most two edges: each node lists itself, so that one edge, or none, is found too.
 bool Belonging::are_joined(int a, int b) const {
     const std::span<const int> of_a = neighbours(a), of_b = neighbours(b);
     auto i = of_a.begin();

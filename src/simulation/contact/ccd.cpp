@@ -11,7 +11,7 @@ double distance(Features features, const Stencil& x) {
     return std::sqrt(squared_distance(nearest(features, x), x));
 }
 
-/// A bound on how fast the distance can shrink, after the motion that all points share is taken away.
+/// An upper bound on the closing speed of the features, after removing their common motion.
 double closing_speed(Features features, const Stencil& p) {
     const double a = norm(p[0]), b = norm(p[1]), c = norm(p[2]), d = norm(p[3]);
     return features == Features::point_triangle ? a + std::max({b, c, d}) : std::max(a, b) + std::max(c, d);
@@ -29,19 +29,19 @@ double largest_step(Features features, const Stencil& x, const Stencil& dx, doub
     for (Vec3& v : p) v -= mean;
     const double speed = closing_speed(features, p);
     if (speed == 0) return limit;
-    // Most pairs are far apart for their motion.
+    // Most pairs are far apart compared with their motion.
     if (0.9 * (1 - keep) * distance_bound(features, x) >= speed * limit) return limit;
     const double start = distance(features, x), gap = keep * start;
     if (!(start > 0)) return 0;
 
-    // From where it is, the distance cannot fall to `gap` within this step; go nine tenths of it and look again.
+    // The distance cannot fall to `gap` within this step; advance by nine tenths of it and check again.
     constexpr int most_looks = 1000;
     constexpr double near_enough = 0.01;
     double t = 0, ahead = 0.9 * (start - gap) / speed;
     for (int look = 0; look < most_looks; ++look) {
         if (t + ahead >= limit) return limit;
         const double now = distance(features, moved(x, p, t + ahead));
-        if (now < gap) return t;  // by rounding only
+        if (now < gap) return t;  // can only be due to rounding
         t += ahead;
         if (now - gap <= near_enough * gap) return t;
         ahead = 0.9 * (now - gap) / speed;

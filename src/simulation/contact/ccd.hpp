@@ -1,4 +1,4 @@
-// Continuous collision detection: how far two features may move along straight lines before they come too near.
+// Continuous collision detection: how far two features may move along straight lines before they come too close.
 #pragma once
 
 #include "simulation/contact/distance.hpp"
@@ -6,9 +6,9 @@
 namespace pliant::sim::contact {
 
 /// Additive CCD (Li, Kaufman and Jiang 2021, "Codimensional Incremental Potential Contact", algorithm 1): a step t in
-/// [0, limit] up to which the distance of x + t dx stays at or above `keep` (0 < keep < 1) of that of x. It is `limit`
-/// if nothing hinders, else where the distance has fallen to nearly `keep` of its value. 0 if x already touches.
-/// Conservative: it may stop early, never late.
+/// [0, limit] up to which the distance at x + t dx stays at or above `keep` (0 < keep < 1) times that at x. It is
+/// `limit` if nothing obstructs, else the step at which the distance has fallen to nearly `keep` of its value; 0 if x
+/// already touches. Conservative: it may stop early, never late.
 [[nodiscard]] double largest_step(Features features, const Stencil& x, const Stencil& dx, double keep, double limit);
 
 }  // namespace pliant::sim::contact

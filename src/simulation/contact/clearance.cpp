@@ -10,10 +10,10 @@ namespace pliant::sim::contact {
 
 namespace {
 
-/// Regions this many times their size apart are looked at as one pair.
+/// Regions at least this many times their size apart are treated as one pair.
 constexpr double far_share = 0.5;
 
-/// Of a distance, what may be lost or gained: from 1.8 to 0.2 of it, the most is left to a ninth.
+/// Allowed relative change of a distance: from 1.8 to 0.2 of it, the largest ratio is a ninth.
 constexpr double room_share = 0.8;
 
 double room(double apart_m, double reach_m) {
@@ -33,7 +33,7 @@ double longest_side(const Bounds& box) {
     return std::max({box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]});
 }
 
-/// The largest difference between a vector in `a` and one in `b`.
+/// The largest squared difference between a vector in `a` and one in `b`.
 double squared_difference(const Bounds& a, const Bounds& b) {
     double squared = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -52,7 +52,7 @@ Eigen::Vector3d mean(Points points, State x) {
     return sum / static_cast<double>(points.size());
 }
 
-/// Axes along one side of a triangle, across it in its plane, and out of it.
+/// Axes along one side of a triangle, across it in its plane, and along its normal.
 Eigen::Matrix3d axes(const std::array<Eigen::Vector3d, 3>& corners) {
     Eigen::Matrix3d axes;
     axes.col(0) = (corners[1] - corners[0]).normalized();
@@ -127,7 +127,7 @@ void Clearance::offer(std::size_t m, Points first, Points second, double apart_m
     for (const int p : first) {
         for (const int q : second) {
             std::pair key(mine.leaf_of(p), theirs.leaf_of(q));
-            // A surface with itself has each pair of regions once, the lower one first.
+            // For a surface with itself, each pair of regions occurs once, the lower index first.
             if (&mine == &theirs && key.first > key.second) std::swap(key.first, key.second);
             const auto found = std::lower_bound(
                 cover.near.begin(), cover.near.end(), key,
@@ -137,7 +137,7 @@ void Clearance::offer(std::size_t m, Points first, Points second, double apart_m
     }
 }
 
-/// One question.
+/// One evaluation of holds().
 class Clearance::Look {
 public:
     Look(const Clearance& clearance, State x, State dx) : clearance_(clearance), x_(x), dx_(dx) {
@@ -160,7 +160,7 @@ private:
                                   motions_[cover.sides.second].displacement[pair.second]) <= pair.room_m * pair.room_m;
     }
 
-    /// Where a pair has moved too much its halves may not have.
+    /// If a pair has moved too much, its halves may not have.
     [[nodiscard]] bool far_holds(const Cover& cover, const Pair& pair) {
         if (moved_less(cover, pair)) return true;
         const auto [a, b, room_m] = pair;
@@ -174,8 +174,8 @@ private:
                                                    : half(a, theirs.left) && half(a, theirs.right);
     }
 
-    /// Both turned back as the first has turned: what is left is how far each is off from a rigid motion, and how much
-    /// the two motions differ where the second is.
+    /// Undoes the rotation of the first leaf for both: what remains is the deviation of each from a rigid motion, and
+    /// the difference of the two motions at the second.
     [[nodiscard]] bool turned_back_moved_less(const Cover& cover, const Pair& pair) {
         const Turned& first = turned(cover.sides.first, pair.first);
         const Turned& second = turned(cover.sides.second, pair.second);
@@ -190,7 +190,7 @@ private:
         return true;
     }
 
-    /// Of a leaf, found when it is first asked for: of a body that turns little, few leaves are.
+    /// The rigid motion of a leaf, computed on demand: only few are needed if the body rotates little.
     const Turned& turned(std::size_t side, std::size_t leaf) {
         const Reference& reference = clearance_.sides_[side];
         Motion& motion = motions_[side];
@@ -217,7 +217,7 @@ private:
         return turned;
     }
 
-    /// Half-way, so that neither end is far from it.
+    /// Half of the rotation, so that neither end is far from it.
     [[nodiscard]] Eigen::Matrix3d rotation(const Reference& side, std::size_t leaf) const {
         const auto corners = side.regions->corners(leaf);
         if (!corners) return Eigen::Matrix3d::Identity();

@@ -1,9 +1,9 @@
-// How far apart the surfaces are at one state, region by region: for states near it, a look at how the regions have
-// moved against each other tells that nothing touches, at a tenth of the cost of a search for what is near.
+// Distances between surfaces at one state, region by region. For nearby states, the relative motion of the regions
+// proves that nothing touches, at a tenth of the cost of a proximity search.
 //
-// Two points that are r apart do not meet while one moves less than r against the other. Between two regions the bound
-// on that is the largest difference of their points' displacements; where it is too large because both have turned,
-// the displacements after a rotation that takes them back, which changes no distance.
+// Two points a distance r apart cannot meet while their relative displacement is less than r. Between two regions, the
+// bound on it is the largest difference of their points' displacements; if that is too large because both have rotated,
+// the displacements after undoing that rotation, which changes no distance.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,29 +21,29 @@ namespace pliant::sim::contact {
 class Clearance {
 public:
     struct Side {
-        const Surface* surface;  ///< looked at by the constructor only
+        const Surface* surface;  ///< used by the constructor only
         std::shared_ptr<const Regions> regions;
     };
-    /// The two sides, by index, whose surfaces may touch; the same one twice for one that may touch itself.
+    /// Indices of two sides whose surfaces may touch; the same index twice for self-contact.
     using Meeting = std::pair<std::size_t, std::size_t>;
 
-    /// Of the state `x`, (3 nodes) metres, in which features of `meetings` that are offered by none are at least
-    /// `seen_m` apart, and all are more than their reach apart, which is at most `reach_m` < seen_m.
+    /// At the state `x`, (3 nodes) metres. All features of `meetings` that are never offered must be at least `seen_m`
+    /// apart, and all features more than their reach apart; the reach is at most `reach_m` < seen_m.
     Clearance(std::span<const Side> sides, std::span<const Meeting> meetings, std::span<const double> x, double seen_m,
               double reach_m);
 
-    /// Two features of meeting `m`, by their nodes, that are `apart_m` < seen_m apart and act on each other when nearer
+    /// Adds two features of meeting `m`, by their nodes, that are `apart_m` < seen_m apart and interact when closer
     /// than `reach_m`.
     void offer(std::size_t m, std::span<const int> first, std::span<const int> second, double apart_m, double reach_m);
 
-    /// True only if nothing comes within its reach, nor to a tenth of any distance that it had on the way, anywhere
-    /// between `x` and x + dx. `dx` empty: at x.
+    /// True only if, anywhere between `x` and x + dx, nothing comes within its reach, nor to a tenth of any distance
+    /// that it had on the way. `dx` empty: at x.
     [[nodiscard]] bool holds(std::span<const double> x, std::span<const double> dx) const;
 
 private:
     struct Pair {
         std::size_t first, second;  ///< regions
-        double room_m;              ///< how far they may move against each other
+        double room_m;              ///< largest relative displacement allowed
     };
     struct Cover {
         Meeting sides;
@@ -59,8 +59,8 @@ private:
         std::vector<Bounds> boxes;  ///< (regions) of their triangles
         std::vector<Ball> balls;    ///< (regions) of the points of leaves
     };
-    /// A leaf as a rigid body at both ends of a motion: p -> rotation (p - centre) + to, and how far its points are
-    /// off.
+    /// A leaf approximated as a rigid body at both ends of a motion: p -> rotation (p - centre) + to, and the error for
+    /// its points.
     struct Turned {
         Eigen::Matrix3d rotation;
         std::array<Eigen::Vector3d, 2> to;
@@ -68,8 +68,8 @@ private:
     };
     struct Motion {
         std::vector<Bounds> displacement;  ///< (regions)
-        std::vector<int> place;            ///< (regions) of a leaf among the turned, -1: not asked for
-        std::deque<Turned> turned;         ///< stay where they are when more come
+        std::vector<int> place;            ///< (regions) index of a leaf in `turned`, -1: not computed
+        std::deque<Turned> turned;         ///< a deque, so that entries keep their address
     };
     class Look;
 

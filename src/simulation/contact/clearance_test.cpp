@@ -104,7 +104,7 @@ TEST_CASE("a clearance holds for small motions, for bending and for turning as a
     const auto met = bars.bent(0.3, 0, true);
     CHECK_FALSE(clearance.holds(met, {}));
     CHECK_FALSE(clearance.holds(bars.body.rest, minus(met, bars.body.rest)));
-    // There and back: the end alone is clear, the way is not.
+    // There and back: the end is clear, the path is not.
     std::vector<double> past = bars.body.rest, through = bars.body.rest;
     for (std::size_t i = 1; i < past.size(); i += 3)
         if (bars.body.rest[i] > 1.25) past[i] += 4, through[i] -= 4;
@@ -137,5 +137,5 @@ TEST_CASE(
         }
     }
     CHECK(held > 20);
-    CHECK(held < 55);  // else nothing ever came near
+    CHECK(held < 55);  // otherwise nothing ever came near
 }

@@ -17,7 +17,7 @@ Stencil stencil_of(const Pair& pair, std::span<const double> x) {
     return {node_at(x, n[0]), node_at(x, n[1]), node_at(x, n[2]), node_at(x, n[3])};
 }
 
-/// Derivatives of all pairs, made on all cores, for use one after the other.
+/// Computes derivatives of all pairs in parallel, for sequential use.
 template <class T, class Function>
 std::vector<T> for_each_pair(const Pairs& pairs, std::size_t first, std::size_t count, const Function& function) {
     std::vector<T> results(count);
@@ -54,7 +54,7 @@ void Contact::visit_hessian(const Pairs& pairs, std::span<const double> x, bool 
         const Matrix12 H = potential_hessian(pair, settings_.stiffness_Pa, stencil_of(pair, x));
         return project ? project_to_positive(H, pair.node_count()) : H;
     };
-    constexpr std::size_t batch = 4096;  // keeps memory bounded: about a kilobyte each
+    constexpr std::size_t batch = 4096;  // limits memory: about a kilobyte for each pair
     for (std::size_t first = 0; first < pairs.size(); first += batch) {
         const std::size_t count = std::min(batch, pairs.size() - first);
         const auto hessians = for_each_pair<Matrix12>(pairs, first, count, hessian);

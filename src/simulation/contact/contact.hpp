@@ -9,7 +9,7 @@
 //     const Friction friction = contact->freeze(pairs, x, step_start); // again after every step, until it settles
 //
 // Li, Ferguson, Schneider et al. 2020, "Incremental Potential Contact". Positions x are (3 nodes) metres: the robot's
-// nodes, then those of the obstacles in their order, which whoever moves an obstacle keeps up to date. All functions
+// nodes, then those of the obstacles in their order, which the caller updates when an obstacle moves. All functions
 // give the same bits on any number of threads.
 #pragma once
 
@@ -32,7 +32,7 @@
 
 namespace pliant::sim::contact {
 
-/// All points x with (x − point) · normal < 0. Has one node, at `point`; the normal never turns.
+/// All points x with (x − point) · normal < 0. Has one node, at `point`; the normal is constant.
 struct HalfSpace {
     Vec3 point, normal;
 };
@@ -47,41 +47,42 @@ struct Settings {
     double distance_m = 0;    ///< forces act below this distance; of the order of an element or less, for speed
     double stiffness_Pa = 0;  ///< pressure is about four times this at half the distance; Young's modulus / 10 is usual
     double friction = 0;      ///< coefficient μ of the robot against itself
-    double slip_m = 1e-5;     ///< slip that counts as sticking
+    double slip_m = 1e-5;     ///< slip that counts as sticking, m
     bool self = true;         ///< whether the robot can touch itself
 };
 
-/// Nodes of the robot's surface from `first` up to `end`: an object that never touches itself, but all else.
+/// A rigid object: nodes of the robot's surface from `first` up to `end`. It touches everything but itself.
 struct RigidPart {
     std::string name;
     int first = 0, end = 0;
-    double friction = 0;  ///< coefficient; of two things that have one, the larger counts
+    double friction = 0;  ///< coefficient; between two with a coefficient, the larger counts
 };
 
-/// Two things that are joined, and do not touch each other near there: rigid parts, or -1 for the rest of the robot.
+/// Two parts that are joined, and do not touch each other near the joint: rigid parts, or -1 for the rest of the robot.
 struct Joined {
     int first = -1, second = -1;
     Vec3 center;          ///< at rest
-    double radius_m = 0;  ///< in which both features begin at rest; of rigid parts infinite: they touch nowhere
+    double radius_m = 0;  ///< pairs with both features inside at rest are excluded; infinite for rigid parts: all pairs
+                          ///< are
 };
 
-/// What contact does to the robot, for results.
+/// Contact forces on the robot, for results.
 struct Forces {
     std::vector<Vec3> on_robot_N;     ///< (obstacles) normal and friction forces of each on the robot, without objects
-    std::vector<Vec3> on_rigid_N;     ///< (rigid parts) of all that touches it
-    double self_N = 0;                ///< sum of the sizes of all normal forces of the robot on itself
+    std::vector<Vec3> on_rigid_N;     ///< (rigid parts) from everything that touches it
+    double self_N = 0;                ///< sum of the magnitudes of the self-contact normal forces
     std::vector<double> pressure_Pa;  ///< (robot nodes) normal force over the area of the node; 0 inside
     double smallest_distance_m = 0;   ///< as of smallest_distance()
 };
 
-/// Whose coefficient of friction a pair has: an obstacle's, a rigid part's or, with neither, the robot's against
+/// Whose coefficient of friction applies to a pair: an obstacle's, a rigid part's or, with neither, the robot's against
 /// itself.
 struct FrictionOwner {
     double coefficient = 0;
     int obstacle = -1, rigid = -1;
 };
 
-/// An edge that passes through a triangle.
+/// An edge that intersects a triangle.
 struct Crossing {
     std::array<int, 2> edge;
     std::array<int, 3> triangle;
@@ -89,22 +90,22 @@ struct Crossing {
     Vec3 point_m;  ///< where they meet
 };
 
-/// Immutable, but for a memory of what was near at the last states, which is quicker and gives the same bits. A pair
-/// acts below its reach, min(distance_m, half its distance at rest), so that the rest state carries no force. Against
-/// obstacles the reach is min(distance_m, its distance at rest), and closed ones and half-spaces are drawn in by
-/// resting_share of distance_m (obstacle_inset.hpp), so that what presses on them rests where they are drawn. Left out
-/// are features that share a node or belong together at rest (belonging.hpp: bonded bodies, slivers) and obstacles
-/// among themselves.
+/// Immutable, except for a cache of what was near at the last states, which saves time and does not change a bit. A
+/// pair acts below its reach, min(distance_m, half its distance at rest), so that the rest state carries no force. For
+/// obstacles the reach is min(distance_m, its distance at rest), and closed ones and half-spaces are inset by
+/// resting_share of distance_m (obstacle_inset.hpp), so that what presses on them rests where they are drawn. Excluded
+/// are features that share a node or belong together at rest (belonging.hpp: bonded bodies, slivers), and pairs of
+/// obstacles.
 class Contact {
 public:
-    /// `rest`: (3 robot nodes). `rigid`: parts of the robot's surface, ascending. `joined`: what of them, and of the
-    /// robot, is left out. Refused: obstacles and rigid parts
-    /// that touch or cross what they may touch at rest (on a plane it may stand), numbers that make no sense.
+    /// `rest`: (3 robot nodes). `rigid`: parts of the robot's surface, ascending. `joined`: parts between which contact
+    /// is excluded. Errors: obstacles or rigid parts that touch or cross at rest what they may touch (standing on a
+    /// plane is allowed), invalid numbers.
     [[nodiscard]] static Result<Contact> create(Surface robot, std::vector<Obstacle> obstacles,
                                                 const Settings& settings, std::span<const double> rest,
                                                 std::vector<RigidPart> rigid = {}, std::vector<Joined> joined = {});
 
-    /// Rest positions of all nodes, (3 nodes); obstacles as they act, drawn in.
+    /// Rest positions of all nodes, (3 nodes); obstacles inset, as they act.
     [[nodiscard]] const std::vector<double>& rest() const { return rest_; }
     [[nodiscard]] int node_count() const { return static_cast<int>(rest_.size() / 3); }
     [[nodiscard]] int robot_node_count() const { return robot_nodes_; }
@@ -116,47 +117,48 @@ public:
     /// The pairs that are closer than their reach, in an order that depends on x alone.
     [[nodiscard]] Pairs find(std::span<const double> x) const;
 
-    /// J. Infinite where a pair touches.
+    /// Energy, J; infinite if a pair touches.
     [[nodiscard]] double energy(const Pairs& pairs, std::span<const double> x) const;
     /// Adds the gradient of the energy, minus the contact forces, N, to `gradient` (3 nodes).
     void add_gradient(const Pairs& pairs, std::span<const double> x, std::span<double> gradient) const;
-    /// Gives every pair's 3 × 3 blocks, N/m, one pair after the other; `project`: each pair without negative
+    /// Visits the 3 × 3 blocks of every pair, N/m, one pair after the other; `project`: each pair without negative
     /// eigenvalues.
     void visit_hessian(const Pairs& pairs, std::span<const double> x, bool project, const BlockVisitor& visit) const;
 
-    /// The largest step in [0, 1] up to which no pair comes nearer than a tenth of its present distance, found by
-    /// conservative steps; features that stay apart by more than a tenth of distance_m at all times are not looked at.
-    /// 0 if a pair touches already. `dx`: (3 nodes).
+    /// The largest step in [0, 1] up to which no pair comes closer than a tenth of its present distance, by
+    /// conservative CCD; features that stay more than a tenth of distance_m apart throughout are ignored. 0 if a pair
+    /// already touches. `dx`: (3 nodes).
     [[nodiscard]] double largest_step(std::span<const double> x, std::span<const double> dx) const;
 
-    /// Finds out how far apart everything is at x, if nothing is within its reach and the last states suggest that it
-    /// is worth knowing: steps from there are then answered quickly.
+    /// Records the distances between all surfaces at x, if nothing is within its reach and the last states suggest that
+    /// this pays off: queries for nearby steps are then answered quickly.
     void note_clearance(std::span<const double> x) const;
 
-    /// Friction with the normal forces and tangents of the pairs at `frozen`, for slip from `step_start`; `before`: of
-    /// the step that has ended there, which what sticks remembers. Null: there was none.
+    /// Friction with the normal forces and tangents of the pairs at `frozen`, for slip from `step_start`. `before`:
+    /// friction of the step that ended there, whose slip is carried over where surfaces stick; null: there was none.
     [[nodiscard]] Friction freeze(const Pairs& pairs, std::span<const double> frozen,
                                   std::span<const double> step_start, const Friction* before = nullptr) const;
 
-    /// Of two things that have a coefficient the larger one counts; of equal ones the obstacle's. `nodes` of a pair,
-    /// and its obstacle or -1.
+    /// Between two with a coefficient the larger applies; if equal, the obstacle's. `nodes` of a pair, and its obstacle
+    /// or -1.
     [[nodiscard]] FrictionOwner friction_owner(std::span<const int> nodes, int obstacle) const;
 
-    /// Sum of the sizes of the robot's normal forces on itself, N; adds its gradient, N/m, to `gradient` (3 nodes).
+    /// Sum of the magnitudes of the robot's normal forces on itself, N; adds its gradient, N/m, to `gradient` (3
+    /// nodes).
     double add_self_force(const Pairs& pairs, std::span<const double> x, std::span<double> gradient) const;
     [[nodiscard]] Forces forces(const Pairs& pairs, std::span<const double> x, const Friction* friction) const;
-    /// Of the pairs; infinity if there are none. From an obstacle as it is drawn: below zero where the robot is pressed
-    /// on it hard.
+    /// Smallest distance of the pairs; infinity if there are none. Measured from obstacles as drawn: negative if the
+    /// robot is pressed hard on one.
     [[nodiscard]] double smallest_distance(const Pairs& pairs, std::span<const double> x) const;
 
-    /// The first crossing of surfaces at x, of the robot with itself whatever the settings say or with an obstacle, if
-    /// there is one: for states that did not come about by largest_step. Features that belong together do not count.
+    /// The first intersection of surfaces at x, if any: of the robot with itself, whatever the settings say, or with an
+    /// obstacle. For states that were not reached through largest_step. Features that belong together do not count.
     [[nodiscard]] std::optional<Crossing> crossing(std::span<const double> x) const;
-    /// Where the robot passes through itself already at rest.
+    /// Where the robot intersects itself at rest, if anywhere.
     [[nodiscard]] std::optional<Crossing> crossing_at_rest() const;
 
 private:
-    /// The robot's surface, that of one rigid part, or all meshes among the obstacles.
+    /// The robot's surface, that of one rigid part, or the meshes of all obstacles.
     struct Side {
         Surface surface;
         SurfaceAreas areas;
@@ -167,14 +169,14 @@ private:
         int node, obstacle;
         Vec3 normal;
     };
-    class Search;  ///< one sweep over the features whose boxes overlap; contact_search.cpp
-    class Nearby;  ///< what such a sweep finds, good for as long as nothing moves far
+    class Search;  ///< one sweep over the features whose boxes overlap: contact_search.cpp
+    class Nearby;  ///< the result of such a sweep, valid while nothing moves far
     struct Memory;
 
     Contact();
-    /// What is near at x and along dx, if the last states suggest that it is worth knowing; else null.
+    /// The features that are near at x and along dx, if the last states suggest that caching them pays off; else null.
     [[nodiscard]] std::shared_ptr<const Nearby> nearby(std::span<const double> x, std::span<const double> dx) const;
-    /// True only if nothing is within its reach at x, nor comes too near on the way along dx, and the last states tell.
+    /// True only if the cache proves that nothing is within its reach at x, nor comes too close along dx.
     [[nodiscard]] bool is_clear(std::span<const double> x, std::span<const double> dx) const;
     void wait_for_clearance() const;
     [[nodiscard]] static Side make_side(Surface surface, std::span<const double> rest);
@@ -190,16 +192,16 @@ private:
         const int part = part_of(node);
         return part == 0 ? 0 : static_cast<std::size_t>(part) + 1;
     }
-    /// All but the obstacles.
+    /// Visits all sides except the obstacles.
     template <class Visit>
     void visit_moving_sides(const Visit& visit) const {
         visit(robot_);
         for (const Side& part : parts_) visit(part);
     }
-    /// Whether two features belong together, or are of things that are joined there. `apart_m`: at rest.
+    /// True if two features belong together, or are on parts that are joined there. `apart_m`: at rest.
     [[nodiscard]] bool left_out(std::span<const int> first, std::span<const int> second, double apart_m) const;
     [[nodiscard]] bool are_joined(std::span<const int> first, std::span<const int> second) const;
-    /// The sides, by index, that may touch; {0, 0}, the robot itself, last.
+    /// The sides, by index, that may touch; {0, 0}, self-contact, last.
     [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> meetings(bool self) const;
     void make_sides(const Surface& robot);
     void number_parts(std::vector<RigidPart> rigid);
@@ -225,8 +227,8 @@ private:
     std::vector<int> part_of_node_;  ///< (nodes) as part_of(); empty without rigid parts
     std::vector<double> rest_;
     int robot_nodes_ = 0;
-    double seen_m_ = 0;      ///< how far a look at what is near goes, where it is to hold for many states
-    double touching_m_ = 0;  ///< distances up to this are zero but for rounding
+    double seen_m_ = 0;      ///< search distance if the result is to be reused for several states
+    double touching_m_ = 0;  ///< distances up to this are zero to rounding
     Belonging belonging_;
     Side robot_, others_;
     std::vector<Side> parts_;  ///< (rigid parts)

@@ -1,4 +1,4 @@
-// What a Contact is made of, and what it refuses.
+// Creates a Contact and validates its input.
 #include <algorithm>
 #include <cmath>
 
@@ -9,8 +9,8 @@ namespace pliant::sim::contact {
 
 namespace {
 
-// What is told to be clear is told for features this far apart: farther, and every look finds more of them, each point
-// with the triangles around it; nearer, and it holds for fewer states.
+// The clearance is computed for features this far apart, in mean edges: a larger distance costs more, because each
+// point has all triangles around it as candidates; a smaller one makes the result valid for fewer states.
 constexpr double seen_edges = 0.5;
 constexpr double seen_distances = 2;
 

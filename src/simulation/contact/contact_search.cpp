@@ -1,4 +1,4 @@
-// What needs a look at every two features that are near each other: pairs, steps, crossings.
+// Queries over all features that are near each other: pairs, step lengths, crossings.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,20 +16,20 @@ namespace pliant::sim::contact {
 
 namespace {
 
-/// A tenth: the share of its present distance that a step leaves to every pair.
+/// A tenth: share of its present distance that every pair keeps in a step.
 constexpr double kept_share = 0.1;
 
-/// After so many calls near each other it is worth knowing what is near.
+/// After this many calls at nearby states it pays to cache what is near.
 constexpr int settled_calls = 2;
 
-/// How far a node may go, in distances at which forces act, before what was near is looked for again.
+/// Motion of a node, in units of the distance at which forces act, after which the search is repeated.
 constexpr double slack_share = 0.5;
 
 Stencil stencil_at(std::span<const int> nodes, std::span<const double> x) {
     return {node_at(x, nodes[0]), node_at(x, nodes[1]), node_at(x, nodes[2]), node_at(x, nodes[3])};
 }
 
-/// Boxes of the features' points at x or, where dx is given, at x + dx.
+/// Boxes of the features' points at x or, if dx is given, over the motion from x to x + dx.
 template <class Nodes>
 std::vector<Bounds> boxes_of(const std::vector<Nodes>& features, std::span<const double> x, std::span<const double> dx,
                              double margin) {
@@ -61,8 +61,8 @@ class Contact::Search {
 public:
     enum class What { pairs, crossings };
 
-    /// `margin`: how far apart features may be and still be found; with `dx` those that come so near on the way from x
-    /// to x + dx.
+    /// `margin`: largest distance of features that are found; with `dx` also those that come so near on the way to x +
+    /// dx.
     Search(const Contact& contact, std::span<const double> x, std::span<const double> dx, double margin, What what,
            bool self)
         : contact_(contact), x_(x), dx_(dx), margin_(margin) {
@@ -80,10 +80,10 @@ public:
     }
 
     enum class Kind { point_triangle, edge_edge, edge_triangle };
-    /// Two features; of the first two kinds they share no node.
+    /// Two features; for the first two kinds without a common node.
     struct Candidate {
         Kind kind = Kind::point_triangle;
-        std::array<int, 5> nodes{};  ///< 4 of the first two kinds
+        std::array<int, 5> nodes{};  ///< 4 for the first two kinds
         double area_m2 = 0;          ///< of the smaller feature
 
         [[nodiscard]] Features features() const {
@@ -118,7 +118,8 @@ public:
         }
     };
 
-    /// Calls visit(candidate, result) for all, each piece of leaves with its own `start`; the results in order.
+    /// Calls visit(candidate, result) for all candidates; each chunk of leaves begins with its own `start`. Results in
+    /// order.
     template <class Result, class Visit>
     [[nodiscard]] std::vector<Result> run(const Result& start, const Visit& visit) const {
         constexpr std::size_t grain = 64;
@@ -152,7 +153,7 @@ private:
         return group;
     }
 
-    /// Made when it is first asked for.
+    /// The group, built on first use.
     const Group& group(Shape shape, std::size_t k) {
         const auto [entry, fresh] = groups_.try_emplace({shape, k});
         if (!fresh) return entry->second;
@@ -172,7 +173,7 @@ private:
         leaf_count_ += firsts.tree->leaf_count();
     }
 
-    /// Rigid parts are many and far from each other: false if two sides stay so, as their boxes tell.
+    /// Quick rejection, as rigid parts are many and far apart: false if the boxes of two sides are not near each other.
     [[nodiscard]] bool are_near(std::size_t a, std::size_t b) {
         return contact_.rigid_.empty() || a == b || box(a).overlaps(box(b));
     }
@@ -188,7 +189,7 @@ private:
         return entry->second;
     }
 
-    /// Calls visit(candidate) for what leaf `l` of the first features finds.
+    /// Calls visit(candidate) for all candidates of leaf `l` of the first features.
     template <class Visit>
     void look(const Family& f, std::size_t l, const Visit& visit) const {
         const Group &a = *f.first, &b = *f.second;
@@ -236,8 +237,8 @@ private:
     std::size_t leaf_count_ = 0;
 };
 
-/// All candidates within the distance at which forces act of any state in which no node is further than the slack from
-/// where it was, on any axis; in the order of a search.
+/// All candidates within the distance at which forces act, valid for states in which no node has moved by more than the
+/// slack along any axis; in the order of a search.
 class Contact::Nearby {
 public:
     Nearby(const Contact& contact, std::span<const double> x) : x_(x.begin(), x.end()), slack_m_(slack(contact)) {
@@ -250,7 +251,7 @@ public:
     }
 
     [[nodiscard]] static double slack(const Contact& contact) { return slack_share * contact.settings_.distance_m; }
-    /// Good for x, and for x + dx where dx is given.
+    /// True if valid for x, and for x + dx if dx is given.
     [[nodiscard]] bool holds(std::span<const double> x, std::span<const double> dx) const {
         return are_within(x_, x, dx, slack_m_);
     }
@@ -283,20 +284,20 @@ private:
 
 struct Contact::Memory {
     std::mutex mutex;
-    std::vector<double> x;  ///< of the last call
+    std::vector<double> x;  ///< at the last call
     std::shared_ptr<const Nearby> nearby;
-    int settled = 0;  ///< calls in a row that were near the one before
+    int settled = 0;  ///< number of consecutive calls near the previous one
     struct {
         std::vector<double> x;
         Pairs pairs;
-    } found;  ///< by the last find: a solver asks several times for one state
+    } found;  ///< result of the last find: a solver asks several times for the same state
 
-    /// Where nothing was near, and how useful that was to know.
+    /// The clearance at a state where nothing was near, and how useful it was.
     struct {
         std::shared_ptr<const Clearance> known;
-        std::vector<double> end;  ///< a state that is known to be clear: where a step ended
-        int served = 0;           ///< calls that it has answered
-        int wait = 0;             ///< searches before it is worth trying again
+        std::vector<double> end;  ///< a state known to be clear: the end of a step
+        int served = 0;           ///< number of calls that it has answered
+        int wait = 0;             ///< number of searches before the next attempt
         int patience = 1;
 
         void grow_patience() { wait = patience = std::min(2 * patience, 64); }
@@ -305,15 +306,15 @@ struct Contact::Memory {
 
 namespace {
 
-/// A clearance that answers fewer calls than this has cost more than it spared.
+/// A clearance that answers fewer calls than this has cost more than it saved.
 constexpr int worth_knowing = 4;
 
 }  // namespace
 
 Contact::Contact() : memory_(std::make_shared<Memory>()) {}
 
-/// A state far from the last one is likely to be left behind at once, and a step that ends in one iteration asks twice
-/// where it begins; from the third call near each other on, knowing pays.
+/// A state far from the last one is usually left at once, and a step that ends in one iteration asks twice at its
+/// start; caching pays from the third nearby call on.
 std::shared_ptr<const Contact::Nearby> Contact::nearby(std::span<const double> x, std::span<const double> dx) const {
     const std::lock_guard lock(memory_->mutex);
     Memory& memory = *memory_;
@@ -462,7 +463,7 @@ Pair Contact::make_pair(bool edges, std::span<const int> nodes, double reach_m, 
     pair.obstacle = obstacle_of(nodes);
     pair.robot_first = obstacle_of_node_[nodes[0]] < 0;
     pair.reach_m = reach_m;
-    // Every place of a surface counts as part of a point and of a triangle, and again as part of an edge.
+    // Every part of a surface counts as part of a point and of a triangle, and again as part of an edge.
     pair.area_m2 = area_m2 / 2;
     const Vec3 u = node_at(rest_, nodes[1]) - node_at(rest_, nodes[0]);
     const Vec3 v = node_at(rest_, nodes[3]) - node_at(rest_, nodes[2]);

@@ -43,7 +43,7 @@ Contact contact_of(const SpringBody& body, const Settings& settings, std::vector
 
 constexpr Settings usual{.distance_m = 1e-3, .stiffness_Pa = 1e4, .friction = 0, .slip_m = 1e-5, .self = true};
 
-/// A state in which the upper box has come down by `drop` and every node is a little off.
+/// A state in which the upper box has moved down by `drop` and every node is slightly perturbed.
 Vector approached(const Contact& contact, std::size_t lower_nodes, double drop, double noise, unsigned seed) {
     Vector x = vector_of(contact.rest());
     std::mt19937 random(seed);
@@ -55,7 +55,8 @@ Vector approached(const Contact& contact, std::size_t lower_nodes, double drop, 
     return x;
 }
 
-/// Solves for where the line through a and b meets the triangle's plane: another way than the library's.
+/// Solves for the intersection of the line through a and b with the triangle's plane: independent of the library's
+/// method.
 bool crosses(const Vec3& a, const Vec3& b, const Vec3& t0, const Vec3& t1, const Vec3& t2) {
     const auto e = [](const Vec3& v) { return Eigen::Vector3d(v.x, v.y, v.z); };
     Eigen::Matrix3d M;
@@ -210,7 +211,7 @@ TEST_CASE(
     std::mt19937 random(12);
     std::size_t pairs = 0;
     for (int k = 0; k < 90; ++k) {
-        // Clear of each other at first, then mostly near the last state, at times far from it, and back.
+        // First clear of each other, then mostly near the last state, sometimes far from it, and back.
         const double drop = k < 30 ? 4e-5 * k : 1.5e-3 + (k % 9 == 8 ? 4e-4 : 0) + 5e-6 * (k - 30);
         const Vector x = approached(contact, 125, drop, k % 9 == 5 ? 3e-4 : 2e-5, 30 + k);
         pairs += check_pairs(x);
@@ -246,7 +247,8 @@ TEST_CASE("a cube that is let down on a plane rests above it and presses with it
         for (std::size_t i = 0; i < n; ++i) statics.load[3 * i + 2] = -weight / static_cast<double>(n);
         for (std::size_t i = n; i < statics.held.size(); ++i) statics.held[i] = true;
         Vector x = vector_of(contact.rest());
-        // Without friction nothing fixes its place on the table, so only nearly to rest; then friction holds it.
+        // Without friction its position on the table is undetermined, so only nearly to equilibrium; then friction
+        // holds it.
         REQUIRE(statics.minimise(x, nullptr, 2e-6) > 0);
         const Vector landed = x;
         const Friction friction = contact.freeze(contact.find(span(x)), span(x), span(landed));
@@ -303,7 +305,7 @@ TEST_CASE("two boxes that are squashed against each other never intersect") {
 
 namespace {
 
-/// How a block on an incline of 30 degrees moves down it: the mean acceleration and the last step's slip.
+/// The motion of a block down an incline of 30 degrees: the mean acceleration and the last step's slip.
 struct Slide {
     double acceleration, last_step_m;
 };
@@ -331,7 +333,7 @@ Slide slide_down(double friction) {
     Vector x = vector_of(contact.rest()), before = x;
     std::vector<double> place;
     for (int step = 0; step < 40; ++step) {
-        // Backward Euler: inertia about where the block would be without forces.
+        // Backward Euler: inertia about the position without forces.
         const Vector predicted = 2 * x - before, start = x;
         statics.predicted.assign(predicted.data(), predicted.data() + 3 * n);
         for (int lag = 0; lag < 4; ++lag) {
@@ -460,8 +462,8 @@ TEST_CASE("what makes no sense is refused, with the name of what is wrong") {
 
 namespace {
 
-/// A box whose top has, for every third point, a twin a hair beside it: fans of needles, some of whose edges are within
-/// nanometres of others with which they share no node.
+/// A box in which every third point of the top has a duplicate next to it: fans of needles, some of whose edges are
+/// within nanometres of others with which they share no node.
 SpringBody box_with_slivers(double hair) {
     SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {4, 4, 4}, 0.1);
     const std::vector<std::array<int, 3>> whole = body.triangles;
@@ -519,7 +521,7 @@ TEST_CASE("a crossing is told with its place, whether or not the robot may touch
         CHECK(crossing->point_m.z < 0.0101);
         CHECK(crossing->obstacle == -1);
     }
-    // What crosses at rest is told of once, and no more afterwards.
+    // Intersections at rest are reported once, and ignored afterwards.
     SpringBody overlapping = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {2, 2, 2});
     overlapping.add(spring_box({0.0013, 0.0021, 0.009}, {0.008, 0.0085, 0.01}, {2, 2, 2}));
     const Contact contact = contact_of(overlapping, usual);
@@ -528,8 +530,8 @@ TEST_CASE("a crossing is told with its place, whether or not the robot may touch
 }
 
 TEST_CASE("an obstacle acts where it is drawn: the robot rests on it within a tenth of the distance of contact") {
-    // A cube on a floor and on a block, under a pressure of 3 % of the stiffness: by the barrier alone it would hover
-    // 0.97 of the distance above.
+    // A cube on a floor and on a block, under a pressure of 3 % of the stiffness: without insets it would hover at 0.97
+    // of the distance above.
     const SpringBody body = spring_box({0, 0, 0.003}, {0.01, 0.01, 0.01}, {2, 2, 2});
     mesh::TriMesh block;
     for (int k = 0; k < 8; ++k)

@@ -82,7 +82,7 @@ Nearest nearest_edges(const Stencil& x) {
             return n;
         }
     }
-    // The square of parameters is convex and the distance too: an optimum outside it means one on its boundary.
+    // Parameter domain and squared distance are convex: if the optimum is outside, the minimum is on the boundary.
     const Nearest a = point_segment(x, 0, 2, 3, 1), b = point_segment(x, 1, 2, 3, 1);
     const Nearest c = point_segment(x, 2, 0, 1, -1), d = point_segment(x, 3, 0, 1, -1);
     return nearer(nearer(a, b, x), nearer(c, d, x), x);

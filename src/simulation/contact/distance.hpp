@@ -40,8 +40,8 @@ enum class Features { point_triangle, edge_edge };
     return features == Features::point_triangle ? nearest_point_triangle(x) : nearest_edges(x);
 }
 
-/// A distance, m, that the features are not nearer than, several times quicker than the distance itself: the gap seen
-/// along the line between their centres; 0 where none is seen.
+/// A lower bound of the distance, m, several times cheaper than the distance itself: the gap projected onto the line
+/// between the centres; 0 if there is no gap.
 [[nodiscard]] double distance_bound(Features features, const Stencil& x);
 
 /// The vector between the nearest points, from the second feature to the first, metres.

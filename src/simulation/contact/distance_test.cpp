@@ -68,7 +68,7 @@ void check_cases(const std::vector<Case>& cases, Find find) {
     }
 }
 
-/// The smallest distance of a fine net of points of the two features.
+/// The smallest distance over a fine grid of points on the two features.
 double sampled_point_triangle(const Stencil& x) {
     double best = HUGE_VAL;
     constexpr int n = 200;

@@ -115,7 +115,7 @@ auto features_of(const FrozenPair& pair) {
     return std::tie(pair.nodes, pair.node_count, pair.first_count);
 }
 
-/// The least rotation that turns one normal into the other takes the tangents along.
+/// Transports the tangents by the smallest rotation that maps one normal to the other.
 Eigen::Matrix2d transport(const FrozenPair& from, const FrozenPair& to) {
     const Vec3 n = cross(from.tangents[0], from.tangents[1]), m = cross(to.tangents[0], to.tangents[1]);
     const double share = 1 + dot(n, m);

@@ -26,7 +26,7 @@ std::optional<std::vector<Vec3>> inset(const mesh::TriMesh& surface, double dept
     if (!mesh::check_closed(surface)) return std::nullopt;
     const double volume = mesh::signed_volume(surface);
     const auto& points = surface.points;
-    // Mean normals, weighted with the angles of the faces there: how a corner is cut into triangles does not count.
+    // Mean normals, weighted by the face angles at each point, so that they do not depend on the triangulation.
     std::vector<Vec3> mean(points.size());
     std::vector<double> angle(points.size()), along(points.size());
     for (const auto& t : surface.triangles)
@@ -38,7 +38,7 @@ std::optional<std::vector<Vec3>> inset(const mesh::TriMesh& surface, double dept
             angle[t[k]] += a;
             along[t[k]] += a * dot(mean[t[k]], normal_of(points, t));
         }
-    constexpr double sharpest = 0.3;  // a point sharper than this is cut off rather than drawn in far
+    constexpr double sharpest = 0.3;  // sharper corners are cut off rather than moved far inwards
     mesh::TriMesh smaller = surface;
     for (std::size_t p = 0; p < points.size(); ++p)
         if (angle[p] > 0) smaller.points[p] -= depth / std::max(along[p] / angle[p], sharpest) * mean[p];

@@ -1,6 +1,6 @@
 // A pair of features that are near each other, and the potential that keeps them apart.
 //
-//     E = κ a d̂ m(c) b(D)       κ stiffness, Pa; a area the pair stands for, m²; d̂ reach, m; m, b: barrier.hpp
+//     E = κ a d̂ m(c) b(D)       κ stiffness, Pa; a area the pair represents, m²; d̂ reach, m; m, b: barrier.hpp
 //
 // Li, Ferguson, Schneider et al. 2020, equations 6, 8 and 23. There κ carries all the units; here the areas make the
 // pressure at a given share of the reach, about 4 κ at half of it, independent of mesh and reach.
@@ -25,9 +25,9 @@ struct Pair {
     Vec3 normal;              ///< point_plane: unit vector out of the half-space
     bool robot_first = true;  ///< the robot's nodes come first (point_triangle against an obstacle may be either)
 
-    /// How many of `nodes` differ and count.
+    /// Number of distinct `nodes`.
     [[nodiscard]] int node_count() const { return kind == PairKind::point_plane ? 2 : 4; }
-    /// How many of them, from the front, belong to the first feature.
+    /// Number of them, from the front, that belong to the first feature.
     [[nodiscard]] int first_count() const { return kind == PairKind::edge_edge ? 2 : 1; }
 };
 using Pairs = std::vector<Pair>;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t leaf_points = 8;
 
-/// Of the longest side of a triangle: its height, below which its corners are as good as on one line.
+/// Minimum height of a triangle relative to its longest side; below it the corners count as collinear.
 constexpr double least_height = 0.1;
 
 std::optional<std::array<int, 3>> spread_corners(std::span<const int> points, std::span<const double> positions) {

@@ -1,4 +1,4 @@
-// A surface's points in a tree of small regions: what moves alike is looked at together.
+// The points of a surface in a tree of small regions that move nearly as one.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace pliant::sim::contact {
 
-/// The points of a surface, halved along the longest side of their box until at most eight are left. Immutable.
+/// The points of a surface, bisected along the longest side of their box until at most eight are left. Immutable.
 class Regions {
 public:
     struct Node {
@@ -25,22 +25,23 @@ public:
     /// `positions`: (3 nodes) metres.
     Regions(const Surface& surface, std::span<const double> positions);
 
-    /// Parents before their halves; the first is the whole. Empty if the surface is.
+    /// Parents before their halves; the first is the root. Empty if the surface is.
     [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
     [[nodiscard]] const std::vector<int>& points() const { return points_; }
     [[nodiscard]] std::span<const int> points_of(const Node& node) const {
         return std::span(points_).subspan(node.begin, node.end - node.begin);
     }
-    /// The leaf that holds a point of the surface.
+    /// The leaf that contains a point of the surface.
     [[nodiscard]] std::size_t leaf_of(int point) const { return leaf_of_[static_cast<std::size_t>(point)]; }
 
-    /// Three points of a leaf that are far from each other and from one line, at the positions that it was made with;
-    /// nothing if there are none.
+    /// Three points of a leaf that are far apart and not collinear, at the positions given to the constructor; empty if
+    /// there are none.
     [[nodiscard]] std::optional<std::array<int, 3>> corners(std::size_t leaf) const { return corners_[leaf]; }
 
-    /// For each node the box of all triangles at its points.
+    /// For each tree node, the bounding box of all triangles at its points.
     [[nodiscard]] std::vector<Bounds> boxes(const Surface& surface, std::span<const double> positions) const;
-    /// For each node the box of how far its points are from where they were, at `x` and, unless `dx` is empty, x + dx.
+    /// For each tree node, the box of the displacements of its points from `from` to `x` and, unless `dx` is empty, to
+    /// x + dx.
     [[nodiscard]] std::vector<Bounds> displacements(std::span<const double> from, std::span<const double> x,
                                                     std::span<const double> dx) const;
 

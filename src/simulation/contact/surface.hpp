@@ -1,4 +1,4 @@
-// The triangles, edges and points with which a body touches others.
+// The triangles, edges and points of a surface that may be in contact.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct Surface {
 /// The boundary of a robot: its faces, those of quadratic tets in four flat triangles each.
 [[nodiscard]] Surface robot_surface(const mesh::TetMesh& mesh);
 
-/// Areas in m². Points and edges stand for a third of each triangle beside them; each list sums to the whole area.
+/// Areas in m². Points and edges represent a third of each adjacent triangle; each list sums to the whole area.
 struct SurfaceAreas {
     std::vector<double> points;     ///< (p), in the order of Surface::points
     std::vector<double> edges;      ///< (e)

@@ -8,7 +8,8 @@
 namespace pliant::sim {
 namespace {
 
-constexpr double least_length = 1e-9;  // of a gap beside its own: an element that is turned inside out is never asked
+constexpr double least_length = 1e-9;  // length of a gap element relative to its own: no division by zero; inverted
+                                       // elements are never evaluated
 
 }  // namespace
 
@@ -32,7 +33,7 @@ GapElements::GapElements(const Elements& elements, std::span<const Gap> gaps) : 
         volume += sum;
         length_m_ += gap.length_m;
     }
-    // One tension all along the cable: what a wide gap has in area it has less in stress.
+    // The tension is constant along the cable: what a wide gap has more in area it has less in stress.
     const double area = volume / length_m_;
     for (std::size_t g = 0; g < gaps.size(); ++g) {
         const Gap& gap = gaps[g];

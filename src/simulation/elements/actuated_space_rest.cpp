@@ -1,4 +1,4 @@
-// How gap elements change with the rest positions and with their weights.
+// Derivatives of gap elements with respect to the rest positions and their weights.
 #include <algorithm>
 
 #include "base/linalg/vectors.hpp"
@@ -11,7 +11,7 @@ namespace {
 using linalg::Matrix3;
 using linalg::Vector3;
 
-/// At one integration point: F, how the rest moves, and what both make of the cable's direction d.
+/// At one integration point: F, the gradient of the rest motion, and their effect on the cable's direction d.
 struct AtPoint {
     Matrix3 F;
     Vector3 direction, along;  ///< d, and t = F d / |F d|
@@ -118,7 +118,7 @@ double GapElements::tension_by_weight(std::span<const double> x, std::size_t gap
     return sum / gap_weights_Pa_[gap] / length_m_;
 }
 
-/// Of sum k l / L - c + m.
+/// Gradient of sum k l / L - c + m.
 void GapElements::add_tension_rest_gradient(const Elements& elements, std::span<const double> x, double factor,
                                             std::span<double> result) const {
     std::vector<double> of_gap(directions_.size(), 0.0);
@@ -147,7 +147,7 @@ bool GapElements::has(std::size_t gap_number) const {
 void GapElements::add_weight_force(std::span<const double> x, double m, std::size_t gap_number,
                                    std::span<double> forces) const {
     const std::size_t gap = place_of(gap_number);
-    double share = 0;  // of c that is this gap's
+    double share = 0;  // share of c that comes from this gap
     for (std::size_t k = 0; k < count(); ++k) share += points_[k].gap == gap ? stiffness_J_[k] : 0;
     share /= stiffness_N_ * length_m_;
     const double s = scale(m), weight = gap_weights_Pa_[gap];

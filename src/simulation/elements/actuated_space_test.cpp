@@ -1,5 +1,4 @@
-// The thesis' gap and air elements: their derivatives, and that a robot bends as far with them as with the true
-// constraint.
+// The thesis' gap and air elements: their derivatives, and the same bending as with the true constraint.
 #include "simulation/elements/actuated_space.hpp"
 
 #include <doctest/doctest.h>
@@ -46,7 +45,7 @@ Trajectory run_to_the_end(const Description& d, Solver solver = Solver::automati
     return t;
 }
 
-/// How far the tip is from where it is with the true constraint, beside how far that one has moved.
+/// Distance of the tip from its position with the true constraint, relative to the motion of that.
 double tip_error(const Description& with_elements, const Description& with_constraint) {
     const Vec3 u = comparison::tip_displacement(with_elements, run_to_the_end(with_elements).steps.back());
     const Vec3 v = comparison::tip_displacement(with_constraint, run_to_the_end(with_constraint).steps.back());
@@ -120,7 +119,7 @@ TEST_CASE("gap elements: forces and stiffness are derivatives of their energy") 
     CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(c.hessian(0, false)).eigenvalues()[0] < -1e-3 * P.norm());
 }
 
-TEST_CASE("gap elements: free ones stand still where they are s times as long, whatever their shear") {
+TEST_CASE("gap elements: free ones are in equilibrium at s times their length, whatever their shear") {
     const Case c;
     // All of the box is made s times as long along x and sheared: only the gap along x is at its target.
     const double s = 0.8;
@@ -133,7 +132,7 @@ TEST_CASE("gap elements: free ones stand still where they are s times as long, w
     const GapElements gaps(c.model.elements(), along_x);
     std::vector<double> force(x.size(), 0.0), at_rest(x.size(), 0.0);
     double m = 1;
-    m *= (1 - s) / (1 - gaps.scale(1));  // s falls in proportion to m
+    m *= (1 - s) / (1 - gaps.scale(1));  // s decreases linearly with m
     CHECK(gaps.scale(m) == near(s, {.relative = 1e-12}));
     gaps.add_gradient(x, force);
     gaps.add_pull(x, m, force);
@@ -146,7 +145,7 @@ TEST_CASE("gap elements: free ones stand still where they are s times as long, w
     CHECK(gaps.tension(c.rest, m) == near(m, {.relative = 1e-12}));
 }
 
-TEST_CASE("a finger with gap elements bends as one with a cable of that length") {
+TEST_CASE("a finger with gap elements bends like one with a cable of the same length") {
     for (const int order : {1, 2}) {
         for (const double ratio : {0.9, 0.85}) {
             const double error = tip_error(finger(order, ratio, Act::elements), finger(order, ratio, Act::constraint));
@@ -156,7 +155,7 @@ TEST_CASE("a finger with gap elements bends as one with a cable of that length")
     }
 }
 
-TEST_CASE("a block with air elements bends as one with air of that volume") {
+TEST_CASE("a block with air elements bends like one with the same air volume") {
     for (const int order : {1, 2}) {
         for (const double ratio : {1.25, 1.6}) {
             const double error = tip_error(block(order, ratio, Act::elements), block(order, ratio, Act::constraint));
@@ -178,7 +177,7 @@ TEST_CASE("elements meet their constraint; the pressure is that of the true one,
     CHECK(air.chambers[0].pressure_Pa / true_air.chambers[0].pressure_Pa == near(1, {.relative = 0.1}));
 }
 
-TEST_CASE("the thesis' iteration leads where Newton's does, with elements of either kind") {
+TEST_CASE("the thesis' iteration converges to Newton's solution, with elements of either kind") {
     struct {
         Description d;
         double error;
@@ -193,7 +192,7 @@ TEST_CASE("the thesis' iteration leads where Newton's does, with elements of eit
     }
 }
 
-TEST_CASE("elements are steered by hand and end where a program ends") {
+TEST_CASE("elements under interactive control reach the same state as a program") {
     const Progress silent;
     for (const Description& d : {finger(1, 0.85, Act::elements), block(1, 1.4, Act::elements)}) {
         const Model model = made(d);
@@ -206,7 +205,7 @@ TEST_CASE("elements are steered by hand and end where a program ends") {
     }
 }
 
-TEST_CASE("elements that cannot act as they are asked to are refused") {
+TEST_CASE("impossible targets of elements are refused") {
     const auto refusal = [](Description d) {
         const auto model = Model::create(std::move(d));
         REQUIRE_FALSE(model);

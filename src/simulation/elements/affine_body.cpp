@@ -71,14 +71,14 @@ void AffineBody::add_gradient(std::span<const double> x, std::span<double> force
     add(stress(deformation(x)), forces);
 }
 
-/// With L the gradient of the motion, gₐ changes by −Lᵀ gₐ, A by −A L and k by tr L of itself.
+/// With L the gradient of the motion, gₐ changes by −Lᵀ gₐ, A by −A L and the relative stiffness by tr L.
 void AffineBody::add_rest_product(std::span<const double> x, std::span<const double> motion,
                                   std::span<double> forces) const {
     const Matrix3 A = deformation(x), L = deformation(motion), P = stress(A);
     add(L.trace() * P + stress_change(A, -A * L) - P * L.transpose(), forces);
 }
 
-/// The change of the stress is symmetric in what changes it and what it is weighed with.
+/// The change of the stress is symmetric in the perturbation and the weights.
 void AffineBody::add_rest_weights(std::span<const double> x, std::span<const double> weights,
                                   std::span<double> result) const {
     const Matrix3 A = deformation(x), G = deformation(weights), P = stress(A);

@@ -3,7 +3,7 @@
 //     E = k/4 ‖AᵀA − 1‖²        A = Σ xₐ gₐᵀ
 //
 // Lan, Kaufman, Li, Jiang and Yang 2022, "Affine Body Dynamics". The motion of every point is linear in the nodes, so
-// that a straight step of them is a straight step of its surface.
+// that a straight step of the nodes is a straight step of the surface.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ namespace pliant::sim {
 
 class AffineBody {
 public:
-    /// `nodes`: not in one plane at `rest` (3n). `stiffness_J`: k, some hundred times what soft bodies of its size
-    /// resist with.
+    /// `nodes`: not coplanar at `rest` (3n). `stiffness_J`: k, some hundred times the stiffness of soft bodies of its
+    /// size.
     AffineBody(std::array<int, 4> nodes, double stiffness_J, std::span<const double> rest);
 
     /// J. Positions x (3n) metres.
@@ -31,28 +31,28 @@ public:
     void add_hessian(std::span<const double> x, const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
                      std::span<double> values, bool project) const;
     void append_clique(const std::vector<int>& index, linalg::Lists& cliques) const;
-    /// forces (3n) += change of the gradient with a motion (3n) of the rest positions: k grows with the volume, and the
-    /// surface moves along, so that shares stay.
+    /// forces (3n) += change of the gradient with a motion (3n) of the rest positions: k scales with the volume, and
+    /// the surface moves along, so that the weights of its points are unchanged.
     void add_rest_product(std::span<const double> x, std::span<const double> motion, std::span<double> forces) const;
     /// result (3n) += the transpose of that product with `weights` (3n) of the forces.
     void add_rest_weights(std::span<const double> x, std::span<const double> weights, std::span<double> result) const;
 
-    /// A; its determinant is 1 but for what contact squeezes it.
+    /// A; its determinant is 1, apart from compression by contact.
     [[nodiscard]] linalg::Matrix3 deformation(std::span<const double> x) const;
-    /// Where the centre of mass is, m.
+    /// Position of the centre of mass, m.
     [[nodiscard]] linalg::Vector3 centre(std::span<const double> x) const;
-    /// (4) shares of the nodes in the motion of the point that is at `rest_point` at rest, metres; sum 1.
+    /// (4) weights of the nodes for the point at `rest_point` at rest, metres; sum 1.
     [[nodiscard]] std::array<double, 4> shares(const linalg::Vector3& rest_point) const;
 
-    /// How they change with where the point is, 1/m.
+    /// Derivatives of the weights with respect to the point, 1/m.
     [[nodiscard]] const std::array<linalg::Vector3, 4>& share_slopes() const { return gradients_; }
 
     [[nodiscard]] const std::array<int, 4>& nodes() const { return nodes_; }
-    /// N/m of one node, about: what a stretch of the body takes.
+    /// Approximate stiffness of one node against a stretch of the body, N/m.
     [[nodiscard]] double node_stiffness() const;
 
 private:
-    /// dE/dA, J, and how it changes with A.
+    /// dE/dA, J, and its derivative with respect to A.
     [[nodiscard]] linalg::Matrix3 stress(const linalg::Matrix3& A) const;
     [[nodiscard]] linalg::Matrix3 stress_change(const linalg::Matrix3& A, const linalg::Matrix3& dA) const;
     void add(const linalg::Matrix3& per_gradient, std::span<double> forces) const;

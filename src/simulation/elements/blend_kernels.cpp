@@ -20,8 +20,8 @@ namespace pliant::sim::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The rotation nearest to F, det F > 0, by Newton's iteration (Higham 1986), which halves a large stretch at first and
-/// then doubles its digits.
+/// The rotation nearest to F, det F > 0, by Newton's iteration (Higham 1986), which halves large stretches at first and
+/// then converges quadratically.
 HWY_INLINE Matrix nearest_rotation(const Matrix& F) {
     constexpr int most = 40;
     const Tag d;
@@ -37,13 +37,13 @@ HWY_INLINE Matrix nearest_rotation(const Matrix& F) {
                 R.m[j][i] = next;
             }
         }
-        // What moved by 1e-8 is off by its square.
+        // A change of 1e-8 leaves an error of its square.
         if (hn::AllTrue(d, hn::Lt(moved, set(1e-8)))) break;
     }
     return R;
 }
 
-/// One point: its shape and what blends it.
+/// One point: its deformation and blend.
 struct Blend {
     Matrix F, G, R;
     V J;
@@ -70,7 +70,7 @@ struct Blend {
         }
         return off;
     }
-    /// The blend has an energy only where nothing of it is soft.
+    /// The blend has an energy only if its soft part is zero.
     [[nodiscard]] HWY_INLINE V add_energy(const material::ShapeBlend& law, V volume, V sum) const {
         if (law.a != 1) return sum;
         V square = hn::Zero(Tag());

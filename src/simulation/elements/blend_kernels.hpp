@@ -1,11 +1,11 @@
-// Forces and stiffness of several tets of shape-blend at once, in SIMD, as those of element_kernels.hpp.
+// Forces and stiffness of several shape-blend tets at once, in SIMD, like those of element_kernels.hpp.
 #pragma once
 
 #include "simulation/elements/element_kernels.hpp"
 
 namespace pliant::sim {
 
-/// As batch_forces. The energy is that of a = 1; else the law has none, and it is 0.
+/// As batch_forces. The energy is that for a = 1; otherwise the law has none, and it is 0.
 [[nodiscard]] BatchResult batch_blend_forces(const TetBatch& batch, const material::ShapeBlend& law, const double* x,
                                              double* forces);
 

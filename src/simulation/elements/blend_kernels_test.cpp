@@ -1,4 +1,4 @@
-// The SIMD kernels of shape-blend against the law taken one point at a time.
+// The SIMD kernels of shape-blend against the law evaluated point by point.
 #include "simulation/elements/blend_kernels.hpp"
 
 #include <doctest/doctest.h>
@@ -34,7 +34,7 @@ Model mixed(int order) {
     return std::move(*model);
 }
 
-/// Turned far, stretched along x by `stretch`, and uneven.
+/// Strongly rotated, stretched along x by `stretch`, and perturbed.
 std::vector<double> distorted(const mesh::TetMesh& mesh, double stretch) {
     std::vector<double> x;
     for (const Vec3& p : mesh.points) x.insert(x.end(), {-p.y, stretch * p.x, p.z});
@@ -112,7 +112,7 @@ TEST_CASE("stiffness of eight tets of shape-blend at a time is the symmetric par
     }
 }
 
-TEST_CASE("a tet of shape-blend that is turned inside out, or not a number, is noticed") {
+TEST_CASE("an inverted or NaN tet of shape-blend is detected") {
     const Model model = mixed(1);
     for (const double bad : {-0.5, std::nan("")}) {
         std::vector<double> x;

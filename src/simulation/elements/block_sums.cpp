@@ -11,12 +11,12 @@ namespace pliant::sim {
 namespace {
 
 constexpr std::size_t lanes = batch_lanes;
-constexpr std::size_t least_batches = 128, most_runs = 16;  // the more runs, the more blocks they share
-constexpr std::size_t largest_share = 2;                    // of the blocks: one in so many may be shared
+constexpr std::size_t least_batches = 128, most_runs = 16;  // the more runs, the more blocks are shared
+constexpr std::size_t largest_share = 2;                    // at most one in this many blocks may be shared
 constexpr std::size_t shared_at_once = 512;
 constexpr int nobody = -1, several = -2;
 
-/// Notes that `run` adds to a block; others may do so at the same time, and the end is the same.
+/// Records that `run` adds to a block; may be called concurrently, with the same result.
 void claim(int& owner, int run) {
     const std::atomic_ref<int> at(owner);
     int before = at.load(std::memory_order_relaxed);
@@ -44,7 +44,7 @@ BlockSums::BlockSums(std::vector<int> slots, std::size_t batches, std::size_t bl
     }
     if (shared_.size() <= blocks / largest_share) {
         share_out();
-    } else {  // tets in no order would share nearly all, and lists take memory: a single run adds up everything
+    } else {  // unordered tets would share nearly all blocks, and lists take memory: use a single run
         list_start_.assign(2, 0);
         shared_.clear();
     }

@@ -1,4 +1,4 @@
-// What tets add to the blocks of a sparse matrix.
+// Sums of element contributions to the blocks of a sparse matrix.
 #pragma once
 
 #include <cstddef>
@@ -11,20 +11,20 @@
 
 namespace pliant::sim {
 
-/// Batches are added up in runs, on all cores. Nearly all blocks belong to tets of one run, which adds to them as it
-/// goes; to those that it shares with others it adds in a list of its own, and the lists are added last. The same bits
-/// on any number of threads.
+/// Batches are summed in runs, on all cores. Nearly all blocks belong to the tets of one run, which adds to them
+/// directly; for blocks shared with other runs, each run has a list of its own, and the lists are added last. The same
+/// bits on any number of threads.
 class BlockSums {
 public:
-    /// A pair of nodes that has no block, because one of them is held.
+    /// A pair of nodes without a block, because one of them is held.
     static constexpr int no_slot = -1;
 
     BlockSums() = default;
-    /// `slots` (batches, pairs, lanes) of the pairs of each batch: twice the block in the matrix, which has `blocks`,
-    /// and one more where the pair is the transposed one; or no_slot.
+    /// `slots` (batches, pairs, lanes) for the pairs of each batch: twice the index of the block in the matrix, which
+    /// has `blocks`, plus one if the pair is transposed; or no_slot.
     BlockSums(std::vector<int> slots, std::size_t batches, std::size_t blocks);
 
-    /// Writes (pairs, numbers of a block, lanes) for a batch; called for several at once.
+    /// Writes (pairs, numbers of a block, lanes) for a batch; called concurrently for several batches.
     using Fill = std::function<void(std::size_t batch, double* written)>;
     /// values (blocks, size) += what `fill` writes for all batches. `size` is 1, or 9 for blocks of 3 by 3 by columns.
     void add(const Fill& fill, std::size_t size, std::span<double> values, ArrayPool<double>& scratch) const;
@@ -40,10 +40,10 @@ private:
     std::size_t batches_ = 0;
     std::size_t width_ = 0;  ///< pairs * lanes
     int blocks_ = 0;
-    std::vector<int> slots_;          ///< those of shared blocks: as if their places in the list came after all blocks
+    std::vector<int> slots_;          ///< for shared blocks: places in the list, counted after all blocks
     std::vector<int> list_start_{0};  ///< (runs + 1) places in the lists of the runs before
     std::vector<int> shared_;         ///< blocks, in ascending order
-    linalg::Lists uses_;              ///< of each of them, the places in all lists, in the order of the runs
+    linalg::Lists uses_;              ///< for each of them, the places in all lists, in the order of the runs
 };
 
 }  // namespace pliant::sim

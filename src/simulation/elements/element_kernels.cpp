@@ -16,7 +16,7 @@ namespace pliant::sim::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The stiffness of one point as it is.
+/// The exact stiffness of one point.
 template <bool second>
 struct TangentForm {
     Point<second> p;

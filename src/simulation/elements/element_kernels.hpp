@@ -1,4 +1,4 @@
-// Forces and stiffness of several tets at once, in SIMD, for the laws in the invariants of F.
+// Forces and stiffness of several tets at once, in SIMD, for laws in the invariants of F.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace pliant::sim {
 
-/// Tets that are worked on together; arrays hold this many numbers next to one another, one of each tet.
+/// Number of tets in a batch; arrays hold this many adjacent numbers, one of each tet.
 inline constexpr int batch_lanes = 8;
 
 /// One batch of tets of one law. All arrays are aligned to 64 bytes.
@@ -30,22 +30,22 @@ struct BatchResult {
 [[nodiscard]] BatchResult batch_forces(const TetBatch& batch, const material::InvariantForm& law, const double* x,
                                        double* forces);
 
-/// Blocks of the stiffness of each pair of nodes a <= b, at b (b + 1) / 2 + a: (pairs, 9, lanes), each block by
-/// columns; rows belong to a. Precondition: min_J > 0.
+/// Stiffness block of each pair of nodes a <= b, at b (b + 1) / 2 + a: (pairs, 9, lanes), each block by columns; rows
+/// belong to a. Precondition: min_J > 0.
 void batch_tangent(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks);
 
-/// The same, but the stiffness of each point is replaced by the nearest positive semi-definite one.
+/// The same, with the stiffness of each integration point replaced by the nearest positive semi-definite one.
 void batch_projected_tangent(const TetBatch& batch, const material::InvariantForm& law, const double* x,
                              double* blocks);
 
-/// A step that applies rotations exactly: from F at `now` to exp(M) F, M being the rate of deformation of the step.
-/// `end` is where the straight step puts the nodes. All positions (3n).
+/// A step that applies rotations exactly: from F at `now` to exp(M) F, where M is the rate of deformation of the step.
+/// `end` holds the node positions after the straight step. All positions (3n).
 struct RotatingStep {
     static constexpr std::size_t most_past = 3;
 
     const double* now;
     const double* end;
-    /// States that came before, the latest first, up to a null. None: M F is the gradient of the motion from `now` to
+    /// Previous states, the latest first, terminated by null. Empty: M F is the gradient of the motion from `now` to
     /// `end`. Else M = sum of weights[k] L_k with the rate L_k from past[k] to the state after it, F_after = exp(L_k)
     /// F.
     std::array<const double*, most_past> past{};
@@ -61,7 +61,7 @@ void batch_rotation_term(const TetBatch& batch, const RotatingStep& rotating, do
 void batch_rotations(const TetBatch& batch, const double* before, const double* now, double* rotations);
 
 /// Writes forces (nodes_per_tet, 3, lanes): sum over the points of stiffness * volume * R grad u grad N_a, with the
-/// rotations R or, to turn `back`, their transposes. `u` (3n).
+/// rotations R or, with `back`, their transposes. `u` (3n).
 void batch_rotated(const TetBatch& batch, const double* rotations, bool back, const double* u, double stiffness,
                    double* forces);
 

@@ -1,4 +1,4 @@
-// The SIMD kernels against the laws taken one point at a time, and motions that turn.
+// The SIMD kernels against the laws evaluated point by point, and rotating motions.
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
@@ -126,13 +126,13 @@ TEST_CASE("projected stiffness of eight tets at a time is that of the laws, each
             for (std::size_t i = 0; i < x.size(); ++i) found += v[i] * product[i];
             const double size = bilinear(v, v, true);
             CHECK(std::fabs(found - bilinear(v, w, true)) < 1e-9 * size);
-            // Otherwise nothing was negative, and nothing is tested.
+            // Otherwise nothing was negative, and the projection is not tested.
             if (k % 2 == 0) CHECK(bilinear(v, v, false) < 0.999 * size);
         }
     }
 }
 
-TEST_CASE("a tet that is inside out or not a number is noticed in every lane") {
+TEST_CASE("an inverted or NaN tet is detected in every lane") {
     const auto model = Model::create(mixed(1));
     REQUIRE(model);
     const std::vector<double> good = distorted(model->mesh());
@@ -152,7 +152,7 @@ TEST_CASE("a tet that is inside out or not a number is noticed in every lane") {
     }
 }
 
-TEST_CASE("a motion that turns the whole body carries it round without stretching it") {
+TEST_CASE("a rotation of the whole body does not stretch it") {
     for (const int order : {1, 2}) {
         Description d = mixed(order);
         d.supports = {{"point", {0}, {}}};
@@ -187,7 +187,7 @@ TEST_CASE("a motion that turns the whole body carries it round without stretchin
     }
 }
 
-TEST_CASE("a motion goes on by shares of the turns between the states before it") {
+TEST_CASE("a motion is extrapolated from the rotations between previous states") {
     Description d = mixed(1);
     d.supports = {{"point", {0}, {}}};
     const auto model = Model::create(std::move(d));
@@ -202,15 +202,15 @@ TEST_CASE("a motion goes on by shares of the turns between the states before it"
             x.segment<3>(3 * n) = rest.head<3>() + Q * (rest.segment<3>(3 * n) - rest.head<3>());
         return x;
     };
-    // Angles t + t^2 + t^3 at t = 0, 0.1, 0.2, 0.3: by finite differences the turn from 0.3 to 0.4 is three times the
-    // last one, less three times the one before, and the first.
+    // Angles t + t^2 + t^3 at t = 0, 0.1, 0.2, 0.3: by finite differences the rotation from 0.3 to 0.4 is three times
+    // the last one, less three times the one before, plus the first.
     const auto angle = [](double t) { return t + t * t + t * t * t; };
     const Eigen::VectorXd a = turned(angle(0)), b = turned(angle(0.1)), c = turned(angle(0.2)),
                           now = turned(angle(0.3));
     const Eigen::VectorXd found = laplacian.rotate(
         system, {.now = now.data(), .end = now.data(), .past = {c.data(), b.data(), a.data()}, .weights = {3, -3, 1}});
     CHECK((found - turned(angle(0.4))).norm() < 1e-5 * rest.norm());
-    // With what two turns know it would be off by the third difference.
+    // With only two previous rotations the error is the third difference.
     const Eigen::VectorXd less = laplacian.rotate(
         system, {.now = now.data(), .end = now.data(), .past = {c.data(), b.data()}, .weights = {2, -1}});
     CHECK((less - turned(angle(0.4) - 0.006)).norm() < 1e-5 * rest.norm());

@@ -1,5 +1,5 @@
-// Matrices of several tets at once, and how they are read: shared by the kernels. Included once for each instruction
-// set, by files that hwy/foreach_target.h compiles; hence no ordinary include guard.
+// Matrices of several tets at once, and loading them: shared by the kernels. Included once for each instruction set, by
+// files that hwy/foreach_target.h compiles; hence no ordinary include guard.
 #if defined(PLIANT_SIM_ELEMENT_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PLIANT_SIM_ELEMENT_LANES_INL_HPP
 #undef PLIANT_SIM_ELEMENT_LANES_INL_HPP
@@ -90,12 +90,12 @@ HWY_INLINE Matrix cofactor(const Matrix& F) {
     return G;
 }
 
-/// Of F with the cofactors G.
+/// Determinant of F, given its cofactors G.
 HWY_INLINE V determinant_by(const Matrix& F, const Matrix& G) {
     return hn::MulAdd(F.m[0][2], G.m[0][2], hn::MulAdd(F.m[0][1], G.m[0][1], hn::Mul(F.m[0][0], G.m[0][0])));
 }
 
-/// F^T F, or F F^T of the transposed loop: entries (i, j).
+/// F^T F, or F F^T with the loop transposed: entries (i, j).
 HWY_INLINE Matrix right_cauchy(const Matrix& F) {
     Matrix C;
     for (int j = 0; j < 3; ++j) {

@@ -24,7 +24,7 @@ namespace pliant::sim::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Everything that stress and stiffness have in common at one point. `second`: the law knows I2.
+/// Quantities at one point that stress and stiffness share. `second`: the law depends on I2.
 template <bool second>
 struct Point {
     Matrix F, G, E;
@@ -95,7 +95,7 @@ struct Point {
     }
 };
 
-/// Factors of the outer products, with the volume of the point.
+/// Coefficients of the outer products, times the volume of the point.
 template <bool second>
 struct Factors {
     V same;   ///< (a.b) I

@@ -1,9 +1,8 @@
 // Energy, forces and stiffness of several tets at once, summed over their points, for any kind of law. Included once
 // for each instruction set, like element_lanes-inl.hpp.
 //
-// A Point is made of a deformation gradient and a law: point.set_shape(F) gives it J, the rest follows from
-// point.set_law(law). point.add_energy(law, volume, sum) is the sum with its energy, point.stress(law, volume) P times
-// the volume.
+// A Point is constructed from a deformation gradient and a law: point.set_shape(F) computes J, point.set_law(law) the
+// rest. point.add_energy(law, volume, sum) adds its energy to the sum, point.stress(law, volume) is P times the volume.
 #if defined(PLIANT_SIM_ELEMENT_SUMS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PLIANT_SIM_ELEMENT_SUMS_INL_HPP
 #undef PLIANT_SIM_ELEMENT_SUMS_INL_HPP
@@ -23,7 +22,7 @@ namespace pliant::sim::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// `forces`: as of batch_forces; null where only the energy is wanted.
+/// `forces`: as for batch_forces; null if only the energy is wanted.
 template <class Point, int nodes, class Law>
 BatchResult forces_of(const TetBatch& batch, const Law& law, const double* x, double* forces) {
     const Tag d;
@@ -64,9 +63,9 @@ BatchResult forces_of(const TetBatch& batch, const Law& law, const double* x, do
     return result;
 }
 
-/// Blocks of the stiffness of each pair of nodes. A Form is made of a Point, its law and its volume; `Form::OfNode`
-/// keeps what it wants of a node, form.of_node(gradient) makes that, and form.add_pair(a, b, block) adds what two nodes
-/// share to their block, by columns.
+/// Stiffness blocks of each pair of nodes. A Form is constructed from a Point, its law and its volume; `Form::OfNode`
+/// holds what it needs of a node, form.of_node(gradient) computes it, and form.add_pair(a, b, block) adds the
+/// contribution of two nodes to their block, by columns.
 template <class Point, class Form, int nodes, class Law>
 void stiffness_of(const TetBatch& batch, const Law& law, const double* x, double* blocks) {
     const Tag d;

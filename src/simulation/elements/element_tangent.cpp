@@ -51,7 +51,7 @@ void Elements::tangent_one_by_one(std::size_t batch, std::span<const double> x, 
             double* block = blocks + lane;
             for (int b = 0; b < nodes_per_tet_; ++b) {
                 const double* gb = gradient(tet, q, b);
-                Eigen::Matrix<double, 9, 3> change = gb[0] * H.leftCols<3>();  // of P with the motion of b
+                Eigen::Matrix<double, 9, 3> change = gb[0] * H.leftCols<3>();  // of P, for a motion of b
                 for (int l = 1; l < 3; ++l) change += gb[static_cast<std::size_t>(l) * lanes] * H.middleCols<3>(3 * l);
                 for (int a = 0; a <= b; ++a, block += 9 * lanes) {
                     const double* ga = gradient(tet, q, a);

@@ -26,7 +26,7 @@ constexpr double gauss_b = 0.13819660112501051518;  // (5 - sqrt 5) / 20
 
 using Barycentric = std::array<double, 4>;
 
-/// What one batch does at its nodes, (nodes_per_tet, 3, lanes).
+/// Forces of one batch on its nodes, (nodes_per_tet, 3, lanes).
 struct BatchForces {
     alignas(64) double values[10 * 3 * batch_lanes];
 };
@@ -64,7 +64,7 @@ Matrix3 jacobian_of(const mesh::TetMesh& mesh, std::size_t tet, const ShapeGradi
     return dX.rightCols<3>().colwise() - dX.col(0);
 }
 
-/// grad N_a = J^-T d N_a / d (b1, b2, b3), a number every `batch_lanes`.
+/// grad N_a = J^-T d N_a / d (b1, b2, b3), stored with a stride of `batch_lanes`.
 void put_gradients(const ShapeGradients& dN, const Matrix3& jacobian, double* gradients) {
     const Matrix3 inverse = jacobian.inverse().transpose();
     for (Eigen::Index a = 0; a < dN.rows(); ++a) {
@@ -132,8 +132,8 @@ Result<Elements> Elements::create(const Description& description) {
     return elements;
 }
 
-/// Within each law, neighbours in space are neighbours in memory: what tets of a batch, a piece or a run have in common
-/// is many nodes, whatever order the file has them in.
+/// Within each law, sorts tets so that neighbours in space are neighbours in memory: tets of a batch, a piece or a run
+/// then share many nodes, whatever their order in the file.
 void Elements::group_by_law(const mesh::TetMesh& mesh) {
     std::vector<Vec3> centre(law_.size());
     std::vector<std::vector<int>> groups(laws_.size());
@@ -160,7 +160,7 @@ void Elements::group_by_law(const mesh::TetMesh& mesh) {
     volume_.resize(batches() * points() * lanes);
 }
 
-/// Nodes, gradients and volumes. An error names the first tet that is flat.
+/// Computes nodes, gradients and volumes. Errors: a flat tet; the message names the first one.
 Status Elements::integrate(const mesh::TetMesh& mesh) {
     std::vector<ShapeGradients> shapes;
     for (const Barycentric& b : integration_points(mesh.order)) shapes.push_back(shape_gradients(mesh.order, b));
@@ -190,7 +190,7 @@ Status Elements::integrate(const mesh::TetMesh& mesh) {
     return {};
 }
 
-/// Masses of tets and nodes.
+/// Computes masses of tets and nodes.
 void Elements::weigh(const Description& description) {
     const mesh::TetMesh& mesh = description.mesh;
     for (const Barycentric& b : integration_points(mesh.order)) shapes_.push_back(mesh::shape_functions(mesh.order, b));
@@ -206,7 +206,7 @@ void Elements::weigh(const Description& description) {
     }
 }
 
-/// A quarter of an object's mass at each of its nodes, and the masses at points.
+/// Adds a quarter of an object's mass at each of its nodes, and the point masses.
 void Elements::add_lumps(const Description& description) {
     for (const FreeObject& object : description.objects) {
         for (const int node : object.nodes) lumps_.push_back({{node}, {1.0}, object.mass_kg / 4});
@@ -219,7 +219,7 @@ void Elements::add_lumps(const Description& description) {
     }
 }
 
-/// The last batch of a law may have lanes left: they repeat its first tet, with no volume.
+/// Unused lanes in the last batch of a law repeat its first tet, with zero volume.
 void Elements::fill_empty_lanes() {
     for (std::size_t place = 0; place < tet_.size(); ++place) {
         if (tet_[place] != no_tet) continue;
@@ -263,7 +263,7 @@ BatchResult Elements::forces_one_by_one(std::size_t batch, std::span<const doubl
         for (int q = 0; tet != no_tet && q < points_per_tet_; ++q) {
             const Matrix3 F = deformation_gradient(tet, q, x);
             const double J = F.determinant();
-            // A NaN must count as inverted: the comparison is written so that it does.
+            // A NaN must count as inverted, hence this form of the comparison.
             result.min_J = J > 0 ? std::min(result.min_J, J) : -1;
             if (!(J > 0)) return result;
             const double volume = point_volume(tet, q);

@@ -23,58 +23,59 @@ struct Description;
 /// F = sum_a x_a (grad N_a)^T, f_a = sum_q w_q P grad N_a. All results are the same bits on any number of threads.
 class Elements {
 public:
-    /// An error names a tet that is flat or turned inside out at rest.
+    /// Errors: a tet that is flat or inverted at rest; the message names it.
     [[nodiscard]] static Result<Elements> create(const Description& description);
 
     struct Evaluation {
-        double energy_J = 0;  ///< of the laws that have one
+        double energy_J = 0;  ///< of the laws that have an energy
         double min_J = 1;     ///< over all integration points; if it is not positive, nothing else is computed
     };
-    /// Adds the internal forces (3n) at node positions `x` (3n). Without `forces` only energy and min_J are found.
+    /// Adds the internal forces (3n) at node positions `x` (3n). With empty `forces` only energy and min_J are
+    /// computed.
     Evaluation evaluate(std::span<const double> x, std::span<double> forces) const;
 
-    /// Where the pairs of the tets' nodes go in a pattern over free nodes: made once for each pattern.
+    /// Maps the pairs of the tets' nodes to a pattern over free nodes: made once for each pattern.
     [[nodiscard]] BlockSums block_sums(const std::vector<int>& free_index,
                                        const linalg::SymmetricPattern& pattern) const;
     /// Adds the tangent stiffness to the `values` of the pattern of the sums, in blocks of 3. With `project`, every
     /// integration point contributes the nearest positive semi-definite matrix instead. Precondition: min_J > 0.
     void add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values, bool project) const;
 
-    /// Adds the skew part of the tangent, which only laws without an energy have and add_tangent leaves out, to a
+    /// Adds the skew part of the tangent, which add_tangent leaves out and only laws without an energy have, to a
     /// pattern of block 3; `index` (n) of each node in it, or -1. The blocks at and below the diagonal are set; those
     /// above are minus their transposes. Precondition: min_J > 0.
     void add_skew(std::span<const double> x, const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
                   std::span<double> values) const;
 
-    /// Adds the weighted Laplacian G^T W G (thesis A.4, A^T A, in the metric of the deformation gradient), one number
+    /// Adds the weighted Laplacian G^T W G (A^T A of thesis A.4, in the metric of the deformation gradient), one number
     /// for each pair of the pattern of the sums; W = stiffness_bound(law) times volume.
     void add_laplacian(const BlockSums& sums, std::span<double> values) const;
     /// result (3n) += Laplacian of u (3n).
     void apply_laplacian(std::span<const double> u, std::span<double> result) const;
 
-    /// result (3n) += G^T W D with D = exp(M) F - F_end at each point: the second-order term of the rotation, which
-    /// a straight motion of the nodes leaves out. W as in the Laplacian.
+    /// result (3n) += G^T W D with D = exp(M) F - F_end at each point: the second-order term of the rotation, which a
+    /// straight step of the nodes lacks. W as in the Laplacian.
     void add_rotation_term(const RotatingStep& rotating, std::span<double> result) const;
 
     /// Rotation of each point from `before` to `now` (3n), for add_rotated. Precondition: min_J > 0 in both.
     void find_rotations(std::span<const double> before, std::span<const double> now,
                         AlignedArray<double>& rotations) const;
     enum class Direction { on, back };
-    /// result (3n) += G^T W R G u, or with R^T: what the Laplacian makes into u turned on or back.
+    /// result (3n) += G^T W R G u, or with R^T: the Laplacian of u with its gradients rotated forwards or back.
     void add_rotated(const AlignedArray<double>& rotations, Direction direction, std::span<const double> u,
                      std::span<double> result) const;
 
-    /// The consistent mass matrix M_ab = integral of density N_a N_b of straight tets, with the masses of objects and
-    /// at points: factor * M added to a pattern of block 3, and result (3n) += M u.
+    /// The consistent mass matrix of straight tets, M_ab = integral of density N_a N_b, with the masses of objects and
+    /// point masses: factor * M added to a pattern of block 3, and result (3n) += M u.
     void add_mass(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern, std::span<double> values,
                   double factor) const;
     void apply_mass(std::span<const double> u, std::span<double> result) const;
-    /// That of the tets alone, with other masses (m).
+    /// The same for the tets alone, with given masses (m).
     void apply_mass(std::span<const double> tet_mass, std::span<const double> u, std::span<double> result) const;
-    /// (m) u . M v of each tet for each kg of its mass.
+    /// (m) u . M v of each tet per kg of its mass.
     [[nodiscard]] std::vector<double> mass_products(std::span<const double> u, std::span<const double> v) const;
 
-    /// Integral of density times N_a: what gravity multiplies, (n) kg.
+    /// (n) integral of density times N_a, kg: the nodal masses for gravity.
     [[nodiscard]] const std::vector<double>& node_mass_kg() const { return node_mass_; }
     [[nodiscard]] bool has_energy() const { return has_energy_; }
 
@@ -102,7 +103,7 @@ public:
         return shapes_[static_cast<std::size_t>(point)][static_cast<std::size_t>(a)];
     }
 
-    /// Node lists of all tets and of masses at points, as free indices: the cliques of the stiffness pattern.
+    /// Node lists of all tets and point masses, as free indices: the cliques of the stiffness pattern.
     [[nodiscard]] linalg::Lists cliques(const std::vector<int>& free_index) const;
 
 private:
@@ -155,7 +156,7 @@ private:
     std::vector<std::vector<double>> shapes_;  ///< (points, nodes_per_tet) N_a
     std::vector<double> node_mass_;
     std::vector<double> tet_mass_;  ///< (m) kg
-    /// A mass that moves with the weighted mean of nodes: mass w wT.
+    /// A point mass that moves with the weighted mean of nodes: mass w w^T.
     struct Lump {
         std::vector<int> nodes;
         std::vector<double> weights;
@@ -164,7 +165,7 @@ private:
     std::vector<Lump> lumps_;
     std::vector<material::Law> laws_;
     NodeSums sums_;
-    mutable ArrayPool<double> scratch_;  ///< sums of pieces and runs
+    mutable ArrayPool<double> scratch_;  ///< partial sums of pieces and runs
 };
 
 }  // namespace pliant::sim

@@ -7,7 +7,7 @@
 namespace pliant::sim {
 namespace {
 
-/// Of the last state and of the one before it in a step of BDF2 that is r times as long as the last one.
+/// Weights of the last two states in a BDF2 step that is r times as long as the last one.
 struct Bdf2Weights {
     double now, before;
 };
@@ -70,8 +70,8 @@ void Inertia::set_conserving() {
     mass_entry_ = mass_rate_ + rate_ * damping_.mass_per_s;
 }
 
-/// Held nodes go where they are moved: the mean of the velocities at both ends of a conserving step says nothing of
-/// their velocity at the end, which would swing about the true one for ever.
+/// Held nodes follow their prescribed motion: for them the velocity of a conserving step, derived from the mean of both
+/// ends, would oscillate about the true one for ever.
 Eigen::VectorXd Inertia::velocity(const Eigen::VectorXd& x) const {
     if (scheme_ != Scheme::conserving) return rate_ * (x - from_);
     Eigen::VectorXd v = 2 * rate_ * (x - from_) - start_.v;
@@ -82,7 +82,7 @@ Eigen::VectorXd Inertia::velocity(const Eigen::VectorXd& x) const {
     return v;
 }
 
-/// What the mass is multiplied with, over its rate.
+/// The factor of the mass in the gradient, divided by its rate.
 Eigen::VectorXd Inertia::off(const Eigen::VectorXd& x) const {
     Eigen::VectorXd off = x - coast_;
     if (scheme_ != Scheme::conserving) return off;
@@ -92,7 +92,7 @@ Eigen::VectorXd Inertia::off(const Eigen::VectorXd& x) const {
     return off;
 }
 
-/// Errors are h^3 times the third derivative, times a number that theory gives for each of the two.
+/// Errors are h^3 times the third derivative, times a constant for each of the two methods.
 Eigen::VectorXd Inertia::error(const Eigen::VectorXd& x) const {
     const History& h = start_;
     const bool of_first_order = scheme_ == Scheme::euler || (scheme_ == Scheme::even && !even_);
@@ -136,8 +136,8 @@ Eigen::VectorXd Inertia::damping_force(const Eigen::VectorXd& motion) const {
     return force;
 }
 
-/// With p and q of the two last states or of the last: by p the gradient changes by -(c^2 M + c C), by q by -c M; the
-/// velocity by -c and 0.
+/// With p and q from the last two states or the last one: with respect to p the gradient changes by -(c^2 M + c C),
+/// with respect to q by -c M; the velocity by -c and 0.
 History Inertia::start_weights(const Eigen::VectorXd& force_weights, const Eigen::VectorXd& velocity_weights) const {
     const Eigen::VectorXd mass = -rate_ * mass_times(force_weights);
     const Eigen::VectorXd by_from = rate_ * (mass - damping_force(force_weights) - velocity_weights);

@@ -16,7 +16,7 @@ namespace {
 using linalg::Matrix3;
 using linalg::Vector3;
 
-/// Rows of the vectors that the kinds need, by the points (centre, and an arm along each axis) of either thing.
+/// Rows of the vectors that each kind needs, by the points of both things (centre, and an arm along each axis).
 struct RowOf {
     std::array<double, 4> first, second;
 };
@@ -90,7 +90,7 @@ JointForce::JointForce(const Joint& joint)
     place_fixed_ = at.col(0);
 }
 
-/// How many of the rows are offsets of points.
+/// Number of rows that are offsets of points.
 Eigen::Index JointForce::points() const {
     switch (kind_) {
         case Joint::Kind::ball:
@@ -266,7 +266,7 @@ void JointForce::append_clique(const std::vector<int>& index, linalg::Lists& cli
     append_node_clique(nodes_, index, cliques);
 }
 
-/// Forces on the nodes and on what is fixed of the second thing, about the joint's point there.
+/// Total force and torque on the second thing, on its nodes and its fixed points, about the joint's point there.
 JointForce::Load JointForce::load(std::span<const double> x, const JointDrive& drive) const {
     const Vectors by = slopes(vectors(x), drive);
     Vector3 place = place_fixed_;
@@ -279,7 +279,7 @@ JointForce::Load JointForce::load(std::span<const double> x, const JointDrive& d
         const Vector3 arm = linalg::view(x, nodes_[k]) - place;
         load.torque -= arm.cross(on_nodes.col(static_cast<Eigen::Index>(k)));
     }
-    // Rows hold fixed points times their factors, which add up to 1 in an offset and to 0 in a direction.
+    // Rows hold fixed points times their factors, which sum to 1 for an offset and to 0 for a direction.
     for (Eigen::Index row = 0; second_is_fixed_ && row < by.cols(); ++row) {
         const Vector3 arm = row < points() ? Vector3(second_fixed_.col(row) - place) : Vector3(second_fixed_.col(row));
         load.torque -= arm.cross(Vector3(by.col(row)));

@@ -1,16 +1,16 @@
-// What a joint does to the two things that it joins: springs stiff enough to count as rigid, and what acts along the
-// one coordinate that a hinge and a slider leave open.
+// Forces of a joint between two things: springs stiff enough to count as rigid, and a force along the one coordinate
+// that a hinge or slider leaves free.
 //
-// The joint knows vectors that are linear in the nodes, y = sum of w x + f: how far points of the second thing are from
-// the same points of the first, d, and directions that are fixed to either. With k the stiffness and n points,
+// The joint depends on vectors that are linear in the nodes, y = sum of w x + f: the distances d of points of the
+// second thing from the same points of the first, and directions fixed to either. With k the stiffness and n points,
 //
 //   ball     E = k/2 |d|^2                                one point
 //   hinge    E = k/2 sum |d|^2 + U(q)                     two points of the axis; q the angle about it
-//   glue     E = k/2 sum |d|^2                            three points that are not on one line
-//   slider   E = k/2 (sum |d|^2 - n q^2) + U(q)           the same; q = t . mean of d, t the axis as the first has it
+//   glue     E = k/2 sum |d|^2                            three points that are not collinear
+//   slider   E = k/2 (sum |d|^2 - n q^2) + U(q)           the same; q = t . mean of d, t the axis fixed to the first
 //
-// The slider's is k/2 min over s of sum |d - s t|^2. The angle is atan2(v . w, u . w) with u, v of the first and w of
-// the second, normal to the axis.
+// The slider's is k/2 min over s of sum |d - s t|^2. The angle is atan2(v . w, u . w) with u, v fixed to the first and
+// w to the second, normal to the axis.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,12 +24,12 @@
 
 namespace pliant::sim {
 
-/// What a joint is given at one instant.
+/// Input of a joint at one instant.
 struct JointDrive {
-    double wanted = 0;  ///< place, or force along the coordinate: rad, m, N m or N
-    /// The coordinate where the step begins, with whole turns; what damps resists the way from there.
+    double wanted = 0;  ///< target position, or force along the coordinate: rad, m, N m or N
+    /// The coordinate at the start of the step, with whole turns; damping resists the change from there.
     double start = 0;
-    double dt = 0;  ///< of a step in time, s; 0: at rest at every instant, nothing damps
+    double dt = 0;  ///< length of a time step, s; 0: quasi-static, no damping
 };
 
 class JointForce {
@@ -45,24 +45,24 @@ public:
                      const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const;
     void append_clique(const std::vector<int>& index, linalg::Lists& cliques) const;
 
-    /// Angle of a hinge, rad, or place of a slider, m; 0 at rest and of what has neither. Of an angle the one that is
+    /// Angle of a hinge, rad, or displacement of a slider, m; 0 at rest and for other joints. The angle is the one
     /// nearest to `start`.
     [[nodiscard]] double coordinate(std::span<const double> x, double start) const;
     /// forces (3n) += factor * its gradient.
     void add_coordinate_gradient(std::span<const double> x, double factor, std::span<double> forces) const;
     [[nodiscard]] bool has_coordinate() const { return kind_ == Joint::Kind::hinge || kind_ == Joint::Kind::slider; }
-    /// -U'(q): what drives, holds and damps it, N m or N.
+    /// -U'(q): drive, hold and damping along the coordinate, N m or N.
     [[nodiscard]] double effort(std::span<const double> x, const JointDrive& drive) const;
 
-    /// How U' changes with what is wanted: of a place that is held minus that stiffness, of a force minus one.
+    /// dU'/d(wanted): for a held position minus its stiffness, for a force -1.
     [[nodiscard]] double slope_by_wanted() const;
 
-    /// What the first thing does to the second, N, and about where the joint is on the second, N m.
+    /// Load of the first thing on the second: force, N, and torque about the joint's point on the second, N m.
     struct Load {
         linalg::Vector3 force = linalg::Vector3::Zero(), torque = linalg::Vector3::Zero();
     };
     [[nodiscard]] Load load(std::span<const double> x, const JointDrive& drive) const;
-    /// How far the joint's point of the second thing is from that of the first, m.
+    /// Distance of the joint's point on the second thing from that on the first, m.
     [[nodiscard]] linalg::Vector3 gap(std::span<const double> x) const;
 
     [[nodiscard]] double stiffness_N_m() const { return stiffness_; }
@@ -73,7 +73,7 @@ private:
     struct Coordinate {
         double value = 0;
         Vectors gradient;
-        Eigen::MatrixXd hessian;  ///< empty where it was not asked for
+        Eigen::MatrixXd hessian;  ///< empty if not requested
     };
     /// U and its derivatives, at the coordinate q.
     struct Law {
@@ -83,7 +83,7 @@ private:
     [[nodiscard]] Coordinate coordinate_of(const Vectors& y, bool with_hessian) const;
     [[nodiscard]] Coordinate angle_of(const Vectors& y, bool with_hessian) const;
     [[nodiscard]] Coordinate place_of(const Vectors& y, bool with_hessian) const;
-    /// N m/rad or N/m: what holds at a place, or at a limit, is as stiff as what joins.
+    /// N m/rad or N/m: holding a position, or a limit, is as stiff as the joint itself.
     [[nodiscard]] double hold() const { return kind_ == Joint::Kind::hinge ? stiffness_ * arm_ * arm_ : stiffness_; }
     [[nodiscard]] double unwrapped(double q, double start) const;
     [[nodiscard]] Law law(double q, const JointDrive& drive) const;
@@ -96,10 +96,10 @@ private:
     JointLaw law_;
     std::vector<int> nodes_;
     Eigen::MatrixXd weights_;        ///< (rows, nodes)
-    Eigen::MatrixXd second_;         ///< (rows, nodes) the part of them that is the second thing's
+    Eigen::MatrixXd second_;         ///< (rows, nodes) the part of them that belongs to the second thing
     Vectors fixed_;                  ///< (3, rows)
     Vectors second_fixed_;           ///< (3, rows) likewise
-    bool second_is_fixed_;           ///< in space: it is the world
+    bool second_is_fixed_;           ///< the second thing is the world, fixed in space
     Eigen::VectorXd place_weights_;  ///< (nodes) of the joint's point on the second thing
     linalg::Vector3 place_fixed_;
 };

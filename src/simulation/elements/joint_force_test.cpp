@@ -1,4 +1,4 @@
-// Joints against differences of their energy, and against what balances.
+// Joint forces against differences of their energy, and against equilibrium.
 #include "simulation/elements/joint_force.hpp"
 
 #include <doctest/doctest.h>
@@ -103,7 +103,7 @@ TEST_CASE("force and torque are those on the second thing, and do work as the en
         Eigen::Vector3d place = Eigen::Vector3d::Zero();
         const Attachment at = carried(4)[0];
         for (std::size_t k = 0; k < 4; ++k) place += at.weights[k] * x.segment<3>(3 * at.nodes[k]);
-        // The second thing moves by a, and turns by b about the joint's point.
+        // The second thing moves by a, and rotates by b about the joint's point.
         const Eigen::Vector3d a(0.3, -0.2, 0.5), b(-0.4, 0.6, 0.1);
         Eigen::VectorXd motion = Eigen::VectorXd::Zero(24);
         for (int node = 4; node < 8; ++node) motion.segment<3>(3 * node) = a + b.cross(x.segment<3>(3 * node) - place);
@@ -112,7 +112,7 @@ TEST_CASE("force and torque are those on the second thing, and do work as the en
     }
 }
 
-TEST_CASE("what moves as one with the other end feels nothing") {
+TEST_CASE("a rigid motion of both ends causes no joint force") {
     for (const Joint::Kind kind : kinds) {
         Joint joint = some_joint(kind, false);
         joint.law = {};
@@ -126,7 +126,7 @@ TEST_CASE("what moves as one with the other end feels nothing") {
 TEST_CASE("the angle counts whole turns from where the step began") {
     Joint joint = some_joint(Joint::Kind::hinge, true);
     joint.law = {};
-    // The first thing has its own axes at the origin; the second, which is fixed, is that turned by q about the first.
+    // The first thing has its own axes at the origin; the second, which is fixed, is rotated by q about the first axis.
     for (std::size_t p = 0; p < 4; ++p)
         joint.first[p] = {{0, 1, 2, 3}, {p == 0 ? 1.0 : 0, p == 1 ? 1.0 : 0, p == 2 ? 1.0 : 0, p == 3 ? 1.0 : 0}, {}};
     Eigen::VectorXd x = Eigen::VectorXd::Zero(24);

@@ -1,4 +1,4 @@
-// What an energy of a few nodes that all depend on each other adds to a matrix: a block for every pair of them.
+// Adds the Hessian of an energy of a few nodes that are all coupled: one block for every pair.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 namespace pliant::sim {
 
 /// values += block_of(a, b), a Matrix3, at row nodes[a] and column nodes[b] of a pattern (block 3) that holds all
-/// pairs. `index` (n): where each node stands in it, -1: nowhere.
+/// pairs. `index` (n) of each node in it; -1: not in it.
 template <class BlockOf>
 void add_node_blocks(std::span<const int> nodes, const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
                      std::span<double> values, const BlockOf& block_of) {
@@ -28,7 +28,7 @@ void add_node_blocks(std::span<const int> nodes, const std::vector<int>& index, 
     }
 }
 
-/// All of them as one clique of that pattern.
+/// Appends the nodes as one clique of that pattern.
 inline void append_node_clique(std::span<const int> nodes, const std::vector<int>& index, linalg::Lists& cliques) {
     std::vector<int> clique;
     for (const int node : nodes) clique.push_back(index[static_cast<std::size_t>(node)]);

@@ -15,7 +15,8 @@ namespace pliant::sim::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// list (places, 4) += forces (nodes_per_tet, 3, lanes). The three of a node are turned to lie side by side first.
+/// list (places, 4) += forces (nodes_per_tet, 3, lanes), transposed so that the three components of a node are
+/// adjacent.
 void add_to_list(const double* forces, const std::uint16_t* place, std::size_t nodes_per_tet, double* list) {
     const hn::CappedTag<double, batch_lanes> across;
     const hn::CappedTag<double, 4> along;
@@ -53,7 +54,7 @@ NodeSums::NodeSums(std::span<const int> nodes, std::size_t nodes_per_tet, std::s
     static_assert(batches_per_piece * 10 * lanes <= std::numeric_limits<std::uint16_t>::max());
     place_.resize(nodes.size());
     std::vector<int> listed;                     // nodes of all lists, one list after the other
-    std::vector<std::size_t> place(node_count);  // of a node in `listed`, where that is in the list at hand
+    std::vector<std::size_t> place(node_count);  // position of a node in `listed`, if it is in the current list
     for (std::size_t begin = 0; begin < batches_; begin += batches_per_piece) {
         const std::size_t end = std::min(batches_, begin + batches_per_piece), start = listed.size();
         for (std::size_t k = begin * width_; k < end * width_; ++k) {

@@ -1,4 +1,4 @@
-// What tets do at their nodes, added up for each node.
+// Sums of element contributions at the nodes.
 #pragma once
 
 #include <algorithm>
@@ -13,19 +13,19 @@
 
 namespace pliant::sim {
 
-/// Batches are added up piece by piece, each piece in a short list of the nodes that it touches, and then the lists
-/// node by node: nearly all additions happen in the cache that is nearest, and pieces do not wait for one another. The
-/// same bits on any number of threads.
+/// Batches are summed in pieces, each with a short list of the nodes that it touches, and then the lists are summed
+/// node by node: nearly all additions happen in the nearest cache, and pieces do not wait for one another. The same
+/// bits on any number of threads.
 class NodeSums {
 public:
     NodeSums() = default;
     /// `nodes`: of each batch, (batches, nodes_per_tet, lanes).
     NodeSums(std::span<const int> nodes, std::size_t nodes_per_tet, std::size_t node_count);
 
-    /// Numbers that all lists take.
+    /// Total size of all lists, in numbers.
     [[nodiscard]] std::size_t space() const { return stride * list_start_.back(); }
 
-    /// Calls piece(k, first batch, one past the last) for all pieces, at once.
+    /// Calls piece(k, first batch, one past the last) for all pieces, concurrently.
     template <class Piece>
     void for_pieces(const Piece& piece) const {
         parallel_for(pieces(), 1, [&](std::size_t begin, std::size_t end) {
@@ -35,8 +35,8 @@ public:
     }
     [[nodiscard]] std::size_t pieces() const { return list_start_.size() - 1; }
 
-    /// In `lists` (space): the one of a piece is cleared; forces (nodes_per_tet, 3, lanes) of a batch are added to that
-    /// of its piece.
+    /// In `lists` (space): clears the list of a piece; adds forces (nodes_per_tet, 3, lanes) of a batch to the list of
+    /// its piece.
     void clear(std::size_t piece, double* lists) const;
     void add(std::size_t batch, const double* forces, double* lists) const;
     /// result (3n) += the lists of all pieces.
@@ -44,7 +44,7 @@ public:
 
 private:
     static constexpr std::size_t batches_per_piece = 32;
-    static constexpr std::size_t stride = 4;  ///< numbers of a node in a list: three, and one of no use
+    static constexpr std::size_t stride = 4;  ///< numbers per node in a list: three, and one for padding
 
     std::size_t width_ = 0;  ///< nodes_per_tet * lanes
     std::size_t batches_ = 0;

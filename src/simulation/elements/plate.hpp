@@ -26,7 +26,7 @@ public:
     /// For a pattern over free nodes (block 3) that holds all pairs of the plate's nodes.
     void add_hessian(std::span<const double> x, const std::vector<int>& free_index,
                      const linalg::SymmetricPattern& pattern, std::span<double> values) const;
-    /// forces (3n) += the change of that gradient, at the same stiffness, with a motion (3n) of the rest positions.
+    /// forces (3n) += the change of that gradient with a motion (3n) of the rest positions, at the same stiffness.
     void add_rest_product(std::span<const double> x, std::span<const double> motion, std::span<double> forces) const;
     /// result (3n) += the transpose of that product with `weights` (3n) of the forces.
     void add_rest_weights(std::span<const double> x, std::span<const double> weights, std::span<double> result) const;

@@ -1,4 +1,4 @@
-// Rigid plates: derivatives, and a plate that stays flat where the bare body would not.
+// Rigid plates: derivatives, and a plate that stays flat where the body alone would not.
 #include "simulation/elements/plate.hpp"
 
 #include <doctest/doctest.h>
@@ -78,7 +78,7 @@ TEST_CASE("a bar squeezed between a clamp and a plate: the plate's face stays as
         d.material_of_region = {0};
         d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
         const auto face = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 3 * side - 1e-9; });
-        // All of the force on one corner: without a plate it would be pulled out.
+        // The whole force on one corner: without a plate it would be pulled out.
         const auto corner = reference::nodes_where(d.mesh, [](Vec3 p) {
             return norm(p - Vec3{3 * side, 0, 0}) < 1e-9;
         });

@@ -1,10 +1,10 @@
 // Compiled once for each instruction set; the one that the machine has is chosen when the program runs.
 //
-// Stiffness with no direction in which it is negative. With F = U diag(l) V^T, seen in the frames of U and V, the
-// derivative of P couples the three stretches with one another (A below) and each pair of shears ij, ji only with each
-// other: together they have the eigenvalue (P_i - P_j) / (l_i - l_j), against each other (P_i + P_j) / (l_i + l_j),
-// with P_i the derivative of the energy with respect to l_i. Each of these is put to zero where it is negative (Smith,
-// de Goes and Kim 2019, "Analytic eigensystems for isotropic distortion energies").
+// Positive semi-definite stiffness. With F = U diag(l) V^T, in the frames of U and V, the derivative of P couples the
+// three stretches with one another (A below) and each pair of shears ij, ji only with each other: their sum has the
+// eigenvalue (P_i - P_j) / (l_i - l_j), their difference (P_i + P_j) / (l_i + l_j), with P_i the derivative of the
+// energy with respect to l_i. Negative eigenvalues are set to zero (Smith, de Goes and Kim 2019, "Analytic eigensystems
+// for isotropic distortion energies").
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simulation/elements/projected_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -20,14 +20,13 @@ HWY_INLINE V positive(V value) {
     return hn::Max(value, hn::Zero(Tag()));
 }
 
-/// Of a symmetric matrix: S = vectors diag(values) vectors^T, values in no order.
+/// Eigendecomposition of a symmetric matrix: S = vectors diag(values) vectors^T, values unordered.
 struct Eigen3 {
     V values[3];
-    Matrix vectors;  ///< one a column
+    Matrix vectors;  ///< one per column
 };
 
-/// Jacobi's rotations. Four sweeps over the three of them leave nothing beside the diagonal that double precision
-/// shows.
+/// Jacobi rotations. After four sweeps the off-diagonal entries vanish in double precision.
 HWY_INLINE Eigen3 eigen(Matrix S) {
     constexpr int sweeps = 4;
     Eigen3 result;
@@ -41,7 +40,7 @@ HWY_INLINE Eigen3 eigen(Matrix S) {
         const V twice = hn::Add(S.m[q][p], S.m[q][p]);
         const V apart = hn::Sub(S.m[q][q], S.m[p][p]);
         const V root = hn::Sqrt(hn::MulAdd(apart, apart, hn::Mul(twice, twice)));
-        // Of the angle that turns S_pq to zero; where there is nothing to turn the smallest of numbers keeps it at 0.
+        // Tangent of the angle that zeroes S_pq; the smallest number in the denominator keeps it 0 if S_pq is 0.
         const V tangent =
             hn::Div(hn::CopySign(twice, hn::Mul(twice, apart)), hn::Add(hn::Add(hn::Abs(apart), root), set(1e-300)));
         const V cosine = hn::Div(set(1), hn::Sqrt(hn::MulAdd(tangent, tangent, set(1))));
@@ -85,7 +84,7 @@ template <bool second>
 struct PrincipalForm {
     Matrix U, right;       ///< right: V
     Matrix A;              ///< between stretches
-    V same[3], across[3];  ///< of the shears beside each axis: of ij with itself, and with ji
+    V same[3], across[3];  ///< of the shears about each axis: coupling of ij with itself, and with ji
 
     using OfNode = Vector;  ///< V^T a
 
@@ -130,7 +129,7 @@ struct PrincipalForm {
             K.m[i][i] = hn::Mul(A.m[i][i], hn::Mul(a.v[i], b.v[i]));
             K.m[i][i] = hn::MulAdd(same[k], hn::Mul(a.v[j], b.v[j]), K.m[i][i]);
             K.m[i][i] = hn::MulAdd(same[j], hn::Mul(a.v[k], b.v[k]), K.m[i][i]);
-            // Rows belong to a. The shear of two directions is named by the axis beside both.
+            // Rows belong to a. The shear of two directions is indexed by the third axis.
             K.m[j][i] = hn::MulAdd(A.m[j][i], hn::Mul(a.v[i], b.v[j]), hn::Mul(across[k], hn::Mul(a.v[j], b.v[i])));
             K.m[i][j] = hn::MulAdd(A.m[i][j], hn::Mul(a.v[j], b.v[i]), hn::Mul(across[k], hn::Mul(a.v[i], b.v[j])));
         }

@@ -52,8 +52,8 @@ HWY_INLINE Matrix inverse(const Matrix& F) {
     return result;
 }
 
-/// Polynomials of a matrix: by Cayley and Hamilton c[0] I + c[1] A + c[2] A^2 holds all of them, so that a series takes
-/// sums of numbers and no product of matrices.
+/// Polynomials of a matrix: by the Cayley-Hamilton theorem c[0] I + c[1] A + c[2] A^2 represents all of them, so that
+/// series need only scalar operations instead of matrix products.
 class Polynomials {
 public:
     struct Coefficients {
@@ -98,7 +98,7 @@ private:
     V trace_, second_, determinant_;
 };
 
-/// Taylor's series of M / 8, squared three times: twelve digits up to a norm of 1, four up to 4.
+/// Taylor series of M / 8, squared three times: twelve digits up to a norm of 1, four up to 4.
 HWY_INLINE Matrix exponential(const Matrix& M) {
     constexpr int squarings = 3;
     constexpr int terms = 7;
@@ -109,7 +109,7 @@ HWY_INLINE Matrix exponential(const Matrix& M) {
     return of_A.of(sum);
 }
 
-/// -log(I - M) by its series, which is cut after M^6 / 6: what one step turned, of less than half a radian or so.
+/// -log(I - M) by its series up to M^6 / 6: for the rotation of one step, of less than about half a radian.
 HWY_INLINE Matrix logarithm(const Matrix& M) {
     constexpr int terms = 6;
     const Polynomials of_M(M);
@@ -118,7 +118,7 @@ HWY_INLINE Matrix logarithm(const Matrix& M) {
     return of_M.of(sum);
 }
 
-/// Positions of the nodes of several tets in the states of a Turning.
+/// Positions of the nodes of several tets in the states of a RotatingStep.
 template <int nodes>
 struct States {
     V now[nodes][3], end[nodes][3], past[RotatingStep::most_past][nodes][3];
@@ -132,7 +132,7 @@ struct States {
     }
 };
 
-/// M of a RotatingStep at one point; `F` and `E` are the deformation gradients now and at the end of the straight way.
+/// M of a RotatingStep at one point; `F` and `E` are the deformation gradients now and at the end of the straight step.
 template <int nodes>
 HWY_INLINE Matrix rate_of(const TetBatch& batch, const RotatingStep& rotating, const States<nodes>& states, int point,
                           int part, const Matrix& F, const Matrix& E) {
@@ -194,7 +194,7 @@ void rotation_term_of(const TetBatch& batch, const RotatingStep& rotating, doubl
     }
 }
 
-/// The rotation nearest to F, by Newton's iteration (Higham 1986): twelve digits for stretches from a half to two.
+/// The rotation nearest to F, by Newton's iteration (Higham 1986): twelve digits for stretches from 1/2 to 2.
 HWY_INLINE Matrix rotation_of(const Matrix& F) {
     constexpr int iterations = 5;
     Matrix R = F;

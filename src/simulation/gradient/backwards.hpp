@@ -1,4 +1,5 @@
-// Goes backwards over steps that can only be taken forwards, with a few states kept: binomial checkpoints.
+// Traverses steps backwards that can only be computed forwards, with a limited number of stored states: binomial
+// checkpointing.
 #pragma once
 
 #include <algorithm>
@@ -9,22 +10,23 @@
 
 namespace pliant::sim {
 
-/// How many steps can be gone back over with so many states and each step taken forward so many times at most.
+/// Number of steps that can be traversed backwards with `states` stored states if each step is computed at most `times`
+/// times.
 [[nodiscard]] inline double reach_back(int states, int times) {
     double count = 1;
     for (int i = 1; i <= states; ++i) count = count * (times + i) / i;
     return count;
 }
 
-/// How many times each of `steps` is taken forward at most, with so many states beside the first.
+/// Largest number of times that any of `steps` is computed, with `kept` stored states in addition to the first.
 [[nodiscard]] inline int times_forward(int steps, int kept) {
     int times = 1;
     while (reach_back(kept + 1, times) < steps) ++times;
     return times;
 }
 
-/// How far to go before the next state is kept, so that no step is taken more often than that. Source: Griewank and
-/// Walther 2000, algorithm 799 (revolve).
+/// Number of steps to advance before storing the next state, so that no step is computed more often than that. Source:
+/// Griewank and Walther 2000, algorithm 799 (revolve).
 [[nodiscard]] inline int next_kept(int steps, int kept) {
     const int times = times_forward(steps, kept);
     const double for_others = reach_back(kept, times), here = reach_back(kept + 1, times - 1);
@@ -33,8 +35,8 @@ namespace pliant::sim {
 }
 
 /// Calls back(state, k) for each step k from `end` down to begin + 1, with the state before it. `state` is that after
-/// step `begin`; forward(state, k) takes the state before step k to that after it. At most `kept` + 2 states exist at
-/// once. An error of either ends it.
+/// step `begin`; forward(state, k) advances the state before step k to that after it. At most `kept` + 2 states exist
+/// at once. An error of either ends it.
 template <class State>
 [[nodiscard]] Status go_back(State state, int begin, int end, int kept,
                              const std::function<Status(State&, int step)>& forward,

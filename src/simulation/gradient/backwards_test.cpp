@@ -1,4 +1,4 @@
-// Steps gone back over: all of them, in order, from the right states, and no more often than promised.
+// Backward traversal of steps: all of them, in order, from the right states, and no more often than promised.
 #include "simulation/gradient/backwards.hpp"
 
 #include <doctest/doctest.h>
@@ -11,8 +11,8 @@ using namespace pliant::sim;
 namespace {
 
 struct Walk {
-    std::vector<int> back;   ///< steps, as they were gone back over
-    std::vector<int> times;  ///< (steps) that each was taken forwards
+    std::vector<int> back;   ///< steps, in the order of the backward pass
+    std::vector<int> times;  ///< (steps) how often each was computed forwards
     int most_states = 0;
 };
 
@@ -56,7 +56,7 @@ Walk walk(int steps, int kept) {
 
 }  // namespace
 
-TEST_CASE("every step is gone back over once, the last first") {
+TEST_CASE("every step is traversed backwards once, the last first") {
     for (const int kept : {0, 1, 2, 5, 8}) {
         for (const int steps : {1, 2, 3, 7, 50}) {
             const Walk w = walk(steps, kept);

@@ -1,7 +1,6 @@
-// Gradients of programs with objects, masses and bodies that nothing holds, in time, against the same steps converged
-// anew for robots that differ a little. What is lagged stays: normal forces and tangents of friction; so do the reaches
-// of contact, which depend on how far apart things are at rest where that is little. At equilibrium:
-// random_gradients_test.
+// Gradients of programs with objects, masses and free bodies, in time, against the same steps converged anew for
+// slightly different robots. Lagged quantities are held fixed: normal forces and tangents of friction; so are the
+// reaches of contact, which depend on small distances at rest. At equilibrium: random_gradients_test.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -24,7 +23,7 @@ Marker middle_of(const FreeObject& object) {
     return {object.name, {{object.nodes.begin(), object.nodes.end()}, {0.25, 0.25, 0.25, 0.25}, {}}};
 }
 
-/// A soft block that nothing holds on the ground, a box that is thrown onto it, and one beside it on the ground.
+/// A free soft block on the ground, a box that is thrown onto it, and one beside it on the ground.
 Description scene(double friction) {
     Description d = plain();
     d.supports.clear();
@@ -94,8 +93,7 @@ Steps taken(const Description& d, const Program& program) {
     return all;
 }
 
-/// The value of the objective after the same steps of a robot that differs by `change` of a number, or by what it
-/// starts with.
+/// The objective after the same steps of a robot that differs by `change` of a number, or in its initial state.
 double value_of(const Description& d, const Steps& as, const Objective& objective, const Parameter* p = nullptr,
                 double change = 0, std::optional<Damping> damping = std::nullopt) {
     Case c(d);

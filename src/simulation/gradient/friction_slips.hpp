@@ -1,5 +1,5 @@
-// The slips of pairs that rub, two numbers for each: what derivatives of friction with memory (contact/friction.hpp)
-// are made of, forwards and backwards.
+// The slips of pairs in frictional contact, two numbers for each. Derivatives of friction with memory
+// (contact/friction.hpp) are formed from them, forwards and backwards.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,14 +10,15 @@
 
 namespace pliant::sim {
 
-/// Along the tangents of each pair.
+/// Slips along the tangents of each pair.
 using Slips = std::vector<Eigen::Vector2d>;
 
-/// How far a motion, in the numbers of contact_forces.hpp, takes the two features of each pair past each other.
+/// Relative motion of the two features of each pair along its tangents, for a motion in the format of
+/// contact_forces.hpp.
 [[nodiscard]] Slips slips_of_motion(const Equilibrium& system, const contact::Friction& friction,
                                     const Eigen::VectorXd& motion);
 
-/// The transpose of that: adds to `forces`, in the same numbers.
+/// The transpose of that: adds to `forces`, in the same format.
 void add_to_forces(const Equilibrium& system, const contact::Friction& friction, const Slips& slips,
                    Eigen::VectorXd& forces);
 

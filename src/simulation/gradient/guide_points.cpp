@@ -12,26 +12,27 @@ namespace {
 
 using linalg::view;
 
-/// By the weight w of a node in an attachment: w moves the guide point by w x, takes w of the weight that a force on
-/// the node has, and moves the point at rest by w X.
+/// Derivatives with respect to the weight w of a node in an attachment: w changes the guide point by x dw, the adjoint
+/// weight of a force by the node's weight, and the rest point by X dw.
 struct ByWeight {
     Eigen::Vector3d place = Eigen::Vector3d::Zero();    ///< times x, m
     Eigen::Vector3d weights = Eigen::Vector3d::Zero();  ///< times the weight of the node's force
     Eigen::Vector3d at_rest = Eigen::Vector3d::Zero();  ///< times X, m
 };
 
-/// What a cable or a spring does to the measure.
+/// Derivatives of the measure with respect to a cable or spring.
 struct Pull {
     CablePath path;
-    double tension = 0;      ///< that acts along the path
-    double weighted = 0;     ///< by its weighted length: what its own equation asks for
-    double length = 0;       ///< by its length as such
-    double rest_length = 0;  ///< by its length at rest
+    double tension = 0;      ///< along the path
+    double weighted = 0;     ///< with respect to its weighted length, through its own equation
+    double length = 0;       ///< with respect to its length itself
+    double rest_length = 0;  ///< with respect to its rest length
     std::vector<double> shares{};
-    std::vector<double> by_segments{};  ///< by the length of each segment at rest, through where ends have met
+    std::vector<double> by_segments{};  ///< with respect to the rest length of each segment, through segments whose
+                                        ///< ends have met
 };
 
-/// Sets what lengths at rest do through segments whose ends have met.
+/// Sets the derivatives of rest lengths through segments whose ends have met.
 void add_met_segments(const Linearisation& at, const Eigen::VectorXd& weights, Pull& pull) {
     const Eigen::VectorXd& x = at.state().x;
     const MetSegments met(pull.path, view(x), pull.shares);
@@ -58,7 +59,7 @@ Pull pull_of_cable(const Linearisation& at, const Adjoint& adjoint, const Slope&
     return cable;
 }
 
-/// The force of a spring follows from its length and, where it is free at rest, from that at rest.
+/// The force of a spring depends on its length and, without a given free length, on its rest length.
 Pull pull_of_spring(const Linearisation& at, const Slope& of, std::size_t s, const Eigen::VectorXd& weights) {
     const Spring& spring = at.system().model().description().springs[s];
     const SpringPath& path = at.system().springs()[s];
@@ -80,12 +81,12 @@ Pull pull_of_spring(const Linearisation& at, const Slope& of, std::size_t s, con
     return pull;
 }
 
-/// t = d / |d|, or what a met segment has instead.
+/// t = d / |d|, or its replacement for a met segment.
 Eigen::Vector3d along(const CablePath& path, const Eigen::Vector3d& d) {
     return d / std::max(d.norm(), path.met_length_m());
 }
 
-/// A segment pulls with tension t; the weights of its ends differ by u, so that it counts u . t.
+/// A segment pulls with tension t; the adjoint weights of its ends differ by u, so that it contributes u . t.
 ByWeight of_segment(const Pull& pull, std::size_t k, const Eigen::VectorXd& x, const Eigen::VectorXd& rest,
                     const Eigen::VectorXd& weights) {
     const Eigen::Vector3d d = linalg::vector(pull.path.segment_vector(k, view(x)));
@@ -99,7 +100,7 @@ ByWeight of_segment(const Pull& pull, std::size_t k, const Eigen::VectorXd& x, c
                 along(pull.path, linalg::vector(pull.path.segment_vector(k, view(rest))))};
 }
 
-/// A guide point is the end of one segment and the beginning of the next.
+/// A guide point is the end of one segment and the start of the next.
 ByWeight of_point(const Pull& pull, std::size_t point, const Eigen::VectorXd& x, const Eigen::VectorXd& rest,
                   const Eigen::VectorXd& weights) {
     ByWeight sum;
@@ -122,7 +123,7 @@ Eigen::VectorXd guide_gradient(const Linearisation& at, const Adjoint& adjoint, 
     const Eigen::VectorXd rest = at.system().rest().x;
     const Eigen::VectorXd weights = at.force_weights(adjoint).head(x.size());
     Eigen::VectorXd result = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(guides.size()));
-    std::optional<Pull> pull;  // of the path that the guide point before is of
+    std::optional<Pull> pull;  // of the path of the previous guide point
     for (std::size_t g = 0; g < guides.size(); ++g) {
         const GuidePoint& guide = guides[g];
         if (!pull || guide.path != guides[g - 1].path || guide.of_spring != guides[g - 1].of_spring) {

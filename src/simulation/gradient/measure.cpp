@@ -14,7 +14,7 @@ namespace {
 using Kind = Measure::Kind;
 using linalg::view;
 
-/// Where something is measured.
+/// The state at which something is measured.
 struct Place {
     const Equilibrium& system_;
     const State& state_;
@@ -28,7 +28,7 @@ Slope nothing(const Place& at) {
     return no_slope(at.system());
 }
 
-/// Which actuator a measure is about.
+/// The actuator that a measure refers to.
 std::size_t actuator_of(const Description& d, const Measure& m) {
     const bool cable = m.kind == Kind::tension || m.kind == Kind::length || m.kind == Kind::length_ratio;
     return (cable ? 0 : d.cables.size()) + (m.pressure_load ? d.chambers.size() : 0) + m.index;
@@ -42,7 +42,7 @@ Slope of_point(const Place& at, const Attachment& point, const Vec3& direction) 
     return slope;
 }
 
-/// by_rest += what ends of a path that have met make of the rest shape, `factor` for each unit of its length.
+/// by_rest += derivative of the met length with respect to the rest shape, `factor` per unit of length.
 void add_met_length(const Place& at, const CablePath& path, double factor, Slope& slope) {
     const MetSegments met(path, view(at.state().x));
     if (!met.any()) return;
@@ -51,7 +51,7 @@ void add_met_length(const Place& at, const CablePath& path, double factor, Slope
     add_met_length_gradient(path, view(rest), factor * met.length_rate(), view(slope.by_rest));
 }
 
-/// factor times the measure of an actuator.
+/// Adds derivatives with respect to an actuator's measure, now and at rest.
 void add_measure(const Place& at, std::size_t a, double by_now, double by_rest, Slope& slope) {
     at.system().actuators()[a].add_measure_gradient(view(at.state().x), by_now, view(slope.state.by_positions));
     slope.by_measures.push_back({a, by_now, by_rest});
@@ -59,7 +59,7 @@ void add_measure(const Place& at, std::size_t a, double by_now, double by_rest, 
         add_met_length(at, at.system().actuators()[a].cable(), by_now, slope);
 }
 
-/// Length or volume, or its ratio to that at rest.
+/// Length or volume, or its ratio to the rest value.
 Slope of_measure(const Place& at, std::size_t a, bool ratio) {
     const Actuator& actuator = at.system().actuators()[a];
     const double now = actuator.measure(view(at.state().x)), rest = actuator.rest_measure();
@@ -69,7 +69,7 @@ Slope of_measure(const Place& at, std::size_t a, bool ratio) {
     return slope;
 }
 
-/// The multiplier or, where gap elements take a part of it, what is left to pull.
+/// The multiplier or, with gap elements, the part that is left to pull.
 Slope of_tension(const Place& at, std::size_t a) {
     Slope slope = nothing(at);
     slope.value = at.state().multiplier[static_cast<Eigen::Index>(a)];
@@ -89,7 +89,7 @@ Slope of_tension(const Place& at, std::size_t a) {
     return slope;
 }
 
-/// Minus the multiplier and, where air is meshed, what its elements resist.
+/// Minus the multiplier and, if air is meshed, the resistance of its elements.
 Slope of_pressure(const Place& at, std::size_t a) {
     Slope slope = nothing(at);
     slope.value = 0 - at.state().multiplier[static_cast<Eigen::Index>(a)];
@@ -106,7 +106,7 @@ Slope of_pressure(const Place& at, std::size_t a) {
     return slope;
 }
 
-/// The length of a spring, or its force. A spring that is free at rest gets its free length from there.
+/// The length of a spring, or its force. Without a given free length, the force depends on the rest length.
 Slope of_spring(const Place& at, std::size_t s, bool force) {
     const SpringPath& path = at.system().springs()[s];
     const Spring& spring = at.system().model().description().springs[s];
@@ -153,7 +153,7 @@ Slope of_contact(const Place& at, std::size_t obstacle, const Vec3& direction) {
     return slope;
 }
 
-/// Only the robot's own nodes take part.
+/// Only the robot's own nodes are involved.
 Slope of_self_contact(const Place& at) {
     Slope slope = nothing(at);
     const contact::Contact* contact = at.system().model().contact(at.controls().met);
@@ -167,7 +167,7 @@ Slope of_self_contact(const Place& at) {
     return slope;
 }
 
-/// How many there are of what a measure is about, and what they are called.
+/// Number of things that a measure can refer to, and their name.
 std::pair<std::size_t, const char*> count_of(const Description& d, const Measure& m) {
     switch (m.kind) {
         case Kind::marker:

@@ -1,4 +1,4 @@
-// What can be measured on a robot at one state, and how it changes with everything that it depends on.
+// What can be measured on a robot at one state, and the derivatives of each measure.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@
 
 namespace pliant::sim {
 
-/// One number. Forces and positions are those along `direction`, which may be of any length.
+/// A scalar measure. Forces and positions are taken along `direction`, which need not be normalised.
 struct Measure {
     enum class Kind {
         marker,         ///< coordinate, m
@@ -28,34 +28,37 @@ struct Measure {
         spring_force,   ///< N, positive where it pulls
         reaction,       ///< that a support exerts on the robot, N
         contact_force,  ///< that an obstacle exerts on the robot, N, with friction
-        self_contact,   ///< sum of the sizes of the robot's normal forces on itself, N
+        self_contact,   ///< sum of the magnitudes of the robot's normal forces on itself, N
     };
     Kind kind = Kind::marker;
     std::size_t index = 0;  ///< of the marker, cable, chamber, pressure load, spring, support or obstacle, in its list
     Vec3 direction{};
     Attachment point{};          ///< of Kind::point
-    bool pressure_load = false;  ///< of Kind::pressure: of a load, not of a chamber
+    bool pressure_load = false;  ///< for Kind::pressure: of a pressure load, not of a chamber
 };
 
-/// A measured value and its first derivatives, with the state and with what it depends on by itself.
+/// A measured value and its first derivatives: with respect to the state, and explicit ones.
 struct Slope {
     double value = 0;
     Quantity state;
-    /// Of the robot's own numbers, by kind, index and part; names and values are not filled in.
+    /// Explicit derivatives with respect to parameters, identified by kind, index and part; names and values are not
+    /// filled in.
     std::vector<std::pair<Parameter, double>> direct{};
-    /// How it depends on the measure of an actuator as such, now and at rest: what it is in `state`, too, and beyond
-    /// that by guide points and rest positions.
+    /// Explicit derivatives with respect to an actuator's measure, now and at rest: already included in `state`, needed
+    /// in addition for guide points and rest positions.
     struct ByMeasure {
         std::size_t actuator = 0;
         double now = 0, at_rest = 0;
     };
     std::vector<ByMeasure> by_measures{};
-    std::vector<ByMeasure> by_springs{};  ///< the same of the lengths of springs
-    Eigen::VectorXd by_rest{};            ///< (3n) by rest positions that no actuator's measure is about; empty: none
-    Eigen::VectorXd by_numbers{};         ///< (numbers) of the drawing, number_change.hpp; empty: none
+    std::vector<ByMeasure> by_springs{};  ///< the same for the lengths of springs
+    Eigen::VectorXd by_rest{};            ///< (3n) explicit derivative with respect to rest positions, without that of
+                                          ///< actuator measures; empty: none
+    Eigen::VectorXd by_numbers{};         ///< (numbers) explicit derivative with respect to numbers of the drawing,
+                                          ///< number_change.hpp; empty: none
 };
 
-/// An error: there is no such thing, in the words of Measure.
+/// Errors: there is nothing of that kind and index; the message uses the words of Measure.
 [[nodiscard]] Status check(const Equilibrium& system, const Measure& measure);
 
 /// Precondition: check() finds nothing wrong.
@@ -63,7 +66,7 @@ struct Slope {
                           const Measure& measure);
 [[nodiscard]] Slope slope(const Linearisation& at, const Measure& measure);
 
-/// Of what is 0 whatever happens.
+/// The slope of a constant.
 [[nodiscard]] Slope no_slope(const Equilibrium& system);
 /// sum += factor * slope.
 void add(const Slope& slope, double factor, Slope& sum);

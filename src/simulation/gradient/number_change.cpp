@@ -3,7 +3,7 @@
 namespace pliant::sim {
 namespace {
 
-/// The same unknowns in another robot: what it holds and what it is given is its own.
+/// The same unknowns in another robot, with its own supports and inputs.
 struct There {
     State state;
     Controls controls;

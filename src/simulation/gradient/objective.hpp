@@ -1,4 +1,4 @@
-// What a program is judged by: a function of measures at the end of each step.
+// The objective of a program: a function of measures at the end of each step.
 //
 //     Objective objective;
 //     objective.measures = along_axes({Measure::Kind::marker, 0});                  // x, y and z of the first marker
@@ -13,25 +13,25 @@
 
 namespace pliant::sim {
 
-/// A number, and how it changes with each measure; no slopes: it does not.
+/// A cost and its derivatives with respect to the measures; empty slopes stand for zero.
 struct Judgement {
     double value = 0;
     std::vector<double> slopes{};
 };
 
-/// The sum over the steps of a program, from 1, of what `judge` says. It is called once or more for a step, in any
-/// order, and must say the same each time. A weighted sum over steps has its weights in here.
+/// The sum of `judge` over the steps of a program, from step 1. It is called at least once per step, in any order, and
+/// must be deterministic. Include weights of the steps in `judge`.
 struct Objective {
     std::vector<Measure> measures;
     std::function<Judgement(int step, std::span<const double> values)> judge;
 };
 
-/// Sum of weight times squared difference; without weights each is 1. As many of all.
+/// Sum of weight times squared difference; without weights each is 1. All arguments have the same size.
 [[nodiscard]] Judgement squared_distance(std::span<const double> values, std::span<const double> wanted,
                                          std::span<const double> weights = {});
-/// Only the last of `steps` steps counts.
+/// An objective that only counts the last of `steps` steps.
 [[nodiscard]] Objective at_end(const Measure& measure, int steps);
-/// A measure with a direction, three times: along x, y and z.
+/// A measure along x, y and z.
 [[nodiscard]] std::vector<Measure> along_axes(Measure measure);
 
 }  // namespace pliant::sim

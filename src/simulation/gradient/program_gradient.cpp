@@ -15,7 +15,7 @@
 namespace pliant::sim {
 namespace {
 
-/// An equilibrium on the way, and where it stands.
+/// An equilibrium of the program and its position in it.
 struct Piece {
     double time = 0;
     State state;
@@ -53,10 +53,10 @@ public:
 private:
     static constexpr const char* stage = "gradient";
 
-    /// Whether a step depends on the one before.
+    /// True if a step depends on the one before.
     [[nodiscard]] bool has_history() const { return stepper_.has_inertia() || stepper_.system().has_friction(); }
 
-    /// Takes the robot from the end of step k - 1 to that of step k.
+    /// Advances the robot from the end of step k - 1 to that of step k.
     [[nodiscard]] Status forward(RobotState& robot, int k, std::vector<Piece>* pieces) {
         if (progress_.cancelled()) return cancelled();
         progress_.advance(stage, std::min(1.0, result_.steps_taken / expected_steps()));
@@ -78,7 +78,7 @@ private:
         return has_history() ? steps * (1.0 + times_forward(steps, options_.kept)) : steps;
     }
 
-    /// Where steps do not depend on each other, each is gone back over as soon as it is there.
+    /// If steps are independent, each is differentiated as soon as it is solved.
     [[nodiscard]] Status all_forward() {
         RobotState robot = stepper_.rest();
         for (int k = 1; k <= program_.steps; ++k) {
@@ -86,7 +86,7 @@ private:
             if (Status status = back_over({robot.controls.time, robot.now.state, robot.controls}, k, true); !status)
                 return status;
         }
-        std::ranges::reverse(result_.instants);  // as if gone backwards
+        std::ranges::reverse(result_.instants);  // in the order of a backward pass
         return {};
     }
 
@@ -104,12 +104,12 @@ private:
                 return {};
             });
         if (!status) return status;
-        if (result_.by.rest.size() > 0) result_.by.rest += carried_.x;  // it began at rest
+        if (result_.by.rest.size() > 0) result_.by.rest += carried_.x;  // the program begins at rest
         if (stepper_.options().dynamics) go_back_to_start();
         return status;
     }
 
-    /// Nodes of an object start with v + w x (x - c), c their mean.
+    /// Nodes of an object start with velocity v + w x (x - c), c their mean.
     void go_back_to_start() {
         const Description& d = stepper_.model().description();
         const Eigen::VectorXd rest = stepper_.system().rest().x;
@@ -132,7 +132,8 @@ private:
         }
     }
 
-    /// `last`: of its step, so that it is judged. Where nothing is worth anything there is nothing to solve.
+    /// `last`: the last piece of its step, where the objective is evaluated. If all derivatives are zero, nothing is
+    /// solved.
     [[nodiscard]] Status back_over(const Piece& piece, int k, bool last) {
         const std::optional<Slope> own = last ? judged(piece, k) : std::nullopt;
         if (!own && carried_.is_nothing()) {
@@ -148,7 +149,7 @@ private:
         return {};
     }
 
-    /// Of the objective at the end of a step; none where it does not depend on it.
+    /// The objective's slope at the end of a step; empty if it does not depend on it.
     [[nodiscard]] std::optional<Slope> judged(const Piece& piece, int k) {
         std::vector<Slope> slopes;
         std::vector<double>& values = result_.values[static_cast<std::size_t>(k - 1)];

@@ -1,4 +1,4 @@
-// Gradients of whole programs against programs of robots that differ a little.
+// Gradients of whole programs against programs of slightly different robots.
 #include "simulation/gradient/program_gradient.hpp"
 
 #include <doctest/doctest.h>
@@ -38,7 +38,7 @@ ProgramGradient gradient_of(const Description& d, const Program& program, const 
     return std::move(*result);
 }
 
-/// Where the tip is and how the cable pulls, all steps together.
+/// Position of the tip and tension of the cable, summed over all steps.
 Objective wanted_motion(int steps) {
     Objective objective;
     objective.measures = along_axes({Measure::Kind::marker, 0});
@@ -52,7 +52,7 @@ Objective wanted_motion(int steps) {
     return objective;
 }
 
-/// The same of a run of the program, by what the results say.
+/// The same objective, from the results of a run of the program.
 double value_of_run(const Description& d, const Program& program, const Objective& objective) {
     const auto model = Model::create(d);
     REQUIRE_MESSAGE(model, model.error().message);
@@ -78,7 +78,7 @@ double error_of(double told, double size, const std::function<double(double chan
     });
 }
 
-/// By all numbers of the robot, what its cable is wanted to do, and rest positions.
+/// With respect to all numbers of the robot, its cable target, and rest positions.
 double worst_error(const Description& d, const Program& program) {
     const Objective objective = wanted_motion(program.steps);
     const ProgramGradient found = gradient_of(d, program, objective, {.by = {.rest = true}});
@@ -134,7 +134,7 @@ double worst_error(const Description& d, const Program& program) {
 
 }  // namespace
 
-TEST_CASE("a program at rest at every instant, as the sum over its steps") {
+TEST_CASE("a quasi-static program, as the sum over its steps") {
     for (const int order : {1, 2}) {
         const double worst =
             worst_error(bender(order), {.steps = 2, .tolerance = 1e-11, .solver = Solver::newton, .checks = false});
@@ -163,13 +163,13 @@ Description rubbing() {
     return d;
 }
 
-/// How friction was frozen in each step of a program, solved for the given robot with its own starts of steps.
+/// The friction frozen in each step of a program, solved for the given robot with its own starts of steps.
 struct Lagged {
     std::vector<Controls> controls;
     std::vector<State> states;
 };
 
-/// Takes the steps of a program; with `as` with the friction that was frozen there, lagged.
+/// Runs the steps of a program; with `as`, with the friction frozen there.
 Lagged steps_of(const Description& d, int steps, const Lagged* as, const Parameter* p, double value) {
     Case c(d);
     Stepper stepper(c.model, {.solver = Solver::newton, .tolerance = 1e-10});
@@ -247,7 +247,7 @@ TEST_CASE("friction that slips from where the step before has ended, by all numb
     CHECK(history);
     MESSAGE("friction over ", steps, " steps: ", worst);
     REQUIRE(found.instants.size() == 3);
-    CHECK(found.instants[1].by_inputs.norm() > 0);  // through friction alone: only the end is judged
+    CHECK(found.instants[1].by_inputs.norm() > 0);  // through friction only: the objective depends on the end alone
 }
 
 TEST_CASE("as many states are kept as one likes, on any number of threads: the same bits") {
@@ -308,7 +308,7 @@ TEST_CASE("steps that had to be halved, in time, count with all their pieces") {
     }
 }
 
-TEST_CASE("what is not there, what does not converge, and who does not want to wait") {
+TEST_CASE("missing measures, steps that do not converge, and cancelling") {
     const auto model = Model::create(bender());
     Progress silent;
     const auto told = [&](const Measure& measure, const Program& program, Progress& progress) {

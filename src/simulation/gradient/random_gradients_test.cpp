@@ -1,6 +1,6 @@
-// Gradients of random robots, where their programs lead, against states that are converged anew.
+// Gradients of random robots, at states of their programs, against states that are converged anew.
 //
-// PLIANT_RANDOM_ROBOTS sets how many (4 unless told), PLIANT_RANDOM_FIRST where they begin (1).
+// PLIANT_RANDOM_ROBOTS sets their number (default 4), PLIANT_RANDOM_FIRST the first seed (1).
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -17,7 +17,7 @@ using namespace pliant::sim::testing;
 
 namespace {
 
-/// A judgement of all measures with weights that make them about equally large, so that one gradient has them all.
+/// An objective over all measures, weighted to similar magnitudes, so that one gradient tests them all.
 struct Judged {
     std::vector<Measure> measures;
     Eigen::VectorXd weights;
@@ -29,8 +29,8 @@ struct Judged {
     }
 };
 
-/// The state of another robot, or under other controls, near one that is converged: with the factor of that one, so
-/// that each iteration leaves a share of the error that goes with the difference. False: it does not converge.
+/// Converges another robot, or other controls, from a nearby converged state with its factor, so that each iteration
+/// reduces the error by a factor proportional to the difference. False: it does not converge.
 bool converge_beside(Linearisation& at, const Equilibrium& system, const Controls& controls, State& state) {
     system.place_supports(controls, state.x);
     double least = 1e300;
@@ -57,7 +57,7 @@ struct Found {
     int measures = 0, hidden = 0;  ///< in all, and those that are left out because rounding hides them
 };
 
-/// (measures) how much they change as all positions move by about their last digit.
+/// (measures) their change when all positions are perturbed in about their last digit.
 Eigen::VectorXd rounding_of(const Linearisation& at, const std::vector<Measure>& measures,
                             const std::vector<Slope>& now) {
     constexpr double last_digit = 1e-16;
@@ -76,8 +76,9 @@ Eigen::VectorXd rounding_of(const Linearisation& at, const std::vector<Measure>&
     return worst;
 }
 
-/// A derivative against differences of states that are converged anew, beside its own size; beyond what rounding makes
-/// of states that should be the same: converged from a little aside, or of a robot that differs in the last digits.
+/// Compares a derivative with differences of states that are converged anew, relative to its own size; allows for the
+/// effect of rounding, measured on states that should be equal: converged from a slightly different start, or of a
+/// robot that differs in the last digits.
 void hold_against(const std::string& name, double told, double size, Found& found,
                   const std::function<double(double change, unsigned shaken)>& value_from) {
     double noise = 1e-15;
@@ -106,7 +107,7 @@ void hold_against(const std::string& name, double told, double size, Found& foun
     }
 }
 
-/// Along one motion of all rest positions, where nothing is lagged that was taken from them.
+/// Along one motion of all rest positions, if nothing lagged depends on them.
 void try_shape(Linearisation& at, unsigned seed, const Slope& sum, const Judged& judged, Found& found) {
     const Description& d = at.system().model().description();
     if (d.contact || at.system().has_cable_friction()) return;
@@ -144,7 +145,8 @@ void try_robot(Linearisation& at, unsigned seed, Found& found) {
     Judged judged{all_measures(d), {}};
     std::vector<Slope> slopes;
     for (const Measure& m : judged.measures) slopes.push_back(slope(at, m));
-    // A measure that changes by more than this share of what adds up to it as positions are rounded has no differences.
+    // Measures that change by more than this share of the sum of their terms when positions are rounded cannot be
+    // tested by differences.
     constexpr double hidden = 1e-9;
     const Eigen::VectorXd sizes = sizes_of(at, slopes), rounding = rounding_of(at, judged.measures, slopes);
     judged.weights = noise.vector(sizes.size());

@@ -1,5 +1,5 @@
-// Gradients by rest positions, by guide points and tet by tet, and changes along any direction, against robots that
-// differ a little and are converged anew.
+// Gradients with respect to rest positions, guide points and single tets, and changes along any direction, against
+// slightly different robots that are converged anew.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -57,7 +57,7 @@ struct Settled_robot {
     }
 };
 
-/// Cable, chamber and springs on a hollow block under gravity, everything wanted as a share of rest or a change of it.
+/// Cable, chamber and springs on a hollow block under gravity, with all targets relative to rest.
 Description shaped(int order, const CableTarget& cable, const ChamberTarget& chamber) {
     Description d = block(order, material::neo_hookean(1e6, 0.4));
     d.cables = {flexor(d.mesh, cable)};
@@ -125,7 +125,8 @@ TEST_CASE("guide points: carried by a tet, spread over a patch, fixed in space; 
         const std::array<Vec3, 3> points = {Vec3{-0.2 * edge, 0.5 * edge, 1.1 * edge},
                                             {1.45 * edge, 0.62 * edge, 0.93 * edge},
                                             {2.8 * edge, 0.45 * edge, 0.92 * edge}};
-        // Of quadratic tets the patch would have more nodes than an attachment takes, and takes others as it moves.
+        // With quadratic tets the patch would have more nodes than an attachment takes, and would change them as it
+        // moves.
         const double radius = order == 1 ? 0.5 * edge : 0;
         const auto cable_of = [&](const std::array<Vec3, 3>& at) {
             const Attacher attacher(d.mesh);
@@ -157,7 +158,7 @@ TEST_CASE("guide points: carried by a tet, spread over a patch, fixed in space; 
     MESSAGE("guide points: ", worst);
 }
 
-/// A block of which a cable has drawn its own end onto a point in space that it goes on from, and a spring likewise.
+/// A block whose cable has drawn its own end onto a point in space that it continues from, and a spring likewise.
 Description met_ends(const std::array<Vec3, 3>& cable, const std::array<Vec3, 3>& spring) {
     Description d = plain();
     const Attacher attacher(d.mesh);

@@ -12,7 +12,7 @@
 namespace pliant::sim {
 namespace {
 
-/// Obstacles are where their shares of a motion put them: adds what that is worth to the inputs.
+/// Obstacles are positioned by their shares of a motion: adds the derivative to that of the inputs.
 void add_obstacles(const Linearisation& at, const Eigen::VectorXd& by_position, Eigen::VectorXd& by_inputs) {
     if (by_position.isZero(0) || by_inputs.size() == 0) return;
     const contact::Contact& contact = *at.system().model().contact(true);
@@ -28,7 +28,7 @@ void add_obstacles(const Linearisation& at, const Eigen::VectorXd& by_position, 
     }
 }
 
-/// In motion the velocity at the end of a step follows from where it ends, and forces from where it begins.
+/// In a motion in time the velocity at the end of a step depends on its end position, and forces depend on its start.
 void carry_inertia(const Inertia& inertia, const Eigen::VectorXd& force_weights, Carried& carried) {
     const History by = inertia.start_weights(force_weights, carried.v);
     carried.x = carried.x_before + by.x;
@@ -37,7 +37,7 @@ void carry_inertia(const Inertia& inertia, const Eigen::VectorXd& force_weights,
     carried.v_before = by.v_before;
 }
 
-/// What damps a joint does so against where it was when the step began.
+/// Joint damping acts against the coordinate at the start of the step.
 void carry_joints(const Linearisation& at, const Eigen::VectorXd& force_weights, Carried& carried) {
     const Equilibrium& system = at.system();
     const Description& d = system.model().description();
@@ -58,7 +58,7 @@ void carry_nothing(Carried& carried) {
     carried.v.setZero();
 }
 
-/// What the step after it carries on is worth at the end of this one.
+/// Derivatives with respect to the slips at the end of this step, through the next step.
 Slips worth_of_slips(const Linearisation& at, std::span<const double> x, const Carried& carried) {
     const auto& friction = at.controls().friction;
     Slips worth(friction ? friction->pairs().size() : 0, Eigen::Vector2d::Zero());
@@ -71,21 +71,21 @@ Slips worth_of_slips(const Linearisation& at, std::span<const double> x, const C
     return worth;
 }
 
-/// The same by the positions that make the slips (3 robot nodes, then 3 obstacle nodes).
+/// The same with respect to the positions that determine the slips (3 robot nodes, then 3 obstacle nodes).
 Eigen::VectorXd by_positions(const Linearisation& at, const Slips& slips) {
     Eigen::VectorXd by = Eigen::VectorXd::Zero(force_size(at.system()));
     if (at.controls().friction) add_to_forces(at.system(), *at.controls().friction, slips, by);
     return force_on_places(at.system(), by);
 }
 
-/// How far the weights of forces move each pair along its tangents, as hard as it resists.
+/// Projects the adjoint weights of forces onto the tangents of each pair, times its friction stiffness.
 void add_resistance(const Equilibrium& system, const contact::Friction& friction, std::span<const double> x,
                     const Eigen::VectorXd& weights, Slips& slips) {
     const Slips moved = slips_of_motion(system, friction, weights);
     for (std::size_t k = 0; k < slips.size(); ++k) slips[k] += friction.stiffness(k, x) * moved[k];
 }
 
-/// Friction slips from where the step begins, and goes on from the slip with which the step before has ended.
+/// Friction depends on the start of the step and on the slip at the end of the previous step.
 void carry_friction(const Linearisation& at, std::span<const double> x, const Eigen::VectorXd& force_weights,
                     Slips slips, const Eigen::VectorXd& by_slips, Carried& carried) {
     const Eigen::Index robot = at.state().x.size();

@@ -1,4 +1,4 @@
-// One step of a program, gone back over: what its end is worth becomes what its beginning is worth.
+// The adjoint of one step of a program: from derivatives with respect to its end to those with respect to its start.
 #pragma once
 
 #include <memory>
@@ -10,20 +10,22 @@
 
 namespace pliant::sim {
 
-/// How an objective changes with where a step ends, through the steps after it; all zero after the last one.
+/// Derivatives of an objective with respect to the end of a step, through the steps after it; all zero after the last
+/// one.
 struct Carried {
-    Eigen::VectorXd x, v;                ///< (3n) by position and velocity at the end of the step
-    Eigen::VectorXd x_before, v_before;  ///< (3n) the same of the step before
-    Eigen::VectorXd obstacles;           ///< (3 obstacle nodes) by where the obstacles are
-    /// Of the step after it, and by the slip with which each of its pairs begins, along the pair's tangents.
+    Eigen::VectorXd x, v;                ///< (3n) with respect to position and velocity at the end of the step
+    Eigen::VectorXd x_before, v_before;  ///< (3n) the same for the step before
+    Eigen::VectorXd obstacles;           ///< (3 obstacle nodes) with respect to the positions of the obstacles
+    /// Friction of the next step, and derivatives with respect to the initial slip of each of its pairs, along the
+    /// pair's tangents.
     std::shared_ptr<const contact::Friction> friction{};
     Slips slips{};
     [[nodiscard]] static Carried nothing(const Equilibrium& system);
     [[nodiscard]] bool is_nothing() const;
 };
 
-/// Puts what is carried, and what the end of this step is worth in itself, on everything that the step depends on; and
-/// carries on what is worth the end of the step before.
+/// Distributes the carried derivatives, and those of this step's own contribution, over everything that the step
+/// depends on; updates what is carried to the end of the step before.
 [[nodiscard]] Result<Variation> go_back_over(Linearisation& at, const Slope& own, const By& by, Carried& carried);
 
 }  // namespace pliant::sim

@@ -1,4 +1,4 @@
-// Truly converged states of robots that differ a little, to hold gradients against.
+// Tightly converged states of slightly different robots, for testing gradients.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@
 
 namespace pliant::sim::testing {
 
-/// Cables that are driven by their length pull, or are slack and no longer than wanted.
+/// True if all cables that are driven by length pull, or are slack and no longer than prescribed.
 inline bool can_be(const Equilibrium& system, const Controls& controls, const State& state) {
     for (std::size_t a = 0; a < system.actuators().size(); ++a) {
         const Actuator& actuator = system.actuators()[a];
@@ -26,8 +26,8 @@ inline bool can_be(const Equilibrium& system, const Controls& controls, const St
     return true;
 }
 
-/// The equilibrium at these controls near a guess, by Newton's method with the exact tangent and nothing else. False
-/// also where a cable would have to push, or hangs through where it should pull.
+/// The equilibrium at these controls near an initial guess, by plain Newton iterations with the exact tangent. False
+/// also if a cable would have to push, or is slack where it should pull.
 inline bool converge(const Equilibrium& system, const Controls& controls, State& state) {
     system.place_supports(controls, state.x);
     double before = 1e300;
@@ -42,7 +42,7 @@ inline bool converge(const Equilibrium& system, const Controls& controls, State&
         for (const std::size_t a : at->solved())
             state.multiplier[static_cast<Eigen::Index>(a)] -= change.multipliers[static_cast<Eigen::Index>(a)];
         for (const std::size_t a : at->solved()) {
-            if (at->is_slack(a)) state.multiplier[static_cast<Eigen::Index>(a)] = 0;  // not what rounding leaves of it
+            if (at->is_slack(a)) state.multiplier[static_cast<Eigen::Index>(a)] = 0;  // remove rounding errors
         }
         const double size = change.positions.norm();
         if (size < 1e-14 * state.x.norm() || (k > 3 && size > 0.5 * before))
@@ -65,10 +65,10 @@ inline State settled_from(const Equilibrium& system, const Controls& controls, S
     return state;
 }
 
-/// The controls of a robot at the state that is looked at.
+/// The controls of a robot at the state under test.
 using ControlsOf = std::function<Controls(Equilibrium&)>;
 
-/// Values of the measures of a robot that differs, converged anew; not a number where that fails.
+/// Measures of a modified robot, converged anew; NaN if that fails.
 inline Eigen::VectorXd values_of(const Equilibrium& system, const Controls& controls, State state,
                                  const std::vector<Measure>& measures) {
     Eigen::VectorXd values = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(measures.size()), std::nan(""));
@@ -78,7 +78,7 @@ inline Eigen::VectorXd values_of(const Equilibrium& system, const Controls& cont
     return values;
 }
 
-/// How large the measures are: of reactions, in which much may cancel out, the sum of what adds up to them.
+/// Magnitude of each measure: for reactions, which may largely cancel, the sum of the magnitudes of their terms.
 inline Eigen::VectorXd sizes_of(const Linearisation& at, const std::vector<Slope>& slopes) {
     const Eigen::VectorXd forces = at.system().evaluate(at.state(), at.controls()).out_of_balance.cwiseAbs();
     Eigen::VectorXd sizes(static_cast<Eigen::Index>(slopes.size()));
@@ -91,11 +91,11 @@ inline Eigen::VectorXd sizes_of(const Linearisation& at, const std::vector<Slope
     return sizes;
 }
 
-/// Largest error of derivatives (measures) against differences, each beside its own size or, where rounding hides that,
-/// beside what a change of the whole number by its size would make of the measure's.
+/// Largest error of derivatives (measures) against differences, each relative to its own size or, where rounding hides
+/// that, to the change of the measure if the number changed by its full size.
 inline double gradient_error(const Eigen::VectorXd& told, const Eigen::VectorXd& sizes, double size,
                              const std::function<Eigen::VectorXd(double change)>& values_at) {
-    constexpr double clearly_right = 1e-7;  // no shorter step need be tried
+    constexpr double clearly_right = 1e-7;  // small enough: no shorter step is tried
     std::vector<double> best(static_cast<std::size_t>(told.size()), 1e300);
     const auto worst = [&] { return *std::max_element(best.begin(), best.end()); };
     for (double h = 0.02 * size; h > 2e-7 * size && worst() > clearly_right; h /= 8) {

@@ -18,7 +18,7 @@ bool is_same(const Parameter& a, const Parameter& b) {
     return a.kind == b.kind && a.index == b.index && a.part == b.part;
 }
 
-/// How the measure depends on each of the numbers as such.
+/// Adds the explicit derivatives of the measure with respect to each number.
 void add_direct(const Slope& of, std::span<const Parameter> all, Eigen::VectorXd& sum) {
     for (const auto& [by, rate] : of.direct) {
         for (std::size_t k = 0; k < all.size(); ++k) {
@@ -27,7 +27,7 @@ void add_direct(const Slope& of, std::span<const Parameter> all, Eigen::VectorXd
     }
 }
 
-/// (actuators) by the measure of each at rest: as the slope has it, and through what is wanted.
+/// (actuators) derivative with respect to each measure at rest: explicit, and through the prescribed values.
 Eigen::VectorXd by_rest_measure(Linearisation& at, const Adjoint& adjoint, const Slope& of) {
     Eigen::VectorXd by = wanted_by_rest(at);
     const std::vector<Parameter> all = inputs(at);
@@ -83,7 +83,7 @@ void add_tets(const Linearisation& at, const TetDerivatives& change, Derivative&
     sum.forces.head(force.size()) += force;
 }
 
-/// (actuators) how their measures at rest change with the rest positions.
+/// (actuators) change of their measures at rest with the rest positions.
 Eigen::VectorXd rest_measures(const Equilibrium& system, const Eigen::VectorXd& motion) {
     Eigen::VectorXd change = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system.actuators().size()));
     for (Eigen::Index a = 0; motion.size() > 0 && a < change.size(); ++a)

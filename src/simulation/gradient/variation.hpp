@@ -1,4 +1,4 @@
-// Everything that a state is a function of, as numbers: the gradient of a measure by all of it, or a change of it.
+// All numbers that a state depends on: the gradient of a measure with respect to them, or a change of them.
 //
 //     const Equilibrium system(model);                             // state, controls: as a solver left them
 //     auto at = Linearisation::create(system, state, controls);
@@ -24,54 +24,57 @@
 
 namespace pliant::sim {
 
-/// A guide point of a cable or spring, and how it is tied to the mesh: Attacher::slope().
+/// A guide point of a cable or spring, and the derivative of its attachment to the mesh: Attacher::slope().
 struct GuidePoint {
     std::size_t path = 0, point = 0;
     AttachmentSlope slope{};
     bool of_spring = false;
 };
 
-/// What a gradient is wanted by.
+/// What to differentiate with respect to.
 struct By {
     bool inputs = true, parameters = true;
-    bool tets = false;  ///< what each tet is made of
+    bool tets = false;  ///< material properties of each tet
     bool rest = false;  ///< rest positions
     std::vector<GuidePoint> guides{};
-    std::vector<NumberChange> numbers{};  ///< of the drawing, in what follows a program at rest without friction
+    std::vector<NumberChange> numbers{};  ///< numbers of the drawing, with their effect on a quasi-static program
+                                          ///< without friction
 };
 
-/// One number for each that may change; empty where it is not wanted, or does not change.
+/// One entry for each number; a part is empty if it is not requested, or does not change.
 struct Variation {
     Eigen::VectorXd inputs;      ///< (inputs(at)), at this instant
     Eigen::VectorXd parameters;  ///< (parameters(at))
-    TetDerivatives tets{};       ///< of each tet, beside what `parameters` do to all of a material
-    /// (3n) by rest positions. Lengths, volumes and gas that are wanted as a share of what they are at rest, and those
-    /// that are wanted as a change of it, follow.
+    TetDerivatives tets{};       ///< of each tet, in addition to `parameters`, which change all tets of a material
+    /// (3n) with respect to rest positions. Prescribed lengths, volumes and gas that are given relative to their rest
+    /// values (as a ratio or a difference) follow.
     Eigen::VectorXd rest{};
-    /// (3 guides) by the rest position of each point, which the mesh then carries elsewhere; lengths that are wanted
-    /// follow likewise.
+    /// (3 guides) with respect to the rest position of each point, which is then re-attached to the mesh; prescribed
+    /// lengths follow likewise.
     Eigen::VectorXd guides{};
     Eigen::VectorXd numbers{};  ///< (numbers)
 };
 
-/// sum += change, of the same parts.
+/// sum += change, part by part.
 void add(const Variation& change, Variation& sum);
 
-/// d(measure) by everything at once, from one transposed solution. Its errors: those of Linearisation::adjoint().
+/// The gradient of a measure with respect to everything at once, by one transposed solve. Errors: those of
+/// Linearisation::adjoint().
 [[nodiscard]] Result<Variation> gradient(Linearisation& at, const Slope& of, const By& by);
-/// The same, where that solution is at hand: of `of.state`.
+/// The same from an adjoint already at hand: that of `of.state`.
 [[nodiscard]] Variation gradient(Linearisation& at, const Adjoint& adjoint, const Slope& of, const By& by);
 
-/// (measures) how they change with a change of everything but guide points, from one direct solution. With gradient()
-/// these are the products of the Jacobian and of its transpose that Gauss-Newton needs.
+/// (measures) their change for a change of everything except guide points, by one direct solve. Together with
+/// gradient() these are the products of the Jacobian and of its transpose that Gauss-Newton needs.
 [[nodiscard]] Result<Eigen::VectorXd> changes(Linearisation& at, std::span<const Slope> of, const Variation& with);
-/// How the equations change with it.
+/// Derivative of the equations along this variation.
 [[nodiscard]] Derivative derivative(Linearisation& at, const Variation& with);
-/// The same, where the response to that derivative, or to one with more forces, is at hand.
+/// The same from a response already at hand, to that derivative or to one with more forces.
 [[nodiscard]] Eigen::VectorXd changes(Linearisation& at, std::span<const Slope> of, const Variation& with,
                                       const Derivative& by, const Change& answer);
 
-/// (actuators) how what an input wants of each actuator changes with its measure at rest: 0 where it does not.
+/// (actuators) derivative of the value that an input prescribes for each actuator with respect to its measure at rest;
+/// 0 if it does not depend on it.
 [[nodiscard]] Eigen::VectorXd wanted_by_rest(const Linearisation& at);
 
 }  // namespace pliant::sim

@@ -1,4 +1,4 @@
-// Gradients at one state against robots that differ a little and are converged anew.
+// Gradients at one state against slightly different robots that are converged anew.
 #include "simulation/gradient/variation.hpp"
 
 #include <doctest/doctest.h>

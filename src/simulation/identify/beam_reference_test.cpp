@@ -1,4 +1,5 @@
-// A silicone beam under its own weight and under a weight at its tip: the modulus from the first, the second predicted.
+// A silicone beam under its own weight and with a weight at its tip: the modulus is identified from the first test, the
+// second is predicted.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -45,7 +46,8 @@ mesh::TetMesh beam_mesh() {
     return mesh;
 }
 
-/// Heights of the markers' feet, from how far they have sunk; what stands off the surface sinks alike to 0.03 mm.
+/// Heights of the markers' feet, from their displacements; the parts of markers above the surface move alike to 0.03
+/// mm.
 std::string heights_of(const std::string& path) {
     std::string text = "time,use,tip1_z_mm,tip2_z_mm,tip3_z_mm\n";
     const auto rows = reference::load_csv(path);
@@ -74,7 +76,7 @@ TEST_CASE("beam of Dragon Skin 10: the modulus from its own weight predicts its 
             "); gravity, rms ", result.fitted[0].before, " -> ", result.fitted[0].after, " mm; 0.51 N, rms ",
             result.judged[0].before, " -> ", result.judged[0].after, " mm");
     CHECK(result.converged);
-    // What the data's own text expects of a converged mesh.
+    // The value stated in the data's own documentation for a converged mesh.
     CHECK(E.value > 265e3);
     CHECK(E.value < 285e3);
     CHECK(*E.low > 255e3);

@@ -59,7 +59,7 @@ Vector3d point(std::span<const double> values, std::size_t k) {
     return {values[3 * k], values[3 * k + 1], values[3 * k + 2]};
 }
 
-/// The angle between two ways, rad, and its slopes by both.
+/// The angle between two vectors, rad, and its derivatives with respect to both.
 struct Angle {
     double value = 0;
     Vector3d by_a = Vector3d::Zero(), by_b = Vector3d::Zero();
@@ -76,7 +76,7 @@ Angle angle_between(const Vector3d& a, const Vector3d& b) {
     return angle;
 }
 
-/// The markers of "A-B-C", whose names may have hyphens themselves; empty: they are none.
+/// The markers in "A-B-C", whose names may contain hyphens themselves; empty: no match.
 std::vector<std::size_t> markers_in(const std::vector<sim::Marker>& markers, std::string_view text, std::size_t count) {
     for (std::size_t m = 0; m < markers.size(); ++m) {
         const std::string& name = markers[m].name;

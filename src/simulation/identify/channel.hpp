@@ -1,4 +1,4 @@
-// What a column of measurements is about: one number of the robot at each instant.
+// The meaning of a column of measurements: one scalar of the robot at each instant.
 #pragma once
 
 #include <optional>
@@ -14,9 +14,9 @@ namespace pliant::sim::identify {
 
 struct Channel {
     enum class Kind {
-        plain,    ///< the first measure
+        plain,    ///< the first measure itself
         between,  ///< of three points (9 measures): the angle at the second
-        to_axis,  ///< of two points (6 measures): between the way from the first to the second and an axis
+        to_axis,  ///< of two points (6 measures): the angle between the line from first to second and an axis
     };
     std::string column;  ///< "tip_x_mm"
     std::string unit;    ///< "mm"; "" of a ratio
@@ -25,16 +25,17 @@ struct Channel {
     std::vector<sim::Measure> measures;
     std::size_t axis = 0;  ///< of Kind::to_axis
 
-    /// In the column's unit, from the values of its measures.
+    /// Value in the column's unit, computed from its measures.
     [[nodiscard]] double value(std::span<const double> of_measures) const;
-    /// How that changes with each of them. Of an angle of 0 or 180 degrees, which has no slope, all are 0.
+    /// Derivative of the value with respect to each measure. All are 0 for an angle of 0 or 180 degrees, which is not
+    /// differentiable.
     [[nodiscard]] std::vector<double> slopes(std::span<const double> of_measures) const;
 };
 
-/// Columns as in markers.csv and steps.csv (docs/reference/results.md), and beyond these angles: A-B-C_angle_deg at B
-/// between the ways to A and C, A-B_angle_x_deg between the way from A to B and the x axis (or y, z).
+/// Columns as in markers.csv and steps.csv (docs/reference/results.md), and angles: A-B-C_angle_deg at B between the
+/// directions to A and C, A-B_angle_x_deg between the direction from A to B and the x axis (or y, z).
 [[nodiscard]] std::vector<Channel> plain_channels(const sim::Description& robot);
-/// Nothing: the column is none of them.
+/// Empty if the column is none of them.
 [[nodiscard]] std::optional<Channel> find_channel(const sim::Description& robot, std::string_view column);
 
 }  // namespace pliant::sim::identify

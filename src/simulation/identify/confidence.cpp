@@ -17,10 +17,11 @@ using Eigen::VectorXd;
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double rounding = 1e-6;
 constexpr double high_correlation = 0.99;
-/// Entries of a singular vector of length 1 below this do not take part in it.
+/// Entries of a unit singular vector below this are ignored.
 constexpr double takes_part = 0.1;
 
-/// Rows that depend on some unknown: others, as a length that is driven, say nothing of how far the fit is off.
+/// Rows that depend on some unknown: others, such as a prescribed length, carry no information about the error of the
+/// fit.
 struct Telling {
     Index rows = 0;
     double squares = 0;  ///< of their residuals

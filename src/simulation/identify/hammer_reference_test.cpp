@@ -1,5 +1,5 @@
-// Two silicone bars with a head that hang by their own weight: each modulus from the head's rotation, its corners
-// judged.
+// Two silicone bars with a head that hang by their own weight: each modulus is identified from the head's rotation, and
+// validated by its corners.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -21,9 +21,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// What counts as the scatter of a unit without one: this share of the spread of its values.
+/// Default scatter of a unit: this share of the spread of its values.
 constexpr double share_of_spread = 0.01;
-/// Effects on all residuals together below that are none, in scatters.
+/// Smaller effects on all residuals together count as none, in units of scatter.
 constexpr double negligible = 1e-6;
 constexpr double longest_step = 1.5;  // of log(value): a factor of 4.5
 
@@ -107,7 +107,7 @@ private:
 
     [[nodiscard]] Index row_of(double time) const { return std::ranges::lower_bound(times_, time) - times_.begin(); }
 
-    /// A start that fails says why; a later trial is only one that does not count.
+    /// A failure at the start is an error with its reason; later ones only reject the trial.
     [[nodiscard]] Result<std::optional<VectorXd>> residuals(const VectorXd& u) {
         auto variant = source_.with(unknowns_, values_at(u));
         if (!variant) return tl::unexpected(variant.error());

@@ -1,4 +1,4 @@
-// Finds numbers of a robot from what was measured on it: those with which its program, simulated, comes nearest.
+// Parameter identification: the robot parameters with which the simulated program comes closest to measurements.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,56 +15,56 @@
 namespace pliant::sim::identify {
 
 struct Found {
-    Unknown unknown;  ///< `value`: where the search began
+    Unknown unknown;  ///< `value`: initial value of the search
     double value = 0;
-    /// 95 % confidence interval; none where the data do not give one.
+    /// 95 % confidence interval; empty if the data do not determine one.
     std::optional<double> low, high;
     bool at_bound = false;
-    bool matters = true;  ///< false: nothing that was measured depends on it
+    bool matters = true;  ///< false: none of the measurements depends on it
 };
 
-/// One measured value beside the simulated ones, in the channel's unit.
+/// One measured value and its simulated counterparts, in the channel's unit.
 struct Compared {
     MeasuredValue measured;
     double before = 0, after = 0;
 };
 
-/// Root mean squares of simulated minus measured values of one unit, before and after.
+/// Root mean squares of simulated minus measured values in one unit, before and after.
 struct Errors {
-    std::string unit;  ///< "" of ratios
+    std::string unit;  ///< "" for ratios
     std::size_t values = 0;
     double before = 0, after = 0;
 };
 
 struct Identification {
     std::vector<Found> found;
-    /// (unknowns, unknowns) of the estimates; not a number beside an unknown that is at a bound or does not matter.
+    /// (unknowns, unknowns) correlation of the estimates; NaN for an unknown that is at a bound or does not matter.
     Eigen::MatrixXd correlation;
-    std::vector<Errors> fitted, judged;  ///< by unit; judged: empty where nothing was kept back
+    std::vector<Errors> fitted, judged;  ///< one per unit; judged: empty if nothing was held out
     std::vector<Channel> channels;
     std::vector<Compared> values;  ///< in the order of the table
     std::vector<std::string> warnings;
-    int trials = 0;          ///< programs that were solved
-    bool converged = false;  ///< false: the search ended after too many trials
+    int trials = 0;          ///< number of programs that were solved
+    bool converged = false;  ///< false: the search ended at the limit of trials
 };
 
-/// Least squares over the values that are not judged, each over its scatter. Without a scatter all values of one unit
-/// count alike, and different units by the spread of their values, so that neither drowns the other. Intervals are
-/// those of the linear theory at the solution, t s sqrt(C_jj) with C = (J^T J)^-1, s^2 = |r|^2 / (n - unknowns) over
-/// the n values that depend on one, and Student's t, in the coordinate of each unknown (Seber and Wild, Nonlinear
-/// Regression, 1989, section 2.1.2): they tell of noise in the data, not of a model that does not fit. Errors: fewer
-/// values than unknowns; an unknown that is named twice; a start from which the program cannot be solved; of what it
-/// stands on; cancelled.
+/// Least-squares fit to all values that are not held out, each weighted by its scatter. Without scatter, all values of
+/// one unit have the same weight, and different units are scaled by the spread of their values, so that neither
+/// dominates. Intervals are those of the linear theory at the solution, t s sqrt(C_jj) with C = (J^T J)^-1, s^2 = |r|^2
+/// / (n - unknowns) over the n values that depend on an unknown, and Student's t, in the coordinate of each unknown
+/// (Seber and Wild, Nonlinear Regression, 1989, section 2.1.2): they reflect noise in the data, not a model that does
+/// not fit. Errors: fewer values than unknowns; an unknown that is named twice; a start from which the program cannot
+/// be solved; errors of the source and the measurements; cancelled.
 [[nodiscard]] Result<Identification> identify(const Source& source, const std::vector<Unknown>& unknowns,
                                               const Measurements& measurements, Progress& progress);
 
-/// What "KEY=VALUE" of `--set` makes the robot that was found.
+/// "KEY=VALUE" of each estimate, as for `--set`.
 [[nodiscard]] std::vector<std::string> assignments(const Identification& result);
 
-/// For people; a table of the unknowns and one of the errors, without warnings.
+/// Text for people: a table of the unknowns and one of the errors, without warnings.
 [[nodiscard]] std::string identification_text(const Identification& result);
 [[nodiscard]] std::string identification_json(const Identification& result);
-/// One row for each measured value: line, time, quantity, unit, use, measured, scatter, before, after.
+/// One row per measured value: line, time, quantity, unit, use, measured, scatter, before, after.
 [[nodiscard]] std::string comparison_csv(const Identification& result);
 
 }  // namespace pliant::sim::identify

@@ -1,4 +1,4 @@
-// Numbers that a simulation was made with, found again from what would have been measured on it.
+// Parameters used in a simulation are recovered from synthetic measurements.
 #include "simulation/identify/identify.hpp"
 
 #include <doctest/doctest.h>
@@ -23,7 +23,7 @@ const std::string pulled = R"(
 )";
 const std::string heavy = "program = { steps = 2, gravity = [0, 0, -9.81] }\n";
 
-/// Exact data give the values back that they were made with, from where the file begins.
+/// Exact data give back the values that generated them, starting from those of the file.
 void check_found(const Bar& bar, const std::vector<std::string>& keys, const std::vector<double>& truth,
                  const std::vector<std::string>& columns, const std::vector<double>& times) {
     const auto unknowns = bar.unknowns(keys);
@@ -77,7 +77,7 @@ TEST_CASE("constants of a law with a list of them") {
                 {"tip_x_mm", "tip_z_mm", "flexor_length_mm"}, {0.25, 0.5, 0.75, 1});
 }
 
-TEST_CASE("Poisson's ratio from sides that draw in") {
+TEST_CASE("Poisson's ratio from lateral contraction") {
     const Bar bar(R"(
         load = [{ name = "pull", box = [[60, 0, 0], [60, 10, 10]], force = ["12 N", "0 N", "0 N"] }]
         program = { steps = 2 }
@@ -103,7 +103,7 @@ TEST_CASE("the offset of a cable's zero length") {
                 {"tip_x_mm", "tip_z_mm", "flexor_tension_N"}, {0.1, 0.5, 1});
 }
 
-TEST_CASE("modulus and damping of a bar that swings") {
+TEST_CASE("modulus and damping of a swinging bar") {
     const Bar bar(R"(
         program = { duration = "120 ms", time_step = "6 ms", gravity = [0, 0, -9.81], stiffness_damping = 0.002 }
     )");
@@ -161,7 +161,7 @@ TEST_CASE("two unknowns that only act together are named, and those that do noth
     CHECK(told.found[0].value == near(6e3, {.relative = 1e-6}));
 }
 
-TEST_CASE("an unknown stays within its bounds and says so") {
+TEST_CASE("an unknown at its bound is reported") {
     const Bar bar(pulled);
     const auto free = bar.unknowns({"material.soft.youngs_modulus"});
     const auto data = bar.read(table_of(bar, free, {1.2e6}, {"tip_z_mm"}, {0.5, 1}, undisturbed));
@@ -188,7 +188,7 @@ TEST_CASE(
         for (std::size_t j = 0; j < 2; ++j)
             held[j] += *result.found[j].low < truth[j] && truth[j] < *result.found[j].high ? 1 : 0;
     }
-    // 16 or fewer of 20 would happen once in 60 times, if intervals were as wide as they say.
+    // With correct intervals, 16 or fewer of 20 occur once in 60 times.
     CHECK(held[0] >= 16);
     CHECK(held[1] >= 16);
 
@@ -217,7 +217,7 @@ TEST_CASE("the same bits on any number of threads") {
     CHECK(found[0] == found[1]);
 }
 
-TEST_CASE("a wide scatter makes a value count little") {
+TEST_CASE("a value with a large scatter has little weight") {
     const Bar bar(pulled);
     const auto unknowns = bar.unknowns({"material.soft.youngs_modulus"});
     const auto channels = bar.channels({"tip_z_mm"});
@@ -227,7 +227,7 @@ TEST_CASE("a wide scatter makes a value count little") {
     CHECK(find(bar, unknowns, data).found[0].value == near(0.9e6, {.relative = 1e-5}));
 }
 
-TEST_CASE("what cannot be done is said in one line") {
+TEST_CASE("impossible requests are reported in one line") {
     const Bar bar(pulled);
     const auto E = bar.unknowns({"material.soft.youngs_modulus"});
     const auto data = bar.read("time,tip_z_mm\n1,8\n");

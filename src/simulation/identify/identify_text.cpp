@@ -1,4 +1,4 @@
-// An identification as people and programs read it.
+// Output of an identification: text, JSON and CSV.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -13,10 +13,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Steps are not worth a trial below this, in u; nor below that share of |r|^2 that they promise to take away.
+/// Steps shorter than this in u are not tried, nor those with a smaller predicted relative decrease of |r|^2.
 constexpr double shortest_step = 1e-10;
 constexpr double least_gain = 1e-12;
-/// A promise of less than this share that is not kept is lost in what the residuals are known to.
+/// A smaller predicted relative decrease that is not achieved is attributed to noise in the residuals.
 constexpr double doubtful_gain = 1e-6, doubtful_step = 1e-6;
 constexpr double largest_damping = 1e10;
 
@@ -49,7 +49,7 @@ private:
         return problem_.residuals(u);
     }
 
-    /// Those that have an effect, and that no bound keeps from going where the residuals fall.
+    /// Unknowns that have an effect, and that no bound blocks in the descent direction.
     [[nodiscard]] std::vector<Index> free() const {
         const VectorXd gradient = J_.transpose() * r_;
         const double largest = scale_.maxCoeff();
@@ -62,7 +62,7 @@ private:
         return all;
     }
 
-    /// The damped step of the free unknowns where others have gone by `whole`.
+    /// The damped step of the free unknowns, given that the others have moved by `whole`.
     [[nodiscard]] VectorXd step(const std::vector<Index>& free, const VectorXd& whole) const {
         const auto count = static_cast<Index>(free.size());
         MatrixXd A = MatrixXd::Zero(J_.rows() + count, count);
@@ -76,7 +76,8 @@ private:
         return A.colPivHouseholderQr().solve(b);
     }
 
-    /// What would cross its bound goes to it, and the others to their best then; all shortened as one.
+    /// Unknowns that would cross a bound are fixed there and the others re-optimised; finally the whole step is scaled
+    /// to its limit.
     [[nodiscard]] VectorXd step_within_bounds(std::vector<Index> free) const {
         VectorXd whole = VectorXd::Zero(u_.size());
         while (!free.empty()) {
@@ -100,7 +101,7 @@ private:
         return longest > problem_.longest_step ? VectorXd(problem_.longest_step / longest * whole) : whole;
     }
 
-    /// One step that lessens the residuals; false: there is none.
+    /// Takes one step that decreases the residuals; false: there is none.
     [[nodiscard]] Result<bool> improve() {
         const double now = r_.squaredNorm();
         for (;;) {

@@ -48,7 +48,7 @@ VectorXd vector(double a, double b) {
 
 }  // namespace
 
-TEST_CASE("a bent valley is followed to its end, around places without a solution") {
+TEST_CASE("a curved valley is followed to its minimum, around points without a solution") {
     for (const double wall : {unbounded, 1.02}) {
         VectorXd best;
         const auto end = minimise(rosenbrock(best, wall), vector(-1.2, 1));
@@ -60,7 +60,7 @@ TEST_CASE("a bent valley is followed to its end, around places without a solutio
     }
 }
 
-TEST_CASE("a bound holds one unknown, and the other goes to its best there") {
+TEST_CASE("with one unknown at its bound the other is optimised") {
     VectorXd best;
     LeastSquaresProblem problem = rosenbrock(best, unbounded);
     problem.high = vector(0.5, unbounded);
@@ -70,7 +70,7 @@ TEST_CASE("a bound holds one unknown, and the other goes to its best there") {
     CHECK(end->u[1] == near(0.25, {.relative = 1e-6}));  // as far as |r|^2 tells
 }
 
-TEST_CASE("too few trials are said, a start without a solution is an error") {
+TEST_CASE("too few trials are reported, a start without a solution is an error") {
     VectorXd best;
     LeastSquaresProblem problem = rosenbrock(best, unbounded);
     problem.most_trials = 3;

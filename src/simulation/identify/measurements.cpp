@@ -13,11 +13,11 @@ namespace pliant::sim::identify {
 namespace {
 
 constexpr std::string_view scatter_ending = "_scatter";
-/// Of steps.csv and markers.csv: about the run, not about the robot.
+/// Columns of steps.csv and markers.csv about the run, not about the robot.
 constexpr std::array<std::string_view, 9> passed_over = {
     "index", "converged", "iterations", "substeps", "residual", "wall_ms", "min_J", "solver", "smallest_distance_mm"};
 
-/// Where a channel's cells are.
+/// Columns of a channel.
 struct Columns {
     std::size_t value = 0;
     std::optional<std::size_t> scatter;
@@ -119,7 +119,7 @@ Result<bool> read_use(const CsvTable& table, const CsvRow& row, std::size_t colu
     return input_error("{}: use \"{}\" is neither fit nor judge", table.place(row.line), cell->substr(0, 40));
 }
 
-/// Nothing: the cell is empty.
+/// Empty if the cell is empty.
 Result<std::optional<MeasuredValue>> read_value(const CsvTable& table, const CsvRow& row, const Header& header,
                                                 std::size_t channel) {
     const Columns& at = header.columns[channel];

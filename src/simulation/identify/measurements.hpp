@@ -1,4 +1,4 @@
-// A table of measurements: what was measured at which time of the program, how much it scatters, and what for.
+// A table of measurements: values at times of the program, their scatter and their use.
 #pragma once
 
 #include <string>
@@ -11,9 +11,9 @@
 
 namespace pliant::sim::identify {
 
-/// Which rows are kept out of the fit, to judge it on.
+/// Which rows are held out of the fit for validation.
 enum class JudgeOn {
-    nothing,       ///< or what the column `use` says
+    nothing,       ///< none, except as the column `use` says
     every_second,  ///< the second row of the table, the fourth...
     second_half,
 };
@@ -23,20 +23,20 @@ struct MeasuredValue {
     double time = 0;
     std::size_t channel = 0;
     double value = 0;     ///< in the channel's unit
-    double scatter = 0;   ///< standard deviation, in that unit; 0: not known
-    bool judged = false;  ///< kept out of the fit
+    double scatter = 0;   ///< standard deviation, in that unit; 0: unknown
+    bool judged = false;  ///< held out of the fit
 };
 
 struct Measurements {
     std::string file;
     std::vector<Channel> channels;      ///< at least one
-    std::vector<MeasuredValue> values;  ///< at least one that is not judged
+    std::vector<MeasuredValue> values;  ///< at least one that is not held out
 };
 
-/// One row for each instant. The column `time` (of the program) or `step` says which; the columns of find_channel()
-/// hold values, NAME_scatter beside NAME its standard deviation, `use` the words fit or judge. Empty cells were not
-/// measured. What else steps.csv has is passed over. Errors, with file and line: no such column, no number, a row
-/// without a time or with one that the program does not reach, a scatter that is not above zero, nothing to fit to.
+/// One row per instant. The column `time` (of the program) or `step` gives the instant; the columns of find_channel()
+/// hold values, NAME_scatter the standard deviation of NAME, `use` the words fit or judge. Empty cells were not
+/// measured. Other columns of steps.csv are ignored. Errors, with file and line: an unknown column, an invalid number,
+/// a row without a time or with one outside the program, a scatter that is not above zero, nothing to fit.
 [[nodiscard]] Result<Measurements> parse_measurements(std::string_view text, const std::string& file,
                                                       const sim::Description& robot, const robot::Program& program,
                                                       JudgeOn judge);

@@ -48,7 +48,7 @@ TEST_CASE("rows by time or by step, with empty cells and scatters") {
     CHECK(steps.values[1].time == near(1.25, {.relative = 1e-12}));
 }
 
-TEST_CASE("rows that are kept to judge on") {
+TEST_CASE("rows held out for validation") {
     const Bar bar(more);
     const std::string rows = "step,tip_x_mm\n0,60\n1,59\n2,58\n3,57\n4,56\n";
     const auto judged = [](const Measurements& m) {

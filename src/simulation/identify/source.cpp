@@ -7,8 +7,8 @@
 namespace pliant::sim::identify {
 namespace {
 
-/// Equations that hold to so much have derivatives that hold as well as they are solved; fewer digits would show as
-/// noise in what a search compares.
+/// Derivatives are as accurate as the solution of the equations; a looser tolerance would add noise to what the search
+/// compares.
 constexpr double tolerance = 1e-8;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The robot with other numbers: read anew from its file, on the mesh that it already has.
+// The robot with other parameter values: read again from its file, on the existing mesh.
 #pragma once
 
 #include <functional>
@@ -15,10 +15,10 @@
 
 namespace pliant::sim::identify {
 
-/// Reads the robot with these assignments in addition to its own, as of `--set`.
+/// Reads the robot with these assignments, as of `--set`, in addition to its own.
 using ReadRobot = std::function<Result<robot::Robot>(const std::vector<std::string>& assignments)>;
 
-/// A robot with certain values of its unknowns.
+/// A robot with given values of its unknowns.
 struct Variant {
     robot::Program program;
     sim::Model model;

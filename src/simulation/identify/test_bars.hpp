@@ -1,4 +1,4 @@
-// Bars on small meshes, and what would be measured on them.
+// Bars on small meshes, and synthetic measurements on them.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -30,7 +30,7 @@ inline const std::string bar_text = R"(
               { name = "corner", point = [60, 10, 10] }]
 )";
 
-/// With a hollow along its middle, where there is a chamber.
+/// The same bar with a hollow along its middle, which is a chamber.
 inline mesh::TetMesh bar_mesh(bool hollow) {
     const auto inside = [](double v, double low, double high) { return v > low && v < high; };
     const int across = hollow ? 3 : 2;
@@ -45,14 +45,14 @@ inline mesh::TetMesh bar_mesh(bool hollow) {
     return mesh;
 }
 
-/// A robot file's text on that mesh.
+/// The text of a robot file for that mesh.
 struct Bar {
     std::string text;
     Source source;
 
     explicit Bar(const std::string& more, const std::vector<std::string>& set = {})
         : text(bar_text + more), source(reader(text, set), mesh_of(text)) {}
-    /// Another robot than that bar, on another mesh.
+    /// A robot other than that bar, on another mesh.
     Bar(const std::string& whole, mesh::TetMesh mesh)
         : text(whole), source(reader(text, {}), taken(text, std::move(mesh))) {}
 
@@ -123,7 +123,7 @@ inline std::unique_ptr<Trial> solve(const Bar& bar, const std::vector<Unknown>& 
     return std::move(*trial);
 }
 
-/// What would be measured with these values, as a table; `disturb(k)` is added to the k-th value.
+/// Synthetic measurements with these values, as a table; `disturb(k)` is added to the k-th value.
 template <class Disturb>
 std::string table_of(const Bar& bar, const std::vector<Unknown>& unknowns, const std::vector<double>& values,
                      const std::vector<std::string>& columns, const std::vector<double>& times, Disturb disturb) {

@@ -1,4 +1,4 @@
-// A program solved for certain values of the unknowns: what would have been measured, and how that changes with them.
+// A program solved for given values of the unknowns: simulated measurements, and their derivatives.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,39 +14,39 @@
 
 namespace pliant::sim::identify {
 
-/// How the numbers that a state is a function of change with the unknowns, each by a change of 1 in its coordinate.
+/// Derivatives of the numbers that a state depends on with respect to the coordinate of each unknown.
 struct Rates {
     Eigen::MatrixXd parameters;           ///< (sim::parameters(), unknowns)
     std::vector<Eigen::MatrixXd> drives;  ///< (pieces) of (drives, unknowns)
 };
 
-/// Keeps every state that it has solved: so many times the robot's positions.
+/// Keeps every state that it has solved; memory: the positions of all of them.
 class Trial {
 public:
-    /// At times in [0, duration]. A robot at rest at every instant and without friction of contact is solved at each of
-    /// them, beside the steps of its program; in between, others are interpolated between two steps. Errors: a step
-    /// that does not converge; cancelled.
+    /// Solves for times in [0, duration]. A quasi-static robot without contact friction is solved at each of them, in
+    /// addition to the steps of its program; otherwise values are interpolated between two steps. Errors: a step that
+    /// does not converge; cancelled.
     [[nodiscard]] static Result<std::unique_ptr<Trial>> solve(std::unique_ptr<Variant> variant,
                                                               std::span<const Channel> channels,
                                                               std::span<const double> times, Progress& progress);
 
     /// (times, channels), in the channels' units.
     [[nodiscard]] const Eigen::MatrixXd& values() const { return values_; }
-    /// (times) of (channels, unknowns): by the linearisation of each state; through the steps before it where there is
-    /// friction of contact or motion in time. What is lagged stays as in Linearisation. Errors: a state that has no
+    /// (times) of (channels, unknowns): by linearising each state and, with contact friction or a motion in time,
+    /// through the steps before it. Lagged quantities are held fixed as in Linearisation. Errors: a state that has no
     /// derivative; cancelled.
     [[nodiscard]] Result<std::vector<Eigen::MatrixXd>> slopes(const Source& source, std::span<const Unknown> unknowns,
                                                               std::span<const double> at, Progress& progress) const;
 
 private:
-    /// An equilibrium on the way; `stop` says which it is the end of, -1: none.
+    /// An intermediate equilibrium; `stop`: index of the stop that it ends at, -1: none.
     struct Piece {
         int stop = -1;
         sim::State state;
         sim::Controls controls;
         sim::KnownPattern pattern{};
     };
-    /// A time between two stops.
+    /// Interpolation between two stops.
     struct Place {
         std::size_t before = 0, after = 0;
         double share = 0;

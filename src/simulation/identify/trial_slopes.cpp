@@ -1,4 +1,4 @@
-// How what a trial gives changes with the unknowns.
+// Derivatives of a trial with respect to the unknowns.
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -19,17 +19,17 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Kind = sim::Parameter::Kind;
 
-/// Half the difference between two variants, in the coordinate of an unknown. The numbers of a robot are linear in most
-/// of its keys, and rational in the others: differences of them are exact, or nearly, and nothing is solved for them.
+/// Half the step between two variants, in the coordinate of an unknown. The numbers of a robot are linear in most of
+/// its keys, and rational in the others: their differences are exact, or nearly, and need no solve.
 constexpr double half_step = 1e-4;
 
-/// The numbers of a variant that its states are a function of.
+/// The numbers of a variant that its states depend on.
 struct Numbers {
     VectorXd parameters;
     std::vector<VectorXd> drives;  ///< (pieces)
 };
 
-/// Moduli that stand beside the constants of a law, which they follow from, count as 0: no change is taken twice.
+/// Moduli listed in addition to the constants of a law count as 0, so that no change is counted twice.
 double parameter_value(const Variant& variant, const sim::Parameter& parameter) {
     if (parameter.kind == Kind::law) {
         const material::Law& law = variant.model.description().materials[parameter.index].law;
@@ -62,7 +62,7 @@ Result<Numbers> numbers_of(const Variant& variant, const std::vector<const sim::
     return numbers;
 }
 
-/// What each unknown varies at a piece. Pressure loads are among the parameters, and not taken twice.
+/// The variation of each unknown at a piece. Pressure loads are among the parameters, and not counted twice.
 std::vector<sim::Variation> variations(const sim::Linearisation& at, const Rates& rates, std::size_t piece) {
     const sim::Description& d = at.system().model().description();
     const std::vector<sim::Parameter> inputs = sim::inputs(at);
@@ -87,7 +87,7 @@ std::vector<sim::Slope> measure_slopes(const sim::Linearisation& at, std::span<c
     return slopes;
 }
 
-/// (measures, unknowns) by one solution for each unknown.
+/// (measures, unknowns) by one direct solve per unknown.
 Result<MatrixXd> direct(sim::Linearisation& at, std::span<const sim::Slope> slopes,
                         std::span<const sim::Variation> unknowns) {
     MatrixXd result(static_cast<Index>(slopes.size()), static_cast<Index>(unknowns.size()));
@@ -99,7 +99,7 @@ Result<MatrixXd> direct(sim::Linearisation& at, std::span<const sim::Slope> slop
     return result;
 }
 
-/// The same by one transposed solution for each measure.
+/// The same by one transposed solve per measure.
 Result<MatrixXd> transposed(sim::Linearisation& at, std::span<const sim::Slope> slopes,
                             std::span<const sim::Variation> unknowns) {
     MatrixXd result(static_cast<Index>(slopes.size()), static_cast<Index>(unknowns.size()));
@@ -115,13 +115,14 @@ Result<MatrixXd> transposed(sim::Linearisation& at, std::span<const sim::Slope> 
 
 }  // namespace
 
-/// Where there is a history: what the state before a piece does with each unknown.
+/// Forward sensitivities for programs with history: the derivative of the state before a piece with respect to each
+/// unknown.
 struct Trial::Forward {
     explicit Forward(std::vector<sim::History> rest) : by(std::move(rest)) {}
 
     std::vector<sim::History> by;  ///< (unknowns)
 
-    /// Over a piece: (measures, unknowns) at its end.
+    /// Advances over a piece: (measures, unknowns) at its end.
     [[nodiscard]] Result<MatrixXd> go_on(sim::Linearisation& at, std::span<const sim::Slope> slopes,
                                          std::span<const sim::Variation> unknowns) {
         begin(at);
@@ -141,7 +142,7 @@ struct Trial::Forward {
     }
 
 private:
-    /// How the forces of a piece change with where it begins.
+    /// The change of the forces of a piece with its start.
     [[nodiscard]] VectorXd start_force(const sim::Linearisation& at, std::size_t unknown) const {
         const sim::History& h = by[unknown];
         VectorXd force = VectorXd::Zero(sim::force_size(at.system()));
@@ -158,7 +159,7 @@ private:
         return force;
     }
 
-    /// What damps a joint does so against where it was when the piece began.
+    /// Joint damping acts against the coordinate at the start of the piece.
     static void add_joint_force(const sim::Linearisation& at, const VectorXd& motion, VectorXd& force) {
         const sim::Equilibrium& system = at.system();
         const auto& joints = system.model().description().joints;
@@ -174,7 +175,7 @@ private:
         }
     }
 
-    /// What the piece before hands on becomes what this one begins with.
+    /// The end of the previous piece becomes the start of this one.
     void begin(const sim::Linearisation& at) {
         const auto before = std::exchange(friction_, at.controls().friction);
         std::vector<sim::Slips> handed_on = std::exchange(slips_, {});
@@ -193,7 +194,7 @@ private:
         sim::add_to_forces(at.system(), *friction_, resisted, force);
     }
 
-    /// The slips at the end of the piece, cut to what is handed on; `x`: how that end moves.
+    /// The slips at the end of the piece, limited to what is carried over; `x`: motion of that end.
     void keep_slips(const sim::Linearisation& at, std::size_t unknown, const VectorXd& x) {
         if (!friction_) return;
         const std::vector<double> end = sim::contact_nodes(at.system(), at.state(), at.controls());
@@ -223,8 +224,8 @@ private:
         return at.controls().inertia->from(std::move(history));
     }
 
-    std::shared_ptr<const sim::contact::Friction> friction_{};  ///< of the piece at hand
-    std::vector<sim::Slips> slips_{};  ///< (unknowns) that its pairs begin with; after it, those that it hands on
+    std::shared_ptr<const sim::contact::Friction> friction_{};  ///< of the current piece
+    std::vector<sim::Slips> slips_{};  ///< (unknowns) initial slips of its pairs; afterwards, those carried over
 };
 
 Result<Rates> Trial::rates(const Source& source, std::span<const Unknown> unknowns, std::span<const double> at) const {
@@ -293,7 +294,7 @@ Result<std::vector<MatrixXd>> Trial::slopes(const Source& source, std::span<cons
     const VectorXd nothing = VectorXd::Zero(pieces_.front().state.x.size());
     Forward forward(std::vector<sim::History>(unknowns.size(), {nothing, nothing, nothing, nothing, 0}));
     std::vector<MatrixXd> at_stops(stops_.size());
-    // At rest nothing has happened yet.
+    // At rest nothing has changed yet.
     at_stops[0] = MatrixXd::Zero(static_cast<Index>(channels_.size()), static_cast<Index>(unknowns.size()));
     for (std::size_t k = 1; k < pieces_.size(); ++k) {
         if (progress.cancelled()) return cancelled();

@@ -1,4 +1,4 @@
-// How what is measured changes with an unknown, against programs that are solved with a little more and a little less.
+// Derivatives of measurements with respect to an unknown, against programs solved with slightly different values.
 #include "simulation/identify/trial.hpp"
 
 #include <doctest/doctest.h>
@@ -109,7 +109,7 @@ TEST_CASE("slopes by contact stiffness of a bar that a block lifts") {
                  {"block_force_z_N", "tip_z_mm", "block_force_x_N"}, {0.5, 1}, 1e-5);
 }
 
-TEST_CASE("slopes through the steps before are those that going back over them gives, where contact rubs too") {
+TEST_CASE("forward slopes through earlier steps equal the adjoint ones, with contact friction too") {
     for (const char* text : {R"(
         obstacle = [{ name = "block", geometry.box = [[40, -3, -4], [80, 13, -1]], friction = 0.3, move = [0, 0, 3] }]
         contact = { stiffness = "60 kPa" }

@@ -18,7 +18,7 @@ namespace pliant::sim::identify {
 namespace {
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
-/// Without bounds of its own what is above zero is sought within this factor of where it begins.
+/// Default bounds of positive numbers: this factor around the initial value.
 constexpr double widest_factor = 1e6;
 constexpr double least_poisson = -0.99, most_poisson = 0.4999;
 

@@ -1,4 +1,4 @@
-// Numbers of a robot that can be found from measurements, by the keys of the robot file that `--set` names.
+// Numbers of a robot that can be identified from measurements, named by the keys of the robot file, as for `--set`.
 #pragma once
 
 #include <string>
@@ -10,37 +10,37 @@
 
 namespace pliant::sim::identify {
 
-/// The coordinate u in which the search takes its steps; the value is
+/// The coordinate u in which the search steps, and the value as a function of it.
 enum class Scale {
-    linear,   ///< size * u: offsets, loads
-    log,      ///< exp(u): what is above zero
+    linear,   ///< size * u: for offsets, loads
+    log,      ///< exp(u): for positive values
     poisson,  ///< (1 - exp(-u)) / 2: Poisson's ratio; exp(u) is proportional to the bulk modulus at a given E
 };
 
 struct Unknown {
     std::string key;   ///< as `--set` takes it
-    std::string unit;  ///< SI, as the robot file writes it; "" of a plain number
-    double value = 0;  ///< where the search begins, in that unit
+    std::string unit;  ///< SI, as the robot file writes it; "" if dimensionless
+    double value = 0;  ///< initial value of the search, in that unit
     double low = 0, high = 0;
     Scale scale = Scale::log;
-    double size = 1;  ///< in that unit: of Scale::linear, how much a change of 1 in u is; of others 1
+    double size = 1;  ///< change of the value for a change of 1 in u, for Scale::linear, in that unit; otherwise 1
 
     [[nodiscard]] double coordinate(double of_value) const;
     [[nodiscard]] double value_at(double u) const;
-    /// d(value)/du.
+    /// d(value)/du at this value.
     [[nodiscard]] double rate(double of_value) const;
-    /// "KEY=VALUE" with all digits.
+    /// "KEY=VALUE" with full precision.
     [[nodiscard]] std::string assignment(double of_value) const;
-    /// For people: "0.2638 MPa".
+    /// Value with unit for people: "0.2638 MPa".
     [[nodiscard]] std::string shown(double of_value) const;
 };
 
-/// Every number of the robot that could be one: of its materials, actuators, springs, loads, contact and damping.
+/// All numbers of the robot that can be identified: of its materials, actuators, springs, loads, contact and damping.
 [[nodiscard]] std::vector<Unknown> possible_unknowns(const robot::Robot& robot);
 
-/// From "KEY" or "KEY=LOW..HIGH", with units where the key has one. A robot whose number lies outside begins in the
-/// middle of the bounds. Errors: no such number in this robot; bounds that are none; a number that is 0 and can only be
-/// found from above 0.
+/// From "KEY" or "KEY=LOW..HIGH", with units if the key has one. If the robot's value lies outside the bounds, the
+/// search starts in the middle. Errors: no such number in this robot; invalid bounds; a number that is 0 and must be
+/// positive to be identified.
 [[nodiscard]] Result<Unknown> find_unknown(const robot::Robot& robot, std::string_view text);
 
 /// All of them, or the first error.

@@ -74,7 +74,7 @@ TEST_CASE("bounds, with units where the key has one") {
     CHECK(friction.value == near(0.1, {.relative = 1e-12}));
 }
 
-TEST_CASE("what is no unknown is said in one line") {
+TEST_CASE("an invalid unknown is reported in one line") {
     const Bar bar(rich);
     CHECK(problem(bar, "material.sof.youngs_modulus") ==
           "material.sof.youngs_modulus: the robot has no such parameter to find; did you mean "

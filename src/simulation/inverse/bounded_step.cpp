@@ -40,7 +40,7 @@ private:
         const double at = found_.step[i];
         return gradient > 0 ? at > lower_[i] : at < upper_[i];
     }
-    /// Without what leads out of the bounds.
+    /// The gradient without components that point out of the bounds.
     [[nodiscard]] Eigen::VectorXd projected(const Eigen::VectorXd& gradient) const {
         Eigen::VectorXd p = gradient;
         for (Eigen::Index i = 0; i < p.size(); ++i) {
@@ -49,7 +49,7 @@ private:
         return p;
     }
 
-    /// Conjugate gradients over the entries in which `downhill` is not zero, until they are solved or one meets a
+    /// Conjugate gradients over the entries in which `downhill` is not zero, until convergence or until one reaches a
     /// bound.
     void search_face(const Eigen::VectorXd& downhill, double wanted) {
         Eigen::VectorXd direction = downhill;

@@ -1,5 +1,5 @@
-// The step within bounds that makes a linearised sum of squares small, by products with the Jacobian and its transpose
-// alone.
+// The step within bounds that minimises a linearised sum of squares, using only products with the Jacobian and its
+// transpose.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,11 +16,11 @@ struct BoundedStep {
     double decrease = 0;       ///< of half the sum of squares; not negative
 };
 
-/// Minimises |residuals + J step|^2 / 2 over lower <= step <= upper by conjugate gradients over the entries that are
-/// free; those that meet a bound are fixed there, and let go again once the rest is solved and the gradient leads them
-/// inwards (Polyak 1969; Moré and Toraldo 1991). Ends where the projected gradient is below `tolerance` times the first
-/// one, or where residuals of no more than `enough` are left. Without bounds in the way it is the least of all steps
-/// that are as good. Precondition: lower <= 0 <= upper.
+/// Minimises |residuals + J step|^2 / 2 over lower <= step <= upper by conjugate gradients on the free entries; entries
+/// that reach a bound are fixed there, and released once the rest is solved if the gradient points inwards (Polyak
+/// 1969; Moré and Toraldo 1991). Stops when the projected gradient is below `tolerance` times the first one, or the
+/// residuals are at most `enough`. If no bound is active, the result is the minimum-norm step. Precondition: lower <= 0
+/// <= upper.
 [[nodiscard]] BoundedStep bounded_step(const Eigen::VectorXd& residuals, const Product& multiply,
                                        const Product& multiply_transposed, const Eigen::VectorXd& lower,
                                        const Eigen::VectorXd& upper, double tolerance, double enough = 0);

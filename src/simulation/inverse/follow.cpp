@@ -16,7 +16,7 @@ Work operator-(const Work& a, const Work& b) {
     return {a.forward - b.forward, a.failed - b.failed, a.linearised - b.linearised, a.solutions - b.solutions};
 }
 
-/// What an input may be after `seconds`: its range, and what its rate leaves of that.
+/// Bounds of each input after `seconds`: its range, restricted by its rate.
 Bounds bounds_from(const Seeker& seeker, const Point& before, double seconds) {
     Bounds bounds = seeker.whole_range();
     const Eigen::VectorXd change = seeker.space().largest_change(seconds);

@@ -1,4 +1,4 @@
-// Follows the waypoints of a task, each from the one before.
+// Solves for the waypoints of a task, each starting from the previous one.
 //
 //     Stepper stepper(model, stepper_options(program));
 //     const InverseResult result = follow(stepper, task, {}, progress);
@@ -17,15 +17,15 @@ namespace pliant::sim::inverse {
 struct Waypoint {
     bool reached = false;
     std::vector<GoalState> goals;  ///< (goals)
-    std::vector<double> values;    ///< (inputs) in what the targets name
-    std::vector<Limit> limits;     ///< where not reached
-    Step state;                    ///< index 1, 2, ...; time of the program
+    std::vector<double> values;    ///< (inputs) in the units of the targets
+    std::vector<Limit> limits;     ///< if not reached
+    Step state;                    ///< index 1, 2, ...; program time
     Work work;
     double wall_s = 0;
 };
 
 struct InverseResult {
-    std::vector<Waypoint> waypoints;  ///< fewer than asked for where it was cancelled or there is no state at all
+    std::vector<Waypoint> waypoints;  ///< fewer than requested if cancelled or no state was found
     bool reached = false;             ///< all of them
     bool cancelled = false;
     std::string message;  ///< why waypoints are missing
@@ -33,18 +33,19 @@ struct InverseResult {
 };
 
 struct FollowOptions {
-    /// Beginnings spread over the ranges that are tried where the first waypoint is not reached from rest.
+    /// Number of starting points, spread over the ranges, that are tried if the first waypoint is not reached from
+    /// rest.
     int starts = 6;
 };
 
-/// The first waypoint is looked for from rest, every other one from the one before it.
+/// Searches for the first waypoint from rest, and for every other one from the one before it.
 [[nodiscard]] InverseResult follow(Stepper& stepper, const InverseTask& task, const FollowOptions& options,
                                    Progress& progress);
 
-/// A sentence: `flexor is at the lower end of its range`.
+/// As a sentence: `flexor is at the lower end of its range`.
 [[nodiscard]] std::string text(const Limit& limit);
 
-/// The n-th of points that fill the unit cube evenly, from 0 on (Halton 1960). (size)
+/// (size) the n-th point, from 0, of a low-discrepancy sequence in the unit cube (Halton 1960).
 [[nodiscard]] Eigen::VectorXd spread_point(int n, Eigen::Index size);
 
 }  // namespace pliant::sim::inverse

@@ -1,4 +1,4 @@
-// Targets that a forward solution shows to be within reach are found.
+// Targets that a forward solution shows to be reachable are found.
 #include "simulation/inverse/follow.hpp"
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ using namespace pliant::sim::inverse::testing;
 
 namespace {
 
-/// Where `values` lead is found again, and the values found lead there by a forward solution of their own.
+/// Solves for the position reached with `values`, and checks the result by an independent forward solution.
 void check_found(Description d, const std::vector<std::pair<double, double>>& ranges, const std::vector<double>& values,
                  double tolerance = 1e-5) {
     const Model model = made(std::move(d));
@@ -40,7 +40,7 @@ void check_found(Description d, const std::vector<std::pair<double, double>>& ra
 
 }  // namespace
 
-TEST_CASE("a length, a tension, a volume and a pressure are found again from where they lead") {
+TEST_CASE("a length, a tension, a volume and a pressure are recovered from the position they lead to") {
     check_found(bar(1), {{0.7, 1}}, {0.85});
     check_found(bar(1, 1, CableTarget::Kind::tension_N), {{0, 10}}, {4});
     check_found(bar(1, 1, CableTarget::Kind::shortening_m), {{0, 0.02}}, {0.007});
@@ -57,7 +57,7 @@ TEST_CASE("several cables are found again, also with quadratic elements") {
 
 namespace {
 
-/// A closed curve of places of the tip, each of which some inputs lead to.
+/// A closed path of the tip, every point of which is reachable.
 InverseTask path_task(const Model& model, std::size_t waypoints) {
     InverseTask task = task_for(model, {{0.75, 1}, {0.75, 1}, {0.75, 1}});
     task.goals = {at_point({})};
@@ -110,7 +110,7 @@ TEST_CASE("the same bits on any number of threads") {
     for (std::size_t k = 0; k < one.waypoints.size(); ++k) CHECK(one.waypoints[k].values == four.waypoints[k].values);
 }
 
-TEST_CASE("loads that grow with the waypoints' times are made up for") {
+TEST_CASE("loads that grow with the waypoints' times are compensated") {
     Description d = bar(2);
     d.loads = {
         {"weight", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > length - 1e-9; }), {}, {0, 0, -0.02}}};
@@ -156,8 +156,8 @@ TEST_CASE("friction in the guides: each waypoint is a step from the one before")
     }
 }
 
-TEST_CASE("where the way from rest ends aside, another beginning is found, and a note says so") {
-    // A step from rest does not show the force of a table that nothing touches yet.
+TEST_CASE("if the search from rest fails, another starting point is used, and a note says so") {
+    // At rest nothing touches the table, so its force has no derivative there.
     Description d = bar(2);
     ContactRules rules;
     rules.surface = contact::robot_surface(d.mesh);
@@ -199,11 +199,11 @@ TEST_CASE("a search that is cancelled keeps the waypoints that it has") {
     CHECK(result.message == "cancelled at waypoint 3 of 5");
 }
 
-TEST_CASE("what a step that lowers prices showed is no measure for the way to the next waypoint") {
+TEST_CASE("a step that lowers the penalty does not affect the prediction for the next waypoint") {
     const Model model = made(bar(2));
     InverseTask task = task_for(model, {{0.75, 1}, {0.75, 1}});
     task.inputs[0].effort_price = task.inputs[1].effort_price = 1;
-    task.inputs[0].rest = task.inputs[1].rest = 0.95;  // both pull where it begins, and need not
+    task.inputs[0].rest = task.inputs[1].rest = 0.95;  // both pull initially, and need not
     const Vec3 begin = tip_under(model, task, {0.95, 0.95}), end = tip_under(model, task, {0.9, 1});
     task.goals = {at_point(begin, 1e-3)};
     task.goals[0].wanted = {{begin}, {end}};

@@ -20,7 +20,7 @@ contact::Stencil stencil_of(const contact::Pair& pair, const std::vector<double>
     return stencil;
 }
 
-/// Calls `visit` with each pair that the goal's obstacle presses on the robot with.
+/// Calls `visit` with each contact pair of the goal's obstacle and the robot.
 template <class Visit>
 void visit_pairs(const Equilibrium& system, const Controls& controls, const std::vector<double>& x, const Goal& goal,
                  const Visit& visit) {
@@ -32,7 +32,7 @@ void visit_pairs(const Equilibrium& system, const Controls& controls, const std:
     }
 }
 
-/// The sizes of all normal forces of the obstacle on the robot, added up.
+/// The sum of the magnitudes of the obstacle's normal forces on the robot.
 double pressing_force(const Equilibrium& system, const State& state, const Controls& controls, const Goal& goal) {
     const std::vector<double> x = contact_nodes(system, state, controls);
     double sum = 0;
@@ -42,7 +42,7 @@ double pressing_force(const Equilibrium& system, const State& state, const Contr
     return sum;
 }
 
-/// By central differences of each pair's own force: it depends on the four nodes of the pair alone.
+/// By central differences of each pair's own force, which depends on the four nodes of the pair alone.
 Quantity pressing_gradient(const Linearisation& at, const Goal& goal) {
     Quantity quantity{Eigen::VectorXd::Zero(at.state().x.size()), Eigen::VectorXd::Zero(at.state().multiplier.size())};
     const std::vector<double> x = contact_nodes(at.system(), at.state(), at.controls());
@@ -66,8 +66,8 @@ Quantity pressing_gradient(const Linearisation& at, const Goal& goal) {
     return quantity;
 }
 
-/// The energy of contact changes with the place of an obstacle as with its nodes: what a motion of the obstacle does to
-/// the forces on the robot is, by symmetry, what a motion of the robot does to the force on the obstacle.
+/// The contact energy depends on the obstacle's position as on its nodes: by symmetry, the effect of an obstacle's
+/// motion on the forces on the robot equals that of a robot's motion on the force on the obstacle.
 std::vector<Quantity> contact_gradients(const Linearisation& at, const Goal& goal) {
     const Equilibrium& system = at.system();
     const contact::Contact& contact = *system.model().contact(true);

@@ -15,7 +15,7 @@ Vec3 place_of(const Model& model, std::size_t marker, const Eigen::VectorXd& x) 
     return position(model.description().markers[marker].point, linalg::view(x));
 }
 
-/// What the goal's wanted values are compared with.
+/// The current values that correspond to the goal's wanted values.
 std::vector<Vec3> got(const Equilibrium& system, const RobotState& robot, const Goal& goal) {
     const auto place = [&](std::size_t k) { return place_of(system.model(), goal.markers[k], robot.x()); };
     switch (goal.kind) {
@@ -104,7 +104,7 @@ private:
 
 constexpr Vec3 axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
-/// d of the unit vector from a to b: (I - n n^T) / |b - a|.
+/// Derivative of the unit vector from a to b: (I - n n^T) / |b - a|.
 void add_direction(RowWriter& rows, const Linearisation& at, const Goal& goal, double scale) {
     const Model& model = at.system().model();
     const Vec3 way = place_of(model, goal.markers[1], at.state().x) - place_of(model, goal.markers[0], at.state().x);
@@ -156,7 +156,8 @@ GoalRows::GoalRows(const Stepper& stepper, const InverseTask& task, const InputS
     pressure_Pa_ = tension_N_ / (length * length);
 }
 
-/// Of goals the least weight counts 1: where all residuals are small every goal is within its tolerance.
+/// The smallest weight of the goals is scaled to 1, so that small residuals mean that every goal is within its
+/// tolerance.
 double GoalRows::scale(const Goal& goal) const {
     return std::sqrt(goal.weight / least_weight_) / goal.tolerance;
 }

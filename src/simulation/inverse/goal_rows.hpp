@@ -1,4 +1,4 @@
-// How far a state is from its goals, in tolerances, and how that changes with the state.
+// Deviations of a state from its goals, in units of their tolerances, and their derivatives.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,41 +10,44 @@
 
 namespace pliant::sim::inverse {
 
-/// How a goal fares. SI.
+/// Result for one goal. SI.
 struct GoalState {
-    double error = 0;       ///< m, rad or N; of several markers the largest
+    double error = 0;       ///< m, rad or N; the largest over several markers
     bool reached = false;   ///< within its tolerance
-    std::vector<Vec3> got;  ///< as Goal::wanted: places of markers; a direction; a force, or its size
+    std::vector<Vec3> got;  ///< in the format of Goal::wanted: positions of markers; a direction; a force, or its
+                            ///< magnitude
 };
 
-/// Residuals: half the sum of their squares is what is made small. Of goals each in tolerances, times the root of its
-/// weight; of prices each in its unit.
+/// Residuals, half of whose sum of squares is minimised. Those of goals are in tolerances, times the square root of the
+/// goal's weight; those of penalties each in its own unit.
 struct RowGradients {
     Eigen::SparseMatrix<double, Eigen::RowMajor> by_positions;  ///< (rows, 3n)
     Eigen::MatrixXd by_multipliers;                             ///< (rows, actuators)
-    Eigen::MatrixXd by_inputs;                                  ///< (rows, inputs) without what goes through the state
+    Eigen::MatrixXd by_inputs;                                  ///< (rows, inputs) explicit derivative, at a fixed
+                                                                ///< state
 };
 
-/// Prices of inputs beside the goals: none where `factor` is 0. The residuals of the goals count `goals` times.
+/// Penalties on inputs in addition to the goals: none if `factor` is 0. The residuals of the goals are multiplied by
+/// `goals`.
 struct PriceTerm {
     double factor = 0;
     double goals = 1;
-    Eigen::VectorXd before;  ///< (inputs) what a change is counted from
+    Eigen::VectorXd before;  ///< (inputs) reference for changes
 };
 
 class GoalRows {
 public:
-    /// All outlive it.
+    /// All arguments must outlive it.
     GoalRows(const Stepper& stepper, const InverseTask& task, const InputSpace& space);
 
     [[nodiscard]] std::vector<GoalState> goals(const RobotState& robot, std::size_t waypoint) const;
     [[nodiscard]] Eigen::VectorXd values(const RobotState& robot, const Eigen::VectorXd& inputs, std::size_t waypoint,
                                          const PriceTerm& price) const;
-    /// In the same order. `at`: of this state.
+    /// Derivatives, in the same order. `at`: linearised at this state.
     [[nodiscard]] RowGradients gradients(Linearisation& at, std::size_t waypoint, const PriceTerm& price) const;
-    /// Some actuator has a price.
+    /// True if any actuator has a penalty.
     [[nodiscard]] bool has_prices() const;
-    /// Half the sum of all squares of prices at `factor` 1.
+    /// Half the sum of squares of all penalties at `factor` 1.
     [[nodiscard]] double price(const RobotState& robot, const Eigen::VectorXd& inputs,
                                const Eigen::VectorXd& before) const;
 

@@ -50,7 +50,7 @@ Inputs InputSpace::inputs(const Eigen::VectorXd& shares, double time) const {
     return inputs;
 }
 
-/// Of what the drive wants, for a whole range; targets are linear in it.
+/// Change of the drive's value over a whole range; targets are linear in it.
 double InputSpace::drive_factor(Eigen::Index i) const {
     const Equilibrium& system = stepper_->system();
     const Steered& in = input(i);
@@ -82,7 +82,7 @@ std::vector<Derivative> InputSpace::derivatives(Linearisation& at) const {
     for (Eigen::Index i = 0; i < size(); ++i) {
         const Parameter& parameter = all[input(i).actuator];  // those of the actuators come first
         Derivative by = derivative(at, parameter);
-        // A drive holds minus the pressure.
+        // The drive of a chamber holds minus the pressure.
         const double factor = parameter.kind == Kind::pressure ? -drive_factor(i) : drive_factor(i);
         by.equations *= factor;
         by.direct.positions *= factor;

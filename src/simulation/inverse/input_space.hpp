@@ -1,4 +1,4 @@
-// The actuators that may be moved, as one vector: each entry goes from 0, the lower end of a range, to 1, the upper.
+// The steered actuators as one vector: each entry runs from 0, the lower end of its range, to 1, the upper.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,29 +17,29 @@ public:
 
     [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(task_->inputs.size()); }
     [[nodiscard]] const Steered& input(Eigen::Index i) const { return task_->inputs[static_cast<std::size_t>(i)]; }
-    /// Nothing driven, or what of the range is nearest to that.
+    /// The undriven inputs, or the nearest ones within the ranges.
     [[nodiscard]] Eigen::VectorXd rest() const;
-    /// In what the targets name.
+    /// In the unit of the target.
     [[nodiscard]] double value(Eigen::Index i, double share) const;
     [[nodiscard]] double share(Eigen::Index i, double value) const;
-    /// What drives the robot now, or would keep it as it is where it is driven otherwise; within the ranges.
+    /// The current inputs, within the ranges; for an actuator driven otherwise, those that would keep it as it is.
     [[nodiscard]] Eigen::VectorXd shares(const RobotState& robot) const;
-    /// The robot is driven by what the targets name.
+    /// True if every steered actuator is driven by the quantity that its target names.
     [[nodiscard]] bool drives(const RobotState& robot) const;
-    /// Of the whole robot: what is not steered follows the program.
+    /// Inputs of the whole robot: everything that is not steered follows the program.
     [[nodiscard]] Inputs inputs(const Eigen::VectorXd& shares, double time) const;
 
-    /// A cable that is driven by length and does not pull.
+    /// True for a cable that is driven by length and slack.
     [[nodiscard]] bool is_slack(const RobotState& robot, Eigen::Index i) const;
-    /// A larger share asks for a longer cable, or for more air.
+    /// True if a larger entry means a longer cable, or more air.
     [[nodiscard]] bool drives_longer(Eigen::Index i) const { return drive_factor(i) > 0; }
-    /// Takes up what is slack: those cables are asked for the length that they have, as far as their range goes.
-    /// Nothing else changes.
+    /// Takes up slack: the prescribed length of slack cables is set to their actual length, within their range. Nothing
+    /// else changes.
     void take_up(RobotState& robot, Eigen::VectorXd& shares) const;
 
-    /// How the equations change with each entry.
+    /// Derivatives of the equations with respect to each entry.
     [[nodiscard]] std::vector<Derivative> derivatives(Linearisation& at) const;
-    /// The largest change of each entry within `seconds`, or in one waypoint; above 1 where nothing limits it.
+    /// The largest change of each entry within `seconds`, or per waypoint; above 1 if nothing limits it.
     [[nodiscard]] Eigen::VectorXd largest_change(double seconds) const;
 
 private:

@@ -1,4 +1,4 @@
-// What cannot be reached: the nearest point that can, and what keeps the robot from the rest.
+// Unreachable goals: the nearest reachable point, and the limits that prevent more.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ TEST_CASE("beyond the range: the nearest point is at its end, which is named") {
     CHECK(found.goals[0].error == near(nearest_sampled(model, task, wanted, 20), {.absolute = 1e-5}));
 }
 
-TEST_CASE("aside of everything that can be reached: the nearest point, as dense sampling finds it") {
+TEST_CASE("outside the workspace: the nearest point, as found by dense sampling") {
     const Model model = made(bar(2));
     InverseTask task = task_for(model, {{0.75, 1}, {0.75, 1}});
     for (const Vec3& aside : {Vec3{0.01, 0, 0.005}, Vec3{-0.004, 0.006, 0.001}, Vec3{0.004, 0.003, -0.03}}) {
@@ -107,7 +107,7 @@ TEST_CASE("a rate leaves a waypoint out of reach, and is named") {
     CHECK_FALSE(result.reached);
 }
 
-TEST_CASE("of cables that do the same, a price of tension leaves the least") {
+TEST_CASE("for redundant cables a tension penalty gives the smallest tensions") {
     const Model model = made(bar(2, 1, CableTarget::Kind::tension_N));
     InverseTask task = task_for(model, {{0, 20}, {0, 20}});
     // Both pull: only their difference bends, but the sum shortens.

@@ -7,7 +7,7 @@ namespace pliant::sim::inverse {
 namespace {
 
 constexpr double tolerance_m = 1e-4;
-constexpr double piece = 0.1;  // of the ranges: what a picture may show in one go
+constexpr double piece = 0.1;  // of the ranges: largest increment between two displayed states
 
 InverseTask task_of(std::vector<Steered> inputs, std::size_t marker) {
     InverseTask task;
@@ -37,7 +37,7 @@ Led MarkerDrag::lead(RobotState& robot, const Vec3& wanted_m, const Progress& pr
     task_.goals.front().wanted = {{wanted_m}};
     Point start{robot, seeker_.space().shares(robot)};
     if (!seeker_.space().drives(robot)) {
-        // A slider may have driven it by another kind, which the gradients would be of.
+        // A slider may have driven it by another quantity, to which the gradients would refer.
         std::string why;
         const auto taken = seeker_.move(start, start.inputs, robot.inputs.time, progress, &why);
         if (!taken) return {true, false, distance(robot, wanted_m), {{Limit::Kind::no_state, "", why}}};

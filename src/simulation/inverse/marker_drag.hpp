@@ -1,5 +1,5 @@
-// A marker that is led by hand: the actuators follow within their ranges, a bounded piece at a time, and every state on
-// the way is at equilibrium.
+// Drags a marker: the actuators follow within their ranges, in bounded increments, and every intermediate state is in
+// equilibrium.
 //
 //     MarkerDrag drag(stepper, inputs, marker);
 //     while (!drag.lead(robot, wanted_m, progress).settled) show(robot);
@@ -13,12 +13,12 @@
 
 namespace pliant::sim::inverse {
 
-/// What one piece did.
+/// Result of one increment.
 struct Led {
-    bool settled = false;       ///< at the point that is wanted, or as near as it gets
-    bool reached = false;       ///< the former
-    double error_m = 0;         ///< distance of the marker from there
-    std::vector<Limit> limits;  ///< what stops it, where it is settled and not there
+    bool settled = false;       ///< at the wanted point, or as near as it can get
+    bool reached = false;       ///< at the wanted point
+    double error_m = 0;         ///< distance of the marker from the wanted point
+    std::vector<Limit> limits;  ///< what stops it, if it settled elsewhere
 };
 
 class MarkerDrag {
@@ -30,10 +30,10 @@ public:
 
     [[nodiscard]] std::size_t marker() const { return task_.goals.front().markers.front(); }
     [[nodiscard]] const std::vector<Steered>& inputs() const { return task_.inputs; }
-    /// Takes the robot a piece nearer to where its marker is wanted. Actuators without a range follow the program at
-    /// the robot's time. Where there is no way on the robot stays as it is.
+    /// Moves the robot by one increment towards the state with its marker at the wanted position. Actuators without a
+    /// range follow the program at the robot's time. If no progress is possible, the robot is unchanged.
     [[nodiscard]] Led lead(RobotState& robot, const Vec3& wanted_m, const Progress& progress);
-    /// (inputs) what they are in this state, in what their targets name.
+    /// (inputs) their values in this state, in the units of their targets.
     [[nodiscard]] std::vector<double> values(const RobotState& robot) const;
 
 private:

@@ -1,4 +1,4 @@
-// A marker that is led by hand, as the studio does it.
+// Dragging a marker, as in the studio.
 #include "simulation/inverse/marker_drag.hpp"
 
 #include <doctest/doctest.h>
@@ -52,7 +52,7 @@ TEST_CASE("the tip goes where the hand is, in bounded pieces, and back again") {
     CHECK(norm(tip(model, robot) - rest) <= 1e-4);
 }
 
-TEST_CASE("out of reach it comes to the nearest point and says what stops it") {
+TEST_CASE("out of reach it stops at the nearest point and reports the limits") {
     const Model model = made(bar(1));
     Stepper stepper(model, tight);
     const InverseTask task = task_for(model, {{0.9, 1}});
@@ -67,7 +67,7 @@ TEST_CASE("out of reach it comes to the nearest point and says what stops it") {
     CHECK(led.error_m == near(norm(tip(model, robot) - Vec3{0, 0, 0.2}), {.relative = 1e-12}));
 }
 
-TEST_CASE("a hand takes over from sliders that drive otherwise") {
+TEST_CASE("dragging takes over from sliders that drive by another kind") {
     const Model model = made(bar(1));
     const InverseTask task = task_for(model, {{0.7, 1}});
     const Vec3 wanted = tip_under(model, task, {0.85});

@@ -6,16 +6,17 @@
 namespace pliant::sim::inverse {
 namespace {
 
-constexpr double aim = 0.7;            // of the tolerances: noise of the solver must not undo what was reached
+constexpr double aim = 0.7;            // of the tolerances: solver noise must not undo a reached goal
 constexpr double first_radius = 0.25;  // shares of the ranges
 constexpr double largest_radius = 1, smallest_radius = 1e-6;
-constexpr double no_gain = 0.01;                         // of a tolerance: the next step would bring no more
-constexpr double good = 0.75, poor = 0.25, none = 1e-4;  // decrease found over that expected
-constexpr double most_bent = 3;                          // of the step that showed how residuals bend: the next one
-constexpr double quick = 0.15;      // cost left by a step of a linearisation that may be used again
+constexpr double no_gain = 0.01;                         // of a tolerance: a further step would not help
+constexpr double good = 0.75, poor = 0.25, none = 1e-4;  // ratios of actual to predicted decrease
+constexpr double most_bent = 3;                          // times the length of the step at which the curvature was
+                                                         // measured
+constexpr double quick = 0.15;      // remaining cost after a step with a linearisation that may be reused
 constexpr int most_moves = 60;      // for one waypoint
 constexpr double price_room = 0.1;  // of the cost at one tolerance
-constexpr double widened = 30;      // tolerances while the price is lowered
+constexpr double widened = 30;      // tolerances while the penalty is being lowered
 constexpr int price_rounds = 4;
 
 /// Distance from the goals, in tolerances.
@@ -25,7 +26,7 @@ double distance(double cost) {
 
 }  // namespace
 
-/// One look for the least cost.
+/// One search for the minimum cost.
 struct Seeker::Search {
     std::size_t waypoint;
     const Bounds* bounds;
@@ -34,16 +35,16 @@ struct Seeker::Search {
     Eigen::VectorXd residuals;
     double cost = 0;
     PriceTerm price{};
-    bool fresh = false;          ///< the sensitivity is of `now`
+    bool fresh = false;          ///< the sensitivity was computed at `now`
     Eigen::VectorXd gradient{};  ///< at `now`, where fresh
-    std::string no_state{};      ///< why the last move led nowhere; empty if it did not
+    std::string no_state{};      ///< why the last move failed; empty if it did not
     bool cancelled = false;
-    int trials = 0;  ///< equilibria that were solved for
+    int trials = 0;  ///< number of equilibria solved for
     [[nodiscard]] bool is_priced() const { return price.factor > 0; }
 };
 
 struct Seeker::Trial {
-    std::optional<Point> point;  ///< as far as it got
+    std::optional<Point> point;  ///< the last state reached
     bool arrived = false;
     std::string reason;
 };
@@ -94,7 +95,7 @@ Found Seeker::seek(const Point& start, const Point& before, std::size_t waypoint
     radius_ = std::max(radius_, first_radius);
     if (last_end_.size() == 0 || start.inputs != last_end_) bend_.reset();
     minimise(search, progress);
-    is_proven_ = has_memory_ || search.trials <= 1;  // no linearisation knows what friction does: what was learnt does
+    is_proven_ = has_memory_ || search.trials <= 1;  // linearisations do not capture friction, but Broyden updates do
     last_end_ = search.now.inputs;
     Found found;
     const auto all_reached = [&] {
@@ -114,9 +115,9 @@ Found Seeker::seek(const Point& start, const Point& before, std::size_t waypoint
     return found;
 }
 
-/// Solutions of the goals lie along curves, which can only be followed in long steps where the goals may be missed by a
-/// little: each round first lowers the price with wider tolerances, then returns to the goals by the shortest way. What
-/// does not end at a lower price with all goals reached is not kept.
+/// The solutions of the goals form curves, which can only be followed in long steps if the goals may be missed
+/// slightly: each round first lowers the penalty with wider tolerances, then returns to the goals by the shortest step.
+/// A round is discarded if it does not end at a lower penalty with all goals reached.
 void Seeker::lower_price(Search& search, const Progress& progress) {
     search.price.before = search.base.inputs;
     double last = rows_.price(search.now.robot, search.now.inputs, search.price.before);
@@ -142,7 +143,7 @@ void Seeker::lower_price(Search& search, const Progress& progress) {
     }
 }
 
-/// The sensitivity takes every cable for what it is, taut or slack.
+/// True if the sensitivity treats every cable as it is, taut or slack.
 bool Seeker::treats_as_it_is(const Point& point) const {
     for (Eigen::Index i = 0; i < space_.size(); ++i) {
         if (space_.is_slack(point.robot, i) == pulls_[static_cast<std::size_t>(i)]) return false;
@@ -150,7 +151,8 @@ bool Seeker::treats_as_it_is(const Point& point) const {
     return true;
 }
 
-/// At `now`. The length of a slack cable does nothing until it is taut: those that it helps to pull are taken for taut.
+/// Linearises at `now`. The length of a slack cable has no effect until it is taut: cables that help by pulling are
+/// treated as taut.
 bool Seeker::linearise(Search& search) {
     const auto count = static_cast<std::size_t>(space_.size());
     std::vector<bool> pulled(count, false);
@@ -194,7 +196,7 @@ Seeker::Trial Seeker::attempt(const Search& search, const Eigen::VectorXd& step,
     Eigen::VectorXd wanted = search.now.inputs + step;
     for (Eigen::Index i = 0; i < wanted.size(); ++i) {
         wanted[i] = std::clamp(wanted[i], search.bounds->lower[i], search.bounds->upper[i]);
-        // What is slack pays out as the others move, and is taken up again afterwards.
+        // Slack cables are paid out as the others move, and taken up again afterwards.
         if (!pulls_[static_cast<std::size_t>(i)])
             wanted[i] = space_.drives_longer(i) ? search.bounds->upper[i] : search.bounds->lower[i];
     }
@@ -202,7 +204,7 @@ Seeker::Trial Seeker::attempt(const Search& search, const Eigen::VectorXd& step,
     Trial trial;
     Point to{from.robot, wanted};
     ++work_.forward;
-    std::optional<State> expected;  // friction depends on where a step begins to look, as in the program later
+    std::optional<State> expected;  // with friction the result depends on the initial guess, as later in the program
     if (!has_memory_) expected = sensitivity_->expected(*stepper_, search.now.robot.now.state, step);
     const Inputs inputs = space_.inputs(wanted, task_->times[search.waypoint]);
     const StepReport report = stepper_->drive(to.robot, inputs, progress, expected ? &*expected : nullptr);
@@ -218,14 +220,14 @@ Seeker::Trial Seeker::attempt(const Search& search, const Eigen::VectorXd& step,
     return trial;
 }
 
-/// Within the bounds and the trust region; of what is not taken for pulling nothing.
+/// The best step within the bounds and the trust region; inputs not treated as pulling stay fixed.
 BoundedStep Seeker::best_step(const Search& search) {
     Eigen::VectorXd lower = search.bounds->lower - search.now.inputs, upper = search.bounds->upper - search.now.inputs;
     for (Eigen::Index i = 0; i < space_.size(); ++i) {
         const bool pulls = pulls_[static_cast<std::size_t>(i)];
         lower[i] = pulls ? std::clamp(lower[i], -radius_, 0.0) : 0.0;
         upper[i] = pulls ? std::clamp(upper[i], 0.0, radius_) : 0.0;
-        // One that is only taken for taut does nothing when it is let go.
+        // A cable that is only treated as taut has no effect when paid out.
         if (space_.is_slack(search.now.robot, i)) (space_.drives_longer(i) ? upper : lower)[i] = 0;
     }
     constexpr double accuracy = 1e-4;
@@ -239,7 +241,7 @@ BoundedStep Seeker::best_step(const Search& search) {
     if (has_memory_ || search.is_priced() || search.trials > 0 || !bend_) return straight;
     const double share = bend_->step.dot(straight.step) / bend_->step.squaredNorm();
     if (!(std::fabs(share) < most_bent)) return straight;
-    // What the residuals do beside what is linear, as they did along the way to this waypoint.
+    // Nonlinear part of the residuals, as observed on the step to this waypoint.
     const Eigen::VectorXd beside = search.residuals + share * share * bend_->miss;
     BoundedStep bent = least(beside);
     bent.decrease = search.cost - 0.5 * (beside + bent.change).squaredNorm();
@@ -247,7 +249,7 @@ BoundedStep Seeker::best_step(const Search& search) {
     return bent.decrease > good * straight.decrease ? bent : straight;
 }
 
-/// Takes the trial if it is better, and adapts the trust region. True: the sensitivity serves for another step.
+/// Accepts the trial if it is better, and adapts the trust region. True: the sensitivity can be used for another step.
 bool Seeker::judge(Search& search, const BoundedStep& step, Trial trial) {
     Eigen::VectorXd residuals;
     const double cost = trial.point ? cost_of(search, *trial.point, residuals) : 1e300;
@@ -262,7 +264,7 @@ bool Seeker::judge(Search& search, const BoundedStep& step, Trial trial) {
     const bool as_asked = trial.arrived && trial.point->inputs.isApprox(search.now.inputs + step.step, 1e-9);
     if (as_asked) {
         const Eigen::VectorXd miss = residuals - search.residuals - step.change;
-        // The slope at the end of a parabola misses by twice as much as the chord.
+        // The slope at the end of a parabola deviates by twice as much as the chord.
         sensitivity_->learn(step.step, 2 * miss);
         if (search.trials == 1 && !search.is_priced()) bend_ = Bend{step.step, miss};
     }
@@ -289,7 +291,7 @@ void Seeker::minimise(Search& search, const Progress& progress) {
         if (solved && search.fresh) search.gradient = step.gradient;
         if (!worth_it) {
             if (search.fresh) return;
-            usable = false;  // what the state at hand says counts
+            usable = false;  // the linearisation at the current state is needed
             continue;
         }
         ++moves;

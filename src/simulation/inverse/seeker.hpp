@@ -1,5 +1,5 @@
-// Moves the actuators until the goals of one waypoint are met: a Gauss-Newton method within bounds, in a trust region
-// that decides on equilibria which have been solved for.
+// Moves the actuators until the goals of one waypoint are met: a Gauss-Newton method with bounds and a trust region,
+// which accepts or rejects steps by equilibria that were actually solved for.
 //
 // docs/theory.md, "Inverse kinematics", has the equations.
 #pragma once
@@ -16,50 +16,50 @@
 
 namespace pliant::sim::inverse {
 
-/// An equilibrium, and the inputs that it is of.
+/// An equilibrium and its inputs.
 struct Point {
     RobotState robot;
-    Eigen::VectorXd inputs;  ///< (inputs) shares of the ranges
+    Eigen::VectorXd inputs;  ///< (inputs) as shares of the ranges
 };
 
-/// Where each input may go, in shares of its range.
+/// Bounds of each input, as shares of its range.
 struct Bounds {
     Eigen::VectorXd lower, upper;
-    std::vector<bool> rate_lower, rate_upper;  ///< it is the rate that ends there, not the range
+    std::vector<bool> rate_lower, rate_upper;  ///< the bound comes from the rate, not from the range
 };
 
-/// What keeps the goals out of reach.
+/// What keeps the robot from its goals.
 struct Limit {
     enum class Kind {
         lower,     ///< end of the range
         upper,     ///< likewise
-        rate,      ///< largest change
-        slack,     ///< it would have to push, and is a cable
-        no_state,  ///< no equilibrium was found further on
+        rate,      ///< largest rate of change
+        slack,     ///< the cable is slack: it would have to push
+        no_state,  ///< no equilibrium was found beyond this
     };
     Kind kind = Kind::lower;
-    std::string input;   ///< which; empty for no_state
-    std::string reason;  ///< of no_state
+    std::string input;   ///< which input; empty for no_state
+    std::string reason;  ///< for no_state
 };
 
 struct Found {
     Point point;
-    double cost = 0;  ///< half the sum of squared residuals, without prices
+    double cost = 0;  ///< half the sum of squared residuals, without penalties
     std::vector<GoalState> goals;
     bool reached = false;
     bool cancelled = false;
-    std::vector<Limit> limits;  ///< where not reached; empty: the actuators only move the robot in other directions
+    std::vector<Limit> limits;  ///< if not reached; empty: the actuators only move the robot in other directions
 };
 
-/// How much work it was.
+/// Cost of the search.
 struct Work {
-    int forward = 0;     ///< equilibria that were solved for
-    int failed = 0;      ///< of them, not found
-    int linearised = 0;  ///< states whose equations were linearised and factorised
-    int solutions = 0;   ///< with those equations
+    int forward = 0;     ///< number of equilibria solved for
+    int failed = 0;      ///< of these: not found
+    int linearised = 0;  ///< states at which the equations were linearised and factorised
+    int solutions = 0;   ///< solves with those equations
 };
 
-/// Keeps what it knows of the sensitivities from one waypoint to the next.
+/// Keeps its approximation of the sensitivities from one waypoint to the next.
 class Seeker {
 public:
     /// Both must outlive it.
@@ -69,14 +69,14 @@ public:
     [[nodiscard]] const GoalRows& rows() const { return rows_; }
     [[nodiscard]] Work work() const;
 
-    /// The robot under these inputs at this time of the program, on a straight way from where it is. Nothing: there is
-    /// no equilibrium on the way, or it was cancelled; `why` says so.
+    /// Solves for the equilibrium at these inputs and program time, ramping linearly from the current one. Empty: there
+    /// is no equilibrium along the ramp, or it was cancelled; `why` says so.
     [[nodiscard]] std::optional<Point> move(const Point& from, const Eigen::VectorXd& inputs, double time,
                                             const Progress& progress, std::string* why = nullptr);
     [[nodiscard]] Bounds whole_range() const;
 
-    /// From `start`, which is at the waypoint's time. `before`: the waypoint before, or rest, from which changes count
-    /// and, where friction acts, every way begins, as a step of a program will.
+    /// Searches from `start`, which is at the waypoint's time. `before`: the previous waypoint, or rest; changes of
+    /// inputs are measured from it and, with friction, every path starts there, as a step of a program will.
     [[nodiscard]] Found seek(const Point& start, const Point& before, std::size_t waypoint, const Bounds& bounds,
                              const Progress& progress);
 
@@ -97,17 +97,17 @@ private:
     const InverseTask* task_;
     InputSpace space_;
     GoalRows rows_;
-    bool has_memory_;  ///< friction: the way there matters
+    bool has_memory_;  ///< with friction the path matters
     std::optional<Sensitivity> sensitivity_;
-    std::vector<bool> pulls_;  ///< (inputs) cables that the sensitivity takes for taut, and all other inputs
-    double price_factor_ = 0;  ///< that the sensitivity's rows have
-    bool is_proven_ = false;   ///< one step led to the last waypoint: the sensitivity may serve for the next one
+    std::vector<bool> pulls_;  ///< (inputs) which cables the sensitivity treats as taut; true for all other inputs
+    double price_factor_ = 0;  ///< penalty factor in the sensitivity's rows
+    bool is_proven_ = false;   ///< one step led to the last waypoint, so the sensitivity may be reused for the next one
     struct Bend {
         Eigen::VectorXd step;  ///< (inputs)
-        Eigen::VectorXd miss;  ///< (rows) what was found beyond what is linear
+        Eigen::VectorXd miss;  ///< (rows) deviation of the solved residuals from the linear prediction
     };
-    std::optional<Bend> bend_;  ///< of the step that led off from the waypoint before
-    Eigen::VectorXd last_end_;  ///< (inputs) where the last search ended
+    std::optional<Bend> bend_;  ///< of the first step from the previous waypoint
+    Eigen::VectorXd last_end_;  ///< (inputs) at the end of the last search
     double radius_ = 0;
     Work work_;
 };

@@ -9,7 +9,7 @@
 namespace pliant::sim::inverse {
 namespace {
 
-constexpr double already_solved = 1e-9;  // of a direction: what is left of it without those that are known
+constexpr double already_solved = 1e-9;  // what remains of a unit direction after removing known ones
 
 }  // namespace
 
@@ -20,7 +20,7 @@ Result<Sensitivity> Sensitivity::create(const Stepper& stepper, const InputSpace
         double& tension = state.multiplier[static_cast<Eigen::Index>(space.input(i).actuator)];
         if (pulled[static_cast<std::size_t>(i)]) tension = std::max(tension, std::numeric_limits<double>::min());
     }
-    constexpr double residual = 1e-5;  // a step is tried in any case
+    constexpr double residual = 1e-5;  // the step is verified by a solve in any case
     const KnownPattern known = known_pattern(stepper.system(), stepper.laplacian(), robot.memory.get());
     Result<Linearisation> at = Linearisation::create(stepper.system(), state, robot.controls, known, residual);
     if (!at) return tl::unexpected(at.error());
@@ -37,12 +37,12 @@ void Sensitivity::use(RowGradients rows) {
     changes_.clear();
 }
 
-/// Of v, where `solve` does it for what is not a combination of known directions.
+/// Product with v; `solve` is only called for the part outside the known directions.
 template <class Solve>
 Eigen::VectorXd Sensitivity::product(std::vector<Known>& known, const Eigen::VectorXd& v, Eigen::Index size,
                                      const Solve& solve) {
     Eigen::VectorXd result = Eigen::VectorXd::Zero(size), rest = v;
-    for (int pass = 0; pass < 2; ++pass) {  // twice, or rounding would leave something
+    for (int pass = 0; pass < 2; ++pass) {  // twice, because of rounding
         for (const Known& one : known) {
             const double share = one.direction.dot(rest);
             rest -= share * one.direction;

@@ -1,6 +1,6 @@
-// What residuals do with small changes of the inputs at one state, by products alone: a product takes one solution with
-// the linearised equations, its transpose one with their transpose, and no matrix of residuals by inputs is formed.
-// What has been solved for is remembered, so that along combinations of it nothing is solved again.
+// Derivatives of residuals with respect to the inputs at one state, as products only: a product takes one solve with
+// the linearised equations, a product with the transpose one transposed solve, and the matrix of residuals by inputs is
+// never formed. Products are stored, so that combinations of earlier directions need no further solve.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,29 +16,30 @@ namespace pliant::sim::inverse {
 
 class Sensitivity {
 public:
-    /// Cables that are in `pulled` (inputs) count as pulling although they are slack: as if they had just become taut.
+    /// Cables that are marked in `pulled` (inputs) are treated as taut although they are slack: as if they had just
+    /// become taut.
     [[nodiscard]] static Result<Sensitivity> create(const Stepper& stepper, const InputSpace& space,
                                                     const RobotState& robot, const std::vector<bool>& pulled);
 
-    /// Takes the rows of residuals at a waypoint; the linearisation is kept, what was learnt is forgotten.
+    /// Sets the rows of residuals of a waypoint; the linearisation is kept, Broyden updates are discarded.
     void use(RowGradients rows);
     [[nodiscard]] Linearisation& at() { return at_; }
 
-    /// (inputs) -> (rows), (rows) -> (inputs). Where there is no solution the result is zero and status() says why.
+    /// (inputs) -> (rows), (rows) -> (inputs). If a solve fails, the result is zero and status() gives the error.
     [[nodiscard]] Eigen::VectorXd multiply(const Eigen::VectorXd& inputs);
     [[nodiscard]] Eigen::VectorXd multiply_transposed(const Eigen::VectorXd& rows);
-    /// d (weights . residuals) / dT of these cables, as if their tensions were given: tells whether it helps to pull
-    /// one that is slack. (rows) -> (cables)
+    /// d (weights . residuals) / dT of these cables, as if their tensions were prescribed: shows whether tightening a
+    /// slack cable helps. (rows) -> (cables)
     [[nodiscard]] Eigen::VectorXd by_tensions(const Eigen::VectorXd& rows, const std::vector<std::size_t>& cables);
     [[nodiscard]] const Status& status() const { return status_; }
 
-    /// `miss`: what the product with `inputs` falls short of what was found. Corrects it by the smallest change that
-    /// does (Broyden 1965).
+    /// `miss`: difference between the observed change and the product with `inputs`. Corrects the product by the
+    /// smallest update that removes it (Broyden 1965).
     void learn(const Eigen::VectorXd& inputs, const Eigen::VectorXd& miss);
-    /// About the state that a robot, which is near, goes to with a change of its inputs: along what has been solved for
-    /// by multiply() since create().
+    /// Predicted state of a nearby robot after a change of its inputs: along the directions that multiply() has solved
+    /// for since create().
     [[nodiscard]] State expected(const Stepper& stepper, const State& now, const Eigen::VectorXd& inputs) const;
-    /// How often the linearised equations were solved.
+    /// Number of solves with the linearised equations.
     [[nodiscard]] int solutions() const { return solutions_; }
 
 private:
@@ -48,9 +49,9 @@ private:
     [[nodiscard]] Eigen::VectorXd solved_product(const Eigen::VectorXd& direction);
 
     struct Learnt {
-        Eigen::VectorXd rows, inputs;  ///< adds rows (inputs . v)
+        Eigen::VectorXd rows, inputs;  ///< a rank-one update: adds rows (inputs . v)
     };
-    /// A direction of length 1, orthogonal to all others, with its product.
+    /// A unit direction, orthogonal to all others, and its product.
     struct Known {
         Eigen::VectorXd direction, product;
     };

@@ -1,4 +1,4 @@
-// What a linearised state says about changes of its inputs, and how often it takes a solution to say so.
+// Predictions of a linearised state for changes of its inputs, and the number of solves they take.
 #include "simulation/inverse/sensitivity.hpp"
 
 #include <doctest/doctest.h>
@@ -65,7 +65,7 @@ TEST_CASE("combinations of changes that have been solved for take no further sol
     CHECK(known.solutions() == 4);
 }
 
-TEST_CASE("what was learnt counts for products that are known, too") {
+TEST_CASE("Broyden updates also apply to stored products") {
     Pulled bar;
     Sensitivity at = bar.sensitivity();
     const Eigen::Vector3d step(0.1, 0, 0.05), miss(1, -2, 3);
@@ -95,7 +95,7 @@ TEST_CASE("the state that is expected is off by the square of the step, and a st
     CHECK(half < 0.3 * whole);
 }
 
-TEST_CASE("an expectation that is far from any equilibrium changes nothing") {
+TEST_CASE("an expected state far from any equilibrium has no effect") {
     Pulled bar;
     State wild = bar.robot.now.state;
     wild.x *= 1.5;

@@ -1,4 +1,4 @@
-// Small robots for the tests, and targets that a forward solution shows to be within reach.
+// Small robots for the tests, and targets that a forward solution shows to be reachable.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -23,7 +23,7 @@ inline mesh::TetMesh bar_mesh(int order) {
     return order == 2 ? mesh::to_quadratic(mesh) : mesh;
 }
 
-/// Runs along the bar at this height and depth, through a guide at every fourth of it.
+/// A cable along the bar at this height and depth, with a guide at every quarter of its length.
 inline Cable cable_at(const mesh::TetMesh& mesh, const std::string& name, double y, double z,
                       const CableTarget& target) {
     Cable cable{name, {}, target};
@@ -32,7 +32,8 @@ inline Cable cable_at(const mesh::TetMesh& mesh, const std::string& name, double
     return cable;
 }
 
-/// A bar of 60 x 10 x 10 mm, clamped at x = 0, with as many of four cables along its edges: above, below, left, right.
+/// A bar of 60 x 10 x 10 mm, clamped at x = 0, with the first `cables` of four cables along its edges: above, below,
+/// left, right.
 inline Description bar(int cables, int order = 1, CableTarget::Kind kind = CableTarget::Kind::length_ratio) {
     Description d;
     d.mesh = bar_mesh(order);
@@ -51,7 +52,7 @@ inline Description bar(int cables, int order = 1, CableTarget::Kind kind = Cable
     return d;
 }
 
-/// A hollow block whose air may be changed, and a cable that bends it.
+/// A hollow block with a controllable air volume, and a cable that bends it.
 inline Description hollow(int order, const ChamberTarget& target) {
     Description d = sim::testing::hollow_block(order);
     d.chambers[0].target = target;
@@ -95,7 +96,7 @@ inline Goal at_point(const Vec3& point, double tolerance = 1e-4) {
     return goal;
 }
 
-/// Where the first marker is under these inputs (in what the targets name).
+/// Position of the first marker under these inputs (in the units of the targets).
 inline Vec3 tip_under(const Model& model, const InverseTask& task, const std::vector<double>& values) {
     Stepper stepper(model, tight);
     const InputSpace space(stepper, task);

@@ -24,7 +24,7 @@ Plan line(int side) {
     return plan;
 }
 
-/// Inputs i and j vary; the others stand at the ends that `ends` tells, bit by bit.
+/// Inputs i and j vary; each of the others is at the end of its range given by a bit of `ends`.
 Plan sheet(Eigen::Index size, Eigen::Index i, Eigen::Index j, unsigned ends, int side) {
     Plan plan{side, side, {}};
     Eigen::VectorXd inputs(size);
@@ -66,7 +66,7 @@ public:
     PieceSolver(Stepper& stepper, const InverseTask& task, const InputSpace& space)
         : stepper_(stepper), task_(task), space_(space) {}
 
-    /// Nothing where it was cancelled.
+    /// Empty if cancelled.
     std::optional<WorkspacePiece> solve(const Plan& plan, Progress& progress,
                                         const std::function<void()>& after_each) const {
         WorkspacePiece piece{plan.rows, plan.columns, {}};
@@ -74,7 +74,7 @@ public:
         RobotState now = stepper_.rest(), row = now;
         for (std::size_t k = 0; k < plan.inputs.size(); ++k) {
             if (progress.cancelled()) return std::nullopt;
-            // The first of a row comes from the first of the row before.
+            // The first of a row starts from the first of the previous row.
             if (plan.rows > 1 && k % static_cast<std::size_t>(plan.columns) == 0) now = row;
             piece.samples[k] = sample(now, plan.inputs[k], progress);
             if (plan.rows > 1 && k % static_cast<std::size_t>(plan.columns) == 0 && piece.samples[k].found) row = now;
@@ -85,7 +85,7 @@ public:
     }
 
 private:
-    /// `now` becomes its state; without one it stays, and the way from rest is tried too.
+    /// `now` becomes its state; if none is found, it is unchanged, after also trying from rest.
     WorkspaceSample sample(RobotState& now, const Eigen::VectorXd& inputs, const Progress& progress) const {
         WorkspaceSample sample;
         for (Eigen::Index i = 0; i < inputs.size(); ++i) sample.values.push_back(space_.value(i, inputs[i]));
@@ -116,7 +116,7 @@ private:
     const InputSpace& space_;
 };
 
-/// One that was kept may have been tampered with.
+/// True if a stored piece matches the plan; the file may have been tampered with.
 bool fits(const WorkspacePiece& piece, const Plan& plan, const Description& d, std::size_t inputs) {
     const auto sample_fits = [&](const WorkspaceSample& sample) {
         if (sample.values.size() != inputs) return false;
@@ -150,7 +150,7 @@ Result<Workspace> find_workspace(const Model& model, const StepperOptions& stepp
             workspace.pieces.push_back(std::move(*before));
             continue;
         }
-        // Each with a stepper of its own: what was solved before leaves no trace.
+        // Each piece has its own stepper, so that results do not depend on earlier solves.
         Stepper stepper(model, stepping);
         const InputSpace space(stepper, task);
         std::optional<WorkspacePiece> piece = PieceSolver(stepper, task, space).solve(plans[k], progress, tell);

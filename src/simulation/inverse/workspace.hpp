@@ -1,8 +1,8 @@
-// Where markers can get within the ranges of the inputs, and what that takes.
+// The positions that markers can reach within the ranges of the inputs, and the tensions and pressures there.
 //
-// The boundary of all places is among the images of the sheets of the ranges, on which two inputs vary and all others
-// stand at one of their ends, or where the motion turns back on itself. Each sheet is solved on a grid, from rest and
-// then from neighbour to neighbour; other inputs, spread evenly, fill what lies between.
+// The boundary of the workspace lies among the images of the sheets of the input ranges, on which two inputs vary and
+// all others are at one end, and of points where the motion folds back. Each sheet is solved on a grid, from rest and
+// then from neighbour to neighbour; further inputs, spread evenly, sample the interior.
 #pragma once
 
 #include <array>
@@ -17,20 +17,20 @@
 namespace pliant::sim::inverse {
 
 struct WorkspaceOptions {
-    int side = 9;       ///< places along each input of a sheet; at least 2
-    int between = 100;  ///< inputs that are spread over the ranges; 0 or more
+    int side = 9;       ///< samples along each input of a sheet; at least 2
+    int between = 100;  ///< number of further samples, spread over the ranges; 0 or more
 };
 
 struct WorkspaceSample {
-    std::vector<double> values;                    ///< (inputs) in what the targets name
-    bool found = false;                            ///< there is an equilibrium; else all below is empty
+    std::vector<double> values;                    ///< (inputs) in the units of the targets
+    bool found = false;                            ///< an equilibrium was found; otherwise everything below is empty
     std::vector<Vec3> markers;                     ///< (markers) m
     std::vector<double> tensions_N, pressures_Pa;  ///< (cables), (chambers)
 };
 
-/// A piece of the work that does not depend on the others: a sheet, or some of the inputs in between.
+/// An independent piece of the work: a sheet, or a group of further samples.
 struct WorkspacePiece {
-    int rows = 0, columns = 0;  ///< of a sheet's grid, row by row; 0: no sheet. One input: one row.
+    int rows = 0, columns = 0;  ///< of a sheet's grid, stored row by row; 0: not a sheet. With one input: one row
     std::vector<WorkspaceSample> samples;
 };
 
@@ -39,11 +39,11 @@ struct Workspace {
     bool cancelled = false;
 };
 
-/// More inputs than this have too many sheets: only what is spread over the ranges is solved then.
+/// With more inputs than this there are too many sheets: only the spread samples are solved.
 inline constexpr std::size_t most_inputs_with_sheets = 5;
 
-/// `known`: gives a piece that was made before, by its index, if there is one; `keep` is given each new one, and its
-/// error ends the work. Both may be empty. The same numbers however often it was interrupted.
+/// `known`: returns a piece computed earlier, by its index, if there is one. `keep` receives each new piece; its error
+/// ends the work. Both may be empty. The result does not depend on interruptions.
 [[nodiscard]] Result<Workspace> find_workspace(const Model& model, const StepperOptions& stepping,
                                                const InverseTask& task, const WorkspaceOptions& options,
                                                const std::function<std::optional<WorkspacePiece>(std::size_t)>& known,

@@ -1,4 +1,4 @@
-// A piece of a workspace as bytes, so that a search may go on where it was stopped.
+// Serialises a piece of a workspace, so that a search can be resumed.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Where markers get: samples are equilibria, and an interrupted search gives the same bits.
+// Workspaces: samples are equilibria, and an interrupted search gives the same bits.
 #include "simulation/inverse/workspace.hpp"
 
 #include <doctest/doctest.h>
@@ -40,7 +40,7 @@ void check_same(const Workspace& a, const Workspace& b) {
 
 }  // namespace
 
-TEST_CASE("every sample is where its inputs lead, and the sheets hold all ends of the ranges") {
+TEST_CASE("every sample is the equilibrium of its inputs, and the sheets cover all ends of the ranges") {
     const Model model = made(bar(3));
     const InverseTask task = task_for(model, {{0.85, 1}, {0.85, 1}, {0.9, 1}});
     Progress silent;
@@ -62,7 +62,7 @@ TEST_CASE("every sample is where its inputs lead, and the sheets hold all ends o
     CHECK(corners == 24);
 }
 
-TEST_CASE("a search that was stopped goes on to the same bits") {
+TEST_CASE("a resumed search gives the same bits") {
     const Model model = made(bar(2));
     const InverseTask task = task_for(model, {{0.85, 1}, {0.85, 1}});
     const WorkspaceOptions options{.side = 4, .between = 60};
@@ -90,7 +90,7 @@ TEST_CASE("a search that was stopped goes on to the same bits") {
     check_same(*whole, *mended);
 }
 
-TEST_CASE("a piece is the same after it was bytes, and damaged bytes are an error") {
+TEST_CASE("a piece is unchanged by serialisation, and damaged bytes are an error") {
     const WorkspacePiece piece{1, 2, {{{0.9, 1e-300}, true, {{1, 2, 3}}, {0.1}, {}}, {{0.8, 2}, false, {}, {}, {}}}};
     const std::string bytes = piece_bytes(piece);
     const auto read = piece_from_bytes(bytes);

@@ -28,7 +28,7 @@ std::span<const int> nodes_of(const contact::FrozenPair& pair) {
     return {pair.nodes.data(), static_cast<std::size_t>(pair.node_count)};
 }
 
-/// Those of one kind.
+/// The pairs of one kind.
 template <class Pair>
 std::vector<Pair> chosen(const Equilibrium& system, std::span<const Pair> all, bool of_objects) {
     std::vector<Pair> kept;

@@ -1,4 +1,4 @@
-// How the forces of the elements change with the numbers of their laws and with their masses.
+// Derivatives of the element forces with respect to material constants and masses.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,41 +11,40 @@
 
 namespace pliant::sim {
 
-/// forces (3n) += change of the internal forces at positions x (3n), as the constants of a material move along
+/// forces (3n) += derivative of the internal forces at positions x (3n) with the constants of a material along
 /// `direction`.
 void add_law_force(const Elements& elements, std::size_t material, const std::vector<double>& direction,
                    const Eigen::VectorXd& x, Eigen::VectorXd& forces);
-/// The same with the constants of each tet changed by a column of `direction` (constants, tets).
+/// The same with separate constants for each tet: a column of `direction` (constants, tets).
 void add_law_force(const Elements& elements, const Eigen::MatrixXd& direction, const Eigen::VectorXd& x,
                    Eigen::VectorXd& forces);
-/// (most constants, tets) the product of the change with `weights` (3n), for each constant of each tet's own law; 0
-/// where a law has fewer.
+/// (most constants, tets) product of that derivative with `weights` (3n), for each constant of each tet's own law; 0 if
+/// a law has fewer.
 [[nodiscard]] Eigen::MatrixXd law_products(const Elements& elements, const Description& description,
                                            const Eigen::VectorXd& x, const Eigen::VectorXd& weights);
 
-/// forces += K motion of the tets that have any of the `wanted` nodes (n), which is all of it at those. Precondition:
-/// laws with an energy.
+/// forces += K motion for the tets that have any of the `wanted` nodes (n), which makes it complete at those nodes.
+/// Precondition: laws with an energy.
 void add_tangent_product(const Elements& elements, const std::vector<bool>& wanted, const Eigen::VectorXd& x,
                          const Eigen::VectorXd& motion, Eigen::VectorXd& forces);
 
-/// What acts on masses.
+/// Accelerations that act on masses.
 struct Masses {
-    std::vector<double> density_kg_m3;  ///< (materials)
-    Eigen::Vector3d weight =
-        Eigen::Vector3d::Zero();     ///< of the out-of-balance force for each kg: minus gravity, m/s^2
-    Eigen::VectorXd acceleration{};  ///< (3n) that the mass matrix multiplies, m/s^2; empty at rest
+    std::vector<double> density_kg_m3;                 ///< (materials)
+    Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< out-of-balance force per kg: minus gravity, m/s^2
+    Eigen::VectorXd acceleration{};  ///< (3n) factor of the mass matrix, m/s^2; empty in a quasi-static step
 };
-/// (tets) by the density of each tet, the product of the forces on masses with `weights` (3n).
+/// (tets) derivative with respect to the density of each tet: product of the forces on masses with `weights` (3n).
 [[nodiscard]] Eigen::VectorXd density_products(const Elements& elements, const Masses& masses,
                                                const Eigen::VectorXd& weights);
-/// forces (3n) += those forces where each tet has so much more density (tets).
+/// forces (3n) += change of those forces if the density of each tet increases by this much (tets).
 void add_density_force(const Elements& elements, const Masses& masses, const Eigen::VectorXd& density,
                        Eigen::VectorXd& forces);
-/// What acts on the masses of a state.
+/// The accelerations that act on masses at a state.
 [[nodiscard]] Masses masses_at(const Description& description, const Controls& controls, const Eigen::VectorXd& x);
 
 /// forces (3n) += the change of the internal forces and of those on masses with a motion (3n) of the rest positions.
-/// With L the gradient of that motion, grad N_a changes by -L^T grad N_a, F by -F L and a volume by tr L of itself.
+/// With L the gradient of that motion, grad N_a changes by -L^T grad N_a, F by -F L and the relative volume by tr L.
 void add_rest_product(const Elements& elements, const Masses& masses, const Eigen::VectorXd& x,
                       const Eigen::VectorXd& motion, Eigen::VectorXd& forces);
 /// result (3n) += the transpose of that product with `weights` (3n) of the forces.

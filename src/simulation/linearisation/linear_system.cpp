@@ -16,20 +16,21 @@ namespace pliant::sim {
 namespace {
 
 constexpr double allowed_beside_wanted = 10;
-constexpr double rounding = 4e-15;        // of |A| |x|: what storing x and multiplying with it leaves
-constexpr double inner_tolerance = 1e-9;  // of one round of GMRES; the next round does the rest
+constexpr double rounding = 4e-15;        // of |A| |x|: rounding error of storing x and multiplying with it
+constexpr double inner_tolerance = 1e-9;  // of one round of GMRES; further rounds refine it
 constexpr int most_rounds = 8, most_products = 200;
-// On two levels: of x in the norm of K, each round again, or at once where less is wanted. Residuals are larger than
-// that; one that is so many times larger has not been solved for.
+// With two levels: relative error of x in the norm of K, for each round, or at once if less accuracy is needed.
+// Residuals are larger than that; a solve whose residual exceeds the second number has failed.
 constexpr double round_tolerance = 1e-4, round_residual = 1e-3;
 constexpr double least_tolerance = 1e-6, tolerance_beside_residual = 10, residual_beside_tolerance = 1000;
 constexpr int level_rounds = 2, level_limit = 200;
 constexpr double column_residual = 1e-11;  // of the columns of the Schur complement
-constexpr double off_at_most = 0.1;        // of a quick way's answer to what it makes largest
+constexpr double off_at_most = 0.1;        // relative error of a fast factor's answer for the vector that it amplifies
+                                           // most
 constexpr double singular = 1e-14;         // smallest over largest singular value, in balanced units
 constexpr double redundant = 1e-11;        // pivots of the Schur complement
 constexpr double nearly_redundant = 1e-3;  // likewise, of one in single precision
-constexpr double first_shift = 1e-7, shift_growth = 8, largest_shift = 10;  // of the diagonal
+constexpr double first_shift = 1e-7, shift_growth = 8, largest_shift = 10;  // relative to the diagonal
 
 using linalg::view;
 
@@ -54,7 +55,7 @@ Eigen::VectorXd balance(const Eigen::MatrixXd& columns, double size) {
     return scale;
 }
 
-/// Always the same numbers of either sign, to try a matrix with.
+/// A fixed vector of random signs, to test a matrix with.
 Eigen::VectorXd some_vector(Eigen::Index size) {
     Eigen::VectorXd v(size);
     unsigned state = 1;
@@ -107,7 +108,7 @@ SystemSolver::SystemSolver(const LinearSystem& system) : system_(&system) {
     const Eigen::Index count = system.forces.cols();
     column_ = balance(system.forces, stiffness_);
     row_ = balance(system.constraints, stiffness_);
-    for (Eigen::Index k = 0; k < count; ++k) {  // no constraint but on the multiplier itself
+    for (Eigen::Index k = 0; k < count; ++k) {  // no constraint other than on the multiplier itself
         if (system.constraints.col(k).isZero(0) && system.compliance[k] != 0)
             row_[k] = stiffness_ / std::fabs(system.compliance[k] * column_[k]);
     }
@@ -116,7 +117,8 @@ SystemSolver::SystemSolver(const LinearSystem& system) : system_(&system) {
     compliance_ = row_.cwiseProduct(system.compliance).cwiseProduct(column_);
 }
 
-/// K as it is if it is positive definite; else with as much more on the diagonal as it takes. False: not even then.
+/// Factorises K if it is positive definite; else K with its diagonal increased as far as necessary. False: that fails
+/// too.
 bool SystemSolver::factorise() {
     linalg::Cholesky& made = factor(linalg::Precision::double_);
     exact_ = made.factorise(system_->symmetric);
@@ -143,8 +145,8 @@ linalg::Cholesky& SystemSolver::factor(linalg::Precision precision) {
     return *factor_;
 }
 
-/// Columns (3 free, k) <- K^-1 columns, as well as the preconditioner can; on two levels within
-/// level_tolerance() of that, in the norm of K. False: not as well as that.
+/// Columns (3 free, k) <- K^-1 columns, with the accuracy of the preconditioner; with two levels to level_tolerance()
+/// in the norm of K. False: not achieved.
 bool SystemSolver::apply_body(Eigen::MatrixXd& columns) const {
     const auto all = std::span<double>(columns.data(), static_cast<std::size_t>(columns.size()));
     const auto count = static_cast<int>(columns.cols());
@@ -153,7 +155,7 @@ bool SystemSolver::apply_body(Eigen::MatrixXd& columns) const {
     return true;
 }
 
-/// K^-1 of columns, to nearly all digits. False: that is more than the quick ways can do.
+/// K^-1 of columns, to nearly all digits. False: the fast methods cannot achieve that.
 bool SystemSolver::solve_body(Eigen::MatrixXd& columns) const {
     if (way_ == Way::double_) return apply_body(columns);
     for (Eigen::Index k = 0; k < columns.cols(); ++k) {
@@ -174,8 +176,8 @@ bool SystemSolver::solve_body(Eigen::MatrixXd& columns) const {
     return true;
 }
 
-/// The preconditioner is the inverse of a matrix with what stands in for K, so that its columns need be no better than
-/// that, unless actuators do so nearly the same that rounding hides which. False: only double precision can tell.
+/// Since the preconditioner replaces K anyway, the columns of the Schur complement need no more accuracy than that,
+/// unless actuators are so nearly redundant that rounding hides it. False: only double precision can tell.
 bool SystemSolver::take_schur_complement() {
     const bool quick = way_ == Way::single_;
     if (quick && take_schur_complement([&](Eigen::MatrixXd& columns) { return apply_body(columns); }, nearly_redundant))
@@ -196,7 +198,7 @@ bool SystemSolver::take_schur_complement(const Solve& solve, double threshold) {
     S.diagonal() += compliance_;
     schur_inverse_ = schur_null_ = Eigen::MatrixXd(S.rows(), 0);
     if (S.size() == 0) return true;
-    // Stiff and soft actuators side by side: balanced once more, so that what is small is small beside its own kind.
+    // For stiff and soft actuators together: balanced once more, so that each is judged on its own scale.
     Eigen::VectorXd scale = S.diagonal().cwiseAbs().cwiseSqrt();
     for (double& s : scale) s = s > 0 ? 1 / s : 1;
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
@@ -210,12 +212,12 @@ bool SystemSolver::take_schur_complement(const Solve& solve, double threshold) {
     return true;
 }
 
-/// The quickest way that is good enough for this matrix.
+/// Chooses the fastest method that is accurate enough for this matrix.
 void SystemSolver::begin() {
     const bool on_levels = system_->two_levels && system_->skew.empty();
     if (on_levels && begin_quickly(Way::two_levels)) return;
     levels_.reset();
-    // What rounding to single precision leaves is not told from a skew part.
+    // Rounding errors of single precision cannot be told from a skew part.
     if (system_->skew.empty() && begin_quickly(Way::single_)) return;
     begin_surely();
 }
@@ -231,7 +233,7 @@ bool SystemSolver::begin_quickly(Way way) {
         if (!definite) return false;
     }
     exact_ = true;
-    // Conjugate gradients see by themselves that they do not solve.
+    // Conjugate gradients detect by themselves that they do not converge.
     return take_schur_complement() && (levels_ || is_content() || is_far_from_singular());
 }
 
@@ -247,7 +249,7 @@ void SystemSolver::begin_surely() {
     }
 }
 
-/// Tries the preconditioner on what it makes largest: of a matrix that is nearly singular it would be no inverse.
+/// Tests the preconditioner on the vector that it amplifies most: for a nearly singular matrix it is not an inverse.
 bool SystemSolver::is_far_from_singular() const {
     Eigen::VectorXd v = some_vector(system_->size());
     system_->leave_out_held(v);
@@ -256,18 +258,18 @@ bool SystemSolver::is_far_from_singular() const {
     return back.norm() < off_at_most * once.norm();
 }
 
-/// Where less will do the solutions themselves tell whether there are any.
+/// With a loose target residual, the solves themselves show whether they succeed.
 bool SystemSolver::is_content() const {
     return system_->wanted_residual > inner_tolerance;
 }
 
-/// Of a solution on two levels, in the norm of K.
+/// Error of a two-level solve, in the norm of K.
 double SystemSolver::level_tolerance() const {
     if (!is_content()) return round_tolerance;
     return std::max(least_tolerance, tolerance_beside_residual * system_->wanted_residual);
 }
 
-/// Beside the right-hand side: beyond it nothing has been solved for.
+/// Relative to the right-hand side: beyond it a solve has failed.
 double SystemSolver::allowed_residual() const {
     if (!levels_) return allowed_beside_wanted * system_->wanted_residual;
     return is_content() ? residual_beside_tolerance * level_tolerance() : round_residual;
@@ -281,7 +283,7 @@ Status SystemSolver::prepare() {
         "can move without a force; a state a little before or after it has a solution");
 }
 
-/// Slow and large, but it takes any matrix that is not singular.
+/// Slow and memory-intensive, but works for any matrix that is not singular.
 void SystemSolver::take_whole_factor() {
     const linalg::SymmetricPattern& p = system_->layout->pattern;
     std::vector<Eigen::Triplet<double>> entries;
@@ -335,7 +337,7 @@ Eigen::VectorXd SystemSolver::precondition(const Eigen::VectorXd& v, Side side) 
     const bool direct = side == Side::direct;
     if (whole_) return direct ? Eigen::VectorXd(whole_->solve(v)) : Eigen::VectorXd(whole_->transpose().solve(v));
     Eigen::MatrixXd motion = v.head(n);
-    (void)apply_body(motion);  // a residual tells
+    (void)apply_body(motion);  // a failure shows in the residual
     const Eigen::MatrixXd& rows = direct ? constraints_ : forces_;
     const Eigen::VectorXd left = v.tail(m) - rows.transpose() * motion.col(0);
     const Eigen::VectorXd multiplier =
@@ -346,7 +348,7 @@ Eigen::VectorXd SystemSolver::precondition(const Eigen::VectorXd& v, Side side) 
     return result;
 }
 
-/// What rounding x leaves of b - A x.
+/// The rounding error of x as a residual of b - A x.
 double SystemSolver::rounding_of(const Eigen::VectorXd& x, Side side) const {
     const Eigen::Index n = forces_.rows(), m = forces_.cols();
     std::vector<double> sizes(system_->symmetric.size());
@@ -363,7 +365,7 @@ double SystemSolver::rounding_of(const Eigen::VectorXd& x, Side side) const {
     return rounding * std::hypot(force.norm(), rest.norm());
 }
 
-/// What to add to x for a residual: the preconditioner's answer or, where that is not the inverse, GMRES' with it.
+/// Correction of x for a residual: by the preconditioner or, if that is not the inverse, by GMRES with it.
 Eigen::VectorXd SystemSolver::correction(const Eigen::VectorXd& residual, double wanted, Side side) const {
     if (exact_ && system_->skew.empty()) return precondition(residual, side);
     const double left = residual.norm();
@@ -373,7 +375,7 @@ Eigen::VectorXd SystemSolver::correction(const Eigen::VectorXd& residual, double
     return left * precondition(step, side);
 }
 
-/// x in balanced units, or nothing.
+/// x in balanced units; empty on failure.
 std::optional<Eigen::VectorXd> SystemSolver::refine(const Eigen::VectorXd& b, Side side) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size()), residual = b;
     double left = b.norm();
@@ -394,7 +396,7 @@ std::optional<Eigen::VectorXd> SystemSolver::refine(const Eigen::VectorXd& b, Si
     return x;
 }
 
-/// By a step of inverse iteration with A^T A: how large a solution can be beside what asks for it.
+/// By a step of inverse iteration with A^T A, which shows how large a solution can be relative to the right-hand side.
 bool SystemSolver::is_singular() const {
     const Eigen::Index m = forces_.cols();
     Eigen::VectorXd v = some_vector(system_->size());
@@ -406,7 +408,7 @@ bool SystemSolver::is_singular() const {
     return !twice || !(twice->norm() * stiffness_ * singular < 1);
 }
 
-/// Why constraints cannot all be met.
+/// The error for constraints that cannot all be met.
 Error SystemSolver::redundancy() const {
     std::string names;
     int count = 0;

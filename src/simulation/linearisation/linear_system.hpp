@@ -1,4 +1,4 @@
-// The matrix of a linearised state: its products, and solutions with it and with its transpose.
+// The matrix of a linearised state: products and solves with it and its transpose.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,63 +18,63 @@ namespace pliant::sim {
 
 enum class Side { direct, transposed };
 
-/// Of a solution, beside the right-hand side: about as good as can be had; and enough for gradients, whose states are
-/// known to fewer digits.
+/// Target residuals of a solve, relative to the right-hand side: about the best achievable; and enough for gradients,
+/// whose states are known to fewer digits.
 inline constexpr double best_residual = 1e-13, gradient_residual = 1e-8;
 
 ///     A = | K    B |     K  tangent over the free nodes, N/m: symmetric + skew
-///         | C^T  D |     B  force of the unit of each multiplier; C  gradient of each constraint; D  compliances
+///         | C^T  D |     B  force per unit of each multiplier; C  gradient of each constraint; D  compliances
 ///
-/// Where a roller holds a node in a direction, A knows nothing of it: a component along it is left out of what comes in
-/// and zero in what goes out.
+/// Where a roller holds a node in a direction, that component is not part of A: it is ignored in the input and zero in
+/// the output.
 struct LinearSystem {
     std::shared_ptr<const TangentLayout> layout;
-    std::shared_ptr<const linalg::Analysis> analysis;  ///< of the layout's pattern, where it is known; else null
-    bool two_levels = false;                           ///< a factor of K would take longer
-    Eigen::VectorXd positions;                         ///< (3 free nodes) m, for those
+    std::shared_ptr<const linalg::Analysis> analysis;  ///< of the layout's pattern, if known; else null
+    bool two_levels = false;                           ///< factorising K would take longer
+    Eigen::VectorXd positions;                         ///< (3 free nodes) positions of the free nodes, m
     std::vector<FreeRoller> rollers;
     std::vector<double> symmetric;           ///< (entries of the layout's pattern)
-    std::vector<double> skew;                ///< likewise, or empty where there is none
+    std::vector<double> skew;                ///< likewise; empty if there is no skew part
     Eigen::MatrixXd forces;                  ///< B (3 free nodes, solved)
     Eigen::MatrixXd constraints;             ///< C (3 free nodes, solved)
     Eigen::VectorXd compliance;              ///< the diagonal D (solved)
-    std::vector<std::string> multipliers;    ///< (solved) what they belong to, for messages: cable "left"
-    double wanted_residual = best_residual;  ///< of solutions, beside the right-hand side
+    std::vector<std::string> multipliers;    ///< (solved) names for messages: cable "left"
+    double wanted_residual = best_residual;  ///< target residual of solves, relative to the right-hand side
 
     [[nodiscard]] Eigen::Index free_size() const { return forces.rows(); }
     [[nodiscard]] Eigen::Index size() const { return forces.rows() + forces.cols(); }
     /// A v, or A^T v; (size) -> (size).
     [[nodiscard]] Eigen::VectorXd multiply(const Eigen::VectorXd& v, Side side) const;
-    /// Takes the components along which rollers hold nodes out of a vector (size).
+    /// Removes the components along which rollers hold nodes from a vector (size).
     void leave_out_held(Eigen::VectorXd& v) const;
 };
 
-/// result += factor * S v of a skew matrix S whose blocks at and below the diagonal are given, in blocks of 3.
+/// result += factor * S v for a skew matrix S of which the blocks at and below the diagonal are given, in blocks of 3.
 void add_skew_product(const linalg::SymmetricPattern& pattern, const std::vector<double>& values,
                       const Eigen::VectorXd& v, double factor, Eigen::VectorXd& result);
 
-/// Solves with a LinearSystem. Its preconditioner is the exact inverse of the system without the skew part, but for
-/// rounding: a Cholesky factor of K in single precision, or conjugate gradients on two levels, and the small Schur
-/// complement D - C^T K^-1 B. Solutions are refined with residuals of the very system. What that does not solve, or is
-/// nearly singular, is solved again with a factor in double precision. Where K is not positive definite, as at an
-/// unstable equilibrium, a multiple of its diagonal is added to the preconditioner until it is, and GMRES (Saad and
-/// Schultz 1986) makes good for that and for the skew part. Forces and constraints are balanced first: each multiplier
-/// is scaled so that its column is as large as one of K.
+/// Solves with a LinearSystem. Its preconditioner is the exact inverse, to rounding, of the system without the skew
+/// part: a Cholesky factor of K in single precision, or two-level conjugate gradients, and the small Schur complement D
+/// - C^T K^-1 B. Solutions are refined with residuals of the full system. If that fails, or K is nearly singular, it
+/// solves again with a factor in double precision. Where K is not positive definite, as at an unstable equilibrium, a
+/// multiple of its diagonal is added to the preconditioner until it is, and GMRES (Saad and Schultz 1986) corrects for
+/// that and for the skew part. Forces and constraints are balanced first: each multiplier is scaled so that its column
+/// has the magnitude of those of K.
 class SystemSolver {
 public:
     /// `system` must outlive it.
     explicit SystemSolver(const LinearSystem& system);
     ~SystemSolver();
 
-    /// x with A x = b, or A^T x = b, to |b - A x| <= 10 |b| times what is wanted, in balanced units; or, where x is so
-    /// much larger than b that rounding it makes more than that, to what rounding it makes; on two levels to about 1e-8
-    /// of x in the norm of K, or to ten times what is wanted, 1e-6 at best. Of several solutions, where cables do the
-    /// same, the one with the smallest multipliers. Errors: nothing solves it, since cables that do the same are asked
-    /// for different things; the matrix is singular (a limit point, a bifurcation, a part that can move freely).
+    /// x with A x = b, or A^T x = b, to |b - A x| <= 10 |b| times the target residual, in balanced units; or, if x is
+    /// so much larger than b that rounding x exceeds this, to the rounding error. With two levels to about 1e-8 of x in
+    /// the norm of K, or to ten times the target, 1e-6 at best. If cables are redundant, the solution with the smallest
+    /// multipliers. Errors: no solution, because redundant cables have conflicting targets; A is singular (a limit
+    /// point, a bifurcation, a part that can move freely).
     [[nodiscard]] Result<Eigen::VectorXd> solve(const Eigen::VectorXd& b, Side side);
 
 private:
-    /// How K is solved with: as quick as it goes, or surely.
+    /// How K is solved with, from fastest to most robust.
     enum class Way { none, two_levels, single_, double_ };
     [[nodiscard]] Status prepare();
     void begin();
@@ -103,20 +103,20 @@ private:
     const LinearSystem* system_;
     Way way_ = Way::none;
     bool singular_ = false;
-    bool exact_ = false;                        ///< the preconditioner is the inverse but for rounding
+    bool exact_ = false;                        ///< the preconditioner is the inverse to rounding
     double stiffness_ = 1;                      ///< mean of the diagonal of K, N/m
-    Eigen::VectorXd column_, row_;              ///< (solved) scales of the multipliers and of the constraints
+    Eigen::VectorXd column_, row_;              ///< (solved) scaling of the multipliers and of the constraints
     Eigen::MatrixXd forces_;                    ///< B, scaled
     Eigen::MatrixXd constraints_;               ///< C, scaled
     Eigen::VectorXd compliance_;                ///< D, scaled
-    std::unique_ptr<linalg::Cholesky> factor_;  ///< of K, or K with more on its diagonal
+    std::unique_ptr<linalg::Cholesky> factor_;  ///< of K, or of K with its diagonal increased
     std::unique_ptr<linalg::TwoLevel> levels_;  ///< of K
     Eigen::MatrixXd from_forces_;               ///< K^-1 B
     Eigen::MatrixXd from_constraints_;          ///< K^-1 C
     Eigen::MatrixXd schur_inverse_;             ///< of D - C^T K^-1 B, or the pseudo-inverse
-    Eigen::MatrixXd schur_null_;                ///< columns: multipliers that do nothing
+    Eigen::MatrixXd schur_null_;                ///< columns: combinations of multipliers without effect
     using Whole = Eigen::SparseLU<Eigen::SparseMatrix<double>>;
-    std::shared_ptr<Whole> whole_;  ///< of A, balanced, where GMRES finds no solution with the others
+    std::shared_ptr<Whole> whole_;  ///< of A, balanced, for when GMRES with the others fails
 };
 
 }  // namespace pliant::sim

@@ -19,7 +19,7 @@ namespace {
 
 using linalg::view;
 
-/// cable "left", as messages call it.
+/// Name in messages: cable "left".
 std::string name_of(const Description& d, std::size_t actuator) {
     const std::size_t chambers = d.cables.size(), pressures = chambers + d.chambers.size();
     if (actuator < chambers) return fmt::format("cable \"{}\"", d.cables[actuator].name);
@@ -27,7 +27,7 @@ std::string name_of(const Description& d, std::size_t actuator) {
     return fmt::format("load \"{}\"", d.pressures[actuator - pressures].name);
 }
 
-/// As the state's contact couples them.
+/// The layout with the state's contact coupling.
 TangentLayout layout_at(const Equilibrium& system, const State& state, const Controls& controls, TangentNodes nodes) {
     return system.lay_out_tangent(system.contact_cliques(state, controls, nodes), nodes);
 }
@@ -81,7 +81,7 @@ Quantity multiplier_of(const Equilibrium& system, std::size_t actuator) {
     return quantity;
 }
 
-/// The tangent over all nodes, with the forces and constraints of the multipliers that are solved for.
+/// The tangent over all nodes, with the forces and constraints of the unknown multipliers.
 struct Linearisation::Whole {
     TangentLayout layout;
     Parts tangent;
@@ -250,7 +250,7 @@ Eigen::VectorXd Linearisation::motion_weights(const Eigen::VectorXd& weights) {
     return result;
 }
 
-/// Inertia and gap elements couple the nodes of tets, and laws without an energy have a skew part of theirs.
+/// Inertia and gap elements couple the nodes of tets, and laws without an energy have a skew part on them.
 bool Linearisation::is_tets_and_more() const {
     const auto has_gaps = [](const Actuator& actuator) { return actuator.gaps() != nullptr; };
     return !controls_.inertia && system_->model().elements().has_energy() &&
@@ -291,7 +291,7 @@ Eigen::VectorXd Linearisation::held_motion_weights(const Eigen::VectorXd& weight
     return result;
 }
 
-/// K^T v without what the tets and inertia have in it.
+/// K^T v without the contributions of tets and inertia.
 void Linearisation::add_stiffness_beside_tets(const Eigen::VectorXd& v, Eigen::VectorXd& result) const {
     const TangentLayout layout =
         system_->lay_out_tangent_beside_tets(system_->contact_cliques(state_, controls_, TangentNodes::all));
@@ -323,7 +323,7 @@ Quantity Linearisation::with_forces(const Quantity& quantity) {
     }
     if (quantity.by_forces.size() == robot.size()) return whole_one;
     Eigen::VectorXd obstacles = quantity.by_forces;
-    obstacles.head(robot.size()).setZero();  // they are in the stiffness
+    obstacles.head(robot.size()).setZero();  // they are part of the stiffness
     whole_one.by_positions +=
         contact_stiffness_times(*system_, state_, controls_, obstacles).head(whole_one.by_positions.size());
     return whole_one;

@@ -1,14 +1,14 @@
-// The equations of a converged state, linearised: what the state answers to a small change of anything.
+// The linearised equations of a converged state: its first-order response to a change of any input or parameter.
 //
 //     const Equilibrium system(model);                          // state, controls: as a solver left them
 //     auto at = Linearisation::create(system, state, controls);
 //     const Quantity tip = marker_coordinate(system, 0, {0, 0, 1});
-//     // One solution tells what an input does to everything:
+//     // One solve gives the response of everything to an input:
 //     for (const Parameter& input : inputs(*at)) {
 //         const Result<Change> change = at->response(derivative(*at, input));
 //         fmt::print("{}: {} m per {}\n", input.name, tip.derivative(*change), input.unit);
 //     }
-//     // One transposed solution tells what everything does to a quantity:
+//     // One transposed solve gives the derivatives of a quantity with respect to everything:
 //     const Result<Adjoint> adjoint = at->adjoint(tip);
 //     for (const Parameter& input : inputs(*at)) fmt::print("{}\n", adjoint->derivative(derivative(*at, input)));
 //
@@ -27,18 +27,18 @@
 
 namespace pliant::sim {
 
-/// A small change of a state, of anything that it is a function of: all numbers for each unit of that.
+/// First-order change of a state, per unit of its cause.
 struct Change {
     Eigen::VectorXd positions;    ///< (3n) m
     Eigen::VectorXd multipliers;  ///< (actuators) tension of cables, N; minus the pressure of air, Pa
 };
 
-/// How the equations change with a number p while all unknowns stay, and what of the state p moves by itself.
+/// Derivative of the equations with respect to a number p at fixed unknowns, and the direct effect of p on the state.
 struct Derivative {
     Eigen::VectorXd equations;  ///< (unknowns) dF/dp
-    Change direct;              ///< of held nodes, and of multipliers that are given
-    /// (3n), or with the nodes of obstacles after those of the robot: d/dp of the forces that balance at each node, of
-    /// which `equations` has those at free ones; `direct` is not in it. Empty: none.
+    Change direct;              ///< on held nodes, and on prescribed multipliers
+    /// (3n), or with the nodes of obstacles after those of the robot: d/dp of the forces that balance at each node;
+    /// `equations` contains those at free nodes. Excludes the effect of `direct`. Empty: zero.
     Eigen::VectorXd forces{};
 };
 
@@ -46,10 +46,11 @@ struct Derivative {
 struct Quantity {
     Eigen::VectorXd by_positions;    ///< (3n)
     Eigen::VectorXd by_multipliers;  ///< (actuators)
-    /// (3n), or with the nodes of obstacles after those of the robot: by the forces f that balance at each node, which
-    /// are the reaction where it is held, and what the robot feels of each node of an obstacle. Empty: by none.
+    /// (3n), or with the nodes of obstacles after those of the robot: with respect to the forces f that balance at each
+    /// node, which are the reaction where it is held, and the force on the robot at each node of an obstacle. Empty:
+    /// zero.
     Eigen::VectorXd by_forces{};
-    /// Without what the forces do: Linearisation::with_forces() puts that into the other two.
+    /// Without the effect of the forces: Linearisation::with_forces() moves that into the other two.
     [[nodiscard]] double derivative(const Change& change) const {
         return by_positions.dot(change.positions) + by_multipliers.dot(change.multipliers);
     }
@@ -60,10 +61,9 @@ struct Quantity {
 /// Multiplier of an actuator: the tension of a cable, minus the pressure of a chamber.
 [[nodiscard]] Quantity multiplier_of(const Equilibrium& system, std::size_t actuator);
 
-/// What a quantity asks of the equations: weights w with A^T w = dq/dz, so that dq/dp = dq of the direct part - w .
-/// dF/dp.
+/// Adjoint of a quantity: weights w with A^T w = dq/dz, so that dq/dp = dq of the direct part - w . dF/dp.
 struct Adjoint {
-    Quantity quantity;        ///< with its forces put into the rest: Linearisation::with_forces()
+    Quantity quantity;        ///< with the effect of its forces moved into the rest: Linearisation::with_forces()
     Eigen::VectorXd weights;  ///< (unknowns)
     [[nodiscard]] double derivative(const Derivative& by) const {
         const Eigen::Index both = std::min(quantity.by_forces.size(), by.forces.size());
@@ -72,31 +72,31 @@ struct Adjoint {
     }
 };
 
-/// What a solver found out about the pattern of K, for states whose contact couples no nodes that it does not.
+/// What a solver already knows about the pattern of K; for states whose contact couples no further nodes.
 struct KnownPattern {
-    std::shared_ptr<const TangentLayout> layout;  ///< null: nothing is known
+    std::shared_ptr<const TangentLayout> layout;  ///< null: unknown
     std::shared_ptr<const linalg::Analysis> analysis;
-    bool two_levels = false;  ///< a factor would take longer
+    bool two_levels = false;  ///< a factorisation would take longer
 };
 /// `memory` may be null.
 [[nodiscard]] KnownPattern known_pattern(const Equilibrium& system, const FactoredLaplacian& laplacian,
                                          const SolverMemory* memory);
 
-/// Of the equations F(z) = 0 in the unknowns z: the positions of the free nodes (3 free, in the order of
-/// Model::free_index), then the multipliers of the actuators that are not given, in ascending order. F has as many
+/// The linearised equations F(z) = 0 in the unknowns z: the positions of the free nodes (3 free, in the order of
+/// Model::free_index), then the multipliers of the actuators that are not prescribed, in ascending order. F has as many
 /// rows:
 ///   of a free node         its out-of-balance force, N: elements, plates, springs, gap elements, inertia, contact,
-///                          friction as it is lagged, loads, and the multipliers' forces
+///                          lagged friction, loads, and the multipliers' forces
 ///   driven by its measure  g - wanted, m or m^3; of a slack cable its tension m, N
 ///   of a sealed chamber    g - value / (p_ambient - m), m^3
-/// Where a roller holds a free node in a direction, neither that unknown nor that row exists: its component is left out
-/// of what comes in and zero in what goes out. Cables with friction have the tension shares of the controls, and
-/// contact the friction that is frozen there. Contact is as stiff as it is for the parts that are nearest now.
+/// Where a roller holds a free node in a direction, neither that unknown nor that row exists: the component is ignored
+/// in the input and zero in the output. Cables with friction have the tension shares of the controls, and contact the
+/// friction that is frozen there. Contact stiffness is that of the currently nearest features.
 class Linearisation {
 public:
     /// Copies state and controls; `system` must outlive it. The state need not be converged, but F is not zero then.
-    /// `known` saves the time to find the order of elimination, a larger residual some of that of solutions. An error:
-    /// the state is one that no body can have.
+    /// `known` saves computing the elimination order; a larger target residual makes solves cheaper. Errors: the state
+    /// is physically impossible.
     [[nodiscard]] static Result<Linearisation> create(const Equilibrium& system, const State& state,
                                                       const Controls& controls, const KnownPattern& known = {},
                                                       double residual = best_residual);
@@ -105,16 +105,16 @@ public:
     [[nodiscard]] const State& state() const { return state_; }
     [[nodiscard]] const Controls& controls() const { return controls_; }
     [[nodiscard]] Eigen::Index size() const { return matrix_->size(); }
-    /// Actuators whose multipliers are unknown.
+    /// Actuators with an unknown multiplier.
     [[nodiscard]] const std::vector<std::size_t>& solved() const { return solved_; }
-    /// True for a cable that is driven by length and does not pull.
+    /// True for a cable that is driven by length and slack.
     [[nodiscard]] bool is_slack(std::size_t actuator) const;
 
-    /// F at another state and other controls, with the same actuators slack; not a number where no body can be so.
+    /// F at another state and other controls, with the same slack cables; NaN if that state is impossible.
     [[nodiscard]] Eigen::VectorXd equations(const State& state, const Controls& controls) const {
         return equations(*system_, state, controls);
     }
-    /// The same of a robot that differs only in its numbers or its shape; in the order of this one.
+    /// The same for a robot that differs only in its numbers or its shape; in the order of this one.
     [[nodiscard]] Eigen::VectorXd equations(const Equilibrium& system, const State& state,
                                             const Controls& controls) const;
     /// A v and A^T w with A = dF/dz; (unknowns) -> (unknowns). Exact.
@@ -131,25 +131,25 @@ public:
         return solver().solve(b, Side::transposed);
     }
 
-    /// Of the unknowns, as a change of the state: nodes that are held, and multipliers that are given, stay.
+    /// Unknowns as a change of the state: held nodes and prescribed multipliers do not change.
     [[nodiscard]] Change change_of(const Eigen::VectorXd& unknowns) const;
-    /// Of positions (3n) and multipliers (actuators), what belongs to the unknowns.
+    /// The entries of positions (3n) and multipliers (actuators) that are unknowns.
     [[nodiscard]] Eigen::VectorXd unknowns_of(const Change& change) const;
-    /// The change of F with a motion (3n) of any nodes, also of those that are held. The first call assembles.
+    /// The change of F with a motion (3n) of any nodes, including held ones. The first call assembles.
     [[nodiscard]] Eigen::VectorXd equations_of_motion(const Eigen::VectorXd& motion);
     /// (3n) its transpose times weights (unknowns).
     [[nodiscard]] Eigen::VectorXd motion_weights(const Eigen::VectorXd& weights);
-    /// The same at nodes that a support holds, zero at others: next to nothing is assembled for it.
+    /// The same at nodes that a support holds, zero at others; assembles very little.
     [[nodiscard]] Eigen::VectorXd held_motion_weights(const Eigen::VectorXd& weights);
 
-    /// What the whole state does for each unit of p: the direct part, and -A^-1 dF/dp.
+    /// Derivative of the whole state with respect to p: the direct part, and -A^-1 dF/dp.
     [[nodiscard]] Result<Change> response(const Derivative& by);
     [[nodiscard]] Result<Adjoint> adjoint(const Quantity& quantity);
-    /// The same quantity, with what the change of the forces with positions and multipliers does to it added to
-    /// by_positions and by_multipliers; by_forces is left with what else changes them.
+    /// The same quantity, with the effect of positions and multipliers on the forces added to by_positions and
+    /// by_multipliers; by_forces then only applies to other changes of the forces.
     [[nodiscard]] Quantity with_forces(const Quantity& quantity);
-    /// (3n), or with the nodes of obstacles: how the quantity changes with a force that is added to those that balance
-    /// at each node.
+    /// (3n), or with the nodes of obstacles: derivative of the quantity with respect to a force added to those that
+    /// balance at each node.
     [[nodiscard]] Eigen::VectorXd force_weights(const Adjoint& adjoint) const;
 
 private:
@@ -158,10 +158,10 @@ private:
     void find_unknowns();
     void assemble(const KnownPattern& known);
     [[nodiscard]] const Whole& whole();
-    /// K is the sum of the stiffness of the tets and of what knows its own nodes.
+    /// True if K is the tet stiffness plus parts with known nodes.
     [[nodiscard]] bool is_tets_and_more() const;
     [[nodiscard]] bool has_more_than_tets() const;
-    /// result (3n) += K v of all nodes, or K^T v.
+    /// result (3n) += K v over all nodes, or K^T v.
     void add_stiffness(const Eigen::VectorXd& v, Side side, Eigen::VectorXd& result);
     void add_stiffness_beside_tets(const Eigen::VectorXd& v, Eigen::VectorXd& result) const;
     [[nodiscard]] SystemSolver& solver();

@@ -240,7 +240,7 @@ TEST_CASE("solutions where the equilibrium is unstable") {
     }
 }
 
-TEST_CASE("cables that do the same share what they do; asked for different things, they say so") {
+TEST_CASE("redundant cables share their load; conflicting targets are an error") {
     Description d = plain();
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9}),
                 flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
@@ -288,7 +288,7 @@ TEST_CASE("a singular tangent is an error") {
     CHECK(x.error().message.starts_with("the tangent of this state is singular: "));
 }
 
-TEST_CASE("a state that no body can have is an error") {
+TEST_CASE("a physically impossible state is an error") {
     const Case c(plain());
     State state = c.system.rest();
     state.x *= -1;

@@ -22,7 +22,7 @@ void MetSegments::add_gradient_rate(double factor, std::span<double> forces) con
 }
 
 std::vector<double> met_length_rates(const CablePath& path, std::span<const double> rest) {
-    constexpr double of_path = 1e-3, of_segment = 0.25;  // as CablePath takes it
+    constexpr double of_path = 1e-3, of_segment = 0.25;  // as in CablePath
     std::size_t shortest = 0;
     double total = 0, least = 0;
     for (std::size_t k = 0; k < path.segment_count(); ++k) {

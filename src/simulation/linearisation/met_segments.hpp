@@ -1,5 +1,6 @@
-// Segments of cables and springs whose ends have met are parabolas below CablePath::met_length_m(), which follows from
-// the path at rest: what that does to forces and lengths where the rest shape changes.
+// Derivatives of the smoothing of cable and spring segments whose ends have met. Such a segment is a parabola below
+// CablePath::met_length_m(), which depends on the rest length of the path, so changes of the rest shape affect forces
+// and lengths through it.
 #pragma once
 
 #include <span>
@@ -9,15 +10,15 @@
 
 namespace pliant::sim {
 
-/// How the length of a path and its gradient change with the length below which ends have met: both are zero while no
-/// ends have.
+/// Derivatives of the length of a path and of its gradient with respect to the met length; both are zero as long as no
+/// ends have met.
 class MetSegments {
 public:
     /// At node positions `x` (3n), with the shares (segments) of CablePath; both must outlive it.
     MetSegments(const CablePath& path, std::span<const double> x, std::span<const double> shares = {});
 
     [[nodiscard]] bool any() const { return any_; }
-    /// d(length) / d(met length), a pure number.
+    /// d(length) / d(met length), dimensionless.
     [[nodiscard]] double length_rate() const { return length_rate_; }
     /// forces (3n) += factor * d(dL/dx) / d(met length).
     void add_gradient_rate(double factor, std::span<double> forces) const;
@@ -25,7 +26,7 @@ public:
 private:
     const CablePath& path_;
     std::span<const double> x_;
-    std::vector<double> rates_;  ///< (segments) of the factor that a segment's vector has in the gradient, times l
+    std::vector<double> rates_;  ///< (segments) of the factor of a segment's vector in the gradient, times l
     double length_rate_ = 0;
     bool any_ = false;
 };

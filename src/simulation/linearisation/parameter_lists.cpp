@@ -1,4 +1,4 @@
-// What there is to differentiate by.
+// Lists of the inputs and parameters of a linearisation.
 #include <fmt/format.h>
 
 #include <array>

@@ -24,7 +24,7 @@ Derivative nothing(const Linearisation& at) {
             {Eigen::VectorXd::Zero(at.state().x.size()), Eigen::VectorXd::Zero(at.state().multiplier.size())}};
 }
 
-/// Of a force (3n), or with the nodes of obstacles, that is added to the out-of-balance one.
+/// Derivative for a force (3n), or with the nodes of obstacles, added to the out-of-balance force.
 Derivative by_force(const Linearisation& at, const Eigen::VectorXd& force) {
     Derivative by = nothing(at);
     const Eigen::VectorXd free = at.system().restrict_to_free(force.head(at.state().x.size()));
@@ -40,7 +40,7 @@ Derivative by_motion(Linearisation& at, const Eigen::VectorXd& held) {
     return by;
 }
 
-/// What is asked of a multiplier's own equation.
+/// Derivative for the prescribed value in a multiplier's own equation.
 Derivative by_wanted(const Linearisation& at, std::size_t actuator, double change) {
     Derivative by = nothing(at);
     const auto place = std::ranges::find(at.solved(), actuator) - at.solved().begin();
@@ -55,19 +55,18 @@ Derivative by_multiplier(const Linearisation& at, std::size_t actuator, double s
                                                    at.controls().shares[actuator]);
     Derivative by = by_force(at, force);
     by.direct.multipliers[static_cast<Eigen::Index>(actuator)] = sign;
-    by.forces.resize(0);  // it is the multiplier's
+    by.forces.resize(0);  // the force belongs to the multiplier
     return by;
 }
 
-/// (3n) of a load at its full share, in the direction of `total`.
+/// (3n) nodal forces of a load at full share, in the direction of `total`.
 Eigen::VectorXd spread(const Linearisation& at, const Load& load, const Eigen::Vector3d& total) {
     Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
     for (std::size_t k = 0; k < load.nodes.size(); ++k) force.segment<3>(3 * load.nodes[k]) += load.shares[k] * total;
     return force;
 }
 
-/// How fast the springs of plates, and objects, stiffen beside what they are, as constants of a material move along
-/// `direction`.
+/// Relative stiffening rate of plate springs and objects as constants of a material change along `direction`.
 double stiffness_rate(const Description& d, std::size_t material, const std::vector<double>& direction) {
     double stiffest = 0;
     for (const Material& one : d.materials) stiffest = std::max(stiffest, material::stiffness_bound(one.law));
@@ -77,7 +76,7 @@ double stiffness_rate(const Description& d, std::size_t material, const std::vec
     return (3 * now.bulk_Pa >= 2 * now.shear_Pa ? 3 * rate.bulk_Pa : 2 * rate.shear_Pa) / stiffest;
 }
 
-/// Of all that follows the stiffest material.
+/// Adds the forces of everything whose stiffness follows the stiffest material.
 void add_stiff_force(const Linearisation& at, double factor, Eigen::VectorXd& force) {
     if (factor == 0) return;
     Eigen::VectorXd stiff = Eigen::VectorXd::Zero(force.size());
@@ -90,7 +89,7 @@ bool has_stiff_parts(const Equilibrium& system) {
     return !system.plates().empty() || !system.objects().empty();
 }
 
-/// (3n) of all masses under an acceleration.
+/// (3n) forces of all masses under an acceleration.
 Eigen::VectorXd weight(const Linearisation& at, const Eigen::Vector3d& acceleration) {
     const std::vector<double>& mass = at.system().model().elements().node_mass_kg();
     Eigen::VectorXd force(at.state().x.size());
@@ -141,8 +140,8 @@ Derivative by_spring(const Linearisation& at, const Parameter& by) {
     return by_force(at, force);
 }
 
-/// The shares s = exp(-f a) of a cable with friction change by s log(s) / f with f. What its weighted length is wanted
-/// to be changes just as that length does, once it is as long as wanted.
+/// The shares s = exp(-f a) of a cable with friction have ds/df = s log(s) / f. The prescribed weighted length changes
+/// just as the weighted length does, once the cable has its prescribed length.
 Derivative by_cable_friction(const Linearisation& at, const Parameter& by) {
     std::vector<double> rates = at.controls().shares[by.index];
     for (double& share : rates) share *= std::log(share) / by.value;
@@ -152,13 +151,13 @@ Derivative by_cable_friction(const Linearisation& at, const Parameter& by) {
     return by_force(at, force);
 }
 
-/// Of all contact forces, friction too: they are proportional to it.
+/// All contact forces, including friction, are proportional to the contact stiffness.
 Derivative by_contact_stiffness(const Linearisation& at, double stiffness_Pa) {
     const ContactForces forces = contact_forces(at.system(), at.state(), at.controls());
     return by_force(at, (forces.pressure + forces.friction) / stiffness_Pa);
 }
 
-/// Whether the coefficient is that of a pair.
+/// True if the coefficient applies to a pair.
 bool is_coefficient_of(const contact::Contact& contact, const contact::FrozenPair& pair, const Parameter& p) {
     const auto nodes = std::span(pair.nodes).first(static_cast<std::size_t>(pair.node_count));
     const contact::FrictionOwner owner = contact.friction_owner(nodes, pair.obstacle);
@@ -168,7 +167,7 @@ bool is_coefficient_of(const contact::Contact& contact, const contact::FrozenPai
     return owner.obstacle < 0 && owner.rigid < 0;
 }
 
-/// Of friction against one obstacle or object, or against itself.
+/// For friction against one obstacle or object, or of the robot against itself.
 Derivative by_friction(const Linearisation& at, const Parameter& by) {
     const Controls& controls = at.controls();
     Eigen::VectorXd force = Eigen::VectorXd::Zero(force_size(at.system()));
@@ -184,7 +183,7 @@ Derivative by_friction(const Linearisation& at, const Parameter& by) {
     return by_force(at, contact_forces(at.system(), at.state(), with_those).friction);
 }
 
-/// Of what acts along a joint's coordinate. A rate of U' is a force along the coordinate's gradient.
+/// For the forces along a joint's coordinate. A change of U' is a force along the coordinate's gradient.
 Derivative by_joint(const Linearisation& at, const Parameter& by) {
     const JointForce& joint = at.system().joints()[by.index];
     const JointDrive drive = at.system().joint_drive(at.controls(), by.index);
@@ -198,7 +197,7 @@ Derivative by_joint(const Linearisation& at, const Parameter& by) {
     return by_force(at, force);
 }
 
-/// Of an object's mass, a quarter of which each of its nodes has, or of one at a point.
+/// For an object's mass, a quarter of which is at each of its nodes, or for a point mass.
 Derivative by_lump(const Linearisation& at, const Parameter& by) {
     const Description& d = at.system().model().description();
     const Masses masses = masses_at(d, at.controls(), at.state().x);
@@ -240,7 +239,7 @@ Derivative by_gap_weight(const Linearisation& at, std::size_t growth) {
     return by_force(at, force);
 }
 
-/// What damps is in proportion to it.
+/// Damping forces are proportional to the coefficient.
 Derivative by_damping(const Linearisation& at, bool by_mass) {
     const Inertia& inertia = *at.controls().inertia;
     const Eigen::VectorXd velocity = inertia.damped_velocity(at.state().x);
@@ -251,7 +250,7 @@ bool is_of_support(Kind kind) {
     return kind == Kind::support_share || kind == Kind::support_move || kind == Kind::support_angle;
 }
 
-/// The motion (3n) of held nodes for each unit of a number of a support.
+/// The motion (3n) of held nodes per unit of a number of a support.
 Eigen::VectorXd support_motion(const Linearisation& at, const Parameter& by) {
     const Description& d = at.system().model().description();
     const Support& support = d.supports[by.index];
@@ -266,14 +265,14 @@ Eigen::VectorXd support_motion(const Linearisation& at, const Parameter& by) {
     });
 }
 
-/// Of all that follows the stiffest material, with weights of the forces.
+/// Product of adjoint weights with the forces of everything whose stiffness follows the stiffest material.
 double stiff_product(const Linearisation& at, const Adjoint& adjoint) {
     Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
     add_stiff_force(at, 1, force);
     return at.force_weights(adjoint).head(force.size()).dot(force);
 }
 
-/// Of all tets of each material.
+/// Sums over all tets of each material.
 struct Sums {
     Eigen::MatrixXd constants;  ///< (constants, materials)
     Eigen::VectorXd density;    ///< (materials)

@@ -1,4 +1,4 @@
-// Derivatives by what a robot is made with, against robots that are made differently.
+// Derivatives with respect to the parameters of a robot, against robots with other values.
 #include "simulation/linearisation/parameters.hpp"
 
 #include <doctest/doctest.h>

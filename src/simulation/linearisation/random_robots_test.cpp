@@ -1,7 +1,7 @@
-// Linearisations of random robots against differences: where their programs lead or, where they lead nowhere in a few
-// iterations, a little off their rest.
+// Linearisations of random robots against differences: at states of their programs or, if these do not converge in a
+// few iterations, slightly off the rest state.
 //
-// PLIANT_RANDOM_ROBOTS sets how many (12 unless told).
+// PLIANT_RANDOM_ROBOTS sets their number (default 12).
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -36,8 +36,7 @@ Eigen::VectorXd tail_only(Eigen::VectorXd rows, Eigen::Index free) {
     return rows;
 }
 
-/// Positions are stored to a rounding error of themselves: what that does to the forces, N. Of a robot at rest nothing
-/// else is left of them.
+/// Forces caused by rounding the positions, N. At rest all forces are of this kind.
 double force_of_rounding(const Linearisation& at) {
     Noise noise(7);
     constexpr double rounding = 1e-16;
@@ -45,10 +44,11 @@ double force_of_rounding(const Linearisation& at) {
     return rounding * at.multiply(v).head(at.size() - static_cast<Eigen::Index>(at.solved().size())).norm();
 }
 
-/// dF/dp of all that a robot is made with, against robots that are made differently.
+/// dF/dp for all parameters of a robot, against robots with other values.
 void note_parameters(Linearisation& at, unsigned seed, Worst& worst) {
     const std::vector<Parameter> all = parameters(at);
-    // Of the forces, and of their change with a number as large as itself: what is much less drowns in rounding.
+    // Magnitude of the forces, and of their change with a number by its own size: much smaller changes are lost in
+    // rounding.
     double largest = at.system().evaluate(at.state(), at.controls()).out_of_balance.norm();
     for (const Parameter& p : all) {
         if (p.kind == Parameter::Kind::law)

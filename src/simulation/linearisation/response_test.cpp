@@ -1,4 +1,4 @@
-// What a linearisation foretells against two simulations, and the same bits on any number of threads.
+// Predictions of a linearisation against two simulations, and the same bits on any number of threads.
 #include <doctest/doctest.h>
 #include <tbb/global_control.h>
 

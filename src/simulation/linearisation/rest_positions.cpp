@@ -21,8 +21,8 @@ Eigen::VectorXd zeros(const Linearisation& at) {
     return Eigen::VectorXd::Zero(at.state().x.size());
 }
 
-/// (3n) of the volume of the straight tets, over that volume: that of their mean size, which makes plates stiff, is a
-/// third of it.
+/// (3n) gradient of the volume of the straight tets, divided by that volume; for their mean size, which determines the
+/// stiffness of plates, a third of it.
 Eigen::VectorXd volume_gradient(const mesh::TetMesh& mesh) {
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(mesh.points.size()));
     double volume = 0;
@@ -54,7 +54,7 @@ void visit_objects(const Linearisation& at, const Visit& visit) {
     for (const AffineBody& object : at.system().objects()) visit(object);
 }
 
-/// Calls visit(dL/dx at this state times -k, dL0/dX) for each spring that pulls or presses and is free at rest.
+/// Calls visit(dL/dx at this state times -k, dL0/dX) for each active spring without a given free length.
 template <class Visit>
 void visit_free_springs(const Linearisation& at, const Visit& visit) {
     const Description& d = at.system().model().description();
@@ -80,7 +80,7 @@ void visit_gaps(const Linearisation& at, const Visit& visit) {
 }
 
 /// Calls visit(path, force, row, actuator) for each cable and spring with segments whose ends have met: dF/d(met
-/// length) (3n) and, of a cable, what its measure changes by.
+/// length) (3n) and, for a cable, the change of its measure.
 template <class Visit>
 void visit_met_segments(const Linearisation& at, const Visit& visit) {
     const Eigen::VectorXd& x = at.state().x;
@@ -90,7 +90,7 @@ void visit_met_segments(const Linearisation& at, const Visit& visit) {
         const MetSegments met(actuator.cable(), view(x), at.controls().shares[c]);
         if (!met.any()) continue;
         Eigen::VectorXd force = zeros(at);
-        const bool by_gaps = actuator.gaps() != nullptr;  // there the multiplier is no tension
+        const bool by_gaps = actuator.gaps() != nullptr;  // there the multiplier is not a tension
         if (!by_gaps) met.add_gradient_rate(at.state().multiplier[static_cast<Eigen::Index>(c)], view(force));
         visit(actuator.cable(), force, met.length_rate(), c);
     }
@@ -108,14 +108,14 @@ void visit_met_segments(const Linearisation& at, const Visit& visit) {
     }
 }
 
-/// The row of a multiplier's own equation; nothing where it has none, or where the cable is slack.
+/// The row of a multiplier's own equation; empty if it has none, or if the cable is slack.
 std::optional<Eigen::Index> row_of(const Linearisation& at, std::size_t actuator) {
     const auto place = std::ranges::find(at.solved(), actuator);
     if (place == at.solved().end() || at.is_slack(actuator)) return std::nullopt;
     return at.size() - (at.solved().end() - place);
 }
 
-/// The motion (3n) of held nodes with that of their rest positions.
+/// The motion (3n) of held nodes that follows from that of their rest positions.
 Eigen::VectorXd held_motion(const Linearisation& at, const Eigen::VectorXd& motion) {
     const Description& d = at.system().model().description();
     return at.system().model().held().motion([&](std::size_t s, int node) -> Eigen::Vector3d {
@@ -129,7 +129,7 @@ Eigen::VectorXd held_weights(const Linearisation& at, const Eigen::VectorXd& wei
     const Description& d = at.system().model().description();
     Eigen::VectorXd result = zeros(at);
     at.system().model().held().visit_weights(
-        weights, [&](std::size_t s, int node, const Eigen::Vector3d& w) {  // turned back
+        weights, [&](std::size_t s, int node, const Eigen::Vector3d& w) {  // rotated back
             const Vec3 back = d.supports[s].turned_arm({w[0], w[1], w[2]}, -at.controls().support_share[s]);
             result.segment<3>(3 * node) += linalg::vector(back);
         });

@@ -1,4 +1,4 @@
-// Derivatives by rest positions, against robots of another shape.
+// Derivatives with respect to rest positions, against robots of another shape.
 #include "simulation/linearisation/rest_positions.hpp"
 
 #include <doctest/doctest.h>
@@ -13,7 +13,7 @@ using namespace pliant::sim::testing;
 
 namespace {
 
-/// The controls of a robot; what they ask of actuators is what the first was asked.
+/// The controls of a robot; its targets have the same values as those of the first.
 using ControlsOf = std::function<Controls(Equilibrium&)>;
 
 Description reshaped(Description d, const Eigen::VectorXd& motion, double step) {

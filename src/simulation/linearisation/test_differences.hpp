@@ -1,4 +1,4 @@
-// What the tests of linearisations share: states of small robots, and differences to hold derivatives against.
+// Shared by the tests of linearisations: states of small robots, and finite differences to check derivatives against.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -39,10 +39,10 @@ struct Settled {
     int settled = 0;
 };
 
-/// Held by nothing, it is held loosely at equilibrium: by a step of this length, s.
+/// Time step of the tether that holds a free robot at equilibrium, s.
 inline constexpr double tether_s = 0.5;
 
-/// What a step in time, or a tether, adds; nothing where neither is needed.
+/// The inertia of a step in time, or of a tether; null if neither is needed.
 inline std::shared_ptr<const Inertia> step_inertia(const Model& model, const History& history, double dt,
                                                    const Damping* damping) {
     const bool is_free = !model.free_pieces().empty() || !model.objects().empty();
@@ -52,7 +52,7 @@ inline std::shared_ptr<const Inertia> step_inertia(const Model& model, const His
         damping != nullptr ? dt : tether_s, damping != nullptr ? *damping : Damping{}, nullptr);
 }
 
-/// The beginning of a program, in steps of `dt`, as far as they converge in a few iterations; with damping, in time.
+/// The first steps of a program, of `dt` each, as long as they converge in a few iterations; with damping, in time.
 /// `settled` counts them.
 inline Settled settle(const Equilibrium& system, int steps, double dt, double tolerance,
                       const Damping* damping = nullptr) {
@@ -61,7 +61,7 @@ inline Settled settle(const Equilibrium& system, int steps, double dt, double to
     Progress silent;
     Settled last{system.rest(), system.controls(0), 0};
     History history = MotionInTime(system.model(), {}).at_rest(last.state.x);
-    // What nothing holds has an equilibrium, and a tangent, only in a step.
+    // Free pieces and objects have an equilibrium, and a tangent, only within a step.
     if (!system.model().free_pieces().empty() || !system.model().objects().empty())
         last.controls.inertia = step_inertia(system.model(), history, dt, damping);
     for (int step = 1; step <= steps; ++step) {
@@ -84,7 +84,7 @@ inline Settled settle(const Equilibrium& system, int steps, double dt, double to
     return last;
 }
 
-/// Largest relative errors of what a linearisation says.
+/// Largest relative errors of a linearisation.
 struct Measured {
     double product = 0;    ///< against differences
     double transpose = 0;  ///< of <w, A v> against <A^T w, v>
@@ -92,8 +92,8 @@ struct Measured {
     double input = 0;      ///< of dF/dp against differences
 };
 
-/// Of two vectors of unknowns: the forces, and each other row, beside their own size; `least` (solved) of the other
-/// rows.
+/// Relative error of two vectors of unknowns: the forces, and each other row, relative to their own size; at least
+/// `least` (solved) for the other rows.
 inline double relative_error(const Linearisation& at, const Eigen::VectorXd& measured, const Eigen::VectorXd& expected,
                              const Eigen::VectorXd& least) {
     const auto m = static_cast<Eigen::Index>(at.solved().size());
@@ -106,26 +106,26 @@ inline double relative_error(const Linearisation& at, const Eigen::VectorXd& mea
     return error;
 }
 
-/// The smallest error of central differences over steps from `largest` down: too long a step bends, too short a one
-/// drowns in rounding; a wrong derivative is wrong with all of them.
+/// The smallest error of central differences over step sizes from `largest` down: large steps have truncation errors,
+/// small ones rounding errors; a wrong derivative is wrong at all of them.
 inline double best_error(double largest, const std::function<double(double step)>& error_of) {
     double best = 1e300;
     for (double step = largest; step > 1e-6 * largest; step /= 8) best = std::min(best, error_of(step));
     return best;
 }
 
-/// Four-point central difference: its error goes with the fourth power of the step.
+/// Four-point central difference: its error is of fourth order in the step.
 inline Eigen::VectorXd difference(const std::function<Eigen::VectorXd(double)>& f, double h) {
     return (8 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12 * h);
 }
 
-/// The state moved along a change of it.
+/// The state moved along a change.
 inline State moved(const State& state, const Change& along, double step) {
     return {state.x + step * along.positions, state.multiplier + step * along.multipliers};
 }
 
-/// A direction in the unknowns, or weights of the equations, of the order of 1 for the nodes; the rest is as large as
-/// does about as much.
+/// A random direction in the unknowns, or weights of the equations, of order 1 for the nodes; other entries are scaled
+/// to have a comparable effect.
 inline Eigen::VectorXd some_direction(const Linearisation& at, Side side, Noise& noise) {
     const auto multiply = [&](const Eigen::VectorXd& v) {
         return side == Side::direct ? at.multiply(v) : at.multiply_transposed(v);
@@ -141,12 +141,12 @@ inline Eigen::VectorXd some_direction(const Linearisation& at, Side side, Noise&
         const double force = own.head(n).norm();
         constexpr double any = 1e300;
         const double by_force = force > 0 ? done.head(n).norm() / force : any;
-        // Sealed gas is far from linear where its pressure changes by more than what is there.
+        // Sealed gas is strongly nonlinear if its pressure changes by more than its current value.
         const double by_row = own[k] != 0 && done[k] != 0 ? std::fabs(done[k] / own[k]) : any;
         const double size = std::min(by_force, by_row);
-        v[k] *= size < any ? size : 1;  // a cable between held nodes does nothing
+        v[k] *= size < any ? size : 1;  // a cable between held nodes has no effect
     }
-    return at.unknowns_of(at.change_of(v));  // nothing along what rollers hold
+    return at.unknowns_of(at.change_of(v));  // zero along directions held by rollers
 }
 
 inline Controls with_input(const Linearisation& at, const Parameter& p, double change, State& state) {
@@ -229,7 +229,7 @@ inline double input_error(Linearisation& at, const Parameter& input) {
     });
 }
 
-/// Tries products, solutions and inputs of a state. `size_m`: the length over which forces change.
+/// Checks products, solves and inputs of a state. `size_m`: the length over which forces change.
 inline Measured errors_of(Linearisation& at, double size_m, unsigned seed = 1) {
     Measured worst;
     Noise noise(seed);

@@ -1,4 +1,4 @@
-// Robots with another value of one of their numbers.
+// Robots with a changed value of one of their parameters.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -82,7 +82,7 @@ inline Description with_value(Description d, const Parameter& p, double value) {
     return d;
 }
 
-/// By which a value may move: of what is zero, the size of its kind.
+/// Magnitude by which a value may change: the typical size of its kind if it is zero.
 inline double size_of(const Parameter& p) {
     if (p.name.ends_with("poisson_ratio")) return 0.5 - p.value;
     if (p.kind == Parameter::Kind::gravity) return 10;

@@ -1,4 +1,4 @@
-// Random robots at a state of theirs, and the same robots made a little differently.
+// Random robots at one of their states, and slightly modified copies.
 #pragma once
 
 #include <cmath>
@@ -14,8 +14,8 @@
 
 namespace pliant::sim::testing {
 
-/// A random robot, now and then with what random_program leaves out: pressure on a patch with a free rim, a spring, a
-/// roller, a rigid plate.
+/// A random robot, sometimes with things that random_program leaves out: pressure on a patch with a free rim, a spring,
+/// a roller, a rigid plate.
 inline Description with_more(Description d, unsigned seed) {
     test::Dice dice(seed + 1000);
     const auto where = [&](const std::function<bool(Vec3)>& inside) { return reference::nodes_where(d.mesh, inside); };
@@ -25,7 +25,7 @@ inline Description with_more(Description d, unsigned seed) {
     }
     if (dice.chance(0.4)) {
         const Cable path = test::random_cable(dice, d.mesh, 0);
-        // Not as long as at rest: where a band begins to pull its force has a kink.
+        // Not the rest length: the force of a band has a kink where it begins to pull.
         d.springs = {{"spring", path.points, std::pow(10, dice.between(-1, 3)), dice.between(0, 3) * test::side,
                       dice.chance(0.5)}};
     }
@@ -40,7 +40,7 @@ inline Description with_more(Description d, unsigned seed) {
     return d;
 }
 
-/// Where the program of a robot leads or, where it leads nowhere in a few iterations, a little off its rest.
+/// A state of a robot's program or, if its steps do not converge in a few iterations, one slightly off the rest state.
 struct RandomState {
     Equilibrium system;
     State state;
@@ -62,7 +62,7 @@ struct RandomState {
     }
 };
 
-/// With other coefficients of friction, or another stiffness of contact, frozen forces are in proportion.
+/// If only coefficients of friction or contact stiffness change, frozen forces change in proportion.
 inline std::vector<contact::FrozenPair> pairs_with(const contact::Contact& contact, const contact::Friction& frozen,
                                                    const Parameter& p, double factor) {
     using Kind = Parameter::Kind;
@@ -86,7 +86,7 @@ inline std::shared_ptr<const contact::Friction> friction_with(const contact::Con
     return std::make_shared<const contact::Friction>(std::move(pairs), start, frozen.slip_m());
 }
 
-/// The controls of a robot that differs by `change` of a number: what is wanted, and lagged, stays.
+/// The controls of a robot that differs by `change` of a number: prescribed and lagged values are unchanged.
 inline Controls controls_with(const Linearisation& at, const Equilibrium& other, const Parameter& p, double change) {
     using Kind = Parameter::Kind;
     const Controls& now = at.controls();

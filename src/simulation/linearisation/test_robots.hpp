@@ -50,7 +50,7 @@ inline Description block(int order, const material::Law& law) {
     return d;
 }
 
-/// Through nodes near these points.
+/// A cable through the nodes nearest to these points.
 inline Cable cable_through(const mesh::TetMesh& mesh, std::vector<Vec3> points, const CableTarget& target) {
     Cable cable{"c", {}, target};
     const Attacher attacher(mesh);
@@ -66,7 +66,7 @@ inline Cable flexor(const mesh::TetMesh& mesh, const CableTarget& target) {
                          target);
 }
 
-/// Nodes off their places by up to a share of an element, those that are held too.
+/// Random displacements of all nodes, including held ones, by up to a fraction of an element.
 inline State disturbed(const Equilibrium& system, double tension, double pressure, unsigned seed = 3) {
     State state = system.rest();
     Noise noise(seed);
@@ -102,7 +102,7 @@ inline std::vector<int> end_of(const mesh::TetMesh& mesh) {
     return reference::nodes_where(mesh, [](Vec3 p) { return p.x > 3 * edge - 1e-9; });
 }
 
-/// The top, as a wall whose rim nothing holds but at the clamp.
+/// The top, as a wall whose rim is free except at the clamp.
 inline PressureLoad patch(const mesh::TetMesh& mesh, double from) {
     const auto all = mesh::boundary_faces(mesh);
     std::vector<mesh::Face> faces;
@@ -119,7 +119,7 @@ inline PressureLoad patch(const mesh::TetMesh& mesh, double from) {
     return {"gust", wall_of_faces(mesh, faces, same), 3e3};
 }
 
-/// A block over a table, and a second one that hangs over the first.
+/// A block above a table, and a second one that hangs above the first.
 inline Description touching_blocks() {
     mesh::TetMesh mesh = reference::kuhn_box({2 * edge, edge, edge}, 4, 2, 2, [](Vec3) { return 0; });
     const std::size_t lower = mesh.points.size();

@@ -1,4 +1,4 @@
-// The corotated law: Hooke's law in the frame that turns with the material.
+// The corotated law: Hooke's law in the frame that rotates with the material.
 #include "simulation/material/point.hpp"
 
 namespace pliant::material {

@@ -1,7 +1,7 @@
 // Laws in the invariants of C = F^T F: Mooney-Rivlin and Yeoh.
 //
-// I1 = tr C, I2 = (I1^2 - tr C^2) / 2; the bars divide out the change of volume: I1_bar = J^(-2/3) I1,
-// I2_bar = J^(-4/3) I2.
+// I1 = tr C, I2 = (I1^2 - tr C^2) / 2; the bars remove the change of volume: I1_bar = J^(-2/3) I1, I2_bar = J^(-4/3)
+// I2.
 #include <cmath>
 
 #include "simulation/material/point.hpp"
@@ -13,13 +13,13 @@ double volumetric(double bulk_Pa, double J) {
     return 0.5 * bulk_Pa * (J - 1) * (J - 1);
 }
 
-/// What both invariants need of F.
+/// Quantities of F that both invariants need.
 struct FirstInvariant {
     explicit FirstInvariant(const Matrix3& F)
         : J(F.determinant()), I1(F.squaredNorm()), scale(1 / std::cbrt(J * J)), C(cofactor(F)) {}
     [[nodiscard]] double bar() const { return scale * I1; }
     [[nodiscard]] Matrix3 gradient(const Matrix3& F) const { return 2 * scale * (F - I1 / (3 * J) * C); }
-    /// H += w * d^2 I1_bar / dF^2, but for its part along d^2 J, which is returned as the factor of it.
+    /// H += w * d^2 I1_bar / dF^2 without its part along d^2 J, whose factor is returned.
     [[nodiscard]] double add_gradient2(Matrix9& H, const Matrix3& F, double w) const {
         const double s = 2 * w * scale;
         const Vector9 f = vec(F);

@@ -46,7 +46,7 @@ Constants constants_of(Law& law) {
     return std::visit(ConstantsOf{}, law);
 }
 
-/// The law of the same kind with these moduli; nothing where a law has more numbers than two moduli.
+/// The law of the same kind with these moduli; empty if two moduli do not determine the law.
 std::optional<Law> with_moduli(const Law& law, double E, double nu) {
     if (std::holds_alternative<NeoHookean>(law)) return neo_hookean(E, nu);
     if (std::holds_alternative<ShapeBlend>(law)) return shape_blend(E, nu);
@@ -56,7 +56,8 @@ std::optional<Law> with_moduli(const Law& law, double E, double nu) {
     return std::nullopt;
 }
 
-/// How the constants change with the moduli: the inverse of moduli(law), which all three forms have in closed form.
+/// Derivatives of the constants with respect to the moduli: the inverse of moduli(law), in closed form for all three
+/// forms.
 std::vector<double> direction_of(const Law& law, const Moduli& rate) {
     if (std::holds_alternative<NeoHookean>(law)) return {rate.shear_Pa, rate.bulk_Pa};
     if (const auto* blend = std::get_if<ShapeBlend>(&law)) {

@@ -1,10 +1,10 @@
 // Ogden's law, in principal stretches.
 //
-// With F = U diag(l) V^T and psi a symmetric function of l, P = U diag(p) V^T with p_i = d psi / d l_i. In the frames
-// U and V the tangent couples the diagonal entries by d p_i / d l_j, and each pair of off-diagonal entries by
-// (p_i - p_j) / (l_i - l_j) and (p_i + p_j) / (l_i + l_j). Ogden, Non-Linear Elastic Deformations (1984), section 6.1.
-// With q_i = l_i p_i the first quotient is ((q_i - q_j) / (l_i - l_j) - q_j / l_j) / l_i, and only powers of stretches
-// are left to subtract, which power_quotient does without loss where stretches are equal or nearly so.
+// With F = U diag(l) V^T and psi a symmetric function of l, P = U diag(p) V^T with p_i = d psi / d l_i. In the frames U
+// and V the tangent couples the diagonal entries by d p_i / d l_j, and each pair of off-diagonal entries by (p_i - p_j)
+// / (l_i - l_j) and (p_i + p_j) / (l_i + l_j). Ogden, Non-Linear Elastic Deformations (1984), section 6.1. With q_i =
+// l_i p_i the first quotient is ((q_i - q_j) / (l_i - l_j) - q_j / l_j) / l_i, which leaves only differences of powers
+// of stretches; power_quotient computes these without cancellation for equal or nearly equal stretches.
 #include <cmath>
 
 #include "simulation/material/point.hpp"
@@ -109,7 +109,7 @@ Matrix9 first_piola_gradient(const Ogden& law, const Matrix3& F) {
     return frame * local * frame.transpose();
 }
 
-/// Of each term: mu, then alpha; and of the bulk modulus.
+/// For each term: mu, then alpha; finally the bulk modulus.
 Slopes stress_slopes(const Ogden& law, const Matrix3& F) {
     const linalg::Svd3 svd = linalg::signed_svd(F);
     const double J = svd.sigma.prod();
@@ -120,7 +120,8 @@ Slopes stress_slopes(const Ogden& law, const Matrix3& F) {
     for (int k = 0; k < law.terms; ++k) {
         const double a = law.alpha[k];
         const Vector3 power = powers(svd.sigma, J, a);
-        const Vector3 rate = power.array() * (svd.sigma.array() / std::cbrt(J)).log();  // of the powers with alpha
+        const Vector3 rate = power.array() * (svd.sigma.array() / std::cbrt(J)).log();  // of the powers with respect to
+                                                                                        // alpha
         const Vector3 off = power.array() - power.mean();
         const Vector3 change = rate.array() - rate.mean();
         slopes.push_back(stress_of(2 / a * off));

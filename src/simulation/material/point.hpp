@@ -1,5 +1,5 @@
-// What the laws' functions share: derivatives of J, and the functions themselves, one overload per law. Internal to
-// this module; everyone else includes response.hpp. Notation as in law.hpp.
+// Shared by the laws: derivatives of J, and the functions of each law, one overload per law. Internal to this module;
+// everyone else includes response.hpp. Notation as in law.hpp.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,7 +15,7 @@ inline Vector9 vec(const Matrix3& A) {
     return Eigen::Map<const Vector9>(A.data());
 }
 
-/// d J / d F. Not inline on purpose: the neo-Hookean tangent is 8 % slower where it is.
+/// d J / d F. Deliberately not inline: inlining makes the neo-Hookean tangent 8 % slower.
 [[nodiscard]] Matrix3 cofactor(const Matrix3& F);
 
 /// Adds s * d^2 J / dF^2: the derivative of column j of the cofactor is a cross product with the columns of dF.

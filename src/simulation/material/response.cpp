@@ -85,8 +85,7 @@ Matrix9 first_piola_gradient(const StVenantKirchhoff& law, const Matrix3& F) {
 
 }  // namespace
 
-// The law of nearly every robot, asked at every point, is looked for first: a visit over all laws costs 10 % more
-// there.
+// The most common law is checked first: a visit over all laws at every point costs 10 % more.
 std::optional<double> energy(const Law& law, const Matrix3& F) {
     if (const auto* common = std::get_if<NeoHookean>(&law)) return psi(*common, F);
     return std::visit([&](const auto& l) { return psi(l, F); }, law);

@@ -1,4 +1,4 @@
-// What a law does at one material point: energy, stress and tangent. vec() stacks columns; notation as in law.hpp.
+// Response of a law at one material point: energy, stress and tangent. vec() stacks columns; notation as in law.hpp.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@ namespace pliant::material {
 using linalg::Matrix3;
 using linalg::Matrix9;
 
-/// psi, or nothing where the law has no energy. Precondition: det F > 0.
+/// psi, or empty if the law has no energy. Precondition: det F > 0.
 [[nodiscard]] std::optional<double> energy(const Law& law, const Matrix3& F);
 /// P. Precondition: det F > 0.
 [[nodiscard]] Matrix3 stress(const Law& law, const Matrix3& F);

@@ -10,10 +10,10 @@
 namespace pliant::sim {
 namespace {
 
-/// Directions closer than this to the span of others (its sine) are in it.
+/// A direction counts as in the span of others if the sine of its angle is below this.
 constexpr double same_direction = 1e-6;
 
-/// Orthonormal rows that span what the support holds; all three axes where it names no directions.
+/// Orthonormal rows that span the held directions; all three axes if the support names none.
 Eigen::Matrix<double, Eigen::Dynamic, 3> span_of(const Support& support) {
     if (support.directions.empty()) return Eigen::Matrix3d::Identity();
     Eigen::Matrix<double, Eigen::Dynamic, 3> rows(0, 3);

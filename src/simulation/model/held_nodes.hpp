@@ -33,23 +33,23 @@ public:
     /// Ascending by node.
     [[nodiscard]] const std::vector<Roller>& rollers() const { return rollers_; }
 
-    /// Moves every held node, only along the directions in which it is held, to where its supports want it. `shares`
-    /// (supports) of their motion; `rest` (n); x (3n). All in metres.
+    /// Moves every held node to where its supports prescribe, only along the held directions. `shares` (supports) of
+    /// their motion; `rest` (n); x (3n). All in metres.
     void place(std::span<const Support> supports, std::span<const Vec3> rest, std::span<const double> shares,
                Eigen::VectorXd& x) const;
 
-    /// Where, or how fast, a support wants a node of its own to be: (support, node), m.
+    /// Position, or velocity, that a support prescribes for one of its nodes: (support, node), m.
     using Wanted = std::function<Eigen::Vector3d(std::size_t support, int node)>;
-    /// (3n) the motion of the held nodes along the directions in which they are held, if the supports want them to move
-    /// so; zero elsewhere.
+    /// (3n) motion of the held nodes along their held directions, for the prescribed motion; zero elsewhere.
     [[nodiscard]] Eigen::VectorXd motion(const Wanted& wanted) const;
 
-    /// The transpose of motion(): what `weights` (3n) of the nodes' motion are of what each support wants of each node.
+    /// The transpose of motion(): distributes `weights` (3n) of the nodes' motion over the prescribed motion of each
+    /// support and node.
     using TakeWeight = std::function<void(std::size_t support, int node, const Eigen::Vector3d& weight)>;
     void visit_weights(const Eigen::VectorXd& weights, const TakeWeight& take) const;
 
     /// The force that each support exerts on the robot, (supports) N. `out_of_balance` (3n) are internal minus external
-    /// forces. What two supports share at a node is split by the smallest forces that do it.
+    /// forces. The force at a node shared by two supports is split between them with minimum norm.
     [[nodiscard]] std::vector<Vec3> reactions(std::span<const Support> supports,
                                               const Eigen::VectorXd& out_of_balance) const;
 
@@ -58,7 +58,7 @@ private:
     struct Shared {
         int node = 0;
         std::vector<int> supports;  ///< at least two
-        Directions directions;      ///< of all of them, one below the other
+        Directions directions;      ///< of all of them, stacked
     };
     HeldNodes() = default;
     void move(const Wanted& wanted, Eigen::VectorXd& x) const;

@@ -12,7 +12,8 @@
 namespace pliant::sim {
 namespace {
 
-/// An object beside the stiffest material: what bends that by a hundredth stretches it by less than a ten-thousandth.
+/// Stiffness of an object relative to the stiffest material: a load that strains that by 1 % strains the object by less
+/// than 0.01 %.
 constexpr double object_stiffness = 100;
 
 Status check_attachment(const Attachment& point, int nodes, const std::string& owner) {
@@ -83,7 +84,7 @@ Status check_spring(const Spring& spring, int nodes) {
     return {};
 }
 
-/// The faces name points that exist, and those of a chamber close.
+/// Checks that the faces refer to existing points, and that those of a chamber are closed.
 Status check_wall(const Wall& wall, bool closed, int nodes, const std::string& owner) {
     if (wall.faces.empty()) return input_error("{}: has no wall", owner);
     for (const Attachment& point : wall.points) {
@@ -111,7 +112,7 @@ Status check_chamber(const Chamber& chamber, int nodes) {
     return {};
 }
 
-/// Three nodes that span a plane, or the plate could turn about a line without noticing.
+/// The nodes must not be collinear, or the plate could rotate about their line without resistance.
 Status check_plates(const Description& d) {
     for (const RigidPlate& plate : d.plates) {
         for (const int node : plate.nodes) {
@@ -235,8 +236,8 @@ Status check_joint(const Joint& joint, const Description& d, int nodes) {
     return {};
 }
 
-/// Numbers the free nodes, neighbours in space one after the other; nodes that no tet uses are held too, they have no
-/// stiffness.
+/// Numbers the free nodes so that neighbours in space are adjacent; nodes that no tet uses count as held, because they
+/// have no stiffness.
 void number_free_nodes(const Description& d, const HeldNodes& held, std::vector<int>& free_index, int& count) {
     const int nodes = static_cast<int>(d.mesh.points.size());
     std::vector<bool> used(nodes, false);
@@ -253,7 +254,7 @@ void number_free_nodes(const Description& d, const HeldNodes& held, std::vector<
     for (int k = 0; k < count; ++k) free_index[free[k]] = k;
 }
 
-/// Those of each piece in which nothing is held.
+/// The nodes of each piece without a held node.
 std::vector<std::vector<int>> nodes_of_loose(const mesh::TetMesh& mesh, DisjointSets& pieces,
                                              const std::vector<bool>& held) {
     std::map<std::size_t, std::vector<int>> loose;
@@ -272,7 +273,7 @@ std::vector<std::vector<int>> nodes_of_loose(const mesh::TetMesh& mesh, Disjoint
     return lists;
 }
 
-/// Every connected piece of the mesh needs a support: a loose piece has no equilibrium by itself. Where pieces may be
+/// Every connected piece of the mesh needs a support: a loose piece has no equilibrium by itself. If pieces may be
 /// free, `free_pieces` gets the nodes of each.
 Status check_held(const Description& d, std::vector<std::vector<int>>& free_pieces) {
     const auto& mesh = d.mesh;
@@ -303,7 +304,7 @@ std::vector<double> numbers_of(const std::vector<Vec3>& points) {
     return numbers;
 }
 
-/// Of the tets that carry material: meshed space may be passed through.
+/// Surface of the tets that carry material; meshed empty space does not take part in contact.
 contact::Surface surface_of_bodies(const Description& d) {
     mesh::TetMesh bodies;
     bodies.order = d.mesh.order;
@@ -320,7 +321,7 @@ contact::Surface surface_of_bodies(const Description& d) {
     return contact::robot_surface(bodies);
 }
 
-/// Nothing acts with it: only crossing() is asked.
+/// Exerts no forces: only used for crossing().
 Result<contact::Contact> surfaces_without_contact(const Description& d) {
     return contact::Contact::create(surface_of_bodies(d), {}, {.distance_m = 1, .stiffness_Pa = 1},
                                     numbers_of(d.mesh.points));
@@ -406,7 +407,7 @@ Status Model::make_contact() {
     if (waits) {
         auto contact = create_contact(description_, object_points_, true);
         if (!contact) return tl::unexpected(contact.error());
-        // What crosses at rest can never be told from what meets.
+        // Intersections that exist at rest cannot be told from later ones.
         if (!(*contact)->crossing_at_rest()) met_ = std::move(*contact);
     }
     if (contact_ || met_) return {};

@@ -1,6 +1,6 @@
-// The points of the surfaces of rigid objects: what contact knows as nodes, and the four nodes of each object carry.
+// Surface points of rigid objects: contact treats them as nodes; the four nodes of each object carry them.
 //
-// Contact sees (3n) positions of the mesh's nodes, then those of these points, then those of obstacles.
+// Contact positions are (3n) those of the mesh's nodes, then of these points, then of obstacle nodes.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,22 +18,22 @@ namespace pliant::sim {
 class ObjectPoints {
 public:
     ObjectPoints() = default;
-    /// `first`: the number of the mesh's nodes. `bodies` as the objects.
+    /// `first`: the number of the mesh's nodes. `bodies`: one for each object.
     ObjectPoints(std::span<const FreeObject> objects, std::span<const AffineBody> bodies, int first);
 
     [[nodiscard]] int count() const { return static_cast<int>(body_.size()); }
-    /// Of each object, for contact.
+    /// The rigid parts for contact, one for each object.
     [[nodiscard]] const std::vector<contact::RigidPart>& parts() const { return parts_; }
     /// `surface` with the triangles of all objects.
     [[nodiscard]] contact::Surface with_objects(contact::Surface surface, std::span<const FreeObject> objects) const;
 
     /// Appends the positions of the points, or their motion, to those of the nodes (3n).
     void append(std::span<const double> nodes, std::vector<double>& all) const;
-    /// forces (3n) += what forces on the points (3 count) are on the nodes.
+    /// forces (3n) += forces on the points (3 count), transferred to the nodes.
     void add_forces(std::span<const double> on_points, std::span<double> forces) const;
-    /// The nodes of the mesh that carry contact's node `i`: itself, where it is one of them, none for an obstacle's.
+    /// The mesh nodes that carry contact's node `i`: the node itself if it is one of them, none for an obstacle's.
     [[nodiscard]] std::span<const int> carriers(const int& i) const;
-    /// Calls `visit` with the blocks between nodes of the mesh that a block between contact's nodes i and j makes.
+    /// Calls `visit` with the blocks between mesh nodes that result from a block between contact's nodes i and j.
     void visit_block(int i, int j, const linalg::Matrix3& block, const contact::BlockVisitor& visit) const;
 
 private:

@@ -1,5 +1,5 @@
-// A robot as it is meshed: mesh, laws, supports, loads, cables, chambers, markers; what a Model is made from. Time runs
-// from 0, at rest, to the end of the program.
+// A robot with its mesh: mesh, laws, supports, loads, cables, chambers, markers; the input of a Model. Time runs from
+// 0, at rest, to the end of the program.
 #pragma once
 
 #include <array>
@@ -27,13 +27,13 @@ struct Attachment {
     Vec3 fixed;                   ///< metres
 };
 
-/// The affine motion of the material near a point: of each node the share in the motion of the point, and how that
-/// share changes with a way from there.
+/// The affine motion of the material near a point: the weight of each node in the motion of the point, and the gradient
+/// of that weight.
 struct AttachedFrame {
     std::vector<int> nodes;
     std::vector<double> weights;  ///< sum 1
     std::vector<Vec3> gradients;  ///< 1/m, sum 0
-    /// A point that moves with the frame, `arm` from its own at rest.
+    /// A point that moves with the frame, at the offset `arm` from the frame's point at rest.
     [[nodiscard]] Attachment at(const Vec3& arm) const;
 };
 
@@ -50,21 +50,23 @@ struct Turn {
     Vec3 center_m;
 };
 
-/// Nodes whose motion is prescribed: at each instant they are turned from rest by share * angle and then shifted by
-/// share * move. With directions they are held along those alone and slide across them: rollers, planes of symmetry.
+/// Nodes with prescribed motion: at each instant they are rotated from rest by share * angle and then shifted by share
+/// * move. With directions they are held along those alone and slide across them: rollers, planes of symmetry.
 struct Support {
     std::string name;
     std::vector<int> nodes;
     Vec3 move_m;
     Curve share = ramp(0, 1);
     Turn turn{};
-    std::vector<Vec3> directions{};  ///< of any length but zero; none: held in all
+    std::vector<Vec3> directions{};  ///< of any length but zero; empty: held in all directions
     [[nodiscard]] bool moves() const { return turn.angle_rad != 0 || !(move_m == Vec3{}); }
-    /// Where a node is that lay at `rest`, both in metres.
+    /// Position of a node that is at `rest` at rest, both in metres.
     [[nodiscard]] Vec3 position(const Vec3& rest, double share_now) const;
-    /// An arm of that node after the turn alone: the derivative of its place by `rest`, along `arm`.
+    /// The vector `arm` from that node, rotated only: the derivative of its position with respect to `rest`, along
+    /// `arm`.
     [[nodiscard]] Vec3 turned_arm(const Vec3& arm, double share_now) const;
-    /// How fast that place moves with the angle of the whole turn, m per rad, and with the share, m.
+    /// Derivatives of that position: with respect to the angle of the whole rotation, m per rad, and with respect to
+    /// the share, m.
     [[nodiscard]] Vec3 arc(const Vec3& rest, double share_now) const;
     [[nodiscard]] Vec3 velocity(const Vec3& rest, double share_now) const;
 };
@@ -73,25 +75,25 @@ struct Support {
 struct Load {
     std::string name;
     std::vector<int> nodes;
-    std::vector<double> shares;  ///< of the total force, sum 1
+    std::vector<double> shares;  ///< (nodes) of the total force, sum 1
     Vec3 force_N;
     Curve share = ramp(0, 1);
 };
 
-/// A torque that keeps its direction, share * torque, on nodes that move as one: of a plate or of an object. Together
-/// with its forces, see torque.hpp.
+/// A torque with constant direction, share * torque, on nodes that move as one: those of a plate or object. See
+/// torque.hpp for its forces.
 struct TorqueLoad {
     std::string name;
-    std::vector<int> nodes;  ///< at least three, not on one line
+    std::vector<int> nodes;  ///< at least three, not collinear
     Vec3 torque_Nm;
     Curve share = ramp(0, 1);
 };
 
-/// A face of a wall: 3 corners and, where it is curved, the points between 0-1, 1-2, 2-0 (else -1); indices into
-/// Wall::points. Seen counter-clockwise from the solid side: the normal points out of the air.
+/// A face of a wall: 3 corners and, if it is curved, the points between 0-1, 1-2, 2-0 (else -1); indices into
+/// Wall::points. Counter-clockwise seen from the solid side: the normal points out of the air.
 using WallFace = std::array<int, 6>;
 
-/// A surface that air presses on; its points ride on the mesh.
+/// A surface under air pressure; its points are attached to the mesh.
 struct Wall {
     std::vector<Attachment> points;
     std::vector<WallFace> faces;
@@ -106,7 +108,7 @@ struct PressureLoad {
 };
 
 /// A cable through guide points; its length is that of the polyline. It slides without friction or, with a coefficient
-/// above zero, as a rope over bollards: its tension, given at the pulled end, drops at every turn.
+/// above zero, like a rope over bollards: its tension, prescribed at the pulled end, drops at every bend.
 struct Cable {
     std::string name;
     std::vector<Attachment> points;  ///< at least two
@@ -121,11 +123,11 @@ struct Spring {
     std::string name;
     std::vector<Attachment> points;  ///< at least two
     double stiffness_N_m = 0;
-    std::optional<double> free_length_m = std::nullopt;  ///< without force; none: the length at rest
+    std::optional<double> free_length_m = std::nullopt;  ///< without force; empty: the rest length
     bool only_pulls = false;
 };
 
-/// Air inside a closed wall. Its pressure (above ambient, of either sign) is the multiplier of its volume.
+/// Air inside a closed wall. The multiplier of its volume is minus its pressure (above ambient, of either sign).
 struct Chamber {
     std::string name;
     Wall wall;
@@ -133,94 +135,95 @@ struct Chamber {
 };
 
 /// The thesis' actuators (T3.5, T3.6): a cable or chamber that is driven by its length or volume acts through the
-/// elements of one material, meshed empty space. They are scaled along `direction` or, where that is zero, in volume by
-/// as much as it takes for the actuator's measure to be what its target wants (actuated_space.hpp). Where several
-/// cables pass one gap, each has the tets that are nearest to it.
+/// elements of one material, meshed empty space. They are scaled along `direction` or, if that is zero, in volume until
+/// the actuator's measure meets its target (actuated_space.hpp). If several cables pass one gap, each has the tets that
+/// are nearest to it.
 struct Growth {
-    int material = 0;      ///< of air: air_law(), of a gap: gap_law()
-    Vec3 direction;        ///< of a gap: along the cable, of length 1
+    int material = 0;      ///< for air: air_law(), for a gap: gap_law()
+    Vec3 direction;        ///< for a gap: along the cable, of length 1
     int actuator = 0;      ///< first the cables, then the chambers
-    double weight_Pa = 0;  ///< above 0: how hard the elements are held to their target
-    double length_m = 0;   ///< of a gap: of the cable in it at rest, above 0
-    Vec3 center_m;         ///< of a gap: a point of that cable
+    double weight_Pa = 0;  ///< above 0: stiffness with which the elements are held to their target
+    double length_m = 0;   ///< for a gap: rest length of the cable inside it, above 0
+    Vec3 center_m;         ///< for a gap: a point of that cable
 };
 
-/// Nodes that something rigid is glued to: they keep their shape and move as one.
+/// Nodes glued to a rigid plate: they keep their shape and move as one.
 struct RigidPlate {
     std::string name;
-    std::vector<int> nodes;  ///< at least three, not on one line
+    std::vector<int> nodes;  ///< at least three, not collinear
 };
 
-/// A rigid thing that the robot may touch; it is at rest + share * move.
+/// A rigid body that the robot may touch; its position is rest + share * move.
 struct Obstacle {
     contact::Obstacle body;
     Vec3 move_m;
     Curve share = ramp(0, 1);
 };
 
-/// A rigid thing with mass that nothing holds. Four nodes of the mesh, which belong to no tet, carry it: its motion is
-/// affine, and a stiff energy keeps it rigid (affine_body.hpp). Each of them has a quarter of its mass, and together
-/// they have its inertia (mesh::equal_mass_points).
+/// A free rigid body with mass. Four nodes of the mesh, which belong to no tet, carry it: its motion is affine, and a
+/// stiff energy keeps it rigid (affine_body.hpp). Each of them has a quarter of its mass, and together they have its
+/// inertia (mesh::equal_mass_points).
 struct FreeObject {
     std::string name;
-    mesh::TriMesh surface;  ///< metres, where it starts
+    mesh::TriMesh surface;  ///< metres, initial position
     std::array<int, 4> nodes{};
     double mass_kg = 0;
-    Vec3 velocity_m_s{}, angular_velocity_rad_s{};  ///< at the start of a motion in time
-    double friction = 0;  ///< coefficient against all that it touches; where that has one too, the larger counts
+    Vec3 velocity_m_s{}, angular_velocity_rad_s{};  ///< initial velocities of a motion in time
+    double friction = 0;  ///< coefficient against everything; if the other one has one too, the larger applies
 };
 
-/// A mass at a point of the robot: without extent, so that it turns without inertia. One with inertia is four of them.
+/// A point mass on the robot, without rotational inertia. A mass with inertia is represented by four of them.
 struct PointMass {
     std::string name;
     Attachment point;
     double mass_kg = 0;
 };
 
-/// What acts along the coordinate that a hinge (its angle, rad) or a slider (its place, m) leaves open: zero at rest.
+/// Forces along the free coordinate of a hinge (its angle, rad) or a slider (its displacement, m); the coordinate is
+/// zero at rest.
 struct JointLaw {
     double stiffness = 0;  ///< N m/rad or N/m, about `rest`
     double rest = 0;
-    double damping = 0;  ///< N m s/rad or N s/m, in time
+    double damping = 0;  ///< N m s/rad or N s/m, in a motion in time
     double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
     enum class Drive { none, place, force };
     Drive drive = Drive::none;
-    Curve wanted = ramp(0, 0);  ///< of the place, or the force: N m or N
+    Curve wanted = ramp(0, 0);  ///< target position, or force: N m or N
 };
 
-/// Two things that are joined: the same four points of each, where they are at rest (centre, and from there an arm
-/// along three axes that are normal to each other, right-handed; the first of them is that of a hinge or a slider).
-/// Points of the fixed world have no nodes.
+/// Two things that are joined at the same four points of each, given at rest: the centre, and an arm from there along
+/// each of three right-handed orthonormal axes; the first axis is that of a hinge or a slider. Points of the fixed
+/// world have no nodes.
 struct Joint {
     enum class Kind { glue, hinge, slider, ball };
     std::string name;
     Kind kind = Kind::glue;
     std::array<Attachment, 4> first, second;
-    double arm_m = 0;          ///< of the points
-    double stiffness_N_m = 0;  ///< of what joins them: see joint_force.hpp
+    double arm_m = 0;          ///< distance of the points from the centre
+    double stiffness_N_m = 0;  ///< of the connection: see joint_force.hpp
     JointLaw law{};
-    /// The things: an object, or -1 for the robot's bodies and -2 for the world.
+    /// The two things: an object, or -1 for the robot's bodies and -2 for the world.
     std::array<int, 2> objects{-2, -2};
-    double clear_m = 0;  ///< the two do not touch each other this near to the joint at rest; infinite: nowhere
+    double clear_m = 0;  ///< no contact between the two this near to the joint at rest; infinite: none at all
 };
 
-/// What can touch what.
+/// Which surfaces can touch, and how.
 struct ContactRules {
     contact::Surface surface;    ///< of the robot's bodies, without objects
-    contact::Settings settings;  ///< distance, stiffness and friction above zero are the caller's choice
+    contact::Settings settings;  ///< distance, stiffness and friction above zero are chosen by the caller
     std::vector<Obstacle> obstacles;
-    /// With settings.self: the robot touches itself only from the first step on in which its surfaces would pass
-    /// through each other. Until then its contact with itself costs next to nothing and exerts no force.
+    /// With settings.self: self-contact acts only from the first step in which the surfaces would pass through each
+    /// other. Until then it costs almost nothing and exerts no force.
     bool self_when_met = false;
 };
 
-/// What robot and objects are in: it carries what it is displaced by, and drags at what moves through it.
+/// The fluid around robot and objects: buoyancy, and drag on what moves through it.
 struct Fluid {
     double density_kg_m3 = 0;
     double drag_normal = 0, drag_tangential = 0;
-    std::optional<double> level_m{};  ///< of its surface, against gravity; none: it is everywhere
+    std::optional<double> level_m{};  ///< height of its surface, opposite to gravity; empty: everywhere
     Vec3 current_m_s;
-    std::vector<std::array<int, 3>> skin;  ///< of the bodies, seen from outside counter-clockwise: without chambers
+    std::vector<std::array<int, 3>> skin;  ///< of the bodies, counter-clockwise seen from outside; without chambers
 };
 
 /// A point of the material whose position is reported.
@@ -229,19 +232,19 @@ struct Marker {
     Attachment point;
 };
 
-// What a sensor of a [[sensor]] measures; each gives the readings that sensors.hpp names.
+// The sensors of [[sensor]]; sensors.hpp names the readings of each.
 struct StrainSensor {
     std::vector<Attachment> points;  ///< at least two: a path
 };
-/// Sections along a line of points, by the motion of the material about each.
+/// Sections along a line of points, from the motion of the material about each.
 struct BackboneSensor {
     std::vector<AttachedFrame> sections;    ///< at least three
     std::vector<std::array<Vec3, 3>> axes;  ///< (sections) at rest: right-handed, the third along the line
 };
 struct ContactSensor {
-    std::vector<int> nodes;        ///< of the surface
-    std::vector<double> areas_m2;  ///< of the patch, at rest: each node a third of the triangles beside it
-    std::vector<double> owned_m2;  ///< the same of the whole surface, beside the patch too
+    std::vector<int> nodes;        ///< of the patch
+    std::vector<double> areas_m2;  ///< of the patch at rest: each node has a third of the adjacent triangles
+    std::vector<double> owned_m2;  ///< likewise of the whole surface, including what is outside the patch
 };
 struct ActuatorSensor {
     enum class Kind { tension, volume, pressure };
@@ -278,17 +281,18 @@ struct Description {
     std::vector<Joint> joints{};
     std::vector<TorqueLoad> torques{};
     std::vector<Sensor> sensors{};
-    /// Pieces that no support holds are no mistake: they move in time, or touch what holds them.
+    /// Pieces that no support holds are allowed: they move in time, or touch something that holds them.
     bool may_be_free = false;
-    bool moves_in_time = false;  ///< so that a fluid drags at it
+    bool moves_in_time = false;  ///< in time, so that a fluid exerts drag
     std::optional<ContactRules> contact = std::nullopt;
     std::optional<Fluid> fluid = std::nullopt;
     std::vector<Marker> markers;
     Vec3 gravity_m_s2;
     Curve gravity_share = ramp(0, 1);
     double ambient_pressure_Pa = 101325;
-    std::vector<int> material_of_tet{};  ///< (tets) where bodies are graded, in place of their region's; else empty
-    std::vector<std::string> notes{};    ///< what people should know of it; a line each
+    std::vector<int> material_of_tet{};  ///< (tets) for graded bodies, instead of the material of the region; else
+                                         ///< empty
+    std::vector<std::string> notes{};    ///< remarks for the user, one line each
 };
 
 /// Position of an attachment for node positions `x` (3n).

@@ -1,4 +1,4 @@
-// What a robot's description and its simulation mean alike, under the simulation's own namespace.
+// Types that the robot file and the simulation share, under the simulation's namespace.
 #pragma once
 
 #include "robot/description/curve.hpp"

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own that goes with the object.
+/// A temporary folder that is deleted with the object.
 class Scratch {
 public:
     Scratch() {
@@ -34,7 +34,7 @@ private:
     fs::path folder_;
 };
 
-/// The rows of one table of the .dat file, "node x y z" each; `in` stands behind its heading.
+/// Reads the rows of one table of the .dat file, "node x y z" each; `in` is positioned after its heading.
 Status read_table(std::istream& in, std::vector<Vec3>& values, double unit) {
     std::string line;
     std::size_t rows = 0;
@@ -79,7 +79,7 @@ void read_effort(const std::string& text, Solution& solution) {
         std::istringstream row(line);
         int step = 0;
         int increment = 0;
-        std::string attempt;  // "2U" where it did not converge
+        std::string attempt;  // "2U" if it did not converge
         int iterations = 0;
         if (!(row >> step >> increment >> attempt >> iterations)) continue;
         solution.increments = std::max(solution.increments, increment);

@@ -1,5 +1,5 @@
-// CalculiX beside us: writes a robot as an input deck (calculix_deck.hpp), runs its solver `ccx` (Debian package
-// calculix-ccx) and reads what it found. For tests and benchmarks only: nothing of CalculiX is linked.
+// Runs CalculiX for comparison: writes a robot as an input deck (calculix_deck.hpp), runs its solver `ccx` (Debian
+// package calculix-ccx) and reads the result. For tests and benchmarks only: nothing of CalculiX is linked.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace pliant::sim::calculix {
 
 struct Solution {
     std::vector<Vec3> displacement_m;  ///< (n, 3), nodes as in the description's mesh
-    std::vector<Vec3> force_N;         ///< (n, 3), from outside: reactions at supports, loads elsewhere
+    std::vector<Vec3> force_N;         ///< (n, 3), external forces: reactions at supports, loads elsewhere
     int increments = 0;
     int iterations = 0;
     double wall_s = 0;  ///< of the whole program: reading, solving, writing
@@ -21,7 +21,7 @@ struct Solution {
 /// Whether `ccx` is on the PATH.
 [[nodiscard]] bool installed();
 
-/// Runs `ccx` on one thread in a temporary folder of its own, which goes again.
+/// Runs `ccx` on one thread in a temporary folder, which is deleted afterwards.
 [[nodiscard]] Result<Solution> solve(const Description& description, const Effort& effort = {});
 
 /// Sum of the forces of a support on the robot.

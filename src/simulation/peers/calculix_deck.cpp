@@ -17,14 +17,14 @@ namespace {
 
 constexpr double mm_per_m = 1e3;
 constexpr double uN_per_N = 1e6;
-constexpr double g_per_mm3 = 1e-6;  ///< of kg/m^3: a force in uN is g mm/s^2
-/// A support that turns goes along the chord of its arc: beyond this its nodes would come too near each other.
+constexpr double g_per_mm3 = 1e-6;  ///< kg/m^3 in g/mm^3: a force in uN is g mm/s^2
+/// The nodes of a rotating support move along the chord of their arc: beyond this angle they would come too close
+/// together.
 constexpr double most_turn_rad = std::numbers::pi / 3 + 1e-9;
-/// Of the ramped springs: far more than a cable can stretch or shrink, so that ccx never extrapolates.
+/// Range of the ramped springs: far more than a cable can stretch or shrink, so that ccx never extrapolates.
 constexpr double spring_range_mm = 1e5;
 
-/// For the terms (J - 1)^(2i) / D_i that our laws do not have. Zeros do not switch them off: they made a bar 2 %
-/// stiffer.
+/// For the terms (J - 1)^(2i) / D_i that our laws lack. Zeros do not disable them: they made a bar 2 % stiffer.
 constexpr double no_more_D = 1e20;
 
 /// CalculiX' number of the face opposite to a corner: its faces are 1-2-3, 1-4-2, 2-4-3, 3-4-1.
@@ -32,12 +32,12 @@ constexpr std::array<int, 4> face_opposite_to = {3, 4, 2, 1};
 
 using Out = std::back_insert_iterator<std::string>;
 
-/// 2/K, as CalculiX wants it.
+/// 2/K, the parameter of CalculiX.
 double d1(double bulk_Pa) {
     return 2 / (bulk_Pa);
 }
 
-/// mu and alpha of every term, D1, and the higher D without effect; at most eight numbers a line.
+/// mu and alpha of every term, D1, and the higher D without effect; at most eight numbers per line.
 Status write_ogden(Out out, const material::Ogden& law) {
     if (law.terms > 4) return input_error("CalculiX: an Ogden law of at most 4 terms, not {}", law.terms);
     std::vector<double> numbers;
@@ -78,7 +78,7 @@ Status write_law(Out out, const material::Law& any) {
         any);
 }
 
-/// 0, 1 or 2 where a direction is that of an axis, else -1.
+/// 0, 1 or 2 if a direction is along an axis, else -1.
 int axis_of(const Vec3& direction) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (std::fabs(direction[axis]) == norm(direction)) return static_cast<int>(axis);
@@ -113,7 +113,7 @@ private:
     }
 
     Status check() {
-        // What waits until the robot meets itself is left out: a deck is for robots that do not.
+        // Deferred self-contact is left out: a deck is for robots that do not meet themselves.
         if (d_.contact && !(d_.contact->self_when_met && d_.contact->obstacles.empty()))
             return input_error("CalculiX: the deck has no contact; leave [contact] and obstacles out");
         if (!d_.growths.empty() || !d_.plates.empty())
@@ -177,7 +177,7 @@ private:
         return {};
     }
 
-    /// The element set of a region. Robots that were put together by hand may have fewer names than regions.
+    /// The element set of a region. Robots built in code may have fewer names than regions.
     [[nodiscard]] std::string label(std::size_t region) const {
         const std::vector<std::string> labels = mesh::inp_labels(d_.mesh.region_names);
         return region < labels.size() ? labels[region] : fmt::format("R{}", region + 1);
@@ -202,7 +202,7 @@ private:
         return {};
     }
 
-    /// Node of a cable's point, 1-based: a node of the mesh, one fixed in space, or one that rides on several.
+    /// Node of a cable's point, 1-based: a node of the mesh, one fixed in space, or one attached to several.
     int cable_node(const Attachment& point) {
         if (point.nodes.size() == 1) return point.nodes[0] + 1;
         line("*NODE");
@@ -219,7 +219,7 @@ private:
         return nodes_;
     }
 
-    /// The node moves as the weighted mean of those that it rides on.
+    /// Ties the node to the weighted mean of the nodes that carry it.
     void tie(int rider, int direction, const Attachment& point) {
         constexpr int per_line = 4;
         const auto terms =
@@ -236,7 +236,7 @@ private:
         text_ += '\n';
     }
 
-    /// A segment that pulls with the same force at any length; the force grows with the temperature, from 0 to 1.
+    /// A segment as a spring with constant force at any length; the force is ramped with the temperature, from 0 to 1.
     Status springs() {
         int element = static_cast<int>(d_.mesh.tet_count());
         for (std::size_t c = 0; c < d_.cables.size(); ++c) {

@@ -32,8 +32,8 @@ Trajectory ours(const Description& d, int steps) {
     return result;
 }
 
-/// Its iteration stalls now and then just above its own limit, depending on the last digits of a load; then it is asked
-/// again in smaller increments.
+/// Its iteration sometimes stalls just above its own limit, depending on the last digits of a load; then it is run
+/// again with smaller increments.
 calculix::Solution theirs(const Description& d, calculix::Effort effort = {}) {
     auto solution = calculix::solve(d, effort);
     for (int again = 0; again < 3 && !solution; ++again) {

@@ -43,7 +43,7 @@ constexpr double notch_floor = 3 * mm;
 constexpr double cable_z = 6 * mm;
 constexpr double flare = 1.4 * mm;  ///< of each flank, from floor to top
 
-/// From the box in which every cell is as wide as the others.
+/// Maps from the box with cells of equal width.
 Vec3 to_finger(Vec3 p) {
     const double cell = pitch / cells_per_notch;
     const int line = static_cast<int>(std::lround(p.x / cell));
@@ -83,7 +83,7 @@ Cable finger_cable(const mesh::TetMesh& mesh, const CableTarget& target) {
     return cable;
 }
 
-/// Region 1 of `whole` as empty space (dropped), or as elements whose target shape actuator 0 scales.
+/// Region 1 of `whole` becomes empty space (removed), or elements whose target shape actuator 0 scales.
 void set_bodies(Description& d, mesh::Extract solid, const material::Law& law, Drive drive, const Growth& growth) {
     d.mesh = std::move(solid.mesh);
     d.materials = {{"rubber", law, 0}};

@@ -69,7 +69,8 @@ Number psi(const material::Corotated& m, const std::array<Number, 3>& l) {
     return m.shear_Pa * squares + m.lame_Pa / 2 * (J - 1.0) * (J - 1.0);
 }
 
-/// Derivative without cancellation: the imaginary part of f(x + ih) over h (Squire and Trapp, SIAM Review 40, 1998).
+/// Complex-step derivative, without cancellation: the imaginary part of f(x + ih) over h (Squire and Trapp, SIAM Review
+/// 40, 1998).
 constexpr double imaginary_step = 1e-30;
 
 PrincipalForm from_energy(const material::Law& law, const Energy& energy) {
@@ -93,7 +94,7 @@ PrincipalForm from_energy(const material::Law& law, const Energy& energy) {
     return form;
 }
 
-/// No energy: P = w (F - a R - (1 - a) J^(-1/3) F); in simple shear R turns by atan(g/2).
+/// Without an energy: P = w (F - a R - (1 - a) J^(-1/3) F); in simple shear R rotates by atan(g/2).
 PrincipalForm blend_form(const material::ShapeBlend& m) {
     PrincipalForm form;
     form.law = m;
@@ -106,7 +107,7 @@ PrincipalForm blend_form(const material::ShapeBlend& m) {
     return form;
 }
 
-/// Linear in the stretches; simple shear has the strain g/2, and no shear stress but mu g.
+/// Linear in the stretches; simple shear has the strain g/2, and the only shear stress is mu g.
 PrincipalForm linear_form(const material::Linear& m) {
     PrincipalForm form;
     form.law = m;

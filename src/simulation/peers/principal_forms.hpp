@@ -1,5 +1,5 @@
-// Elastic laws written a second time, as formulas in the principal stretches: what the tests hold the solver against.
-// Nothing here uses material::stress or material::energy.
+// Independent implementation of the elastic laws as formulas in the principal stretches, as a reference for tests of
+// the solver. Uses neither material::stress nor material::energy.
 #pragma once
 
 #include <array>
@@ -17,13 +17,13 @@ struct PrincipalForm {
     std::function<double(double)> shear_stress;  ///< P12 (Pa) of F = I + g e1 e2^T, at g
 };
 
-/// Of a law that has an energy; nothing useful for others.
+/// For a law that has an energy; meaningless for others.
 [[nodiscard]] PrincipalForm principal_form(const material::Law& law);
 
 /// One of every law that bodies are made of, E about 1 MPa and nu 0.3 to 0.45.
 [[nodiscard]] std::vector<PrincipalForm> principal_forms();
 
-/// The stretch l of the sides that are free, so that the last principal stress vanishes at stretches_of(l).
+/// The stretch l of the free sides, for which the last principal stress vanishes at stretches_of(l).
 [[nodiscard]] double free_stretch(const PrincipalForm& form,
                                   const std::function<std::array<double, 3>(double)>& stretches_of);
 

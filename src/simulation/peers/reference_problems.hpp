@@ -1,4 +1,4 @@
-// The reference problems of the test suite: structured meshes, the .tet files and the CSV tables they are held against.
+// The reference problems of the test suite: structured meshes, the .tet files and the CSV tables with reference values.
 // Used by tests, benchmarks and calibrate (the bar of kuhn_box).
 #pragma once
 
@@ -30,7 +30,7 @@ using Row = std::map<std::string, std::string>;
 /// Nodes for which `inside` holds at rest.
 [[nodiscard]] std::vector<int> nodes_where(const mesh::TetMesh& mesh, const std::function<bool(Vec3)>& inside);
 
-/// `nodes` with equal weights: a mean.
+/// The mean of `nodes`: equal weights.
 [[nodiscard]] Attachment mean_of(std::vector<int> nodes);
 
 /// The folder that PLIANT_REFERENCE_DATA names.

@@ -1,4 +1,4 @@
-// A simulation that is cancelled: what it keeps and what it says.
+// Cancelled simulations: what they keep and report.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@ using namespace pliant::sim;
 
 namespace {
 
-/// Cancels once it has been asked so often.
+/// Cancels after a number of queries.
 class Asked final : public Progress {
 public:
     explicit Asked(int most) : most_(most) {}
@@ -53,7 +53,7 @@ TEST_CASE("whenever it is cancelled, it keeps the steps before, as they are in a
             CHECK(part.steps[k].converged);
             CHECK(part.steps[k].positions == all.steps[k].positions);
         }
-        // It stops at the iteration at hand: a few more questions on the way out, no other attempt.
+        // It stops at the current iteration: a few more queries while unwinding, but no other attempt.
         CHECK(progress.count() < static_cast<int>(share * whole.count()) + 12);
     }
 }

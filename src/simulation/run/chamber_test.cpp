@@ -1,4 +1,4 @@
-// Chambers: geometry of the wall by finite differences, and one answer whichever way the air is driven.
+// Chambers: geometry of the wall by finite differences, and the same answer however the air is driven.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -206,8 +206,8 @@ TEST_CASE("a pressure on the outer surface follows it, and its sum is what the s
 }
 
 TEST_CASE("suction on an arch, a patch with a free rim, is followed as far as it is asked for") {
-    // The symmetric part of its tangent is indefinite. With its positive part in the place of the tangent the steps of
-    // Newton's method crept, ten to sixty a step of the program, and stopped before half of this suction was reached.
+    // The symmetric part of its tangent is indefinite. With the projected tangent instead, Newton's method needed ten
+    // to sixty iterations a step of the program, and stopped before half of this suction was reached.
     constexpr double span = 0.1, rise = 0.02, thick = 0.003;
     const double radius = (span * span / 4 + rise * rise) / (2 * rise), half = std::asin(span / 2 / radius);
     Description d;

@@ -65,7 +65,7 @@ ChecksState checks_from(Reader& in, const RobotState& robot, std::size_t steps, 
     return checks;
 }
 
-/// Where surfaces had passed through each other is found out later than the steps are written.
+/// Crossings are found later than the steps are written.
 Json crossings_of(const std::vector<Step>& steps) {
     Json list = Json::array();
     for (std::size_t k = 0; k < steps.size(); ++k) {
@@ -86,7 +86,7 @@ void take_crossings(Reader& in, std::vector<Step>& steps) {
     }
 }
 
-/// The records of so many steps, one after the other.
+/// Reads the records of `count` consecutive steps.
 Status read_steps(const fs::path& file, std::uintmax_t bytes, std::size_t count, std::size_t nodes, Trajectory& into) {
     std::error_code code;
     const std::uintmax_t size = fs::file_size(file, code);

@@ -1,7 +1,7 @@
-// A run that is kept on disk as it goes, and gone on with after it was stopped, or killed.
+// Saves a run to disk as it proceeds, so that it can be resumed after it was stopped or killed.
 //
-// A folder: `steps` has one record for each step, and is only ever added to; `state` is replaced after each, says how
-// much of `steps` counts, and holds everything else. A kill at any moment leaves the last whole checkpoint.
+// A folder: `steps` has one record per step, and is only appended to; `state` is replaced after each checkpoint, says
+// how much of `steps` is valid, and holds everything else. A kill at any moment leaves the last complete checkpoint.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,17 @@ namespace pliant::sim {
 
 class Checkpoint {
 public:
-    /// Makes the folder, in place of an older checkpoint; anything else that stands there is an error. `origin` tells
-    /// runs apart: a checkpoint is gone on with only by the same. `every`: steps between two checkpoints.
+    /// Creates the folder, replacing an older checkpoint; an error if anything else is there. `origin` identifies the
+    /// run: a checkpoint can only be resumed by a run of the same origin. `every`: steps between checkpoints.
     [[nodiscard]] static Result<Checkpoint> create(const std::filesystem::path& folder, std::string origin, int every);
 
-    /// The run as it was at the last checkpoint, and where to keep it from now on. Errors: there is none, it is of
-    /// another origin, or it is damaged.
+    /// The run at its last checkpoint, and where to continue saving it. Errors: there is none, its origin differs, or
+    /// it is damaged.
     struct Resumed;
     [[nodiscard]] static Result<Resumed> open(const std::filesystem::path& folder, std::string origin,
                                               const Model& model, const Program& program);
 
-    /// Keeps `run`, whose first steps are those that were kept before.
+    /// Saves `run`, whose first steps are those already saved.
     [[nodiscard]] Status keep(const Model& model, const RunState& run);
     [[nodiscard]] int every() const { return every_; }
     void set_every(int steps) { every_ = steps; }
@@ -39,9 +39,9 @@ private:
     std::filesystem::path folder_;
     std::string origin_;
     int every_ = 1;
-    std::uintmax_t bytes_ = 0;    ///< of `steps` that count
-    std::size_t steps_ = 0;       ///< in them
-    std::size_t iterations_ = 0;  ///< that their records have
+    std::uintmax_t bytes_ = 0;    ///< valid bytes of `steps`
+    std::size_t steps_ = 0;       ///< number of steps in them
+    std::size_t iterations_ = 0;  ///< number of iterations in them
 };
 
 struct Checkpoint::Resumed {

@@ -1,4 +1,4 @@
-// A run that was stopped anywhere and is gone on with ends with the same bits as one that was never stopped.
+// A resumed run ends with the same bits as an uninterrupted one, wherever it was stopped.
 #include "simulation/run/checkpoint.hpp"
 
 #include <doctest/doctest.h>
@@ -20,7 +20,7 @@ using namespace pliant::sim;
 
 namespace {
 
-/// Everything but the times that it took.
+/// Everything except wall times.
 std::string bits_of(const Trajectory& result) {
     std::string bits = result.message + result.solver;
     for (const std::string& warning : result.warnings) bits += warning + '\n';
@@ -76,7 +76,7 @@ Problem blown_up(int order, Solver solver = Solver::automatic) {
     return {model_of(std::move(d)), {.steps = 8, .tolerance = 1e-6, .solver = solver}};
 }
 
-/// With everything in it that a step has to remember.
+/// Problems with everything that a step has to remember.
 std::vector<Problem> problems_with_a_memory() {
     std::vector<Problem> problems;
     Description in_time = testing::hollow_block(1);
@@ -137,7 +137,7 @@ TEST_CASE("a random program that is stopped after any step and gone on with give
         const Model model = model_of(std::move(made.robot));
         const Trajectory never_stopped = run_silently(model, made.program);
         for (const int last : {1, 3}) {
-            if (static_cast<int>(never_stopped.steps.size()) <= last) continue;  // it got stuck before
+            if (static_cast<int>(never_stopped.steps.size()) <= last) continue;  // it stopped before
             const pliant::test::Folder folder;
             run_until(model, made.program, folder / "run", last);
             CHECK(bits_of(go_on(model, made.program, folder / "run")) == bits_of(never_stopped));

@@ -19,7 +19,7 @@ void describe_actuators(const Model& model, const Equilibrium& system, const Sta
         const double multiplier = acting_multiplier(system, state, a);
         if (a < d.cables.size())
             step.cables.push_back({d.cables[a].name, ratio, measure, multiplier});
-        else  // 0 - 0 is 0, where -0 would be a minus zero in every report
+        else  // 0 - 0 is 0, whereas -0 would show as a minus zero in every report
             step.chambers.push_back({d.chambers[a - d.cables.size()].name, ratio, measure, 0 - multiplier});
     }
 }

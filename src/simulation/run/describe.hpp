@@ -1,4 +1,4 @@
-// A state of equilibrium as a step of a trajectory: what simulate() and Live tell of it is the same.
+// Describes an equilibrium state as a step of a trajectory; used by simulate() and Live alike.
 #pragma once
 
 #include <span>
@@ -10,14 +10,14 @@
 namespace pliant::sim {
 
 /// Fills in residual, min_J, energy, actuators, supports, contact, markers, sensors and positions; `evaluation` must be
-/// that of `state` under `controls`. What belongs to the way there (index, time, iterations, wall time) is left as it
-/// is.
+/// that of `state` under `controls`. Fields about how the state was reached (index, time, iterations, wall time) are
+/// left unchanged.
 void describe(const Model& model, const Equilibrium& system, const State& state, const Controls& controls,
               const Evaluation& evaluation, Step& step);
 
 [[nodiscard]] JointState joint_state(const Equilibrium& system, std::size_t joint, const State& state,
                                      const Controls& controls);
-/// Where object `k` is when the nodes are at x (3n), without forces.
+/// State of object `k` at node positions x (3n), without forces.
 [[nodiscard]] ObjectState object_state(const Model& model, std::size_t k, std::span<const double> x);
 
 }  // namespace pliant::sim

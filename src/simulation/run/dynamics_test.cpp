@@ -1,4 +1,4 @@
-// Motion in time: a known frequency, energy that does not grow, damping that takes it away.
+// Motion in time: a known frequency, energy that does not grow, damping that dissipates it.
 #include <doctest/doctest.h>
 
 #include <Eigen/Core>
@@ -74,7 +74,7 @@ TEST_CASE("a beam let go under gravity swings at its natural frequency and gains
     REQUIRE_MESSAGE(swing.converged, swing.message);
     const Trajectory still = solve(d, {.steps = 1, .tolerance = 1e-8});
     const double rest = still.steps.back().markers[0].position_m.z;
-    // The tip passes its place of rest a quarter and three quarters of a period after it was let go.
+    // The tip passes its rest position after a quarter and three quarters of a period.
     std::vector<double> crossings;
     double lowest = 0;
     for (std::size_t k = 1; k < swing.steps.size(); ++k) {
@@ -109,7 +109,7 @@ TEST_CASE("a free swing at large amplitude gains no energy, and damping brings i
         double largest_kinetic = 0;
         for (const Step& step : swing.steps) {
             largest_kinetic = std::max(largest_kinetic, step.kinetic_energy_J);
-            // At 19 steps a period the second-order formula lends a percent for a moment and takes it back.
+            // With 19 steps per period the second-order formula temporarily increases the energy by a percent.
             CHECK(step.energy_J + step.kinetic_energy_J <= energy + 0.015 * largest_kinetic + 1e-15);
             energy = std::min(energy, step.energy_J + step.kinetic_energy_J);
         }

@@ -17,14 +17,15 @@
 namespace pliant::sim {
 namespace {
 
-/// Nodes are on one line if they leave it by no more than this share of their extent.
+/// Nodes count as collinear if they deviate from a line by at most this share of their extent.
 constexpr double straight = 1e-5;
-/// With more parts that are not joined by faces, only those that faces join are judged.
+/// With more parts than this, only those connected through faces are checked.
 constexpr std::size_t most_parts = 100;
 
-using Twists = Eigen::MatrixXd;  ///< (6, ways) each: speed of the part's middle, then its turning times its size
+using Twists = Eigen::MatrixXd;  ///< (6, motions) each: velocity of the part's centre, then its angular velocity times
+                                 ///< its size
 
-/// What moves as one: tets joined by faces, a plate, or all supports (the ground, which is part 0).
+/// A rigid part: tets connected through faces, a plate, or all supports (the ground, which is part 0).
 struct Part {
     std::vector<int> nodes;
     Vec3 middle;
@@ -35,7 +36,7 @@ Vec3 vec3(const Eigen::Vector3d& v) {
     return {v[0], v[1], v[2]};
 }
 
-/// Sets of tets that are joined by faces.
+/// Sets of tets connected through faces.
 DisjointSets sets_of_faces(const mesh::TetMesh& mesh) {
     struct Side {
         std::array<int, 3> corners;
@@ -83,7 +84,7 @@ public:
         join_rigidly();
     }
 
-    /// The part that can move most, and how.
+    /// The most mobile part, and its motion.
     [[nodiscard]] std::optional<std::string> describe() {
         if (free_.empty() || free_.size() > most_parts) return {};
         const Eigen::MatrixXd ways = kernel();
@@ -126,7 +127,7 @@ private:
         part.size = std::max(box.diagonal(), 1e-300);
     }
 
-    /// By two parts: the nodes that they share.
+    /// For each pair of parts: the nodes that they share.
     [[nodiscard]] std::map<std::pair<int, int>, std::vector<int>> joints() const {
         std::map<int, std::vector<int>> users;
         for (std::size_t p = 0; p < parts_.size(); ++p) {
@@ -141,7 +142,7 @@ private:
         return joints;
     }
 
-    /// Makes one part of those that share three nodes which span a plane, until there are none.
+    /// Merges parts that share three nodes which span a plane, until there are none.
     void join_rigidly() {
         for (bool again = true; again;) {
             again = false;
@@ -191,7 +192,7 @@ private:
         for (Part& part : parts_) measure(part);
     }
 
-    /// Speed of a node for the six twists of a part.
+    /// Velocity of a node for the six twists of a part.
     [[nodiscard]] Eigen::Matrix<double, 3, 6> speed(int part, int node) const {
         Eigen::Matrix<double, 3, 6> rows = Eigen::Matrix<double, 3, 6>::Zero();
         const Part& p = parts_[static_cast<std::size_t>(part)];
@@ -201,7 +202,7 @@ private:
         return rows;
     }
 
-    /// Twists of all free parts, one below the other, that keep every shared node together; orthonormal columns.
+    /// Twists of all free parts, stacked, that keep shared nodes together; orthonormal columns.
     [[nodiscard]] Eigen::MatrixXd kernel() const {
         const auto size = static_cast<Eigen::Index>(6 * free_.size());
         Eigen::MatrixXd square = Eigen::MatrixXd::Zero(size, size);
@@ -222,10 +223,10 @@ private:
         return eigen.eigenvectors().leftCols(count);
     }
 
-    /// The ground where the ground holds it.
+    /// The part of a node; the ground if it holds the node.
     [[nodiscard]] int part_at(int node) const { return part_of_node_[static_cast<std::size_t>(node)]; }
 
-    /// Adds `direction` times the speed of a node, for all twists, to a row.
+    /// Adds the component along `direction` of the velocity of a node, for all twists, to a row.
     void add_speed(int node, const Eigen::RowVector3d& direction, Eigen::RowVectorXd& row) const {
         const int part = part_at(node);
         if (part > 0 && std::binary_search(free_.begin(), free_.end(), part))
@@ -244,7 +245,7 @@ private:
         }
     }
 
-    /// A spring resists what changes its length.
+    /// A spring resists a change of its length.
     void add_springs(Eigen::MatrixXd& square) const {
         std::vector<double> rest;
         for (const Vec3& p : mesh_.points) rest.insert(rest.end(), {p.x, p.y, p.z});
@@ -261,7 +262,7 @@ private:
     }
 
     [[nodiscard]] static std::string show(const Vec3& p) {
-        // A coordinate that is zero but for rounding reads as zero.
+        // A coordinate that is zero up to rounding is shown as zero.
         const auto mm = [](double m) { return std::fabs(m) < 1e-9 ? 0.0 : 1e3 * m; };
         return fmt::format("({:.4g}, {:.4g}, {:.4g}) mm", mm(p.x), mm(p.y), mm(p.z));
     }
@@ -298,7 +299,7 @@ private:
             show(on), show(other));
     }
 
-    /// Where no twist moves anything, if there is one such point.
+    /// The fixed point of all motions, if there is exactly one.
     [[nodiscard]] static std::optional<Vec3> common_point(const Part& p, const Twists& basis) {
         const Eigen::Index ways = basis.cols();
         Eigen::MatrixXd A(3 * ways, 3);
@@ -316,10 +317,10 @@ private:
     const Description& description_;
     const mesh::TetMesh& mesh_;
     std::vector<Part> parts_;            ///< the ground first
-    std::map<std::size_t, int> region_;  ///< of parts with tets
+    std::map<std::size_t, int> region_;  ///< for parts with tets
     std::map<std::pair<int, int>, std::vector<int>> joints_;
     std::vector<int> part_of_node_;
-    std::vector<int> free_;  ///< parts that are joined to the ground, but not rigidly; ascending
+    std::vector<int> free_;  ///< parts connected to the ground, but not rigidly; ascending
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Do the supports hold every part of a robot, or is one left that turns like a door?
+// Checks whether the supports hold every part of a robot, or leave one free to rotate like a door.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,11 @@
 
 namespace pliant::sim {
 
-/// Tets that share faces form parts; each part is taken as rigid. Supports hold its nodes, plates and shared nodes join
-/// it to others: a support of one node or of nodes on a line leaves a part free to turn, and so does one shared edge or
-/// corner. Rollers hold their directions, springs resist what changes their length. Returns in words which part can do
-/// what, without a full stop; nothing if all parts are held. A part that is joined to nothing is left to
-/// Model::create(), which names it.
+/// Parts are sets of tets connected through faces; each is treated as rigid. Supports hold its nodes; plates and shared
+/// nodes join it to others. A support of one node or of collinear nodes leaves a part free to rotate, and so does one
+/// shared edge or corner. Rollers hold their directions, springs resist a change of length. Returns a description of
+/// the free part and its motion, without a full stop; empty if all parts are held. A part that is not connected to
+/// anything is left to Model::create(), which names it.
 [[nodiscard]] std::optional<std::string> free_motion(const Description& description);
 
 }  // namespace pliant::sim

@@ -1,4 +1,4 @@
-// What sticks stays where it is, however many steps a program has; what slides drags its anchor along.
+// Surfaces that stick stay in place, however many steps a program has; sliding ones drag their anchor along.
 #include <doctest/doctest.h>
 
 #include <cmath>

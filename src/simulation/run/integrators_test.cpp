@@ -1,5 +1,5 @@
-// Formulas of steps in time: their order, the energy that they keep, and steps as long as their error allows.
-// PLIANT_SWINGS makes the swing over which energy is watched longer (50 periods unless told).
+// Time integration: order of accuracy, conservation of energy, and adaptive steps. PLIANT_SWINGS makes the swing over
+// which energy is observed longer (default 50 periods).
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -123,7 +123,7 @@ TEST_CASE("steps by their error come as near as it says, at the same instants, a
                 if (k > 0) pieces += run.steps[k].substeps;
             }
             MESSAGE("tolerance ", tolerance, " m: ", pieces, " steps, off by ", off, " m");
-            CHECK(off < pieces * tolerance);  // errors of all the steps add up
+            CHECK(off < pieces * tolerance);  // the errors of all steps add up
             CHECK(pieces > before);
             before = pieces;
         }
@@ -144,7 +144,7 @@ TEST_CASE("a step that is off by too much is refused and taken again, and says s
     CHECK(run.steps[2].refused == 0);
     CHECK(run.steps[3].refused > 0);
     CHECK(run.steps[3].substeps > 4 * run.steps[2].substeps);
-    // What no step can do ends the run, and says why.
+    // An impossible tolerance ends the run, with a message.
     const Trajectory stuck = solve(d, program(4, 0.2, Dynamics{{}, Integrator::bdf2, 1e-30}));
     CHECK_FALSE(stuck.converged);
     CAPTURE(stuck.message);

@@ -19,12 +19,13 @@ namespace {
 
 using linalg::view;
 
-/// A motion is held if more resists it than this many tethers: a hundredth of the weight for a way of the robot's size.
+/// A motion counts as held if its stiffness exceeds this many tethers: a hundredth of the weight for a displacement of
+/// the robot's size.
 constexpr double held = 10;
-/// With more bodies than this the matrix of all their motions is larger than what the answer is worth.
+/// With more bodies than this, the matrix of all their motions is too large to be worthwhile.
 constexpr std::size_t most_bodies = 100;
 
-/// A piece or an object, which moves as a whole.
+/// A piece or an object, moving as a whole.
 struct Body {
     std::string name;
     std::vector<int> nodes;
@@ -88,7 +89,7 @@ private:
         bodies_.push_back(std::move(body));
     }
 
-    /// Of a body: three ways to go, three to turn by its radius of gyration; (3n) as far as it is this body.
+    /// A unit motion of a body, (3n): three translations, and three rotations scaled by its radius of gyration.
     [[nodiscard]] Eigen::VectorXd motion(const Body& body, int way) const {
         Eigen::VectorXd motion = Eigen::VectorXd::Zero(state_.x.size());
         const Eigen::Vector3d axis = Eigen::Vector3d::Unit(way % 3);
@@ -99,8 +100,8 @@ private:
         return motion;
     }
 
-    /// Second derivative, by all these ways, of every energy but that which a motion as a whole does not change: what
-    /// touches, springs, cables and gravity.
+    /// Second derivative, along all these motions, of every energy that can change in a rigid motion: contact, springs,
+    /// cables and gravity.
     [[nodiscard]] Eigen::MatrixXd stiffness() const {
         Controls still = controls_;
         still.inertia = nullptr;
@@ -123,7 +124,7 @@ private:
         return stiffness;
     }
 
-    /// A cable or a chamber of given length or volume resists with more than any other stiffness here.
+    /// A cable or chamber with prescribed length or volume is stiffer than everything else here.
     void hold_by_cables(const Eigen::VectorXd& way, Eigen::VectorXd& resists) const {
         constexpr double stiff = 1e6;  // tethers
         for (std::size_t a = 0; a < system_.actuators().size(); ++a) {
@@ -138,8 +139,8 @@ private:
         }
     }
 
-    /// A body that turns goes round, not straight on: its points are drawn inwards, along which forces do work. Those
-    /// of everything else balance its own elastic ones.
+    /// In a rotation, points move on arcs rather than straight lines: second-order displacements towards the axis,
+    /// along which forces do work. External forces balance the body's own elastic ones.
     void add_turning_forces(Eigen::MatrixXd& stiffness) const {
         Eigen::VectorXd own = Eigen::VectorXd::Zero(state_.x.size());
         system_.model().elements().evaluate(view(state_.x), view(own));
@@ -171,7 +172,7 @@ private:
         return eigen.eigenvectors().leftCols(count);
     }
 
-    /// What a body does in these motions of all, (6, ways).
+    /// A description of a body's part in these motions, (6, ways).
     [[nodiscard]] static std::string say(const Eigen::MatrixXd& ways) {
         constexpr double none = 1e-3;
         const Eigen::Index all = rank(ways, none), turns = rank(ways.bottomRows(3), none);

@@ -1,4 +1,4 @@
-// What nothing holds at an equilibrium, but the tether to the step before it.
+// Finds motions at an equilibrium that only the tether resists.
 #pragma once
 
 #include <string>
@@ -7,10 +7,9 @@
 
 namespace pliant::sim {
 
-/// In which ways pieces of the robot that no support holds, and objects, can move as a whole without contact, friction,
-/// springs, cables or gravity holding them, in words and without a full stop; "" if there are none. `controls`: with
-/// the tether of the step that led to `state`. Cost: a search for what touches, and a dense matrix of six rows for
-/// each.
+/// Rigid motions of objects, and of pieces of the robot without support, that neither contact, friction, springs,
+/// cables nor gravity resist; as text without a full stop, "" if there are none. `controls`: with the tether of the
+/// step that led to `state`. Cost: a proximity search, and a dense matrix of six rows for each piece or object.
 [[nodiscard]] std::string left_open(const Equilibrium& system, const State& state, const Controls& controls);
 
 }  // namespace pliant::sim

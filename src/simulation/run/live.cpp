@@ -13,11 +13,11 @@ namespace {
 
 constexpr double least_stride = 1.0 / 256;
 constexpr double largest_stride = 8;
-constexpr int quick = 3;             // iterations after which the next piece may be larger
-constexpr int most_iterations = 40;  // of one piece: rather a smaller one than a long wait
+constexpr int quick = 3;             // with fewer iterations the next increment may be larger
+constexpr int most_iterations = 40;  // per increment: rather a smaller one than a long wait
 constexpr double least_way = 1e-300;
 
-/// Inputs change direction at any time: only the last state tells where the next one is.
+/// Inputs change direction at any time: only the last state is useful for prediction.
 StepperOptions options_of(const Program& program) {
     return {program.solver, program.tolerance, most_iterations, std::nullopt, 1, program.duration / program.steps};
 }
@@ -106,10 +106,10 @@ private:
         return d.cables.size() + d.chambers.size();
     }
 
-    /// Another point that is pulled, or another kind of drive: from there on the way is a new one.
+    /// Restarts the path if another point is pulled, or an actuator is driven by another kind.
     void take_up(const LiveTarget& target) {
         if (target.pull && spring_.take_up(*target.pull, robot_)) {
-            if (robot_.inputs.force_N.squaredNorm() > 0) stale_ = true;  // it was let go of in one go
+            if (robot_.inputs.force_N.squaredNorm() > 0) stale_ = true;  // it was released at once
             robot_.inputs.force_N.setZero();
             robot_.before.reset();
         }
@@ -120,7 +120,7 @@ private:
         }
     }
 
-    /// Without a pull the force falls to zero on the way.
+    /// Without a pull the force decreases to zero along the path.
     [[nodiscard]] Eigen::Vector3d wanted_force(const std::optional<Pull>& pull) const {
         return pull ? spring_.balance(robot_.x(), robot_.inputs.force_N) : Eigen::Vector3d::Zero();
     }
@@ -129,7 +129,7 @@ private:
         return !pull || spring_.is_settled(robot_.x(), robot_.inputs.force_N);
     }
 
-    /// How far `wanted` is, in pieces at a stride of 1.
+    /// Distance to `wanted`, in increments at a stride of 1.
     [[nodiscard]] double distance(const Inputs& wanted) const {
         double most = stepper_.units().distance(robot_.inputs, wanted);
         if (stale_) most = std::max(most, least_way);
@@ -167,7 +167,8 @@ private:
         }
     }
 
-    /// On along the way of the last piece where this one goes the same way, or back; else from where it is.
+    /// Extrapolates the path of the last increment if this one has the same or the opposite direction; else starts from
+    /// the current state.
     StepReport leap(const Inputs& next, const Progress& progress) {
         const bool onward = stepper_.set_course(robot_, next);
         const Way way{1, [&](double) { return controls_of(next); }, 0, onward};
@@ -186,7 +187,7 @@ private:
         const Eigen::Vector3d force = next.force_N - now.force_N;
         const double pieces = force.norm() / stepper_.units().tension_N();
         if (!(pieces > 1e-9)) return;
-        if (stepper_.units().change(now, next).norm() > 1.05 * pieces) return;  // others moved it too
+        if (stepper_.units().change(now, next).norm() > 1.05 * pieces) return;  // other inputs moved it too
         spring_.learn(force, moved_m);
     }
 
@@ -195,7 +196,7 @@ private:
     RobotState robot_;
     bool stale_ = false;  ///< the state is not in equilibrium with its inputs
     double stride_ = 1;
-    StepReport last_;  ///< of the piece that led to the state
+    StepReport last_;  ///< of the increment that led to the state
     double wall_s_ = 0;
 };
 

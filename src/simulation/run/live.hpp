@@ -1,5 +1,5 @@
-// A robot that is steered by hand: wherever its actuators are wanted, it goes there in bounded pieces, and every state
-// on the way is at equilibrium.
+// Interactive control of a robot: it moves to any actuator targets in bounded increments, and every intermediate state
+// is in equilibrium.
 //
 //     Live live(model, program);
 //     LiveTarget target = live.target_at(0);
@@ -22,25 +22,23 @@
 
 namespace pliant::sim {
 
-/// Where the robot is wanted. `time` (of the program) drives supports, loads, gravity and obstacles.
+/// The target of a robot. `time` (of the program) sets supports, loads, gravity and obstacles.
 struct LiveTarget {
     double time = 0;
     std::vector<Drive> drives;  ///< (cables, then chambers)
     std::optional<Pull> pull = std::nullopt;
 };
 
-/// What one call of advance() did.
+/// Result of one call of advance().
 struct LiveProgress {
-    bool moved =
-        false;  ///< the state is another one than before, and was accepted: Step::converged says on which terms
-    bool arrived = false;  ///< the state is that of the target
+    bool moved = false;    ///< a new state was accepted; Step::converged tells at which tolerance
+    bool arrived = false;  ///< the state has reached the target
     int iterations = 0;
     double wall_s = 0;
-    std::string reason;  ///< why it went no further, where it is stuck
+    std::string reason;  ///< why it is stuck, if it is
 };
 
-/// Equilibrium at every instant; a program's motion in time is not followed. Deterministic for equal sequences of
-/// calls.
+/// Quasi-static: inertia of a program's motion in time is ignored. Deterministic for equal sequences of calls.
 class Live {
 public:
     /// Starts at rest. `model` must outlive it.
@@ -49,24 +47,24 @@ public:
     Live(Live&&) noexcept;
     Live& operator=(Live&&) noexcept;
 
-    /// What the program asks for at `time`.
+    /// The target that the program prescribes at `time`.
     [[nodiscard]] LiveTarget target_at(double time) const;
-    /// A drive of `kind` that keeps actuator `a` as it is now.
+    /// A drive of the given kind that keeps actuator `a` at its current state.
     [[nodiscard]] Drive hold(std::size_t a, Drive::Kind kind) const;
 
-    /// One piece of the way to `target`, as large as lately went well. Precondition: as many drives as cables and
+    /// One increment towards `target`, of a size adapted to recent success. Precondition: as many drives as cables and
     /// chambers; finite values; those that act through elements (Growth) are driven by their measure.
     [[nodiscard]] LiveProgress advance(const LiveTarget& target, const Progress& progress);
     void return_to_rest();
 
-    /// The state at hand as a step of a trajectory.
+    /// The current state as a step of a trajectory.
     [[nodiscard]] Step describe() const;
-    /// What should not be trusted about the state at hand, a sentence each; what warnings_at_rest() says is left out.
+    /// Reasons not to trust the current state, one sentence each; without those of warnings_at_rest().
     [[nodiscard]] std::vector<std::string> warnings(const Step& described) const;
-    /// Force of the spring on the body; zero without one.
+    /// Force of the pull spring on the body; zero without one.
     [[nodiscard]] Vec3 pull_force_N() const;
-    /// Its engine and its state, for those who lead it otherwise. A state that is set takes the place of the one at
-    /// hand, nothing pulls at it, and it took `wall_s` to come there.
+    /// The stepper and the current state, for control by other means. A state that is set replaces the current one,
+    /// without pull; `wall_s` is the time that it took to compute.
     [[nodiscard]] Stepper& stepper();
     [[nodiscard]] const RobotState& state() const;
     void set_state(RobotState state, double wall_s);

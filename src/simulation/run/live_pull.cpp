@@ -8,9 +8,9 @@
 namespace pliant::sim {
 namespace {
 
-constexpr double spring_stiffness = 8;   // times that of the body
-constexpr double pull_share = 0.05;      // of the robot's size, that the point moves in one piece
-constexpr double pull_tolerance = 2e-3;  // of the robot's size: how near to its balance the spring must be
+constexpr double spring_stiffness = 8;   // relative to that of the body
+constexpr double pull_share = 0.05;      // of the robot's size: motion of the point in one increment
+constexpr double pull_tolerance = 2e-3;  // of the robot's size: tolerance of the spring's balance
 
 bool same_point(const Attachment& a, const Attachment& b) {
     return a.nodes == b.nodes && a.weights == b.weights;
@@ -36,7 +36,7 @@ bool PullSpring::take_up(const Pull& pull, const RobotState& robot) {
     return true;
 }
 
-/// Motion of a point for a unit force on it, from the tangent at hand; m/N.
+/// Displacement of a point per unit force on it, from the current tangent; m/N.
 Eigen::Matrix3d PullSpring::compliance_at(const Attachment& point, const RobotState& robot) const {
     const Model& model = system_.model();
     Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(3 * model.free_count(), 3);
@@ -72,7 +72,7 @@ double PullSpring::distance(const Eigen::Vector3d& change_N) const {
     return (compliance_ * change_N).norm() / (pull_share * size_m_);
 }
 
-/// Broyden's rank-one correction.
+/// Broyden's rank-one update.
 void PullSpring::learn(const Eigen::Vector3d& change_N, const Vec3& moved_m) {
     const Eigen::Matrix3d better = compliance_ + (linalg::vector(moved_m) - compliance_ * change_N) *
                                                      change_N.transpose() / change_N.squaredNorm();

@@ -1,4 +1,4 @@
-// A spring between a point of the body and a handle: the force with which both are in balance.
+// A spring between a point of the body and a handle, and the force at which both balance.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,25 +14,26 @@ struct Pull {
     Vec3 handle_m;
 };
 
-/// The spring is so much stiffer than the body that the point follows the handle most of the way. How the body gives
-/// way there is learnt as it moves.
+/// The spring is much stiffer than the body, so that the point follows the handle closely. The compliance of the body
+/// at the point is estimated from its motion.
 class PullSpring {
 public:
     /// Both must outlive it.
     PullSpring(const Equilibrium& system, const FactoredLaplacian& laplacian);
 
     void let_go() { pull_.reset(); }
-    /// True if `pull` takes hold of another point than before, so that the force on the last one is gone.
+    /// Sets the pull; true if it acts on another point than before, so that the force on the last one is gone.
     bool take_up(const Pull& pull, const RobotState& robot);
     [[nodiscard]] const std::optional<Pull>& pull() const { return pull_; }
 
-    /// The force at which the spring and the body are in balance, as far as is known; `force_N` acts now.
+    /// The estimated force at which the spring and the body balance; `force_N` is the current force.
     [[nodiscard]] Eigen::Vector3d balance(const Eigen::VectorXd& x, const Eigen::Vector3d& force_N) const;
     [[nodiscard]] bool is_settled(const Eigen::VectorXd& x, const Eigen::Vector3d& force_N) const;
-    /// How far a change of the force moves the point, in pieces that are usually solved at once.
+    /// Size of a change of the force, measured by the motion of the point, in units that are usually solved in one
+    /// increment.
     [[nodiscard]] double distance(const Eigen::Vector3d& change_N) const;
 
-    /// What a change of the force alone has moved.
+    /// Updates the compliance with the motion caused by a change of the force alone.
     void learn(const Eigen::Vector3d& change_N, const Vec3& moved_m);
     [[nodiscard]] Vec3 point_at(const Eigen::VectorXd& x) const;
     /// external (3n) += the force on the point.

@@ -1,4 +1,4 @@
-// A robot steered by hand ends where a program ends, whatever the way.
+// An interactively controlled robot ends in the same state as a program, whatever the path.
 #include "simulation/run/live.hpp"
 
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-// Where all nodes of a mesh are: numbers that never change, shared by all copies.
+// Positions of all nodes of a mesh: immutable, shared by all copies.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace pliant::sim {
 
-/// (nodes) metres. A copy costs next to nothing.
+/// (nodes) metres. Copies are cheap.
 class NodePositions {
 public:
     NodePositions() = default;
@@ -20,7 +20,7 @@ public:
         points_ = *owned;
         owner_ = std::move(owned);
     }
-    /// `points` live as long as `owner`.
+    /// `points` must be valid as long as `owner` exists.
     NodePositions(std::shared_ptr<const void> owner, std::span<const Vec3> points)
         : owner_(std::move(owner)), points_(points) {}
 

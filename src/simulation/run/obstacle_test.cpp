@@ -1,4 +1,4 @@
-// Obstacles act where they are drawn, however far forces reach: against prescribed motions and against Hertz.
+// Obstacles act where they are drawn, whatever the contact distance: against prescribed motions and against Hertz.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -96,7 +96,7 @@ TEST_CASE("pressed by a plane or by a block, a body resists as if its side were 
         const Trajectory result = solve(d, {.steps = 5});
         REQUIRE_MESSAGE(result.converged, result.message);
         const double force = -result.steps.back().contacts[0].force_N.z;
-        // By the barrier alone it would be stiff by 0.85 of the distance: 28 %.
+        // Without insets it would be too stiff by 0.85 of the distance: 28 %.
         CHECK(force == near(wanted, {.relative = 0.03}));
     }
 }
@@ -118,7 +118,7 @@ TEST_CASE("a rigid ball on an elastic block presses as Hertz says, whatever the 
         forces.push_back(-result.steps.back().contacts[0].force_N.z);
         CHECK(forces.back() == near(wanted, {.relative = 0.05}));
     }
-    // By the barrier alone the two would differ by a sixth.
+    // Without insets the two would differ by a sixth.
     CHECK(forces[0] == near(forces[1], {.relative = 0.03}));
 }
 

@@ -16,7 +16,7 @@
 namespace pliant::sim {
 namespace {
 
-/// Open, and without a name; none where the system refuses.
+/// An open, unnamed file; none if the system refuses.
 FileHandle nameless_file() {
     std::error_code code;
     const std::filesystem::path folder = std::filesystem::temp_directory_path(code);
@@ -48,7 +48,7 @@ PositionFile::PositionFile(std::shared_ptr<Mapping> mapping, std::size_t nodes)
 std::unique_ptr<PositionFile> PositionFile::make(std::size_t steps, std::size_t nodes) {
     const FileHandle file = nameless_file();
     const std::size_t bytes = steps * nodes * sizeof(Vec3);
-    // All of its place is taken now: a disk that is full later would end the program.
+    // Reserves all space now: a disk that is full later would crash the program.
     if (!file.is_open() || ::posix_fallocate(file.number(), 0, static_cast<off_t>(bytes)) != 0) return nullptr;
     void* begin = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file.number(), 0);
     if (begin == MAP_FAILED) return nullptr;

@@ -1,4 +1,4 @@
-// The positions of a long program, on disk instead of in memory.
+// Stores the positions of a long program on disk instead of in memory.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace pliant::sim {
 
-/// A file without a name in the folder for temporary files, as large as all steps together; the system keeps in memory
-/// what is in use. It is gone when nothing refers to its positions any more.
+/// An unnamed file in the temporary folder, large enough for all steps; the system caches what is in use. It is deleted
+/// when nothing refers to its positions any more.
 class PositionFile {
 public:
-    /// Null where there is no place for it.
+    /// Null if there is no space for it.
     [[nodiscard]] static std::unique_ptr<PositionFile> make(std::size_t steps, std::size_t nodes);
 
-    /// Preconditions: step < steps; as many points as nodes.
+    /// Stores the positions of a step. Preconditions: step < steps; as many points as nodes.
     [[nodiscard]] NodePositions keep(std::size_t step, std::span<const Vec3> points);
 
 private:

@@ -1,4 +1,4 @@
-// Positions on disk are those that were put there, and a run with them gives the same bits.
+// Positions on disk are unchanged, and a run that uses them gives the same bits.
 #include "simulation/run/position_file.hpp"
 
 #include <doctest/doctest.h>

@@ -1,7 +1,7 @@
-// Random robots on small meshes, driven to where some of them cannot go: whatever is asked, nothing crashes, no number
-// is lost, and every run either converges or says why not and keeps the last good state.
+// Random robots on small meshes with random targets, some of them impossible: nothing crashes, no value becomes NaN,
+// and every run either converges or reports why not and keeps the last valid state.
 //
-// PLIANT_RANDOM_PROGRAMS sets how many (30 unless told), PLIANT_RANDOM_FIRST the first seed; `fuzz/random_programs`
+// PLIANT_RANDOM_PROGRAMS sets their number (default 30), PLIANT_RANDOM_FIRST the first seed; `fuzz/random_programs`
 // runs a thousand.
 #include <doctest/doctest.h>
 
@@ -35,8 +35,8 @@ bool is_sound(const Step& step) {
 
 struct Outcome {
     enum class Kind { converged, stopped, refused } kind = Kind::converged;
-    std::string why;   ///< it stopped or was refused
-    std::string flaw;  ///< what no program may do; "": none
+    std::string why;   ///< why it stopped or was refused
+    std::string flaw;  ///< an error that no program may cause; "": none
 };
 
 std::string flaw_of(const Trajectory& result, const Program& program) {
@@ -66,8 +66,8 @@ bool is_behind_a_plane(const Model& model, std::span<const double> x) {
     return false;
 }
 
-/// Whether anything has passed through anything: through planes at any step, through surfaces at the end, where contact
-/// with everything is on.
+/// True if anything has passed through anything: through planes at any step, through surfaces at the end, if contact is
+/// fully on.
 bool has_passed_through(const Model& model, const Trajectory& result) {
     const auto& rules = model.description().contact;
     if (!rules) return false;
@@ -91,7 +91,7 @@ Outcome outcome_of(const RandomProgram& p) {
     return {result.converged ? Outcome::Kind::converged : Outcome::Kind::stopped, result.message, std::move(flaw)};
 }
 
-/// Runs program `seed`; one with a flaw is told with the simplest program that has the same flaw.
+/// Runs program `seed`; one with a flaw is reported together with the simplest program that has the same flaw.
 Outcome run_and_check(unsigned seed, const std::function<RandomProgram(unsigned)>& thrown = random_program) {
     const RandomProgram program = thrown(seed);
     Outcome outcome = outcome_of(program);
@@ -123,7 +123,7 @@ struct Tally {
     unsigned count = 0, converged = 0, refused = 0;
 };
 
-/// Throws as many programs as are asked for, and tells how they have ended.
+/// Runs the requested number of programs, and counts their outcomes.
 Tally throw_all(unsigned otherwise, const std::function<RandomProgram(unsigned)>& thrown) {
     Tally tally{number_from("PLIANT_RANDOM_PROGRAMS", otherwise)};
     const unsigned first = number_from("PLIANT_RANDOM_FIRST", 1);
@@ -143,7 +143,7 @@ Tally throw_all(unsigned otherwise, const std::function<RandomProgram(unsigned)>
 
 TEST_CASE("random programs converge or say why not, and keep the last good state") {
     const Tally tally = throw_all(30, random_program);
-    // Half of what is asked for here can be done at all. Of 30 the loss of two is noticed.
+    // Only about half of these programs are feasible. Of 30 the loss of two is detected.
     CHECK(tally.converged >= 0.45 * tally.count);
     CHECK(tally.refused < tally.count / 10);
 }
@@ -155,7 +155,7 @@ TEST_CASE("bodies that nothing holds, thrown about: nothing passes through anyth
 }
 
 TEST_CASE("programs that once ended in a state that no body can have") {
-    // Walls of a chamber that was sucked empty went through each other; a turning step went through the table.
+    // Past failures: walls of an evacuated chamber passed through each other; a rotating step passed through the table.
     for (const unsigned seed : {479U, 489U, 537U, 611U}) run_and_check(seed);
 }
 

@@ -15,9 +15,9 @@
 namespace pliant::sim {
 namespace {
 
-constexpr double sudden = 5;         // times as far as in the step before
+constexpr double sudden = 5;         // times the motion in the step before
 constexpr double noticeable = 0.01;  // of the robot's size, as a mean of all nodes
-constexpr double long_first = 0.03;  // likewise: no step before tells whether the first one is sudden
+constexpr double long_first = 0.03;  // likewise, for the first step, which has no step to compare with
 constexpr int most_pushes = 5;
 constexpr double extremely_soft = 100;  // a shape parameter
 
@@ -56,7 +56,7 @@ void RunChecks::after_step(RobotState& robot, Step& step, StepReport& report, st
     state_.reported = robot.now;
 }
 
-/// A step that is much quicker than the one before it, or a long first one, is looked at closely.
+/// A step that is much larger than the one before it, or a large first one, is checked for a jump.
 bool RunChecks::jumped(const RobotState& robot, const Progress& progress) {
     const double way = (robot.x() - state_.reported.state.x).norm();
     const double before = std::exchange(state_.last_way, way);
@@ -70,7 +70,8 @@ bool RunChecks::jumped(const RobotState& robot, const Progress& progress) {
     });
 }
 
-/// Pushes the state along `motion`, harder until it does not come back; false if no push leads to a stable one.
+/// Disturbs the state along `motion`, increasingly until it does not return; false if no disturbance leads to a stable
+/// state.
 bool RunChecks::leave(RobotState& robot, const Eigen::VectorXd& motion, StepReport& report, const Progress& progress) {
     double push = program_.imperfection_m;
     for (int k = 0; k < most_pushes && !progress.cancelled(); ++k, push *= 4) {
@@ -80,7 +81,7 @@ bool RunChecks::leave(RobotState& robot, const Eigen::VectorXd& motion, StepRepo
             return false;
         RobotState beside = robot;
         const StepReport settled = stepper_.settle_beside(beside, std::move(pushed), progress);
-        robot.memory = beside.memory;  // the next push is the quicker for it
+        robot.memory = beside.memory;  // makes the next attempt faster
         report.iterations += settled.iterations;
         report.history.insert(report.history.end(), settled.history.begin(), settled.history.end());
         if (!settled.arrived || stability_.falling_motion(beside.now.state, beside.controls)) continue;
@@ -139,7 +140,7 @@ void RunChecks::at_end(const RobotState& robot, Trajectory& result) {
     }
 }
 
-/// What a step has told of its state, without multipliers.
+/// The state of a recorded step, without multipliers.
 State RunChecks::state_of(const Step& step) const {
     State state = system_.rest();
     for (std::size_t n = 0; n < step.positions.size(); ++n) {

@@ -1,5 +1,4 @@
-// What a run looks for beside equilibrium: jumps, unstable states, surfaces that have passed through each other, gaps
-// that have closed.
+// Checks of a run beyond equilibrium: jumps, unstable states, surfaces that intersect, gaps that have closed.
 #pragma once
 
 #include <optional>
@@ -14,12 +13,12 @@
 
 namespace pliant::sim {
 
-/// What they have to remember from step to step.
+/// State of the checks that carries over between steps.
 struct ChecksState {
     Moment reported;                       ///< after the last step of the program
-    double last_way = 0;                   ///< that this step took: norm of the motion of all nodes, m
-    std::vector<std::size_t> before_jump;  ///< steps
-    std::set<std::size_t> warned;          ///< cables
+    double last_way = 0;                   ///< norm of the motion of all nodes in this step, m
+    std::vector<std::size_t> before_jump;  ///< indices of the steps just before a jump
+    std::set<std::size_t> warned;          ///< cables with a closed gap
 };
 
 /// Both must outlive it.
@@ -27,18 +26,18 @@ class RunChecks {
 public:
     RunChecks(Stepper& stepper, const Program& program, const RobotState& rest);
 
-    /// Of a robot at rest at every instant, after each step: whether it jumped on the way. If the program says by how
-    /// much to push it, it also goes on from where it is unstable to where it is stable.
+    /// For quasi-static programs, after each step: detects whether the robot jumped. If the program gives an
+    /// imperfection, it also moves on from an unstable equilibrium to a stable one.
     void after_step(RobotState& robot, Step& step, StepReport& report, std::vector<std::string>& warnings,
                     const Progress& progress);
-    /// Gaps that have closed between two guide points: from here on the flanks would touch.
+    /// Warns of gaps that have closed between two guide points: from here on the flanks would touch.
     void warn_of_closed_gaps(const RobotState& robot, int step, std::vector<std::string>& warnings);
-    /// Whether surfaces have passed through each other: looked for in every 32nd step and the last, as a search takes
-    /// half as long as a step, and from one in which they have back to the last in which they had not.
+    /// Checks for intersecting surfaces in every 32nd step and the last, because a search takes half as long as a step,
+    /// and, once found, backwards to the last step without.
     void look_for_crossings(const RobotState& robot, std::vector<Step>& steps, bool last) const;
-    /// At the end: what an equilibrium leaves open (left_open.hpp); whether the last state is stable, and those before
-    /// a jump. Of the first that is not, the first step that was not is sought by halving; a look at every step would
-    /// take as long as the steps.
+    /// At the end: checks what an equilibrium leaves free (left_open.hpp), and the stability of the last state and of
+    /// those before a jump. The first unstable step is found by bisection; checking every step would take as long as
+    /// the steps.
     void at_end(const RobotState& robot, Trajectory& result);
 
     [[nodiscard]] const ChecksState& state() const { return state_; }
@@ -57,10 +56,10 @@ private:
     const Program& program_;
     Stability stability_;
     ChecksState state_;
-    double size_ = 0;  ///< of the robot at rest
+    double size_ = 0;  ///< size of the robot at rest, m
 };
 
-/// What a program that stopped before `time` should do instead; empty if nothing is known.
+/// Advice for a program that stopped before `time`; empty if none is known.
 [[nodiscard]] std::string advice(Stepper& stepper, const Program& program, const RobotState& robot, double time,
                                  const Progress& progress);
 

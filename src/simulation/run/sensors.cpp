@@ -16,8 +16,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double degrees = 57.29577951308232;
-/// A node counts as pressed where its pressure is above this share of the patch's largest: the barrier of contact has
-/// no end at which it would be zero.
+/// A node counts as pressed if its pressure is above this share of the patch's largest: the contact barrier does not
+/// reach exactly zero.
 constexpr double pressed_share = 0.01;
 
 Vector3d place(const AttachedFrame& frame, std::span<const double> x) {
@@ -26,7 +26,8 @@ Vector3d place(const AttachedFrame& frame, std::span<const double> x) {
     return sum;
 }
 
-/// The deformation gradient of the frame at positions, or the gradient of a velocity by the rest position.
+/// The deformation gradient of the frame at these positions, or for velocities their gradient with respect to the rest
+/// position.
 Matrix3d slope(const AttachedFrame& frame, std::span<const double> x) {
     Matrix3d sum = Matrix3d::Zero();
     for (std::size_t i = 0; i < frame.nodes.size(); ++i)
@@ -45,7 +46,7 @@ Vector3d rotation_vector(const Matrix3d& rotation) {
     return turn.angle() * turn.axis();
 }
 
-/// All that a sensor may look at.
+/// Everything that a sensor can read.
 struct Scene {
     const Equilibrium& system;
     const State& state;
@@ -65,7 +66,7 @@ std::vector<double> read(const StrainSensor& sensor, const Scene& scene) {
     return {length / length_of(sensor.points, linalg::view(rest)) - 1, length};
 }
 
-/// The turn from section to section in the axes of the first: its third part twists, the others bend.
+/// The rotation from section to section in the axes of the first: its third component is twist, the others are bending.
 std::vector<double> read(const BackboneSensor& sensor, const Scene& scene) {
     std::vector<double> pieces;
     double length = 0, bend = 0, twist = 0;
@@ -110,7 +111,7 @@ std::vector<double> read(const DistanceSensor& sensor, const Scene& scene) {
     return {norm(position(sensor.points[1], scene.x) - position(sensor.points[0], scene.x))};
 }
 
-/// Of a frame that moves with velocity v: the turning part of the gradient of v by the position now.
+/// Angular velocity of a frame: the skew part of the velocity gradient with respect to the current position.
 Vector3d spin(const AttachedFrame& frame, const Matrix3d& deformation, const Eigen::VectorXd& v) {
     const Matrix3d L = slope(frame, linalg::view(v)) * deformation.inverse();
     return 0.5 * Vector3d(L(2, 1) - L(1, 2), L(0, 2) - L(2, 0), L(1, 0) - L(0, 1));
@@ -132,7 +133,7 @@ std::vector<double> read(const MotionSensor& sensor, const Scene& scene) {
     return {a[0], a[1], a[2], w[0], w[1], w[2]};
 }
 
-/// As the results of cables and chambers have it, elements of meshed air and gaps left out.
+/// As in the results of cables and chambers, without the resistance of gap and air elements.
 std::vector<double> read(const ActuatorSensor& sensor, const Scene& scene) {
     const std::size_t a =
         sensor.index + (sensor.kind == ActuatorSensor::Kind::tension ? 0 : scene.system.cable_count());

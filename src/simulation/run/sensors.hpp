@@ -1,4 +1,4 @@
-// What the sensors of a robot read in a state.
+// Readings of a robot's sensors in a state.
 //
 //     strain     strain, length                            of a path
 //     backbone   bend, twist, curvature; curvature_k, twist_rate_k of each piece
@@ -17,7 +17,7 @@
 
 namespace pliant::sim {
 
-/// What a reading is of. Values are in SI units; shown() says which.
+/// Quantity of a reading. Values are in SI units; shown() gives the unit for display.
 enum class SensedQuantity {
     ratio,
     length,
@@ -32,7 +32,7 @@ enum class SensedQuantity {
     angular_velocity,
 };
 
-/// How a quantity is shown: "" and 1 for a ratio, "_mm" and 1000 for a length.
+/// Display of a quantity: "" and 1 for a ratio, "_mm" and 1000 for a length.
 struct Shown {
     std::string_view suffix;
     double factor;
@@ -47,16 +47,16 @@ struct Reading {
     double value = 0;
 };
 
-/// What read_sensor() will give, without values.
+/// Names and quantities of what read_sensor() gives.
 [[nodiscard]] std::vector<std::pair<std::string, SensedQuantity>> readings_of(const Sensor& sensor);
 
-/// Without the inertia of a step in time a motion sensor stands still, as before the first step: it reads what holds it
-/// against gravity.
+/// Without the inertia of a step in time, a motion sensor is at rest, as before the first step: it reads the
+/// acceleration that supports it against gravity.
 [[nodiscard]] std::vector<Reading> read_sensor(const Sensor& sensor, const Equilibrium& system, const State& state,
                                                const Controls& controls);
 
-/// Of a cable or chamber (first the cables): the tension or minus the pressure that acts on the body. What elements of
-/// gaps and meshed air resist with never reaches it; of air that is what they press with beyond their volume's own.
+/// Tension, or minus the pressure, that a cable or chamber (first the cables) exerts on the body. The resistance of gap
+/// elements and meshed air is excluded; for air it is the pressure beyond that resistance to volume change.
 [[nodiscard]] double acting_multiplier(const Equilibrium& system, const State& state, std::size_t actuator);
 
 }  // namespace pliant::sim

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double smallest_share = 1.0 / 64;  // of a step of the program
 
-/// The program, step by step: what is at hand between two of them, and those who work on it.
+/// The program, step by step: its state between two steps, and the solvers and checks.
 class Run {
 public:
     Run(const Model& model, const Program& program, RunOptions options)
@@ -66,7 +66,7 @@ private:
         now_.so_far.setup_s += watch.read_s();
     }
 
-    /// False: stuck; the trajectory says why.
+    /// False: it did not converge; the trajectory says why.
     bool go_to(int k, const Progress& progress) {
         Stopwatch watch;
         Step step;

@@ -68,8 +68,8 @@ TEST_CASE("uniaxial stretch of one linear element layer follows the closed form"
     }
     const double force = material::stress(law, Eigen::Vector3d(stretch, low, low).asDiagonal())(0, 0) * side * side;
 
-    // Symmetry planes by moving three faces as the closed form says would overconstrain; so all nodes of the two end
-    // faces follow the homogeneous answer, and the middle must find it.
+    // Prescribing the closed form on three faces would overconstrain symmetry planes; so all nodes of the two end faces
+    // follow the homogeneous answer, and the interior must match it.
     for (const int order : {1, 2}) {
         Description d = bar(order, law);
         d.supports.clear();
@@ -150,7 +150,7 @@ TEST_CASE("a bar twisted by a quarter turn has turned by half of that in the mid
     const Vec3 p = result.steps.back().positions[static_cast<std::size_t>(edge[0])];
     const double turned = std::atan2(p.z - side / 2, p.y - side / 2) - std::atan2(-1.0, -1.0);
     CHECK(turned == near(M_PI / 4, {.relative = 0.01}));
-    // A twisted bar would like to get longer (Poynting 1909): held between two ends it presses on both.
+    // A twisted bar tends to lengthen (Poynting 1909): held between two ends it presses on both.
     CHECK(result.steps.back().supports[1].force_N.x < 0);
     CHECK(result.steps.back().supports[0].force_N.x > 0);
 }

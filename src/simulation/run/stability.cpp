@@ -16,17 +16,18 @@ namespace pliant::sim {
 namespace {
 
 constexpr int looks_with_one_metric = 8;
-constexpr int first_steps = 12;     // of the first look, which knows nothing
-constexpr int usual_steps = 2;      // of those after it
-constexpr double soft = 0.3;        // a ratio below this is looked at more closely
-constexpr double settled = 0.98;    // a step that leaves more than this of the ratio is the last
-constexpr double unstable = -2e-3;  // a ratio below this is not rounding, nor what is left of the residual
+constexpr int first_steps = 12;     // iterations of the first check, which has no initial guess
+constexpr int usual_steps = 2;      // iterations of later checks
+constexpr double soft = 0.3;        // a ratio below this is computed more accurately
+constexpr double settled = 0.98;    // stops when an iteration leaves more than this of the ratio
+constexpr double unstable = -2e-3;  // a ratio below this is neither rounding nor an effect of the residual
 constexpr int halvings = 4;
-constexpr double most_of_it = 0.6;  // of a motion; of one that grows as a root a quarter is left after as many
+constexpr double most_of_it = 0.6;  // of a motion; with square-root growth a quarter would be left after as many
+                                    // halvings
 
 using linalg::view;
 
-/// Numbers between -1 and 1 without order, always the same: no mode of a robot is at right angles to them.
+/// Fixed pseudo-random numbers between -1 and 1, so that no mode of a robot is orthogonal to them.
 Eigen::VectorXd scattered(Eigen::Index size) {
     Eigen::VectorXd v(size);
     std::uint64_t seed = 0x9E3779B97F4A7C15ULL;
@@ -63,7 +64,7 @@ std::optional<Eigen::VectorXd> Stability::falling_motion(const State& state, con
         if (!improve()) break;
         if (step + 1 >= least && (ratio_ > soft || ratio_ > settled * before || step >= 2 * first_steps)) break;
     }
-    // Near the end of stability rounding may let an indefinite tangent pass for a metric.
+    // Near the limit of stability rounding may make an indefinite tangent pass as a metric.
     if (++age_ >= looks_with_one_metric && ratio_ > soft && take_metric(state, controls)) age_ = 0;
     const double scale = largest_motion(v_);
     if (ratio_ >= unstable || !(scale > 0)) return {};
@@ -77,8 +78,8 @@ void Stability::assemble(const State& state, const Controls& controls, bool proj
     system_->add_tangent(state, controls, *layout_, values.span(), project);
 }
 
-/// The tangent at hand where it is positive definite; else the one that is there or, as a beginning, its positive
-/// projection.
+/// Uses the current tangent as metric if it is positive definite; else keeps the old one or, initially, takes its
+/// positive projection.
 bool Stability::take_metric(const State& state, const Controls& controls) {
     const Eigen::VectorXd positions = system_->free_positions(state.x);
     auto inverse = two_levels_are_quicker(layout_->pattern, laplacian_->work())
@@ -122,7 +123,7 @@ void Stability::collect_constraints(const State& state, const Controls& controls
 }
 
 void Stability::solve(Eigen::MatrixXd& columns) {
-    // Whatever it gives leads somewhere: how far, the ratios say.
+    // Any result is a usable direction: the ratios tell how good it is.
     (void)inverse_->solve(columns, 0.05);
 }
 
@@ -138,7 +139,7 @@ Eigen::VectorXd Stability::metric_times(const Eigen::VectorXd& v) const {
     return result;
 }
 
-/// Takes away what would change a length or a volume, so that the least is moved, as M measures it.
+/// Removes the components that would change a prescribed length or volume, with the smallest change in the norm of M.
 void Stability::keep_constraints(Eigen::VectorXd& v) const {
     if (fixed_.cols() == 0) return;
     const Eigen::MatrixXd S = fixed_.transpose() * answers_;
@@ -146,7 +147,7 @@ void Stability::keep_constraints(Eigen::VectorXd& v) const {
         v -= answers_ * S.completeOrthogonalDecomposition().solve(fixed_.transpose() * v);
 }
 
-/// The softest motion of the last look, or a scattered one, made fit for this state.
+/// Initialises with the softest motion of the last check, or a random one, projected for this state.
 void Stability::begin() {
     if (v_.size() == 0) {
         Eigen::MatrixXd column = scattered(3 * system_->model().free_count());
@@ -158,11 +159,11 @@ void Stability::begin() {
     take(v_, metric_times(v_), stiffness_times(v_));
 }
 
-/// Takes a motion, at a length of 1 as M measures it.
+/// Sets the motion, normalised in the norm of M.
 void Stability::take(const Eigen::VectorXd& v, const Eigen::VectorXd& Mv, const Eigen::VectorXd& Kv) {
     const double square = v.dot(Mv);
     const double length = square > 0 ? std::sqrt(square) : v.norm();
-    // M is not positive there: rounding let it pass. What K says still holds.
+    // M is not positive there, because of rounding. The sign of K still decides.
     ratio_ = square > 0 ? v.dot(Kv) / square : std::copysign(1.0, v.dot(Kv));
     Eigen::VectorXd motion = v / length;
     Kv_ = Kv / length;
@@ -170,8 +171,7 @@ void Stability::take(const Eigen::VectorXd& v, const Eigen::VectorXd& Mv, const 
     v_ = std::move(motion);
 }
 
-/// The best of the plane, or the space, of the motion, its preconditioned residual and the last change. False: no
-/// better one.
+/// Minimises over the span of the motion, its preconditioned residual and its last change. False: no improvement.
 bool Stability::improve() {
     Eigen::MatrixXd column = Kv_ - ratio_ * Mv_;
     solve(column);
@@ -194,7 +194,7 @@ bool Stability::improve() {
             M(i, j) = x[static_cast<std::size_t>(std::max(i, j))]->dot(*Mx[static_cast<std::size_t>(std::min(i, j))]);
         }
     }
-    // The last change may lie in the plane of the other two.
+    // The last change may be linearly dependent on the other two.
     const Eigen::Index used =
         count == 3 && Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(M).eigenvalues()[0] < 1e-8 ? 2 : count;
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(K.topLeftCorner(used, used),

@@ -1,4 +1,4 @@
-// Is an equilibrium stable, or does the energy fall beside it?
+// Checks whether an equilibrium is stable, or the energy decreases in some direction.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,26 +14,26 @@
 
 namespace pliant::sim {
 
-/// Looks for the motion along which the tangent is softest among those that keep every length and volume that is
-/// driven: the smallest ratio v^T K v / v^T M v, where M is the tangent of the first state or of a later one, by
-/// preconditioned conjugate gradients (Knyazev 2001, a block of one). The first look takes one factor if that state is
-/// stable. Each later one begins where the last one ended, so that two or three solves with a factor that is there are
-/// enough; a new one is made every few looks. What it calls unstable is: the
-/// tangent was negative along a motion. It may overlook a mode that got soft between two looks.
+/// Finds the softest motion that preserves every prescribed length and volume: the smallest ratio v^T K v / v^T M v,
+/// where M is the tangent of the first state or of a later one, by preconditioned conjugate gradients (Knyazev 2001,
+/// block size one). The first check takes one factorisation if that state is stable. Later checks start from the
+/// previous motion, so that two or three solves with the existing factor are enough; a new factor is made every few
+/// checks. If it reports instability, the tangent was negative along a motion. It may overlook a mode that became soft
+/// between two checks.
 class Stability {
 public:
     /// Both must outlive it.
     Stability(const Equilibrium& system, const FactoredLaplacian& laplacian)
         : system_(&system), layout_(laplacian.tangent_layout()), laplacian_(&laplacian) {}
 
-    /// False: the forces have no energy, so that the tangent's sign says nothing.
+    /// False: the forces have no energy, so that the sign of the tangent has no meaning.
     [[nodiscard]] bool is_applicable() const;
 
-    /// The motion of the free nodes (3 free; the largest of a node is 1) along which the energy of an equilibrium falls
-    /// to second order; nothing where none is found. States in which something touches are not judged.
+    /// The motion of the free nodes (3 free; scaled to a largest nodal motion of 1) along which the energy of an
+    /// equilibrium decreases to second order; empty if none is found. States with contact are not checked.
     [[nodiscard]] std::optional<Eigen::VectorXd> falling_motion(const State& state, const Controls& controls);
 
-    /// The smallest ratio at the last look.
+    /// The smallest ratio at the last check.
     [[nodiscard]] double smallest_ratio() const { return ratio_; }
 
 private:
@@ -53,17 +53,17 @@ private:
     const FactoredLaplacian* laplacian_;
     std::unique_ptr<TangentInverse> inverse_;  ///< of M
     AlignedArray<double> stiffness_, metric_;
-    Eigen::MatrixXd fixed_;        ///< (3 free, k) gradients of what is driven
+    Eigen::MatrixXd fixed_;        ///< (3 free, k) gradients of the prescribed measures
     Eigen::MatrixXd answers_;      ///< M^-1 fixed
-    Eigen::MatrixXd gas_;          ///< (3 free, k) gradients of sealed volumes over the root of their compliance
+    Eigen::MatrixXd gas_;          ///< (3 free, k) gradients of sealed volumes over the square root of their compliance
     Eigen::VectorXd v_, Kv_, Mv_;  ///< the softest motion so far
-    Eigen::VectorXd p_, Kp_, Mp_;  ///< and the last change of it
+    Eigen::VectorXd p_, Kp_, Mp_;  ///< its last change
     double ratio_ = 1;
-    int age_ = 0;  ///< of the metric, in looks
+    int age_ = 0;  ///< of the metric, in checks
 };
 
-/// True if the way between two equilibria has a jump in it: halved again and again, with `solve` for the equilibrium
-/// at a time, from the state that it is given, most of the motion stays in one piece. False also where `solve` fails.
+/// True if the path between two equilibria has a jump: bisecting it repeatedly, with `solve` for the equilibrium at a
+/// given time from a given state, most of the motion stays in one interval. False also if `solve` fails.
 [[nodiscard]] bool is_jump(Moment before, Moment after, const std::function<bool(double time, State& state)>& solve);
 
 }  // namespace pliant::sim

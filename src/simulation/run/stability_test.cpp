@@ -66,7 +66,7 @@ bool warns(const Trajectory& result, std::string_view text) {
                        [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
 }
 
-/// The share of the critical load at which a straight column is first called unstable; 0: never.
+/// The share of the critical load at which a straight column is first reported unstable; 0: never.
 double first_unstable(const Trajectory& result, double largest_share) {
     for (const std::string& warning : result.warnings) {
         int step = 0;

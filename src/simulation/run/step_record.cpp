@@ -27,7 +27,7 @@ Json json_of(const IterationRecord& r) {
             r.alpha, r.min_J};
 }
 
-/// Each a name and so many numbers.
+/// A list of names, each with a fixed number of values.
 template <class T, class Numbers>
 Json named(const std::vector<T>& all, const Numbers& numbers) {
     Json list = Json::array();
@@ -99,7 +99,7 @@ private:
         }
     }
 
-    /// Each a name and its readings: name, measure, value.
+    /// For each sensor its name and readings: name, measure, value.
     void sensors(Step& step) {
         const Json& list = in_.at("sensors");
         if (!list.is_array()) return in_.fail("sensors is not a list");

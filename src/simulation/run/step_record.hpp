@@ -1,4 +1,4 @@
-// A step of a trajectory as bytes.
+// Serialises a step of a trajectory.
 #pragma once
 
 #include <span>
@@ -13,11 +13,11 @@ namespace pliant::sim {
 
 struct StepRecord {
     Step step;
-    std::vector<IterationRecord> iterations;  ///< that led to it
+    std::vector<IterationRecord> iterations;  ///< iterations of that step
 };
 
 [[nodiscard]] std::string step_bytes(const Step& step, std::span<const IterationRecord> iterations);
-/// Errors: damaged, or not of `nodes` nodes.
+/// Errors: damaged, or not for `nodes` nodes.
 [[nodiscard]] Result<StepRecord> step_from_bytes(std::string_view bytes, std::size_t nodes);
 
 }  // namespace pliant::sim

@@ -1,4 +1,4 @@
-// What several tests of the solver share.
+// Shared by several tests of the solver.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -11,7 +11,7 @@
 
 namespace pliant::sim::testing {
 
-/// Runs a valid description; whether it converged is for the test to check.
+/// Runs a valid description; the test must check whether it converged.
 inline Trajectory solve(Description d, const Program& program) {
     const auto model = Model::create(std::move(d));
     REQUIRE_MESSAGE(model, (model ? "" : model.error().message));

@@ -1,5 +1,5 @@
-// Random robots on small meshes with random programs, for tests; what they are, in a line; and how one of them that
-// fails is made simpler until nothing can be left out of it.
+// Random robots on small meshes with random programs, for tests; their description in one line; and simplification of a
+// failing one until nothing more can be left out.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace pliant::sim::test {
 
 inline constexpr double side = 0.01;
 
-/// The same numbers on every system.
+/// Random numbers that are the same on every system.
 class Dice {
 public:
     explicit Dice(unsigned seed) : engine_(seed) {}
@@ -160,8 +160,8 @@ inline void add_box(Description& d, const std::string& name, const Vec3& low, co
     d.objects.push_back(std::move(box));
 }
 
-/// A soft block that nothing holds, or a clamp, over a ground, with boxes above and beside it, all thrown about in time
-/// or, some of them, at equilibrium.
+/// A soft block, free or clamped, over a ground, with boxes above and beside it, all with initial velocities in time
+/// or, for some, at equilibrium.
 inline RandomProgram random_free_program(unsigned seed) {
     Dice dice(seed);
     RandomProgram made;
@@ -203,7 +203,7 @@ inline RandomProgram random_free_program(unsigned seed) {
     return made;
 }
 
-/// One line that says all that was thrown.
+/// One line that describes the random program.
 inline std::string described(const RandomProgram& p) {
     const Description& d = p.robot;
     std::string text = fmt::format("{} nodes of order {}, {} and {}", d.mesh.points.size(), d.mesh.order,
@@ -224,10 +224,10 @@ inline std::string described(const RandomProgram& p) {
     return text + fmt::format("; {} steps, solver {}", p.program.steps, static_cast<int>(p.program.solver));
 }
 
-/// Leaves one thing out of a program, or says that it is not there.
+/// Leaves one thing out of a program; false if it is not there.
 using Simplification = std::function<bool(RandomProgram&)>;
 
-/// What may be left out of `p`. The mesh stays: cables, chambers and supports name its nodes.
+/// Everything that may be left out of `p`. The mesh is kept, because cables, chambers and supports refer to its nodes.
 inline std::vector<Simplification> simplifications(const RandomProgram& p) {
     std::vector<Simplification> all;
     const auto taken_away = [](auto& from) { return from ? (from.reset(), true) : false; };
@@ -244,7 +244,7 @@ inline std::vector<Simplification> simplifications(const RandomProgram& p) {
     }
     all.emplace_back(
         [](RandomProgram& q) { return q.robot.chambers.empty() ? false : (q.robot.chambers.clear(), true); });
-    all.emplace_back([](RandomProgram& q) {  // the last one: others name the nodes after those of one before
+    all.emplace_back([](RandomProgram& q) {  // the last one only: others refer to the nodes after those of earlier ones
         return q.robot.objects.empty() ? false : (q.robot.objects.pop_back(), true);
     });
     all.emplace_back([=](RandomProgram& q) { return q.robot.objects.empty() && taken_away(q.robot.contact); });
@@ -272,7 +272,7 @@ inline std::vector<Simplification> simplifications(const RandomProgram& p) {
     return all;
 }
 
-/// The simplest program that still fails: things are left out one by one for as long as it does.
+/// The simplest program that still fails: things are left out one by one as long as it fails.
 inline RandomProgram shrunk(RandomProgram failing, const std::function<bool(const RandomProgram&)>& fails) {
     for (bool simpler = true; simpler;) {
         simpler = false;

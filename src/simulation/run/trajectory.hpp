@@ -1,4 +1,4 @@
-// What a simulation gives back, step by step. Everything in SI; positions of all nodes of the mesh.
+// Result of a simulation, step by step. Everything in SI; positions of all nodes of the mesh.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ struct SpringState {
 
 struct SupportState {
     std::string name;
-    Vec3 force_N;  ///< sum of the forces that the support exerts on the robot
+    Vec3 force_N;  ///< total force of the support on the robot
 };
 
 struct MarkerState {
@@ -46,22 +46,22 @@ struct MarkerState {
 
 struct ContactState {
     std::string name;  ///< of the obstacle
-    Vec3 force_N;      ///< pressure and friction of the obstacle on the robot
+    Vec3 force_N;      ///< normal force and friction of the obstacle on the robot
 };
 
 struct ObjectState {
     std::string name;
-    Vec3 position_m;                             ///< of its centre of mass
-    std::array<double, 4> rotation{1, 0, 0, 0};  ///< from where it started: unit quaternion w, x, y, z with w >= 0
-    Vec3 force_N;                                ///< pressure and friction of all that touches it
+    Vec3 position_m;                             ///< of the centre of mass
+    std::array<double, 4> rotation{1, 0, 0, 0};  ///< since the start: unit quaternion w, x, y, z with w >= 0
+    Vec3 force_N;                                ///< normal force and friction of everything that touches it
 };
 
 struct JointState {
     std::string name;
-    Vec3 force_N, torque_Nm;  ///< of the first thing on the second, about the joint's point there
+    Vec3 force_N, torque_Nm;  ///< from the first thing on the second, about the joint's point there
     bool turns = false, slides = false;
-    double coordinate = 0;  ///< angle of a hinge, rad, with whole turns, or place of a slider, m; 0 at rest
-    double effort = 0;      ///< what drives, holds and damps along it, N m or N
+    double coordinate = 0;  ///< hinge: angle with whole turns, rad; slider: displacement, m; 0 at rest
+    double effort = 0;      ///< drive, hold and damping along it, N m or N
 };
 
 struct SensorState {
@@ -72,14 +72,15 @@ struct SensorState {
 /// One step of the program at equilibrium. Step 0 is the rest state.
 struct Step {
     int index = 0;
-    double time = 0;        ///< of the program; 0 at rest
-    bool converged = true;  ///< false: accepted on looser terms than the tolerance; `reason` says which
+    double time = 0;        ///< program time; 0 at rest
+    bool converged = true;  ///< false: accepted at a looser tolerance; `reason` says which
     std::string reason;
     int iterations = 0;
-    int substeps = 1;                   ///< more than one where the step had to be halved
-    int refused = 0;                    ///< pieces that were taken again, for their error in time or their solver
+    int substeps = 1;                   ///< more than one if the step was halved
+    int refused = 0;                    ///< substeps that were repeated, for their time error or for lack of
+                                        ///< convergence
     double residual = 0;                ///< norm of the out-of-balance force over the norm of the forces that balance
-    Solver solver = Solver::automatic;  ///< the one that finished it; `automatic` at rest
+    Solver solver = Solver::automatic;  ///< the one that finished the step; `automatic` at rest
     double wall_s = 0;
     double min_J = 1;  ///< smallest det F over all integration points
     double energy_J =
@@ -90,10 +91,10 @@ struct Step {
     std::vector<SpringState> springs;
     std::vector<SupportState> supports;
     std::vector<ContactState> contacts;  ///< (obstacles)
-    double self_contact_N = 0;           ///< sum of the sizes of the robot's forces on itself
-    double smallest_distance_m = std::numeric_limits<double>::infinity();  ///< of what is near enough to act
-    bool met = false;                ///< the robot has met itself, where contact with itself waits for that
-    std::optional<Vec3> crossing_m;  ///< a place where surfaces have passed through each other, where contact is off
+    double self_contact_N = 0;           ///< sum of the magnitudes of the self-contact forces
+    double smallest_distance_m = std::numeric_limits<double>::infinity();  ///< of surfaces within contact range
+    bool met = false;                ///< self-contact, if deferred, has become active
+    std::optional<Vec3> crossing_m;  ///< a point where surfaces intersect, if contact is off
     std::vector<MarkerState> markers;
     std::vector<ObjectState> objects;
     std::vector<JointState> joints;
@@ -102,12 +103,12 @@ struct Step {
 };
 
 struct Trajectory {
-    std::vector<Step> steps;            ///< rest state first; only those that were accepted
-    bool converged = true;              ///< the whole program was run
-    std::string message;                ///< where and why it stopped, if it did
-    std::vector<std::string> warnings;  ///< where the answer should not be trusted
-    std::string solver;                 ///< the solver that was asked for or chosen, by name; Step::solver has more
-    std::vector<IterationRecord> iterations;  ///< all, in order, also of steps that did not converge
+    std::vector<Step> steps;            ///< rest state first; accepted ones only
+    bool converged = true;              ///< the program ran to its end
+    std::string message;                ///< where and why it stopped early
+    std::vector<std::string> warnings;  ///< reasons not to trust the result
+    std::string solver;                 ///< name of the solver that was requested or chosen; see also Step::solver
+    std::vector<IterationRecord> iterations;  ///< all, in order, including those of steps that did not converge
     double setup_s = 0;
     double solve_s = 0;
 };

@@ -23,8 +23,7 @@ std::string crossing_text(const Vec3& place_m) {
         near(place_m));
 }
 
-/// Of the robot's free pieces and then of the objects: whether joints lead from it to the world or to what a support
-/// holds.
+/// For the robot's free pieces and then the objects: true if joints connect it to the world or to a supported part.
 std::vector<bool> held_by_joints(const Model& model) {
     const auto& pieces = model.free_pieces();
     std::vector<bool> held(pieces.size() + model.description().objects.size(), false);

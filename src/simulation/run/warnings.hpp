@@ -1,4 +1,4 @@
-// Where the answer should not be trusted, in words.
+// Warnings about results, as text.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace pliant::sim {
 
-/// What is wrong with one state, a sentence each; without its step.
+/// Warnings about one state, one sentence each; without the step number.
 [[nodiscard]] std::vector<std::string> warnings_of(const Step& step);
 
-/// What is odd about the robot before anything moves: its notes, and whether it passes through itself already.
+/// Warnings about the robot before any step: its notes, and whether it intersects itself.
 [[nodiscard]] std::vector<std::string> warnings_at_rest(const Model& model);
-/// Of a robot at rest at every instant: what neither supports nor joints hold, in a sentence; empty if there is none.
+/// For a quasi-static robot: what neither supports nor joints hold, as a sentence; empty if nothing.
 [[nodiscard]] std::string held_by_nothing(const Model& model);
 
 /// The guide points at both ends of `segment` of a cable have met.
@@ -23,13 +23,13 @@ struct ClosedGap {
     std::size_t cable = 0;
     int segment = 0;
 };
-/// One of each cable at most; none where contact keeps the robot from passing through itself. `x` (3n).
+/// At most one per cable; none if contact prevents self-intersection. `x` (3n).
 [[nodiscard]] std::vector<ClosedGap> closed_gaps(const Equilibrium& system, const Eigen::VectorXd& x);
-/// What it means.
+/// Explanation for people.
 [[nodiscard]] std::string closed_gap_text(const Model& model, const ClosedGap& gap);
 
-/// Adds to the trajectory's warnings what is wrong with its steps: each kind once, with the number of the first step
-/// and, where it is one of degree, how many there are.
+/// Adds warnings about the steps to those of the trajectory: each kind once, with the number of the first step and, for
+/// kinds of varying severity, the number of steps.
 void add_warnings(Trajectory& trajectory);
 
 }  // namespace pliant::sim

@@ -1,4 +1,4 @@
-// What should not be trusted says so: surfaces that pass through each other, steps accepted on looser terms.
+// Warnings about unreliable results: surfaces that intersect, steps accepted at a looser tolerance.
 #include "simulation/run/warnings.hpp"
 
 #include <doctest/doctest.h>

@@ -11,13 +11,13 @@
 namespace pliant::robot {
 namespace {
 
-/// Where a straight line from a to b passes through the outer surface, in order, without its ends.
+/// Intersections of the straight line from a to b with the outer surface, in order, without its ends.
 std::vector<Vec3> crossings(const ModelDraft& draft, const Vec3& a, const Vec3& b) {
     std::vector<double> hits;
     const auto& p = draft.description.mesh.points;
     const Vec3 d = b - a;
     for (const mesh::Face& face : mesh::boundary_faces(draft.bodies)) {
-        // Moeller and Trumbore 1997; edges count, so that no hit falls between two triangles.
+        // Moeller and Trumbore 1997; edges are included, so that no hit falls between two triangles.
         const Vec3 e1 = p[face.nodes[1]] - p[face.nodes[0]];
         const Vec3 e2 = p[face.nodes[2]] - p[face.nodes[0]];
         const Vec3 h = cross(d, e2);
@@ -42,7 +42,7 @@ std::vector<Vec3> crossings(const ModelDraft& draft, const Vec3& a, const Vec3& 
     return points;
 }
 
-/// The guide points of a cable, metres: as given, with the crossings between them where asked for.
+/// The guide points of a cable, metres: as given, plus the requested ones at crossings.
 std::vector<Vec3> guide_points(const ModelDraft& draft, const CableSpec& spec) {
     std::vector<Vec3> points;
     for (const Vec3& given : spec.points) {
@@ -84,7 +84,7 @@ void check_shortening(ModelDraft& draft, const CableSpec& spec, const std::vecto
     }
 }
 
-/// What a path of points is tied to; `kind`, `point` and those of the spec are for messages.
+/// Attachments of the points of a path; `kind`, `point` and the fields of the spec are for messages.
 template <class Spec>
 std::vector<sim::Attachment> attach_path(ModelDraft& draft, const sim::Attacher& attacher, const Spec& spec,
                                          const std::vector<Vec3>& points, std::string_view kind,

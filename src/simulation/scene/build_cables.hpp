@@ -1,4 +1,4 @@
-// Cables and springs: their guide points, and the gaps that close under those of the thesis' model (T3.5).
+// Builds cables and springs: their guide points, and the gaps that close under cables of the thesis' model (T3.5).
 #pragma once
 
 #include "simulation/actuators/attach.hpp"
@@ -6,7 +6,7 @@
 
 namespace pliant::robot {
 
-/// Adds all cables to the draft's description, or what is wrong to its problems. `attacher`: of the draft's bodies.
+/// Adds all cables to the draft's description; errors go to its problems. `attacher`: for the draft's bodies.
 /// Preconditions: materials have been added, chambers have not (cables come first among the actuators).
 void add_cables(ModelDraft& draft, const sim::Attacher& attacher);
 /// Adds all springs, likewise.

@@ -12,7 +12,8 @@
 namespace pliant::robot {
 namespace {
 
-/// The wall of a surface file need not follow the mesh exactly: so far from the bodies, as a share of the robot's size.
+/// The wall in a surface file need not match the mesh exactly: largest distance from the bodies, as a share of the
+/// robot's size.
 constexpr double wall_reach = 0.03;
 
 void check_mouth(ModelDraft& draft, const ChamberSpec& spec, const sim::Wall& wall) {
@@ -41,7 +42,7 @@ void check_mouth(ModelDraft& draft, const ChamberSpec& spec, const sim::Wall& wa
                         loose));
 }
 
-/// The boundary of a meshed chamber. A mouth that no body closes must lie in a support that stays where it is.
+/// The boundary of a meshed chamber. A mouth not covered by a body must be inside a support that does not move.
 sim::Wall wall_of_region(ModelDraft& draft, const ChamberSpec& spec) {
     const int region = static_cast<int>(draft.region_of(Region::Use::chamber, spec.name));
     const std::vector<mesh::Face> faces = mesh::region_faces(draft.whole, region);
@@ -54,7 +55,7 @@ sim::Wall wall_of_region(ModelDraft& draft, const ChamberSpec& spec) {
     return wall;
 }
 
-/// A cavity of the bodies.
+/// The wall of a cavity of the bodies.
 sim::Wall wall_of_cavity(ModelDraft& draft, const ChamberSpec& spec, const CavityAt& cavity) {
     const Vec3 point = draft.robot.unit_m * cavity.point;
     Result<std::vector<mesh::Face>> faces = mesh::cavity_faces(draft.bodies, point);
@@ -64,7 +65,7 @@ sim::Wall wall_of_cavity(ModelDraft& draft, const ChamberSpec& spec, const Cavit
     return {};
 }
 
-/// A closed surface whose points ride on the tets that hold them.
+/// A closed surface whose points are attached to the tets that contain them.
 sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const ChamberSpec& spec,
                        const SurfaceFile& given) {
     Result<mesh::SurfaceFile> file = mesh::read_surface(given.path);

@@ -1,4 +1,4 @@
-// Chambers: the walls of their air, from a surface file or from the mesh.
+// Builds chambers: the walls of their air, from a surface file or from the mesh.
 #pragma once
 
 #include "simulation/actuators/attach.hpp"
@@ -6,7 +6,7 @@
 
 namespace pliant::robot {
 
-/// Adds all chambers to the draft's description, or what is wrong to its problems. `attacher`: of the draft's bodies.
+/// Adds all chambers to the draft's description; errors go to its problems. `attacher`: for the draft's bodies.
 /// Precondition: materials, supports (which may close a mouth) and cables have been added.
 void add_chambers(ModelDraft& draft, const sim::Attacher& attacher);
 

@@ -16,8 +16,9 @@ namespace {
 constexpr double distance_share = 1e-3;  // of the robot's size
 constexpr double slip_share = 1e-2;      // of the distance
 constexpr double stiffness_share = 0.1;  // of the softest Young's modulus
-constexpr double chord_share = 0.1;      // of the distance: how far a round obstacle may leave its surface
-constexpr double rolling_share = 0.05;   // the same of an object, which loses energy from edge to edge as it rolls
+constexpr double chord_share = 0.1;      // of the distance: largest deviation of a round obstacle's triangles from its
+                                         // surface
+constexpr double rolling_share = 0.05;   // the same for an object, which loses energy at each edge as it rolls
 
 Result<mesh::TriMesh> placed_file(const SurfaceFile& given) {
     Result<mesh::SurfaceFile> file = mesh::read_surface(given.path);
@@ -25,7 +26,7 @@ Result<mesh::TriMesh> placed_file(const SurfaceFile& given) {
     return mesh::placed(std::move(file->mesh), given.placement);
 }
 
-/// A drawn shape or a file, in length units; triangles leave what is round by `chord_m` at most.
+/// A drawn shape or a file, in length units; triangles deviate from round surfaces by `chord_m` at most.
 template <class Shape>
 Result<mesh::TriMesh> shape_surface(const Robot& robot, const Shape& shape, double chord_m) {
     if (const auto* solid = std::get_if<mesh::Solid>(&shape)) return mesh::tessellate(*solid, chord_m / robot.unit_m);
@@ -38,12 +39,12 @@ Result<mesh::TriMesh> obstacle_surface(const Robot& robot, const ObstacleSpec& s
     return mesh::scaled(std::move(*surface), robot.unit_m);
 }
 
-/// Where it starts, metres, seen from outside counter-clockwise.
+/// The surface at its initial position, metres, counter-clockwise seen from outside.
 Result<mesh::TriMesh> object_surface(const Robot& robot, const ObjectSpec& spec, double distance_m) {
     Result<mesh::TriMesh> surface = shape_surface(robot, spec.shape, rolling_share * distance_m);
     if (!surface) return surface;
     mesh::TriMesh whole = mesh::scaled(mesh::placed(std::move(*surface), spec.placement), robot.unit_m);
-    std::map<std::pair<int, int>, int> turns;  // of each edge, how much oftener it is passed one way than the other
+    std::map<std::pair<int, int>, int> turns;  // for each edge, uses in one direction minus uses in the other
     for (const auto& t : whole.triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
             const int a = t[k], b = t[(k + 1) % 3];

@@ -1,4 +1,4 @@
-// What may touch what, from the robot file to the solver.
+// Builds the contact rules from the robot file.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace pliant::robot {
 
-/// `bodies`: the tets that carry material, metres. Where the file has neither [contact] nor an obstacle, the robot
-/// touches itself from the moment on in which it would pass through itself. Nothing where contact with itself is
-/// switched off and there is no obstacle. Errors name the obstacle and its line.
+/// `bodies`: the tets that carry material, metres. If the file has neither [contact] nor an obstacle, self-contact
+/// becomes active once the robot would intersect itself. Empty if self-contact is switched off and there is no
+/// obstacle. Errors name the obstacle and its line.
 [[nodiscard]] Result<std::optional<sim::ContactRules>> build_contact(const Robot& robot, const mesh::TetMesh& bodies);
 
 /// Adds the objects, with four nodes each, to a description that has contact. Errors name the object and its line.

@@ -1,4 +1,4 @@
-// The goals of a robot file, and the actuators that have a range, tied to its model.
+// Builds the inverse task from a robot file: goals, and the actuators that have a range.
 #pragma once
 
 #include "base/core/error.hpp"
@@ -8,12 +8,12 @@
 
 namespace pliant::robot {
 
-/// `model`: of build_model(robot, ...). With `need_goals` a robot without goals is an error, else the task may have
-/// none, and one waypoint at the end of the program. Errors: no actuator has a range; the robot moves in time.
+/// `model`: from build_model(robot, ...). With `need_goals` a robot without goals is an error; otherwise the task may
+/// have none, with one waypoint at the end of the program. Errors: no actuator has a range; the robot moves in time.
 [[nodiscard]] Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model, bool need_goals = true);
 
-/// Of a program's steps where they are compared with goals: an equilibrium has to be nearer to one than its tolerance
-/// is wide.
+/// Solver tolerance for a program whose steps are compared with goals: the error of an equilibrium must be smaller than
+/// the tolerance of a goal.
 [[nodiscard]] double goal_tolerance(const Program& program);
 
 }  // namespace pliant::robot

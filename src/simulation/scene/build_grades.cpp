@@ -9,7 +9,7 @@
 namespace pliant::robot {
 namespace {
 
-/// The material of a grade; added where it is new.
+/// The materials of grades; added when first used.
 class GradeMaterials {
 public:
     GradeMaterials(ModelDraft& draft, int first, int second) : draft_(draft), first_(first), second_(second) {

@@ -17,11 +17,11 @@
 namespace pliant::robot {
 namespace {
 
-/// What joins is so much stiffer than the stiffest material in a cube as large as the joint's arm, and gives way by no
-/// more than this share of the arm to the weight of all objects.
+/// Stiffness of a joint: this many times that of the stiffest material in a cube as large as the joint's arm, and at
+/// least so stiff that the weight of all objects displaces it by no more than this share of the arm.
 constexpr double joint_stiffness = 100, sag = 1e-4, g_m_s2 = 9.81;
-constexpr double beside_a_plate = 0.01;  // how important nodes next to a flat plate are, which tell its normal
-constexpr double soft_clearance = 2;     // of the patch, between soft bodies
+constexpr double beside_a_plate = 0.01;  // weight of nodes next to a flat plate, which determine its normal
+constexpr double soft_clearance = 2;     // in units of the patch, between soft bodies
 constexpr double world_arm = std::numeric_limits<double>::infinity();
 
 /// One of the two things.
@@ -30,7 +30,7 @@ struct End {
     double arm_m = world_arm;
     int object = -2;             ///< as in sim::Joint
     std::optional<Vec3> normal;  ///< of a flat plate
-    double clear_m = 0;          ///< how far from the joint it reaches, where it may meet the other
+    double clear_m = 0;          ///< how far it extends from the joint, where it may touch the other
 };
 
 template <class Specs>
@@ -63,7 +63,7 @@ double mean_edge(const mesh::TetMesh& mesh) {
     return count > 0 ? sum / static_cast<double>(count) : 0;
 }
 
-/// Only the tets of one body.
+/// The tets of one body only.
 mesh::TetMesh body_alone(const ModelDraft& draft, std::size_t body) {
     const mesh::TetMesh& all = draft.bodies;
     mesh::TetMesh one{all.order, all.points, {}, {}, all.region_names, {}};
@@ -98,7 +98,7 @@ std::optional<End> end_of_body(ModelDraft& draft, std::size_t body, const JointS
     return end;
 }
 
-/// The direction in which points spread least, and how far they do, beside their spread in all.
+/// The direction in which points spread least, and that spread relative to the total.
 std::pair<Vec3, double> thinnest(const std::vector<int>& nodes, const std::vector<Vec3>& points) {
     Vec3 mean;
     for (const int node : nodes) mean += points[static_cast<std::size_t>(node)] / static_cast<double>(nodes.size());
@@ -116,7 +116,7 @@ std::pair<Vec3, double> thinnest(const std::vector<int>& nodes, const std::vecto
     return {normal, size > 0 ? thick / size : 0};
 }
 
-/// A flat plate does not tell where points off it go: the material next to it does, and next to nothing else.
+/// A flat plate does not determine the motion of points off its plane: the adjacent material does, with a small weight.
 std::optional<End> end_of_plate(ModelDraft& draft, std::size_t plate, const JointSpec& spec, const Vec3& point) {
     constexpr double flat = 1e-3;
     const std::vector<Vec3>& points = draft.description.mesh.points;
@@ -172,7 +172,7 @@ std::optional<End> find_end(ModelDraft& draft, const JointSpec& spec, const std:
     if (const auto object = index_of(draft.robot.objects, name)) return end_of_object(draft, *object, point);
     if (const auto plate = index_of(draft.description.plates, name)) return end_of_plate(draft, *plate, spec, point);
     if (const auto body = index_of(draft.robot.bodies, name)) return end_of_body(draft, *body, spec, point);
-    return std::nullopt;  // a plate that catches nothing, which has been said
+    return std::nullopt;  // the plate selects no nodes, which has already been reported
 }
 
 Vec3 any_normal(const Vec3& axis) {
@@ -180,7 +180,7 @@ Vec3 any_normal(const Vec3& axis) {
     return unit(cross(axis, other));
 }
 
-/// The arms: first the axis. What is glued to a flat plate has the first two in the plate.
+/// The arms, the joint's axis first. For glue on a flat plate the first two lie in the plate.
 std::array<Vec3, 3> arms(const JointSpec& spec, const std::array<End, 2>& ends) {
     Vec3 first = unit(spec.axis);
     if (spec.kind == JointSpec::Kind::glue) {
@@ -227,7 +227,7 @@ sim::Joint::Kind kind_of(JointSpec::Kind kind) {
     return sim::Joint::Kind::hinge;
 }
 
-/// Of rigid things nowhere, of others near the joint, where they are in each other's way.
+/// Between rigid parts no contact at all, otherwise none near the joint, where they would obstruct each other.
 double clearance(const Robot& robot, const JointSpec& spec, const std::array<End, 2>& ends) {
     if (spec.clearance) return robot.unit_m * *spec.clearance;
     if (ends[0].object >= 0 && ends[1].object >= 0) return std::numeric_limits<double>::infinity();

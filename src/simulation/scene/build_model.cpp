@@ -1,4 +1,4 @@
-// Ties what the robot file names by place (boxes, points, paths) to nodes of the mesh.
+// Attaches what the robot file names by position (boxes, points, paths) to nodes of the mesh.
 #include "simulation/scene/build_model.hpp"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ void add_materials(ModelDraft& draft) {
 
 /// The surface of the bodies without the walls of chambers.
 std::vector<std::array<int, 3>> skin_of(const ModelDraft& draft) {
-    std::set<std::array<int, 3>> inside;  // corners of walls, ascending
+    std::set<std::array<int, 3>> inside;  // corners of wall faces, ascending
     for (const sim::Chamber& chamber : draft.description.chambers) {
         for (const sim::WallFace& face : chamber.wall.faces) {
             std::array<int, 3> corners{};
@@ -77,10 +77,12 @@ std::optional<sim::Fluid> fluid_of(const ModelDraft& draft) {
     return fluid;
 }
 
-/// At rest the supports alone hold a robot. Contact may do what they leave, so that then it is only said; and a robot
-/// that moves in time may be free.
+/// In a quasi-static program supports must hold the robot. If contact may hold what they leave free, this is only a
+/// note; a robot that moves in time may be free.
 Status check_free_motion(const Robot& robot, sim::Description& description) {
-    if (robot.program.dynamics || !robot.joints.empty()) return {};  // what joints hold is held loosely, if at all
+    if (robot.program.dynamics || !robot.joints.empty())
+        return {};  // parts connected by joints get a tether, if
+                    // necessary
     const auto motion = sim::free_motion(description);
     if (!motion) return {};
     if (!robot.contact && !robot.fluid)
@@ -104,7 +106,8 @@ Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh) {
     add_supports(draft);
     add_plates(draft);
     add_loads(draft, attacher);
-    // Objects have nodes of their own, which cables, springs, markers and joints may be tied to, but no place selects.
+    // Objects have nodes of their own, which cables, springs, markers and joints may be attached to, but which no
+    // selector contains.
     Result<std::optional<sim::ContactRules>> contact = build_contact(robot, draft.bodies);
     Status objects = contact ? Status{} : Status(tl::unexpected(contact.error()));
     if (objects) {

@@ -1,4 +1,4 @@
-// From a robot file and its mesh to a model.
+// Builds a model from a robot file and its mesh.
 #pragma once
 
 #include "base/core/error.hpp"
@@ -8,8 +8,8 @@
 
 namespace pliant::robot {
 
-/// Ties supports, plates, loads, cables, chambers and markers to the mesh of build_mesh(). An error holds one line per
-/// problem, each with file and line.
+/// Attaches supports, plates, loads, cables, chambers and markers to the mesh of build_mesh(). The error has one line
+/// per problem, each with file and line.
 [[nodiscard]] Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh);
 
 }  // namespace pliant::robot

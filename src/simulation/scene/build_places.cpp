@@ -62,7 +62,7 @@ std::vector<int> select_on_surface(ModelDraft& draft, const SurfaceSelector& sel
     return nodes;
 }
 
-/// The nodes that a selector catches; `kind`, `name` and `line` are for messages.
+/// The nodes inside a selector; `kind`, `name` and `line` are for messages.
 std::vector<int> select(ModelDraft& draft, const Selector& selector, std::string_view kind, const std::string& name,
                         int line) {
     const auto& points = draft.description.mesh.points;
@@ -146,14 +146,14 @@ void add_load_on_faces(ModelDraft& draft, const LoadSpec& load, const Selector& 
         {load.name, std::move(shares.nodes), std::move(shares.shares), load.force_N, load.share});
 }
 
-/// Each of the nodes takes an equal part.
+/// Distributes the load equally to the nodes.
 void add_evenly(ModelDraft& draft, const LoadSpec& load, const std::vector<int>& nodes) {
     draft.description.loads.push_back({load.name, nodes,
                                        std::vector<double>(nodes.size(), 1.0 / static_cast<double>(nodes.size())),
                                        load.force_N, load.share});
 }
 
-/// Of a mesh, the nodes that have tets: others are of nothing.
+/// Only nodes that belong to tets; others belong to nothing.
 void add_load_on_nodes(ModelDraft& draft, const LoadSpec& load, const Selector& selector) {
     const std::size_t before = draft.problems.size();
     const std::vector<int> nodes = select(draft, selector, "load", load.name, load.line);
@@ -162,7 +162,7 @@ void add_load_on_nodes(ModelDraft& draft, const LoadSpec& load, const Selector& 
     if (!nodes.empty()) add_evenly(draft, load, nodes);
 }
 
-/// The sum of `shares[i]` times what the points ride on.
+/// Applies the load to the sum of `shares[i]` times the attachments of the points.
 void add_load_at(ModelDraft& draft, const LoadSpec& load, const std::vector<sim::Attachment>& points,
                  const std::vector<double>& shares) {
     std::map<int, double> sum;
@@ -190,8 +190,8 @@ void add_load_at_points(ModelDraft& draft, const sim::Attacher& attacher, const 
     add_load_at(draft, load, points, std::vector<double>(points.size(), 1.0 / static_cast<double>(points.size())));
 }
 
-/// By Gauss' rule of two points on pieces that are short beside a tet: exact for what is linear along the line, so that
-/// force and moment are.
+/// By the two-point Gauss rule on pieces that are short compared with a tet: exact for linear functions along the line,
+/// so that force and moment are correct.
 void add_load_on_line(ModelDraft& draft, const sim::Attacher& attacher, const LoadSpec& load, const LoadLine& line) {
     const double edge =
         std::cbrt(mesh::volume(draft.bodies) / static_cast<double>(draft.bodies.tet_count())) / draft.robot.unit_m;
@@ -221,7 +221,7 @@ void add_load_on_rigid(ModelDraft& draft, const LoadSpec& load, const std::vecto
         draft.description.torques.push_back({load.name, nodes, load.torque_Nm, load.share});
 }
 
-/// By the name that the load gives; a problem names those that there are.
+/// Finds the thing that the load names; the problem message lists those that exist.
 template <class Thing>
 const Thing* find_rigid(ModelDraft& draft, const LoadSpec& load, std::string_view kind,
                         const std::vector<Thing>& things) {
@@ -249,7 +249,7 @@ void add_load(ModelDraft& draft, const sim::Attacher& attacher, const LoadSpec& 
         add_load_on_rigid(draft, load, plate->nodes);
 }
 
-/// Four masses that together have its center and inertia (mesh::equal_mass_points), on a frame of the material.
+/// Four masses with the given centre and inertia (mesh::equal_mass_points), on a frame of the material.
 void add_rigid_mass(ModelDraft& draft, const sim::AttachedFrame& frame, const MassSpec& spec) {
     mesh::MassProperties body;
     body.volume = spec.mass_kg;

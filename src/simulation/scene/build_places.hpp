@@ -1,5 +1,5 @@
-// Supports, plates, loads and markers: what the robot file ties to a box, a plane, a sphere, a surface, nodes or a
-// point.
+// Builds supports, plates, loads and markers, which the robot file places by a box, a plane, a sphere, a surface, nodes
+// or a point.
 #pragma once
 
 #include <optional>
@@ -12,31 +12,31 @@
 
 namespace pliant::robot {
 
-// Each adds to the draft's description, or to its problems where a place holds nothing of the mesh.
+// Each adds to the draft's description, or to its problems if a selector contains nothing of the mesh.
 void add_supports(ModelDraft& draft);
 void add_plates(ModelDraft& draft);
 void add_loads(ModelDraft& draft, const sim::Attacher& attacher);
-/// Those on objects, once these are there.
+/// Loads on objects, after the objects have been added.
 void add_loads_on_objects(ModelDraft& draft);
-/// `attacher`: of the draft's bodies.
+/// `attacher`: for the draft's bodies.
 void add_markers(ModelDraft& draft, const sim::Attacher& attacher);
 void add_masses(ModelDraft& draft, const sim::Attacher& attacher);
 
-/// What is tied to a point, for messages; `kinds`: plural of `kind`.
+/// Something attached to a point, for messages; `kinds`: plural of `kind`.
 struct Place {
     std::string_view kind, kinds;
     const std::string& name;
     int line;
-    double radius_m;  ///< of the material that carries it; 0: the tet that holds it
+    double radius_m;  ///< of the material that carries it; 0: the tet that contains it
 };
-/// What a point, in length units, rides on; nothing where it lies outside every body, which is then said.
+/// Attaches a point, in length units; empty if it lies outside every body, which is reported as a problem.
 [[nodiscard]] std::optional<sim::Attachment> carried(ModelDraft& draft, const sim::Attacher& attacher,
                                                      const Vec3& point, const Place& what);
-/// The nodes that a selector catches; `kind`, `name` and `line` are for messages.
+/// The nodes inside a selector; `kind`, `name` and `line` are for messages.
 [[nodiscard]] std::vector<int> caught_nodes(ModelDraft& draft, const Selector& selector, std::string_view kind,
                                             const std::string& name, int line);
 
-/// Faces of the bodies' surface as the air outside of them sees them: their normals point into the bodies.
+/// Faces of the bodies' surface as a wall seen from the outside air: their normals point into the bodies.
 [[nodiscard]] sim::Wall pressed_wall(const ModelDraft& draft, std::vector<mesh::Face> faces);
 
 }  // namespace pliant::robot

@@ -59,7 +59,7 @@ private:
         keep(std::move(sensor));
     }
 
-    /// Axes that turn as little as they can from section to section.
+    /// Axes with minimal rotation from section to section.
     void add(const BackboneSensorSpec& what) {
         sim::BackboneSensor sensor;
         Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
@@ -76,7 +76,7 @@ private:
         keep(std::move(sensor));
     }
 
-    /// The triangles of the surface whose three corners it catches.
+    /// The triangles of the surface with all three corners inside its selector.
     void add(const ContactSensorSpec& what) {
         if (!draft_.description.contact)
             return problem("nothing can touch; give [contact], an [[obstacle]] or an [[object]]");
@@ -116,7 +116,7 @@ private:
         keep(std::move(sensor));
     }
 
-    /// What a marker rides on, or the centre of mass of an object.
+    /// The attachment of a marker, or of the centre of mass of an object.
     sim::Attachment named(const std::string& name) {
         for (const sim::Marker& marker : draft_.description.markers) {
             if (marker.name == name) return marker.point;
@@ -140,7 +140,8 @@ private:
         keep(std::move(sensor));
     }
 
-    /// At its centre of mass; the gradients are those of the affine function that is 1 at one node and 0 at the others.
+    /// At its centre of mass; the gradients are those of the affine functions that are 1 at one node and 0 at the
+    /// others.
     sim::AttachedFrame frame_of_object(const std::string& name) {
         const auto& objects = draft_.description.objects;
         const auto object = std::ranges::find(objects, name, &sim::FreeObject::name);

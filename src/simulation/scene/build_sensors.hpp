@@ -1,4 +1,4 @@
-// Sensors of the robot file on the mesh.
+// Builds the sensors of the robot file.
 #pragma once
 
 #include "simulation/actuators/attach.hpp"
@@ -6,8 +6,8 @@
 
 namespace pliant::robot {
 
-/// Adds all sensors to the draft's description, or to its problems. Preconditions: objects and contact are there.
-/// `attacher`: of the draft's bodies.
+/// Adds all sensors to the draft's description; errors go to its problems. Preconditions: objects and contact have been
+/// added. `attacher`: for the draft's bodies.
 void add_sensors(ModelDraft& draft, const sim::Attacher& attacher);
 
 }  // namespace pliant::robot

@@ -40,7 +40,7 @@ distance = "0.2 mm"
            "\n[[object]]\nname = \"it\"\n" + object + "\n[program]\n" + program;
 }
 
-/// A soft block that nothing holds, in the same fluid.
+/// A free soft block in the same fluid.
 std::string block(const std::string& fluid, const std::string& program, double density = 600) {
     return fmt::format(R"(
 name = "block"

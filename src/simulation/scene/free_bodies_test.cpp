@@ -1,5 +1,5 @@
-// Bodies that nothing holds, from the robot file to where they get: against closed forms. PLIANT_BOUNCING_STEPS makes
-// the run over which energy is watched longer (400 unless told).
+// Free bodies, from the robot file to their motion, against closed forms. PLIANT_BOUNCING_STEPS makes the run over
+// which energy is observed longer (default 400).
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double g = 9.81;
 
-/// A small clamped cube, which takes no part, and what the test adds; the ground is z = 0.
+/// A small clamped cube, which takes no part, and additions of the test; the ground is z = 0.
 std::string world(const std::string& more, const std::string& program, double distance_mm = 0.2) {
     return R"(
 name = "free"
@@ -58,7 +58,7 @@ Run run(const std::string& text) {
     return {std::move(built), std::move(result)};
 }
 
-/// A ground with friction under gravity that is tilted by `angle`, which is the same as a slope.
+/// A ground with friction, with gravity tilted by `angle`, which is equivalent to a slope.
 std::string slope(double friction) {
     return fmt::format(
         "[[obstacle]]\nname = \"ground\"\nplane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\nfriction = {}\n",
@@ -184,8 +184,8 @@ angular_velocity = [3, -8, 2]
                             tilted(0, 1e-3 * static_cast<double>(steps), 0.001)));
     const auto energy = [&](std::size_t k) { return r.result.steps[k].energy_J + r.result.steps[k].kinetic_energy_J; };
     const double scale = 2.8e-3 * g * 30e-3;
-    // BDF2 takes more than it should in the step of an impact, and gives it back in those after it: what counts is that
-    // energy never rises above what it was shortly before.
+    // BDF2 dissipates too much in the step of an impact, and returns it in those after it: the test is that energy
+    // never rises above what it was shortly before.
     for (std::size_t k = 1; k < r.result.steps.size(); ++k) {
         double before = energy(k - 1);
         for (std::size_t j = k > 20 ? k - 20 : 0; j < k; ++j) before = std::max(before, energy(j));
@@ -199,7 +199,7 @@ angular_velocity = [3, -8, 2]
 
 namespace {
 
-/// A soft cube of 20 mm that nothing holds, on the ground.
+/// A free soft cube of 20 mm on the ground.
 std::string soft_cube(double low_mm, const std::string& program) {
     return fmt::format(R"(
 name = "cube"
@@ -309,7 +309,7 @@ friction = 0.2
     }
 }
 
-TEST_CASE("what cannot be is told in one line") {
+TEST_CASE("impossible scenes are reported in one line") {
     using robot::testing::check_problem;
     const std::string still = "steps = 1\n";
     const auto object = [&](const std::string& keys) { return world("[[object]]\nname = \"it\"\n" + keys, still); };

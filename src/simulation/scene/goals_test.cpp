@@ -1,4 +1,4 @@
-// Goals and ranges of a robot file: what they become, and the slips that people make.
+// Goals and ranges of a robot file: how they are read, and typical errors.
 #include <doctest/doctest.h>
 
 #include <fstream>

@@ -13,9 +13,10 @@
 namespace pliant::robot {
 namespace {
 
-constexpr double anywhere = std::numeric_limits<double>::infinity();  // the model has been built: nothing is too far
+constexpr double anywhere = std::numeric_limits<double>::infinity();  // the model was built before: no distance is too
+                                                                      // large
 
-/// The object that a point rides on, if it does.
+/// The object that a point is attached to, if any.
 std::optional<std::size_t> object_of(const sim::Description& d, const sim::Attachment& point) {
     for (std::size_t k = 0; k < d.objects.size(); ++k) {
         if (!point.nodes.empty() && point.nodes[0] == d.objects[k].nodes[0]) return k;
@@ -23,7 +24,7 @@ std::optional<std::size_t> object_of(const sim::Description& d, const sim::Attac
     return std::nullopt;
 }
 
-/// Adds the guide points of one cable or spring, which `from` names.
+/// Adds the guide points of one cable or spring, which `from` identifies.
 Status add_path(const sim::Description& d, const sim::Attacher& attacher, std::span<const double> rest,
                 std::span<const sim::Attachment> points, double radius_m, const GuideSlope& from,
                 std::vector<GuideSlope>& sum) {

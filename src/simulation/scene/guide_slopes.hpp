@@ -1,4 +1,4 @@
-// How the guide points of a robot's cables and springs are tied to its mesh, as they move.
+// Derivatives of the attachments of a robot's cables and springs with respect to their guide points.
 #pragma once
 
 #include <string>
@@ -12,15 +12,15 @@
 namespace pliant::robot {
 
 struct GuideSlope {
-    std::string name;  ///< for people: cable "left": point 2
+    std::string name;  ///< for people, such as: cable "left": point 2
     bool of_spring = false;
-    std::size_t path = 0, point = 0;  ///< of the description's cables or springs
+    std::size_t path = 0, point = 0;  ///< indices into the description's cables or springs, and their points
     Vec3 rest_m;
     sim::AttachmentSlope slope;
 };
 
-/// Those of cables, then those of springs, in the order of the model's description: with guides at crossings those
-/// count, too. `model`: of build_model() for this robot.
+/// For all cables, then all springs, in the order of the model's description; includes guide points placed at
+/// crossings. `model`: from build_model() for this robot.
 [[nodiscard]] Result<std::vector<GuideSlope>> guide_slopes(const Robot& robot, const sim::Model& model);
 
 }  // namespace pliant::robot

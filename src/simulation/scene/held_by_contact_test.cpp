@@ -1,5 +1,5 @@
-// Robots and objects that nothing holds but contact and friction, from the robot file on: a grip that does not creep,
-// several robots in one scene, and what an equilibrium leaves open.
+// Robots and objects held only by contact and friction, from the robot file on: a grip that does not creep, several
+// robots in one scene, and the motions that an equilibrium leaves free.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -104,9 +104,9 @@ TEST_CASE("several robots in one scene: each stands for itself, and one that sta
                                                   "stiffness_damping = 0.002\ngravity = [0, 0, -9.81]\n"));
     const sim::Step& last = stacked.steps.back();
     CHECK(last.contacts[0].force_N.z == near(16e-3 * g, {.relative = 0.01}));
-    CHECK(last.self_contact_N == near(8e-3 * g, {.relative = 0.02}));  // what the lower one carries
+    CHECK(last.self_contact_N == near(8e-3 * g, {.relative = 0.02}));  // the weight that the lower one carries
     CHECK(last.markers[1].position_m.z == near(30e-3, {.absolute = 0.5e-3}));
-    CHECK(last.smallest_distance_m > -0.1e-3);  // the ground is drawn in by less than the distance of contact
+    CHECK(last.smallest_distance_m > -0.1e-3);  // the ground is inset by less than the contact distance
 }
 
 TEST_CASE("what contact, friction and gravity leave open is said in one line, and nothing where they hold") {

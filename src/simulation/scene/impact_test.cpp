@@ -1,5 +1,5 @@
-// What falls, bounces and comes to rest, in every formula of steps in time. PLIANT_BOUNCING_STEPS makes the run over
-// which energy is watched longer (600 unless told).
+// Falling, bouncing and coming to rest, with every time integration scheme. PLIANT_BOUNCING_STEPS makes the run over
+// which energy is observed longer (default 600).
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -63,7 +63,8 @@ double energy(const sim::Step& step) {
 const std::string ball =
     "name = \"ball\"\ngeometry = { sphere = { center = [0, 0, 30], radius = 10 } }\ndensity = \"1000 kg/m^3\"\n";
 
-/// How high what falls from `fall` and is thrown back as fast as it lands gets, with a drag of `c` times its momentum.
+/// Height reached after falling from `fall` and rebounding with the landing speed, with a drag of `c` times the
+/// momentum.
 double rebound(double fall, double c) {
     const double dt = 1e-6;
     double z = fall, v = 0;

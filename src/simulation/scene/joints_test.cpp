@@ -1,4 +1,4 @@
-// Joints from the robot file to where they get, against closed forms.
+// Joints, from the robot file to their motion, against closed forms.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -326,7 +326,8 @@ TEST_CASE("slips in joints are told in one line") {
     check("kind = \"motor\"\naxis = [0, 0, 1]\n" + held, "a motor takes angle or torque");
     check("kind = \"motor\"\naxis = [0, 0, 1]\nangle = \"3 deg\"\ntorque = \"1 N*m\"\n" + held,
           "takes one of angle and torque");
-    check("kind = \"motor\"\naxis = [0, 0, 1]\ntorque = \"1 N\"\n" + held, "unknown unit \"N\"; here the units are N mm");
+    check("kind = \"motor\"\naxis = [0, 0, 1]\ntorque = \"1 N\"\n" + held,
+          "unknown unit \"N\"; here the units are N mm");
     check("kind = \"hinge\"\naxis = [0, 0, 1]\nangle = \"3 deg\"\n" + held, "kind = \"motor\"");
     check("kind = \"hinge\"\naxis = [0, 0, 1]\nlimits = [10, 20]\n" + held, "must lie between them");
     check("kind = \"slider\"\naxis = [0, 0, 1]\nangle = \"3 deg\"\n" + held, "a slider takes position or force");

@@ -11,10 +11,10 @@
 namespace pliant::robot {
 namespace {
 
-/// Points this far outside, as a share of the robot's size, still count as on its surface.
+/// Points this far outside, as a share of the robot's size, still count as on the surface.
 constexpr double surface_share = 1e-3;
 
-/// So far outside, as a share of the mean edge, the bulge lies that a chord cuts off which is as long as the radius.
+/// As a share of the mean edge: the distance by which a chord as long as the radius cuts off an arc.
 constexpr double reach_share = 1.0 / 8;
 
 double mean_edge(const mesh::TetMesh& mesh) {
@@ -26,7 +26,7 @@ double mean_edge(const mesh::TetMesh& mesh) {
     return sum / std::max(6.0 * static_cast<double>(mesh.tet_count()), 1.0);
 }
 
-/// Gives every notch of a region but the first a region of its own, at the end; gives those.
+/// Gives every notch of a region except the first a new region at the end; returns those.
 std::vector<int> part_notches(mesh::TetMesh& mesh, int region) {
     DisjointSets sets(mesh.points.size());
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
@@ -76,7 +76,7 @@ ModelDraft::ModelDraft(const Robot& the_robot, mesh::TetMesh mesh) : robot(the_r
     tolerance = surface_share * box.diagonal();
     point_reach = std::max(
         tolerance, robot.mesh.point_reach ? robot.unit_m * *robot.mesh.point_reach : reach_share * mean_edge(bodies));
-    // The nodes of a mesh file are the user's own numbers, taken as they are; those of our mesher carry rounding.
+    // The nodes of a mesh file are the user's own numbers, taken exactly; those of our mesher have rounding errors.
     box_margin = robot.mesh.file ? 0 : 1e-9 * box.diagonal();
 }
 

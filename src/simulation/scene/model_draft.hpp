@@ -1,4 +1,4 @@
-// A model in the making: the mesh, what has been tied to it so far, and what went wrong.
+// A model under construction: the mesh, what has been attached to it so far, and the problems found.
 #pragma once
 
 #include <functional>
@@ -25,37 +25,38 @@ struct ModelDraft {
     /// Adds FILE:LINE: KIND "NAME": TEXT to the problems.
     void problem(int line, std::string_view kind, std::string_view name, const std::string& text);
 
-    /// A point in the robot file's unit, for messages.
+    /// A point in the robot file's unit, as text for messages.
     [[nodiscard]] std::string show(const Vec3& p_m) const;
     /// "the robot reaches from ... to ...".
     [[nodiscard]] std::string show_bounds() const;
 
-    /// Counts a point that is tied to the bodies, `distance_m` outside them.
+    /// Records a point that is attached to the bodies from `distance_m` outside them.
     void count_point(std::string_view kind, double distance_m);
-    /// What people should know of the points that were counted.
+    /// Remarks about the recorded points, for the user.
     [[nodiscard]] std::vector<std::string> notes_on_points() const;
 
     [[nodiscard]] Box3 box_of(const BoxSelector& selector) const;
-    /// Index of a region of `whole`. Precondition: it is there.
+    /// Index of a region of `whole`. Precondition: it exists.
     [[nodiscard]] std::size_t region_of(Region::Use use, std::string_view name) const;
-    /// The regions of the description's mesh that are a gap: one, or one for each notch. Precondition: gaps act.
+    /// The regions of the description's mesh that form a gap: one, or one for each notch. Precondition: the gap has
+    /// elements.
     [[nodiscard]] std::vector<int> regions_of_gap(const GapSpec& gap) const;
     /// The material of a region of `whole`. Precondition: the region has elements, and materials have been added.
     [[nodiscard]] int material_of(std::size_t region) const;
 
-    /// Where a region of `whole` is in the description's mesh. Precondition: it has elements.
+    /// Index of a region of `whole` in the description's mesh. Precondition: it has elements.
     [[nodiscard]] int kept_region(std::size_t region) const;
 
     const Robot& robot;
     mesh::TetMesh whole;             ///< regions as in regions_of()
     std::vector<int> node_of_whole;  ///< (nodes of whole) index in the description's mesh, or -1
-    sim::Description description;    ///< its mesh: the regions with elements
-    std::vector<int> notches;        ///< regions of the description's mesh: notches after the first, in their order
+    sim::Description description;    ///< with its mesh: the regions with elements
+    std::vector<int> notches;        ///< regions of the description's mesh: notches after the first, in order
     mesh::TetMesh bodies;            ///< the description's mesh without actuated space
     Box3 box;                        ///< of the description's mesh
-    double tolerance = 0;            ///< for what should lie on the surface
-    double box_margin = 0;           ///< for what should lie in a box
-    double point_reach = 0;          ///< so far outside the bodies a guide point or a marker may lie
+    double tolerance = 0;            ///< for points expected on the surface
+    double box_margin = 0;           ///< for points expected in a box
+    double point_reach = 0;          ///< how far outside the bodies a guide point or marker may lie
     std::vector<Diagnostic> problems;
 
     struct Points {

@@ -1,5 +1,4 @@
-// Robots that are hard on a simulator: each ends in an answer that is right, or in a sentence that says why there is
-// none.
+// Difficult robots: each gives either a correct answer or a message that explains why there is none.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 

@@ -12,7 +12,7 @@
 namespace pliant::robot {
 namespace {
 
-/// Two robots, read with the number at value +- half a step.
+/// Two robots, read with the number half a step larger and smaller.
 struct Pair {
     Robot more, less;
     double step = 0;
@@ -46,7 +46,7 @@ double size_of(const mesh::TetMesh& mesh) {
     return box.diagonal();
 }
 
-/// What cannot change by a little.
+/// Checks that what must not differ is equal.
 Status check_alike(const sim::Model& more, const sim::Model& less) {
     const sim::Description &a = more.description(), &b = less.description();
     for (std::size_t s = 0; s < a.supports.size() && s < b.supports.size(); ++s) {
@@ -76,7 +76,7 @@ Result<NumberModels> number_models(const ReadRobot& read, const Robot& robot, co
     if (!drawn) return refused(drawn.error());
     auto motion = shape_motion(robot, {drawn->more, drawn->less, drawn->step}, mesh);
     if (!motion) return refused(motion.error());
-    // Nodes move by so little that a box of a support still holds them, and by enough for rounding not to show.
+    // The step is small enough that a support's box contains the same nodes, and large enough to limit rounding errors.
     const double speed = fastest(*motion);
     const double half = speed > 0 ? std::min(of_number * scale, of_size * size_of(mesh) / speed) : of_number * scale;
     const Result<Pair> pair = read_around(read, parameter, value, half);

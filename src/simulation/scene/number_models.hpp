@@ -1,4 +1,5 @@
-// A robot with a little more and a little less of one number of its drawing, on the same mesh, moved along.
+// Two copies of a robot with one number of its drawing slightly larger and smaller, on the same mesh, whose nodes
+// follow.
 #pragma once
 
 #include <functional>
@@ -14,13 +15,14 @@ namespace pliant::robot {
 
 struct NumberModels {
     sim::Model more, less;
-    double step = 0;           ///< by how much they differ
-    std::vector<Vec3> motion;  ///< (nodes of the mesh) m for each unit of the number
+    double step = 0;           ///< difference between the two values
+    std::vector<Vec3> motion;  ///< (nodes of the mesh) m per unit of the number
 };
 
-/// `read`: reads the robot with these assignments on top of its own; `mesh`: of build_mesh(robot, ...), m. Differences
-/// between the two, over `step`, are derivatives to about eight digits. Errors: of shape_motion(); the number decides
-/// which nodes a support holds, or what there is at all; of a robot with another number.
+/// `read`: reads the robot with these assignments in addition to its own; `mesh`: from build_mesh(robot, ...), m.
+/// Differences between the two, divided by `step`, are derivatives to about eight digits. Errors: those of
+/// shape_motion(); the number changes which nodes a support holds, or what the robot consists of; those of the modified
+/// robots.
 [[nodiscard]] Result<NumberModels> number_models(
     const std::function<Result<Robot>(const std::vector<std::string>& assignments)>& read, const Robot& robot,
     const mesh::TetMesh& mesh, const std::string& parameter, double value);

@@ -1,4 +1,4 @@
-// Gradients by numbers of a drawing against programs on meshes that have moved by more than a little.
+// Gradients with respect to numbers of a drawing, against programs on meshes with larger changes.
 #include "simulation/scene/number_models.hpp"
 
 #include <doctest/doctest.h>

@@ -9,7 +9,7 @@
 namespace pliant::robot {
 namespace {
 
-/// What lies on the surface is inside once it is moved a little towards the middle.
+/// True if a point is inside; one on the surface is inside after a small shift towards the middle.
 bool holds(const sim::FreeObject& object, const Vec3& middle, const Vec3& point, double tolerance) {
     const Vec3 way = middle - point;
     const double length = norm(way);

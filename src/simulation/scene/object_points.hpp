@@ -1,4 +1,4 @@
-// Points that ride on objects.
+// Points attached to objects.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,11 @@
 
 namespace pliant::robot {
 
-/// The four nodes of an object and what carries points near `center`, metres, anywhere.
+/// The four nodes of an object, with the weights for points near `center`, metres (valid anywhere).
 [[nodiscard]] sim::AffinePatch patch_of_object(const sim::Description& description, std::size_t object,
                                                const Vec3& center);
 
-/// What carries a point that lies outside all bodies and in or on an object; nothing else. `attacher`: of the bodies.
+/// Attaches a point that lies outside all bodies and in or on an object; otherwise empty. `attacher`: for the bodies.
 [[nodiscard]] std::optional<sim::Attachment> carried_by_object(const ModelDraft& draft, const sim::Attacher& attacher,
                                                                const Vec3& point);
 

@@ -59,7 +59,7 @@ void check_pull(const sim::Trajectory& result) {
     for (const sim::Step& step : result.steps) {
         CHECK(step.min_J > 0);
         CHECK(step.residual <= 1e-4);
-        CHECK(step.cables[0].tension_N >= tension);  // pulling on never gets easier before the flanks meet
+        CHECK(step.cables[0].tension_N >= tension);  // tension increases until the flanks meet
         tension = step.cables[0].tension_N;
     }
     const sim::Step& last = result.steps.back();
@@ -127,7 +127,7 @@ TEST_CASE("with self-contact the finger goes to 75 mm of pull, where its flanks 
         CHECK(step.residual <= 1e-4);
         CHECK(step.min_J > 0);
         CHECK(step.smallest_distance_m > 0);
-        CHECK(step.cables[0].tension_N >= before);  // closed flanks only make it stiffer
+        CHECK(step.cables[0].tension_N >= before);  // closed flanks only increase the stiffness
         before = step.cables[0].tension_N;
     }
     CHECK(result.steps.back().self_contact_N > 10);
@@ -143,7 +143,7 @@ TEST_CASE("the pneunet grows by 300 %, past the largest pressure that it can hol
     CHECK(grown.steps.back().chambers[0].pressure_Pa < highest);
     CHECK(grown.steps.back().chambers[0].volume_ratio == near(4.5, {.relative = 1e-6}));
 
-    // Driven by pressure it gets there and no further, keeps what it has, and says so.
+    // With pressure control it stops at the maximum, keeps the results so far, and says so.
     const sim::Trajectory pressed = simulate(pneunet("pressure = \"150 kPa\"", 30));
     CHECK_FALSE(pressed.converged);
     CHECK(pressed.message.find("its pressure has a maximum of") != std::string::npos);

@@ -1,4 +1,4 @@
-// The one way from a robot to its model: what the library, the command line and the studio begin with.
+// Builds a model from a robot: the common entry point of the library, the command line and the studio.
 #pragma once
 
 #include <string>
@@ -11,20 +11,20 @@
 
 namespace pliant::robot {
 
-/// A robot and its model: all that there is before anything moves.
+/// A robot and its model, before any step.
 struct Scene {
     Robot robot;
     sim::Model model;
-    std::vector<std::string> mesh_notes;  ///< what was done to the geometry, a sentence each
+    std::vector<std::string> mesh_notes;  ///< changes made to the geometry, one sentence each
     double mesh_s = 0;                    ///< wall time of meshing, or of reading the mesh
-    double model_s = 0;                   ///< and of tying everything to it
+    double model_s = 0;                   ///< wall time of building the model
 };
 
-/// Meshes the bodies, or reads the mesh that the robot names, and builds the model. Errors: of build_mesh() and
+/// Meshes the bodies, or reads the mesh that the robot names, and builds the model. Errors: those of build_mesh() and
 /// build_model(); cancelled.
 [[nodiscard]] Result<Scene> build_scene(Robot robot, Progress& progress);
 
-/// The same with a mesh that is at hand, in metres. Errors: of take_mesh() and build_model().
+/// The same with a given mesh, in metres. Errors: those of take_mesh() and build_model().
 [[nodiscard]] Result<Scene> build_scene(Robot robot, mesh::TetMesh mesh_m);
 
 }  // namespace pliant::robot

@@ -1,4 +1,4 @@
-// Sensors of the robot file, from the file to what they read: against closed forms.
+// Sensors, from the robot file to their readings, against closed forms.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// From a robot file to its run, for tests: what goes wrong on the way ends the test.
+// Runs a robot file for tests: any error on the way ends the test.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -23,7 +23,7 @@ inline Built build(Result<Robot> robot) {
     return std::move(*scene);
 }
 
-/// What is wrong with a text, whether that shows on reading or on building; "" if nothing.
+/// The error for a text, whether from reading or from building; "" if there is none.
 inline std::string problem(const std::string& text, const std::vector<std::string>& assignments = {}) {
     Result<Robot> robot = parse_robot(text, "bar.toml", assignments);
     if (!robot) return robot.error().message;
@@ -37,7 +37,7 @@ inline void check_problem(const std::string& text, const std::string& wanted) {
     CHECK_MESSAGE(found.find(wanted) != std::string::npos, "found \"", found, "\", wanted \"", wanted, "\"");
 }
 
-/// Whether it converged is for the test to check.
+/// The test must check whether it converged.
 inline sim::Trajectory run(const Built& built) {
     Progress silent;
     return sim::run(built.model, built.robot.program, silent);

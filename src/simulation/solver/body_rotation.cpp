@@ -33,7 +33,7 @@ void BodyRotation::push_forward_motions(Eigen::MatrixXd& columns) const {
 
 void BodyRotation::pull_back_step(Eigen::VectorXd& motion, Eigen::VectorXd& force) const {
     if (!followed_) return;
-    Eigen::MatrixXd both(motion.size(), 2);  // the Laplacian solves for two at the price of one
+    Eigen::MatrixXd both(motion.size(), 2);  // the Laplacian solves for two at the cost of one
     both << motion, force;
     apply(Elements::Direction::back, both.leftCols(1));
     laplacian_->solve(both);
@@ -42,7 +42,7 @@ void BodyRotation::pull_back_step(Eigen::VectorXd& motion, Eigen::VectorXd& forc
     force = both.col(1);
 }
 
-/// columns <- G^T W R G columns, where held nodes do not move.
+/// columns <- G^T W R G columns, with held nodes fixed.
 void BodyRotation::apply(Elements::Direction direction, Eigen::Ref<Eigen::MatrixXd> columns) const {
     Eigen::VectorXd motion(before_.size()), forces(before_.size());
     for (Eigen::Index k = 0; k < columns.cols(); ++k) {

@@ -1,4 +1,4 @@
-// Reuses a factor, and L-BFGS pairs, after the body has rotated.
+// Reuses a factor, and L-BFGS pairs, after a rotation of the body.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,27 +13,27 @@ namespace pliant::sim {
 
 /// With R the rotation of each integration point since the factor was made and the Laplacian L = G^T W G,
 ///   T = L^-1 G^T W R G
-/// maps a motion of the body as it was then to the body as it is now: a motion that bent it then bends it now. An
-/// inverse stiffness H^-1 from then becomes T H^-1 T^T. Rotating the motion of each node instead would stretch the
-/// body: a uniform translation would not stay uniform. docs/theory.md, "The step solver", "Old factors".
+/// maps a motion of the old configuration to the rotated one: bending remains the same bending. An old inverse
+/// stiffness H^-1 becomes T H^-1 T^T. Rotating the motion of each node instead would stretch the body: a uniform
+/// translation would not stay uniform. docs/theory.md, "The step solver", "Old factors".
 class BodyRotation {
 public:
     BodyRotation(const Equilibrium& system, const FactoredLaplacian& laplacian)
         : system_(&system), laplacian_(&laplacian) {}
 
-    /// No rotation until the next call of follow(). `x` (3n).
+    /// Resets the rotation to none until the next call of follow(). `x` (3n).
     void begin(const Eigen::VectorXd& x);
-    /// The nodes are at `x` (3n) now. Preconditions: begin() was called; no tet is inside out.
+    /// Computes the rotation to the node positions `x` (3n). Preconditions: begin() was called; no tet is inverted.
     void follow(const Eigen::VectorXd& x);
 
-    /// The last `x` of follow() since begin(); null: there was none.
+    /// The last `x` of follow() since begin(); null if there was none.
     [[nodiscard]] const std::shared_ptr<const Eigen::VectorXd>& followed() const { return followed_; }
 
-    /// Columns (3 free, k): forces of now <- T^T forces, motions of before <- T motions.
+    /// Columns (3 free, k): current forces <- T^T forces, motions of the old configuration <- T motions.
     void pull_back_forces(Eigen::MatrixXd& columns) const;
     void push_forward_motions(Eigen::MatrixXd& columns) const;
-    /// A motion of now <- L^-1 G^T W R^T G motion: nearly the inverse of push_forward_motions(). And the change of
-    /// force that goes with it: as pull_back_forces().
+    /// A current motion <- L^-1 G^T W R^T G motion: approximately the inverse of push_forward_motions(). And the
+    /// corresponding change of force: as pull_back_forces().
     void pull_back_step(Eigen::VectorXd& motion, Eigen::VectorXd& force) const;
 
 private:

@@ -1,4 +1,4 @@
-// What is known of a body before it turned, used after: a bar bent to an arc, and one turned as a whole.
+// Reuse of a factor after a rotation of the body: a bar bent to an arc, and one rotated as a whole.
 #include "simulation/solver/body_rotation.hpp"
 
 #include <doctest/doctest.h>
@@ -28,7 +28,7 @@ Description bar(int order) {
     return d;
 }
 
-/// Bent to an arc, every plane across still plane.
+/// Bent to an arc; plane cross-sections stay plane.
 Eigen::VectorXd bent(const Eigen::VectorXd& rest, double radius_m) {
     Eigen::VectorXd x = rest;
     for (Eigen::Index i = 0; i < x.size(); i += 3) {
@@ -89,7 +89,7 @@ struct Tangent {
 
 }  // namespace
 
-TEST_CASE("of a body that turned as a whole, motions and forces turn with it") {
+TEST_CASE("motions and forces rotate with a body rotated as a whole") {
     for (const int order : {1, 2}) {
         Bar body(order);
         const Eigen::VectorXd& rest = body.rest;
@@ -128,7 +128,7 @@ TEST_CASE("an old stiffness, turned with a bent body, stands in for the new one;
         turn.begin(before);
         turn.follow(now);
 
-        // A push at the end, and a force that is nowhere smooth.
+        // A push at the end, and a force that is smooth nowhere.
         Eigen::MatrixXd forces(old.matrix.rows(), 2);
         forces.col(0).setZero();
         forces(forces.rows() - 1, 0) = 1;
@@ -145,7 +145,7 @@ TEST_CASE("an old stiffness, turned with a bent body, stands in for the new one;
             if (k == 0) CHECK(present.energy(unturned - exact) > 0.5 * whole);
         }
 
-        // Forces go back as motions go on: the inverse stays symmetric.
+        // Forces transform with the transpose of motions: the inverse stays symmetric.
         Eigen::MatrixXd f = anything(forces.rows(), 1.3), u = anything(forces.rows(), 2.9);
         const Eigen::VectorXd f_now = f, u_before = u;
         turn.pull_back_forces(f);

@@ -1,4 +1,4 @@
-// The linear tets within quadratic ones.
+// The linear tets nested in quadratic ones.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace pliant::sim {
 
-/// Of the free nodes: those between two corners of a quadratic tet are nested in these, all others in themselves.
-/// Nothing for linear tets.
+/// For the free nodes: those between two corners of a quadratic tet are nested in these, all others in themselves.
+/// Empty for linear tets.
 [[nodiscard]] std::optional<linalg::Nesting> nest_in_corners(const Model& model);
 
 }  // namespace pliant::sim

@@ -27,7 +27,7 @@ TEST_CASE("a node on an edge is nested in the edge's free ends, a corner in itse
     REQUIRE(nesting);
     CHECK(nesting->coarse_nodes == 3 * 4);
     CHECK(nesting->ends.size() == static_cast<std::size_t>(model.free_count()));
-    // Where the coarse nodes are, by those that are corners themselves; held ones at the clamp.
+    // Positions of the coarse nodes, by those that are corners themselves; held ones at the clamp.
     std::vector<Vec3> at(static_cast<std::size_t>(nesting->coarse_nodes));
     const auto visit = [&](const auto& use) {
         for (std::size_t node = 0; node < model.free_index().size(); ++node) {

@@ -1,10 +1,11 @@
-// Four ways to turn forces into motion. The step solver asks for H^-1 times a few vectors, where H is
+// Four approximations H of the stiffness. The step solver asks for H^-1 times a few vectors, where H is
 //   local-global   the pre-factored weighted Laplacian: one step is the thesis' local and global step (A.1 to A.4)
-//   anderson       the same step, mixed with the last eight so that they cancel as much of it as they can
-//   quasi-newton   the same matrix, sharpened by the last ten steps (L-BFGS)
-//   newton         the tangent stiffness with the actuators' own stiffness, factorised anew where the last factor, with
-//                  the L-BFGS pairs collected since, is no longer expected to be quicker
-// so that elements, constraints and line search are the same for all.
+//   anderson       the same step, combined with the last eight to minimise the residual (Anderson mixing)
+//   quasi-newton   the same matrix, updated with the last ten steps (L-BFGS)
+//   newton         the tangent stiffness including that of the actuators, factorised again when the last factor, with
+//                  the L-BFGS pairs collected since, is no longer expected to be faster
+//
+// so that elements, constraints and line search are shared by all.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,11 +20,11 @@
 
 namespace pliant::sim {
 
-/// Which tangent a direction is computed with: the one that is quickest, which may be an old factor; the exact tangent
-/// of this state, if that makes a difference; or its projection, which is positive definite.
+/// Which tangent a direction is computed with: the fastest, which may be an old factor; the exact tangent of this
+/// state, if it differs; or its projection, which is positive definite.
 enum class TangentChoice { quickest, exact, projected };
 
-/// Of a state (see Evaluation), and what residual is wanted. All 0: as near to none as can be had.
+/// Errors of a state (see Evaluation), and the target residual. All 0: as accurate as possible.
 struct Errors {
     double residual = 0, violation = 0, wanted = 0;
 };
@@ -33,39 +34,39 @@ public:
     virtual ~Curvature() = default;
     [[nodiscard]] virtual Solver solver() const = 0;
     [[nodiscard]] virtual int default_iteration_limit() const = 0;
-    /// How far a step may be shortened before it counts as no good.
+    /// Smallest step length that still counts as progress.
     [[nodiscard]] virtual double smallest_share() const { return 1e-7; }
 
     /// Called at the start of each step of the program.
     virtual void restart() {}
-    /// Called before solve() at a new state, or again where its direction was no good. Both must still be there when
-    /// solve() is called. False: no H could be made, or no better one.
+    /// Called before solve() at a new state, or again if its direction was rejected. Both arguments must be valid until
+    /// solve() is called. False: H could not be computed, or not improved.
     [[nodiscard]] virtual bool refresh(const State& state, const Controls& controls, TangentChoice choice,
                                        Errors errors) = 0;
     /// columns (3 free, k) <- H^-1 columns.
     virtual void solve(Eigen::MatrixXd& columns) = 0;
-    /// Retraction: the positions that the direction `motion` (3n) leads to; to first order x + motion.
+    /// Retraction: the positions reached along the direction `motion` (3n); x + motion to first order.
     [[nodiscard]] virtual Eigen::VectorXd retract(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const {
         return x + motion;
     }
-    /// After an accepted step: how the free nodes moved and how the out-of-balance force changed at fixed
-    /// multipliers.
+    /// Called after an accepted step, with the motion of the free nodes and the change of the out-of-balance force at
+    /// fixed multipliers.
     virtual void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) {
         (void)step;
         (void)change;
     }
-    /// What it takes along into the next step; null: nothing, each step begins anew.
+    /// State to carry over into the next step; null: nothing, each step starts anew.
     [[nodiscard]] virtual std::shared_ptr<const SolverMemory> memory() const { return nullptr; }
-    /// Goes on as if `memory` had just been asked for; null: as if new.
+    /// Restores such a state; null: as if new.
     virtual void recall(const SolverMemory* memory) { (void)memory; }
-    /// After an accepted step, with the error before it and after it: updates what is known of the rate of convergence.
+    /// Called after an accepted step with the error before and after it: updates the estimated rate of convergence.
     virtual void update_convergence(double before, double after) {
         (void)before;
         (void)after;
     }
 };
 
-/// The weighted Laplacian of a model, factorised once; shared by the first three and by the prediction of each step.
+/// The weighted Laplacian of a model, factorised once; shared by the first three and by the predictor of each step.
 class FactoredLaplacian {
 public:
     explicit FactoredLaplacian(const Equilibrium& system);
@@ -74,21 +75,21 @@ public:
     /// columns (3 free, k) <- L^-1 columns.
     void solve(Eigen::Ref<Eigen::MatrixXd> columns) const;
     /// The positions (3n) that result if the rotations of a step are applied exactly at each integration point (see
-    /// RotatingStep) and the Laplacian reconciles the deformation gradients that this gives, as the global step of the
-    /// thesis does. Held nodes take their positions from `rotating.end`. After Huang et al. 2011, "Interactive shape
+    /// RotatingStep) and the resulting deformation gradients are made compatible by the Laplacian, like the global step
+    /// of the thesis. Held nodes take their positions from `rotating.end`. After Huang et al. 2011, "Interactive shape
     /// interpolation through controllable dynamic deformation".
     [[nodiscard]] Eigen::VectorXd rotate(const Equilibrium& system, const RotatingStep& rotating) const;
-    /// Free motion (3 free) that follows the given motion of all supported nodes (3n) as smoothly as possible.
+    /// Smoothest free motion (3 free) for the given motion of all supported nodes (3n).
     [[nodiscard]] Eigen::VectorXd follow(const Equilibrium& system, const Eigen::VectorXd& support_motion) const;
 
-    /// forces (3n) += what holds pieces that nothing else does, a little, and objects: the part of the Laplacian that
-    /// is not of the tets, times `motion` (3n).
+    /// forces (3n) += the part of the Laplacian that does not come from tets, times `motion` (3n): a weak hold of free
+    /// pieces, and the stiffness of objects.
     void add_hold(const Eigen::VectorXd& motion, Eigen::VectorXd& forces) const;
 
-    /// Of the tangent while nothing touches, and what is known of it: its nodes are coupled as those of the Laplacian.
+    /// Layout and analysis of the tangent without contact: its nodes are coupled like those of the Laplacian.
     [[nodiscard]] const std::shared_ptr<const TangentLayout>& tangent_layout() const;
     [[nodiscard]] const std::shared_ptr<const linalg::Analysis>& analysis() const;
-    /// Multiply-adds that its factorisation took.
+    /// Number of multiply-adds of its factorisation.
     [[nodiscard]] double work() const;
 
 private:

@@ -7,17 +7,17 @@
 namespace pliant::sim {
 namespace {
 
-constexpr std::size_t window = 8;  // 5 to 10 are usual; more costs products of vectors and remembers what is stale
+constexpr std::size_t window = 8;  // 5 to 10 are usual; more costs dot products and keeps outdated steps
 
-/// Anderson's mixing of the local-global iteration (Anderson 1965; for geometry Peng et al. 2018). One plain step is
-/// -L^-1 f. Of the last steps s_j we know how the force changed, y_j, and so how the plain step did, -L^-1 y_j. The
-/// combination of them that comes nearest to removing the plain step,
+/// Anderson acceleration of the local-global iteration (Anderson 1965; for geometry Peng et al. 2018). A plain step is
+/// -L^-1 f. For each of the last steps s_j the change of the force, y_j, and hence of the plain step, -L^-1 y_j, is
+/// known. The linear combination that minimises the plain step,
 ///
 ///     gamma = argmin | L^-1 (f - sum gamma_j y_j) |_L ,      dx = -L^-1 (f - sum gamma_j y_j) - sum gamma_j s_j
 ///
-/// is linear in f (Walker and Ni 2011, section 4; Fang and Saad 2009): it is a matrix H^-1 with H^-1 y_j = s_j, and so
-/// cables and chambers take part through A^T H^-1 A as with every other solver. Measured in L the normal equations
-/// need only L^-1 y_j, which a step has anyway.
+/// is linear in f (Walker and Ni 2011, section 4; Fang and Saad 2009): it defines a matrix H^-1 with H^-1 y_j = s_j, so
+/// that cables and chambers are included through A^T H^-1 A as in every other solver. In the norm of L the normal
+/// equations only need L^-1 y_j, which a step computes anyway.
 class Anderson final : public Curvature {
 public:
     explicit Anderson(const FactoredLaplacian& laplacian) : laplacian_(&laplacian) {}
@@ -25,17 +25,17 @@ public:
     [[nodiscard]] int default_iteration_limit() const override { return 5000; }
     void restart() override { steps_.clear(); }
 
-    /// The accelerated step has no descent to promise: cautiously, it is the plain one. What misled is forgotten, or it
-    /// would mislead again at every iteration to come, and all steps would be plain ones.
+    /// The accelerated step need not be a descent direction: if it is rejected, the plain step is used. The history is
+    /// then discarded, or it would mislead every later iteration too, and all steps would be plain ones.
     [[nodiscard]] bool refresh(const State&, const Controls&, TangentChoice choice, Errors) override {
-        if (choice == TangentChoice::exact) return false;  // there is nothing better than the usual
+        if (choice == TangentChoice::exact) return false;  // no better choice is available
         if (choice == TangentChoice::projected) steps_.clear();
         mixing_ = !steps_.empty();
         if (mixing_) factorise();
         return true;
     }
 
-    /// If it is not good at nearly full length, it is not good: the plain step is at hand.
+    /// If it is not good at nearly full length, it is rejected: the plain step is available.
     [[nodiscard]] double smallest_share() const override { return mixing_ ? 0.2 : Curvature::smallest_share(); }
 
     void solve(Eigen::MatrixXd& columns) override {
@@ -69,11 +69,11 @@ private:
         Eigen::VectorXd step;
         Eigen::VectorXd change;  ///< of the force, at fixed multipliers
         Eigen::VectorXd plain;   ///< L^-1 change
-        double size;             ///< of that, measured in L: columns are scaled by it
+        double size;             ///< its norm in L, by which columns are scaled
     };
     [[nodiscard]] const Past& at(Eigen::Index j) const { return steps_[static_cast<std::size_t>(j)]; }
 
-    /// Steps that are nearly combinations of others are left out by rank.
+    /// Steps that are nearly linear combinations of others are dropped by rank.
     void factorise() {
         const auto count = static_cast<Eigen::Index>(steps_.size());
         Eigen::MatrixXd gram(count, count);

@@ -15,8 +15,8 @@ struct FactoredLaplacian::State {
     const Model* model;
     std::shared_ptr<const TangentLayout> layout;
     linalg::Cholesky factor;
-    std::vector<std::pair<int, double>> held;  ///< nodes of free pieces and objects, N/m
-    /// Which object follows its joint, from what is held on outwards.
+    std::vector<std::pair<int, double>> held;  ///< nodes of free pieces and objects, stiffness N/m
+    /// Which object follows which joint, starting from what is held.
     struct Follower {
         std::size_t joint = 0;
         int object = 0;
@@ -27,10 +27,10 @@ struct FactoredLaplacian::State {
 
 namespace {
 
-/// How hard free pieces are held, beside what their nodes resist.
+/// Stiffness that holds free pieces, relative to that of their nodes.
 constexpr double small_hold = 1e-5;
 
-/// Where the straight step of a node would end, the states of the past taken into account.
+/// End of the straight step of a node, including the past states.
 Eigen::Vector3d straight_end(const RotatingStep& rotating, int node) {
     const auto at = [&](const double* x) {
         return Eigen::Map<const Eigen::Vector3d>(x + 3 * static_cast<std::size_t>(node));
@@ -44,7 +44,7 @@ Eigen::Vector3d straight_end(const RotatingStep& rotating, int node) {
     return end;
 }
 
-/// The turn of a straight step is applied exactly: (1 + S + W) becomes exp(W) (1 + S), about the centre of mass.
+/// Applies the rotation of a straight step exactly: (1 + S + W) becomes exp(W) (1 + S), about the centre of mass.
 void turn_object(const AffineBody& object, const RotatingStep& rotating, Eigen::VectorXd& end) {
     const std::span<const double> now(rotating.now, static_cast<std::size_t>(end.size()));
     for (const int node : object.nodes()) end.segment<3>(3 * node) = straight_end(rotating, node);
@@ -60,8 +60,8 @@ void turn_object(const AffineBody& object, const RotatingStep& rotating, Eigen::
     for (const int node : object.nodes()) end.segment<3>(3 * node) = to + whole * (linalg::view(now, node) - from);
 }
 
-/// The rotation term says nothing of how free pieces move as a whole: all of them as the mean of their nodes would on
-/// straight ways.
+/// The rotation term does not determine the rigid motion of free pieces: they move with the mean of their nodes in the
+/// straight step.
 void carry_free_pieces(const Model& model, const RotatingStep& rotating, Eigen::VectorXd& end) {
     for (const std::vector<int>& piece : model.free_pieces()) {
         Eigen::Vector3d shift = Eigen::Vector3d::Zero();
@@ -71,7 +71,7 @@ void carry_free_pieces(const Model& model, const RotatingStep& rotating, Eigen::
     }
 }
 
-/// Every object once, after what it hangs on; of objects that hang on each other alone one is left where it is.
+/// Visits every object once, after the one it is connected to; one of each closed group of objects stays where it is.
 template <class Follower>
 std::vector<Follower> order_of_joints(const Description& d) {
     std::vector<bool> known(d.objects.size(), false);
@@ -96,7 +96,8 @@ std::vector<Follower> order_of_joints(const Description& d) {
     return order;
 }
 
-/// The thesis' iteration: every tet's target shape against the current one, reconciled by the constant matrix.
+/// The thesis' iteration: the target shape of every tet is compared with the current one, made compatible by the
+/// constant matrix.
 class LocalGlobal final : public Curvature {
 public:
     explicit LocalGlobal(const FactoredLaplacian& laplacian) : laplacian_(&laplacian) {}
@@ -123,7 +124,7 @@ FactoredLaplacian::FactoredLaplacian(const Equilibrium& system) {
     for (const Actuator& actuator : system.actuators()) {
         if (actuator.gaps() != nullptr) actuator.gaps()->add_laplacian(model.free_index(), scalar, values);
     }
-    // It knows no directions: a node that is held in some of them is held a little in all, so that the body is held.
+    // The Laplacian is scalar: a node held in some directions is weakly held in all, so that the body is held.
     for (const FreeRoller& roller : system.rollers()) {
         double& diagonal = values[static_cast<std::size_t>(scalar.node_start[static_cast<std::size_t>(roller.free)])];
         diagonal *= 1 + (3 - roller.may_move.trace()) / 3;
@@ -131,13 +132,13 @@ FactoredLaplacian::FactoredLaplacian(const Equilibrium& system) {
     state_ = std::make_unique<State>(State{&model, std::move(layout), linalg::Cholesky(scalar), {}, {}});
     state_->followers = order_of_joints<State::Follower>(model.description());
     hold_free_pieces(system, scalar, values);
-    // Positive definite by construction: every piece is held, by supports or here, and every weight is positive.
+    // Positive definite by construction: every piece is held, by supports or here, and all weights are positive.
     [[maybe_unused]] const bool done = state_->factor.factorise(values);
     state_->factor.release_work_space();
 }
 
-/// Pieces that no support holds are held a little at all nodes, and objects by nothing but that: the Laplacian then
-/// knows which way they go, though not how easily.
+/// Pieces without support are weakly held at all nodes, and objects have only this stiffness: the Laplacian then gives
+/// the direction of their motion, but not its size.
 void FactoredLaplacian::hold_free_pieces(const Equilibrium& system, const linalg::SymmetricPattern& scalar,
                                          std::span<double> values) {
     const Model& model = system.model();
@@ -198,7 +199,7 @@ Eigen::VectorXd FactoredLaplacian::follow(const Equilibrium& system, const Eigen
     return motion;
 }
 
-/// Conjugate gradients on the Laplacian of what may move, with the factor as preconditioner.
+/// Conjugate gradients on the Laplacian restricted to free directions, with the factor as preconditioner.
 Eigen::VectorXd FactoredLaplacian::follow_on_rollers(const Equilibrium& system, const Eigen::VectorXd& forces) const {
     constexpr int most_rounds = 60;
     constexpr double enough = 1e-3;
@@ -245,7 +246,7 @@ Eigen::VectorXd FactoredLaplacian::rotate(const Equilibrium& system, const Rotat
     return end;
 }
 
-/// A turn about its own centre takes an object off its joints, which a straight step keeps: it is shifted back.
+/// A rotation about its own centre moves an object off its joints, which a straight step preserves: it is shifted back.
 void FactoredLaplacian::keep_joined(const Equilibrium& system, const RotatingStep& rotating,
                                     Eigen::VectorXd& end) const {
     Eigen::VectorXd straight(end.size());

@@ -15,9 +15,8 @@ public:
     void restart() override { memory_.clear(); }
 
     [[nodiscard]] bool refresh(const State&, const Controls&, TangentChoice choice, Errors) override {
-        if (choice == TangentChoice::exact) return false;  // there is nothing better than the usual
-        if (choice == TangentChoice::projected)
-            memory_.clear();  // the last steps misled: start from the Laplacian again
+        if (choice == TangentChoice::exact) return false;         // no better choice is available
+        if (choice == TangentChoice::projected) memory_.clear();  // the last steps misled: restart from the Laplacian
         return true;
     }
 
@@ -28,7 +27,7 @@ public:
     void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change) override {
         Eigen::VectorXd smoothed = change;
         laplacian_->solve(smoothed);
-        // Fits the Laplacian to the stiffness met in this step.
+        // Scales the Laplacian to the stiffness observed in this step.
         memory_.learn(step, change, step.dot(change) / change.dot(smoothed));
     }
 

@@ -37,8 +37,8 @@ public:
 
     [[nodiscard]] double smallest_share() const override { return reused_ && !crawls() ? smallest_reused_share : 1e-7; }
 
-    /// In the step of the program after its own, an inverse is expected to do what the one before it did there; that
-    /// fades, so that it is tried again some day.
+    /// An inverse from an earlier step of the program is expected to perform as its predecessor did; this expectation
+    /// fades, so that reuse is tried again eventually.
     void restart() override {
         hasty_ = false;
         left_by_new_ = 0;
@@ -50,7 +50,9 @@ public:
     [[nodiscard]] bool refresh(const State& state, const Controls& controls, TangentChoice choice,
                                Errors errors) override {
         const bool reuse = choice == TangentChoice::quickest && usable_ && pays(errors.residual / errors.wanted);
-        if (!reuse && choice == TangentChoice::exact && !reused_) return false;  // it is that of this state
+        if (!reuse && choice == TangentChoice::exact && !reused_)
+            return false;  // it is already the exact one of this
+                           // state
         if (reused_ && choice != TangentChoice::quickest) update_old_factor(most_left);
         reused_ = reuse;
         at_ = {&state, &controls};
@@ -63,8 +65,8 @@ public:
         return true;
     }
 
-    /// What a straight motion stretches grows with its square: a short one need not turn. A small error means a short
-    /// one, unless the body gives way to next to no force; there steps do not lead far.
+    /// The error of a straight step grows with its square: a short step needs no rotation. A small residual means a
+    /// short step, unless the body is extremely soft; then steps do not converge fast anyway.
     [[nodiscard]] Eigen::VectorXd retract(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const override {
         const Eigen::VectorXd end = x + motion;
         return straight_ ? end : laplacian_->rotate(*system_, {.now = x.data(), .end = end.data()});
@@ -101,7 +103,7 @@ public:
         memory_.set_pairs(known.pairs);
         learnt_ = known.learnt;
         if (!tangent_) {
-            if (same_pattern) inverse_ = make_inverse();  // without what the last one has learnt of its precision
+            if (same_pattern) inverse_ = make_inverse();  // without what the last one learned about its precision
             return;
         }
         rotation_.begin(tangent_->state.x);
@@ -119,7 +121,7 @@ public:
         }
         uses_ = 0;
         left_by_new_ = after < nearby ? after / before : 0;
-        // Where the very tangent does not lead far, the state is changing too much for an old one.
+        // If even the exact tangent reduces the error little, the state changes too much for an old one.
         left_ = after > hoped_left * before ? most_left : hoped_left;
         age_ = 0;
         tried_later_ = false;
@@ -136,7 +138,7 @@ public:
     }
 
 private:
-    /// The skew part wants the inverse of the very tangent.
+    /// The skew part needs the inverse of the exact tangent.
     [[nodiscard]] std::unique_ptr<TangentInverse> make_inverse() {
         if (two_levels_ && corners_) return make_nested_inverse(layout_->pattern, *corners_);
         if (two_levels_) return make_two_level_inverse(layout_->pattern);
@@ -144,39 +146,39 @@ private:
         return make_direct_inverse(analysis_, system_->has_skew());
     }
 
-    /// True if a factor from an earlier state is expected to bring the error, which is `far` times what is wanted, down
-    /// for less than a new one costs. The skew part belongs to the state at which it was made, and GMRES wants one
-    /// matrix.
+    /// True if a factor from an earlier state is expected to reduce the error, which is `far` times the tolerance, at
+    /// less than the cost of a new one. The skew part belongs to the state at which it was computed, and GMRES needs a
+    /// single matrix.
     [[nodiscard]] bool pays(double far) const {
         if (system_->has_skew()) return false;
         if (crawls()) return true;
         return !hasty_ && std::max(1.0, std::log(far) / -std::log(left_)) <= inverse_->factorisation_cost();
     }
 
-    /// True where, close to equilibrium, the very tangent hardly leads on: it had to be made positive definite, which
-    /// hides how easily the body goes where it wants to buckle. A few steps with one inverse teach that (StepMemory),
-    /// however short they are.
+    /// True if, close to equilibrium, even the exact tangent makes little progress: it had to be made positive
+    /// definite, which hides how soft the body is in its buckling direction. A few steps with one inverse reveal that
+    /// (StepMemory), however short they are.
     [[nodiscard]] bool crawls() const {
         return share_ > 0 && left_by_new_ > hopeless && uses_ < static_cast<int>(most_steps);
     }
 
-    /// How well to solve for a step (an inexact Newton method: Dembo, Eisenstat and Steihaug 1982). Far from
-    /// equilibrium the step leaves a good part of the error however well it is solved for; close to it a digit that is
-    /// found is one that the next step need not find.
+    /// Accuracy of the linear solve for a step (an inexact Newton method: Dembo, Eisenstat and Steihaug 1982). Far from
+    /// equilibrium the step leaves a good part of the error however accurate the solve; close to it each further digit
+    /// is one that the next step need not find.
     [[nodiscard]] static double solution_error(double now, double wanted) {
         if (now > nearby) return largest_solution_error;
         if (now <= 0) return 0;
         return std::min(share_of_wanted * wanted / now, largest_solution_error);
     }
 
-    /// A step with an inverse from an earlier state left so much of the error.
+    /// Records the error left by a step with an inverse from an earlier state.
     void update_old_factor(double left) {
         left_ = left;
         hasty_ = left > slow;
         if (age_ > 0 && !std::exchange(tried_later_, true)) left_at_first_ = left;
     }
 
-    /// What the last step taught, as it would have been where the factor was made.
+    /// Stores the last step pair, rotated back to the state where the factor was made.
     void remember() {
         if (!learnt_) return;
         Eigen::VectorXd step = learnt_->step, change = learnt_->change;
@@ -194,7 +196,7 @@ private:
             inverse_ = make_inverse();
             usable_ = false;
         }
-        // Only solving showed that the tangent is indefinite.
+        // Indefiniteness was only detected while solving.
         while (outcome == Outcome::indefinite && !reused_ && share_ < 1 &&
                project(share_ == 0 ? smallest_share_of_projection : std::min(4 * share_, 1.0))) {
             columns = right;
@@ -202,8 +204,8 @@ private:
         }
     }
 
-    /// The tangent itself or, where it is not positive definite, as much of its positive projection as it takes: a
-    /// little keeps the direction in which the body wants to buckle, all of it is safe but slow.
+    /// Sets the tangent itself or, if it is not positive definite, with the smallest sufficient share of its positive
+    /// projection: a small share preserves the buckling direction, the full projection is safe but slow.
     [[nodiscard]] bool take_tangent(bool cautious) {
         make_room_for_contact();
         cautious_ = cautious;
@@ -221,7 +223,7 @@ private:
         return project(cautious ? 1 : std::max(0.5 * share_wanted_, smallest_share_of_projection));
     }
 
-    /// The tangent with `share` of its projection, or as much more as it takes.
+    /// Sets the tangent with `share` of its projection, or more if necessary.
     [[nodiscard]] bool project(double share) {
         if (share_ == 0) assemble(true, projected_);
         for (; share <= 1; share *= 2) {
@@ -233,10 +235,10 @@ private:
         return false;
     }
 
-    /// (tangent + skew)^-1 b, with H^-1 as preconditioner from the right. Where H is the tangent the product is
-    /// v + skew H^-1 v. Where H had to be made positive definite it is not: the tangent's symmetric part may be
-    /// indefinite though the body is stable, as pressure on a patch with a free rim is not one of a potential, and the
-    /// steps of H would lead on by a share of the way each. Only the cautious are content with H.
+    /// (tangent + skew)^-1 b by GMRES, right-preconditioned with H^-1. If H is the tangent, the product is v + skew
+    /// H^-1 v. If H had to be made positive definite it is not: the tangent's symmetric part may be indefinite although
+    /// the body is stable, because pressure on a patch with a free rim has no potential, and steps with H alone would
+    /// each make only partial progress. They are used only for the projected choice.
     [[nodiscard]] Eigen::VectorXd solve_with_skew(const Eigen::VectorXd& b) {
         const auto precondition = [&](const Eigen::VectorXd& v) -> Eigen::VectorXd {
             Eigen::MatrixXd column = v;
@@ -254,7 +256,7 @@ private:
         return precondition(linalg::gmres(multiply, b, skew_tolerance, skew_limit));
     }
 
-    /// Contact couples nodes that no element does: where a pair is new, the pattern is made and analysed again.
+    /// Contact couples nodes that no element does: if a pair is new, the pattern is rebuilt and analysed again.
     void make_room_for_contact() {
         bool grown = false;
         for (std::vector<int>& clique : system_->contact_cliques(*at_.state, *at_.controls)) {
@@ -267,7 +269,7 @@ private:
         layout_ = std::make_shared<const TangentLayout>(system_->lay_out_tangent(touching_));
         analysis_ = nullptr;
         inverse_ = make_inverse();
-        // Pairs that have parted are forgotten next time, so that the pattern does not grow without end.
+        // Pairs that have separated are dropped next time, so that the pattern does not grow without bound.
         if (touching_.size() > most_remembered) touching_.clear();
     }
 
@@ -282,7 +284,7 @@ private:
         return true;
     }
 
-    /// Where it was taken.
+    /// Assembles at the state where the tangent was taken.
     void assemble(bool project, AlignedArray<double>& values) const {
         values.resize(layout_->pattern.entries());
         parallel_clear(values.span());
@@ -296,7 +298,7 @@ private:
                         : two_levels_are_quicker(pattern, laplacian_->work());
     }
 
-    /// False if the inverse was made anew for it.
+    /// False if the inverse had to be rebuilt for it.
     [[nodiscard]] bool recall_pattern(const SolverMemory& known) {
         room_for_ = known.touching;
         touching_ = known.forgets_touching || !room_for_ ? SolverMemory::Cliques{} : *room_for_;
@@ -321,7 +323,7 @@ private:
         inverse_->recall(share_ > 0 ? blended_.span() : values_.span(), positions_, memory);
     }
 
-    /// The tangent with its share of the projection.
+    /// Adds its share of the projection to the tangent.
     void blend() {
         blended_.resize(values_.size());
         for (std::size_t k = 0; k < values_.size(); ++k)
@@ -333,9 +335,10 @@ private:
     static constexpr double memory_of_first = 0.85;
     static constexpr double least_left = 1e-3, most_left = 0.95, slow = 0.4, hopeless = 0.9, nearby = 0.05;
     static constexpr double share_of_wanted = 0.02, largest_solution_error = 0.05;
-    static constexpr double straight_share = 0.05;  // of what is wanted, that a step may spoil by not turning
+    static constexpr double straight_share = 0.05;  // of the tolerance: error that a step without rotation may add
     static constexpr double well_led = 0.3;
-    static constexpr int most_corners = 12000;  // that make one factor; groups of nodes are fewer
+    static constexpr int most_corners = 12000;  // number of corners up to which one factor is used; groups of nodes are
+                                                // fewer
     static constexpr std::size_t most_remembered = 20000;
     static constexpr double skew_tolerance = 1e-8;
     static constexpr int skew_limit = 60;
@@ -343,25 +346,25 @@ private:
     const Equilibrium* system_;
     const FactoredLaplacian* laplacian_;
     std::shared_ptr<const TangentLayout> layout_;
-    std::shared_ptr<const linalg::Analysis> analysis_;  ///< of its pattern, once it was needed
+    std::shared_ptr<const linalg::Analysis> analysis_;  ///< of its pattern, computed on demand
     std::unique_ptr<TangentInverse> inverse_;
     AlignedArray<double> values_;     ///< tangent
-    AlignedArray<double> projected_;  ///< its positive projection, where it was needed
+    AlignedArray<double> projected_;  ///< its positive projection, computed on demand
     AlignedArray<double> blended_;
     struct {
         const State* state;
         const Controls* controls;
-    } at_{};                                  ///< what is at hand, until it is solved with
-    std::optional<linalg::Nesting> corners_;  ///< of quadratic tets, where they make the second level
+    } at_{};                                  ///< the current state, until it is solved
+    std::optional<linalg::Nesting> corners_;  ///< of quadratic tets, if they form the second level
     double enough_ = 0;                       ///< error of the next solution
-    bool straight_ = false;                   ///< the next step need not turn
+    bool straight_ = false;                   ///< the next step needs no rotation
     Eigen::VectorXd positions_;               ///< of the free nodes, where the tangent was made
     BodyRotation rotation_;                   ///< since the factor was made
-    StepMemory memory_{most_steps};           ///< of the steps since then, as the body was then
+    StepMemory memory_{most_steps};           ///< of the steps since then, rotated back to the state of the factor
     std::shared_ptr<const StepPair> learnt_;  ///< not yet in the memory
-    SolverMemory::Cliques touching_;          ///< pairs in contact for which the next pattern must have room
-    std::shared_ptr<const SolverMemory::Cliques> room_for_;  ///< that the pattern at hand has room for
-    std::shared_ptr<const SolverMemory::Tangent> tangent_;   ///< where it was made
+    SolverMemory::Cliques touching_;          ///< contact pairs to be included in the next pattern
+    std::shared_ptr<const SolverMemory::Cliques> room_for_;  ///< those included in the current pattern
+    std::shared_ptr<const SolverMemory::Tangent> tangent_;   ///< the state at which it was made
 };
 
 }  // namespace

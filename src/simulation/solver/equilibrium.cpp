@@ -16,7 +16,8 @@ namespace {
 
 using linalg::view;
 
-/// Springs of a plate beside the stiffness of an element: what bends a plate bends the body a hundred times as much.
+/// Stiffness of plate springs relative to that of an element: a load that bends the plate bends the body a hundred
+/// times as much.
 constexpr double plate_stiffness = 100;
 
 using Flaw = Evaluation::Flaw;
@@ -28,7 +29,7 @@ double distance_from(const Growth& growth, const Vec3& centre) {
     return dot(across, across);
 }
 
-/// True if no other cable that passes the same gap is nearer to the tet, nor one before it as near.
+/// True if no other cable in the same gap is nearer to the tet; ties go to the first cable.
 bool is_nearest(const Description& d, std::size_t tet, const Growth& growth) {
     Vec3 centre;
     for (const int node : d.mesh.tet(tet).first(4)) centre += 0.25 * d.mesh.points[static_cast<std::size_t>(node)];
@@ -41,7 +42,7 @@ bool is_nearest(const Description& d, std::size_t tet, const Growth& growth) {
     return true;
 }
 
-/// On the straight way from where a step begins.
+/// A state on the straight path from the start of the step.
 State on_the_way(const State& state, const Inertia& inertia, double share) {
     return {inertia.start().x + share * (state.x - inertia.start().x), state.multiplier};
 }
@@ -109,11 +110,12 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
         joints_.emplace_back(joint);
         energy_rounding_ += 1e-16 * joint.stiffness_N_m * joint.arm_m * joint.arm_m;
     }
-    // A node is a share of where it is off its place, and pulls at that with the stiffness of a tet, times its size.
+    // Rounding moves a node by a fraction of its coordinate, which causes a force of that times a tet's stiffness times
+    // its size.
     const double size = std::cbrt(volume / static_cast<double>(d.mesh.tet_count()));
     const double farthest = rest_.cwiseAbs().maxCoeff();
     force_rounding_ = 1e-16 * stiffest * farthest * size * std::sqrt(static_cast<double>(n));
-    // What is rigid is stiffer: objects by their nodes, of which each has four.
+    // Rigid things are stiffer: objects, with four nodes each.
     for (const AffineBody& object : objects()) force_rounding_ += 2e-16 * object.node_stiffness() * farthest;
     for (const JointForce& joint : joints_) force_rounding_ += 2e-16 * joint.stiffness_N_m() * farthest;
 }
@@ -143,7 +145,7 @@ Eigen::Vector3d Equilibrium::gravity_at(double time) const {
     return d.gravity_share.at(time) * linalg::vector(d.gravity_m_s2);
 }
 
-/// Of the tets of a gap that several cables pass, each one has those that are nearest to it.
+/// Of the tets of a gap that several cables pass, each cable has those that are nearest to it.
 std::optional<GapElements> Equilibrium::gap_elements_of(std::size_t cable) const {
     const Description& d = model_->description();
     std::vector<GapElements::Gap> gaps;
@@ -281,7 +283,7 @@ double Equilibrium::cable_friction_error(const State& state, std::span<const Dri
         const double violation = (actuators_[c].measure(view(state.x)) - wanted.value) / actuators_[c].rest_measure();
         const bool pulls = state.multiplier[static_cast<Eigen::Index>(c)] > 0;
         error =
-            std::max(error, pulls ? std::fabs(violation) : violation);  // a slack cable may be shorter than asked for
+            std::max(error, pulls ? std::fabs(violation) : violation);  // a slack cable may be shorter than prescribed
     }
     return error;
 }
@@ -301,7 +303,7 @@ double Equilibrium::drive_energy(const Drive& drive, std::size_t actuator, doubl
         case Drive::Kind::multiplier:
             return drive.value * g;
         case Drive::Kind::gas:
-            // Work of the ambient and of the gas between rest and g, at constant temperature.
+            // Work of the ambient pressure and of the gas between rest and g, at constant temperature.
             return model_->description().ambient_pressure_Pa * g -
                    drive.value * std::log(g / actuators_[actuator].rest_measure());
     }
@@ -442,7 +444,7 @@ double Equilibrium::potential_energy(const State& state, const Controls& control
     for (const AffineBody& object : objects()) springs += object.energy(view(state.x));
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         JointDrive drive = joint_drive(controls, j);
-        drive.dt = 0;  // what damps stores nothing
+        drive.dt = 0;  // damping stores no energy
         springs += joints_[j].energy(view(state.x), drive);
     }
     for (const Actuator& actuator : actuators_) {
@@ -559,7 +561,7 @@ void Equilibrium::add_drag_tangent(const Eigen::VectorXd& x, const Controls& con
     visit_carried(layout, values, [&](const contact::BlockVisitor& visit) { fluid_->visit_drag(motion, visit); });
 }
 
-/// Blocks between contact's nodes, of which the mesh's nodes carry some.
+/// Adds blocks between contact's nodes, transferred to the mesh nodes that carry them.
 void Equilibrium::visit_carried(const TangentLayout& layout, std::span<double> values,
                                 const std::function<void(const contact::BlockVisitor&)>& blocks) const {
     const std::vector<int>& index = index_of(layout.nodes);
@@ -723,7 +725,7 @@ void Equilibrium::add_tangent_at(const State& state, const Controls& controls, c
     add_tangent_beside_tets(state, controls, layout, values, project);
 }
 
-/// The force at a share s of the way changes with the end by s times its tangent there.
+/// The derivative of the force at share s of the path with respect to the end is s times the tangent there.
 void Equilibrium::add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                               std::span<double> values, bool project) const {
     if (controls.inertia && !controls.inertia->means().empty()) {
@@ -792,7 +794,7 @@ void Equilibrium::add_skew(const State& state, const Controls& controls, const T
                                 values);
     model_->elements().add_skew(view(state.x), index, layout.pattern, values);
     std::vector<std::size_t> patches = skew_;
-    if (layout.nodes == TangentNodes::all) {  // where its rim is held, it takes part in the force on the other nodes
+    if (layout.nodes == TangentNodes::all) {  // if its rim is held, it affects the forces on other nodes
         const std::size_t first = cable_count() + model_->description().chambers.size();
         patches.resize(actuators_.size() - first);
         std::iota(patches.begin(), patches.end(), first);

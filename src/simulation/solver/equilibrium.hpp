@@ -1,4 +1,4 @@
-// The equations of one step: forces, actuators and the residual that says how far from equilibrium a state is.
+// The equations of one step: forces, actuators and the residual that measures the distance from equilibrium.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,61 +20,62 @@
 
 namespace pliant::sim {
 
-/// Where the program wants the robot at one instant.
+/// Inputs of the program at one instant.
 struct Controls {
     double time = 0;
     Eigen::VectorXd external_N;              ///< (3n) dead loads and gravity
     std::vector<Eigen::Vector3d> torque_Nm;  ///< (torques)
-    std::vector<double> support_share;       ///< (supports) of their prescribed motion
+    std::vector<double> support_share;       ///< (supports) share of their prescribed motion
     std::vector<Drive> drives;               ///< (actuators)
-    /// (actuators) how the tension of a cable with friction drops along it, frozen at some state of this step; empty
-    /// lists where there is no friction.
+    /// (actuators) tension drop along each cable with friction, frozen at a state of this step; empty lists without
+    /// friction.
     std::vector<std::vector<double>> shares;
-    Eigen::VectorXd obstacles;  ///< (3 obstacle nodes) where the obstacles are
-    /// Friction as frozen at some state of this step; none before contact.
+    Eigen::VectorXd obstacles;  ///< (3 obstacle nodes) positions of the obstacles
+    /// Friction frozen at a state of this step; null before contact.
     std::shared_ptr<const contact::Friction> friction = nullptr;
-    std::vector<double> joint_wanted;  ///< (joints) what drives them: JointDrive::wanted
-    std::vector<double> joint_start;   ///< (joints) their coordinates where the step begins; empty: all zero
-    bool met = false;  ///< the robot has met itself: where its contact with itself waits for that, it acts
-    std::shared_ptr<const Inertia> inertia = nullptr;  ///< of a step in time; none for a robot at rest at every instant
+    std::vector<double> joint_wanted;  ///< (joints) targets of driven joints: JointDrive::wanted
+    std::vector<double> joint_start;   ///< (joints) their coordinates at the start of the step; empty: all zero
+    bool met = false;                  ///< self-contact, if deferred, is active
+    std::shared_ptr<const Inertia> inertia = nullptr;  ///< of a step in time; null in a quasi-static step
 };
 
-/// What a solver changes: node positions and the multiplier of every actuator.
+/// The unknowns of the solver: node positions and the multiplier of every actuator.
 struct State {
     Eigen::VectorXd x;           ///< (3n) metres
     Eigen::VectorXd multiplier;  ///< (actuators) tension of cables, N, never negative; minus the pressure of air, Pa
 };
 
-/// Everything that is known about a state at given controls.
+/// Results of evaluating a state at given controls.
 struct Evaluation {
-    /// What no body can do: then only min_J is filled.
+    /// Why a state is physically impossible: then only min_J is filled in.
     enum class Flaw {
         none,
-        inverted,   ///< a tetrahedron is turned inside out
-        pierced,    ///< surfaces touch or have passed through each other
-        collapsed,  ///< a chamber has no volume left
+        inverted,   ///< a tetrahedron is inverted
+        pierced,    ///< surfaces touch or intersect
+        collapsed,  ///< a chamber has no volume
     };
     Flaw flaw = Flaw::none;
     double min_J = 0;
-    double energy_J = 0;             ///< elastic and of given multipliers and gas, minus the work of loads
+    double energy_J = 0;             ///< elastic energy and that of prescribed multipliers and gas, minus the work of
+                                     ///< loads
     Eigen::VectorXd out_of_balance;  ///< (3n) internal - external forces + sum m dg/dx; at supports the reaction
-    Eigen::VectorXd multiplier;      ///< (actuators) the state's or, where not the measure is driven, what it must be
-    Eigen::VectorXd
-        constraint_violation;  ///< (actuators) (g - wanted g) / rest g; zero where not the measure is driven
-    double residual = 0;       ///< DESIGN: out-of-balance force over the forces that balance, both 2-norms
-    double violation = 0;      ///< largest constraint violation that counts: not that of a slack cable
+    Eigen::VectorXd multiplier;      ///< (actuators) that of the state or, if the measure is not driven, its prescribed
+                                     ///< value
+    Eigen::VectorXd constraint_violation;  ///< (actuators) (g - wanted g) / rest g; zero if the measure is not driven
+    double residual = 0;                   ///< out-of-balance force over the forces that balance, both 2-norms
+    double violation = 0;                  ///< largest constraint violation, without slack cables
     [[nodiscard]] double error() const { return residual > violation ? residual : violation; }
     [[nodiscard]] bool possible() const { return flaw == Flaw::none; }
 };
 
-/// What an impossible state does, for messages: "turns a tetrahedron inside out".
+/// Description of an impossible state, for messages: "turns a tetrahedron inside out".
 [[nodiscard]] std::string_view name(Evaluation::Flaw flaw);
 
-/// Which nodes a tangent is about: the free ones, in the order of Model::free_index, or all, also those that are held,
-/// in their own.
+/// The nodes of a tangent: the free ones, in the order of Model::free_index, or all, including held ones, in their own
+/// order.
 enum class TangentNodes { free, all };
 
-/// Where the entries of the tangent go; made anew where contact couples nodes that nothing else does.
+/// Sparsity pattern of the tangent; rebuilt when contact couples further nodes.
 struct TangentLayout {
     linalg::SymmetricPattern pattern;  ///< over these nodes, block 3
     BlockSums element_sums;            ///< of the tets
@@ -87,85 +88,85 @@ struct FreeRoller {
     Eigen::Matrix3d may_move;         ///< projector onto the directions in which it may move
 };
 
-/// The discrete system of one model; holds no state. Actuators: first the cables, then the chambers, then the pressure
+/// The discrete system of one model; stateless. Actuators: first the cables, then the chambers, then the pressure
 /// loads, each in the order of the model.
 class Equilibrium {
 public:
     explicit Equilibrium(const Model& model);
 
     [[nodiscard]] Controls controls(double time) const;
-    /// What drives a cable or chamber whose target has this value, with the error of its zero.
+    /// The drive of a cable or chamber with this target value, including the offset of its zero.
     [[nodiscard]] Drive drive(std::size_t actuator, double target) const;
-    /// The shares of all cables with friction at positions x on the way from the drives `before` to the `wanted` ones,
-    /// (actuators) each; and, for those driven by length, the weighted length that x would have if the true one were as
-    /// wanted.
+    /// Tension shares of all cables with friction at positions x, on the path from the drives `before` to the `wanted`
+    /// ones, (actuators) each; and, for cables driven by length, the weighted length at x that corresponds to the
+    /// prescribed true length.
     void freeze_cable_friction(const Eigen::VectorXd& x, std::span<const Drive> wanted, std::span<const Drive> before,
                                Controls& controls) const;
     /// Largest error of the true lengths of cables with friction, relative to rest.
     [[nodiscard]] double cable_friction_error(const State& state, std::span<const Drive> wanted) const;
     [[nodiscard]] bool has_cable_friction() const;
     [[nodiscard]] State rest() const;
-    /// Puts the nodes of the supports where `controls` wants them.
+    /// Moves the nodes of the supports to their positions in `controls`.
     void place_supports(const Controls& controls, Eigen::VectorXd& x) const;
 
     [[nodiscard]] Evaluation evaluate(const State& state, const Controls& controls) const;
-    /// Elastic energy, with that of springs, and contact energy minus the work of dead loads and gravity since rest; 0
-    /// where the laws have none.
+    /// Elastic energy, including springs, and contact energy, minus the work of dead loads and gravity since rest; 0 if
+    /// the laws have no energy.
     [[nodiscard]] double potential_energy(const State& state, const Controls& controls) const;
 
-    /// Node lists that contact couples at one state, as indices of the nodes that a tangent is about.
+    /// Groups of nodes that contact couples at one state, as indices in the tangent.
     [[nodiscard]] std::vector<std::vector<int>> contact_cliques(const State& state, const Controls& controls,
                                                                 TangentNodes nodes = TangentNodes::free) const;
-    /// For the body, its actuators and these cliques.
+    /// For the body, its actuators and these groups.
     [[nodiscard]] TangentLayout lay_out_tangent(const std::vector<std::vector<int>>& touching = {},
                                                 TangentNodes nodes = TangentNodes::free) const;
-    /// Over all nodes, for what is beside the tets. Preconditions: no inertia, no gap elements; they need those, too.
+    /// Over all nodes, for everything except the tets. Preconditions: no inertia and no gap elements, which need the
+    /// tets' pattern too.
     [[nodiscard]] TangentLayout lay_out_tangent_beside_tets(const std::vector<std::vector<int>>& touching) const;
-    /// Adds the symmetric part of the tangent at fixed multipliers, without the constraints and the compressibility of
-    /// gas. With `project` every part is replaced by the nearest positive semi-definite one. Over the free nodes,
-    /// rollers are decoupled along the directions in which they are held. Precondition: min_J > 0.
+    /// Adds the symmetric part of the tangent at fixed multipliers, without constraints and gas compliance. With
+    /// `project` every part is replaced by the nearest positive semi-definite one. Over the free nodes, rollers are
+    /// decoupled along the directions in which they are held. Precondition: min_J > 0.
     void add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                      std::span<double> values, bool project) const;
-    /// The same without that of the tets: of plates, springs, inertia, contact and actuators alone.
+    /// The same without the tets: plates, springs, inertia, contact and actuators alone.
     void add_tangent_beside_tets(const State& state, const Controls& controls, const TangentLayout& layout,
                                  std::span<double> values, bool project) const;
-    /// Adds what add_tangent leaves out, of a law without an energy, of torques and of pressure on patches with a free
-    /// rim (over all nodes: on all patches): a matrix S with S^T = -S, of which `values` hold the blocks at and below
-    /// the diagonal.
+    /// Adds the skew part, which add_tangent leaves out: of a law without an energy, of torques and of pressure on
+    /// patches with a free rim (over all nodes: on all patches). A matrix S with S^T = -S, of which `values` hold the
+    /// blocks at and below the diagonal.
     void add_skew(const State& state, const Controls& controls, const TangentLayout& layout,
                   std::span<double> values) const;
-    /// The largest share of a motion (3n) along which nothing passes through anything; the obstacles move by
-    /// `obstacle_motion` (3 obstacle nodes; empty: not at all). 1 where nothing can touch.
+    /// The largest share of a motion (3n) without intersections; the obstacles move by `obstacle_motion` (3 obstacle
+    /// nodes; empty: not at all). 1 if nothing can touch.
     [[nodiscard]] double largest_step(const Eigen::VectorXd& x, const Eigen::VectorXd& motion, const Controls& controls,
                                       const Eigen::VectorXd& obstacle_motion = {}) const;
-    /// Friction for a step that began at `start`, with the contact forces of `state`; what sticks goes on from the
-    /// friction of `start_controls`. Nothing without contact.
+    /// Friction for a step that began at `start`, with the contact forces of `state`; surfaces that stick continue from
+    /// the friction of `start_controls`. Null without contact.
     [[nodiscard]] std::shared_ptr<const contact::Friction> freeze_friction(const State& state, const State& start,
                                                                            const Controls& controls,
                                                                            const Controls& start_controls) const;
-    /// True if something rubs.
+    /// True if there is any friction.
     [[nodiscard]] bool has_friction() const;
-    /// True if surfaces are near enough to each other to act.
+    /// True if surfaces are within contact range.
     [[nodiscard]] bool touches(const State& state, const Controls& controls) const;
-    /// Where contact of the robot with itself waits until it is needed: true if on the straight way between two states
-    /// its surfaces come so near each other that it is. `now`: the controls of `state`.
+    /// If self-contact is deferred: true if the surfaces come so close on the straight path between two states that it
+    /// must become active. `now`: the controls of `state`.
     [[nodiscard]] bool meets_itself(const State& state, const Controls& now, const State& next,
                                     const Controls& then) const;
-    /// Where the robot's surface has passed through itself, m, if it has. Where contact holds it apart nothing is
-    /// looked for.
+    /// A point where the robot's surface intersects itself, m, if any. Not checked if contact prevents it.
     [[nodiscard]] std::optional<Vec3> crossing(const State& state, const Controls& controls) const;
-    /// Robot nodes, then the points of objects, then the nodes of the obstacles: what contact knows as x, or as a
-    /// motion.
+    /// Robot nodes, then the points of objects, then the nodes of the obstacles: positions, or a motion, in the format
+    /// of contact.
     [[nodiscard]] std::vector<double> with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const;
     /// Contact forces of a state, for results. Precondition: the model has contact.
     [[nodiscard]] contact::Forces contact_forces(const State& state, const Controls& controls) const;
-    /// (3n) N, pressure and friction of everything that touches a node; zero without contact.
+    /// (3n) N, normal force and friction of everything that touches a node; zero without contact.
     [[nodiscard]] Eigen::VectorXd contact_node_forces(const State& state, const Controls& controls) const;
 
     /// True if pressure acts on a patch with a free rim: the tangent then has a skew part, which add_tangent leaves
     /// out.
     [[nodiscard]] bool has_skew() const { return !skew_.empty(); }
-    /// Torques have a skew part, too, but of little weight where their nodes are stiff: Newton does without it.
+    /// Torques have a skew part, too, but a small one if their nodes are stiff: Newton ignores it.
     [[nodiscard]] bool has_torques() const { return !torques_.empty(); }
     /// (3 free) -> (3 free): the skew part of the tangent times v.
     [[nodiscard]] Eigen::VectorXd apply_skew(const State& state, const Eigen::VectorXd& v) const;
@@ -177,34 +178,34 @@ public:
     [[nodiscard]] const std::vector<AffineBody>& objects() const { return model_->objects(); }
     [[nodiscard]] const std::vector<JointForce>& joints() const { return joints_; }
     [[nodiscard]] JointDrive joint_drive(const Controls& controls, std::size_t joint) const;
-    /// (joints) angles and places at x, on from where a step has begun; none without joints.
+    /// (joints) angles and displacements at x, continued from the start of the step; empty without joints.
     [[nodiscard]] std::vector<double> joint_coordinates(const Eigen::VectorXd& x, const Controls& controls) const;
     [[nodiscard]] const std::vector<FreeRoller>& rollers() const { return rollers_; }
     [[nodiscard]] std::size_t cable_count() const { return model_->description().cables.size(); }
-    /// What a sealed chamber gives by for each unit of multiplier: -dg/dm.
+    /// Compliance of a sealed chamber: -dg/dm.
     [[nodiscard]] double gas_compliance(const Drive& drive, double multiplier) const;
 
-    /// All forces are the gradient of one energy, so that a line search may use it.
+    /// True if all forces are the gradient of one energy, so that a line search can use it.
     [[nodiscard]] bool conservative() const { return conservative_; }
-    /// Energies that differ by less than this are the same to rounding.
+    /// Energies that differ by less than this are equal to rounding.
     [[nodiscard]] double energy_rounding_J() const { return energy_rounding_; }
 
-    /// (3n) -> (3 free nodes) and back, of forces and motions: rollers have none along the directions in which they are
-    /// held. The rest of `full` is left alone.
+    /// (3n) -> (3 free nodes) and back, for forces and motions: rollers have none along the directions in which they
+    /// are held. Other entries of `full` are unchanged.
     [[nodiscard]] Eigen::VectorXd restrict_to_free(const Eigen::VectorXd& full) const;
     void add_free(const Eigen::VectorXd& free, double factor, Eigen::VectorXd& full) const;
-    /// (3n) -> (3 free nodes), of positions.
+    /// (3n) -> (3 free nodes), for positions.
     [[nodiscard]] Eigen::VectorXd free_positions(const Eigen::VectorXd& full) const;
 
 private:
-    /// (n) where a node stands among those that a tangent is about, or -1.
+    /// (n) index of a node in the tangent, or -1.
     [[nodiscard]] const std::vector<int>& index_of(TangentNodes nodes) const {
         return nodes == TangentNodes::all ? all_nodes_ : model_->free_index();
     }
     void append_cliques_beside_tets(const std::vector<int>& index, const std::vector<std::vector<int>>& touching,
                                     linalg::Lists& cliques) const;
     void add_actuators();
-    /// Where a node is held in a direction, the tangent couples that direction to nothing else.
+    /// Decouples the directions in which rollers are held from everything else.
     void decouple_rollers(const linalg::SymmetricPattern& pattern, std::span<double> values) const;
     void add_plates(double stiffness_Pa, double volume_m3);
     [[nodiscard]] Eigen::VectorXd external_at(double time) const;
@@ -212,7 +213,7 @@ private:
     [[nodiscard]] Drive drive(std::size_t actuator, double target, double offset) const;
     [[nodiscard]] Drive drive_at(std::size_t actuator, double time) const;
     [[nodiscard]] bool rim_is_held(const Wall& wall) const;
-    /// Energy of an actuator whose measure is not driven, at measure g > 0.
+    /// Energy of an actuator with prescribed multiplier or gas, at measure g > 0.
     [[nodiscard]] double drive_energy(const Drive& drive, std::size_t actuator, double g) const;
     [[nodiscard]] const contact::Contact* contact(const Controls& controls) const {
         return model_->contact(controls.met);
@@ -222,11 +223,11 @@ private:
     [[nodiscard]] Eigen::VectorXd obstacles_at(double time) const;
     void add_fluid();
     [[nodiscard]] Eigen::Vector3d gravity_at(double time) const;
-    /// Adds forces on the mesh's nodes of what acts on all of contact's nodes.
+    /// Transfers forces on all of contact's nodes to the nodes of the mesh.
     void add_carried(const std::vector<double>& on_all, Eigen::VectorXd& forces) const;
     void add_buoyancy(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces,
                       double& energy) const;
-    /// In a step in time.
+    /// Fluid forces in a step in time.
     struct Stream {
         std::vector<double> start, v;
     };
@@ -239,14 +240,14 @@ private:
                        const std::function<void(const contact::BlockVisitor&)>& blocks) const;
     [[nodiscard]] bool has_collapsed_chamber(const Eigen::VectorXd& x) const;
     void fill_actuators(const State& state, const Controls& controls, Evaluation& e) const;
-    /// Forces that balance, (3n) each.
+    /// The forces that balance, (3n) each.
     struct Balance {
         Eigen::VectorXd internal, driving;
     };
-    /// All but the residual, of a state at rest or, with `inertia`, at the end of a step.
+    /// Everything except the residual, for a quasi-static state or, with `inertia`, the end of a step.
     [[nodiscard]] Evaluation evaluate_at(const State& state, const Controls& controls, const Inertia* inertia,
                                          Balance& balance) const;
-    /// Of a step that takes the mean of the forces along its way.
+    /// For a step that uses the mean of the forces along its path.
     [[nodiscard]] Evaluation evaluate_mean(const State& state, const Controls& controls, Balance& balance) const;
     [[nodiscard]] Eigen::VectorXd driving_forces(const State& state, const Controls& controls,
                                                  const Evaluation& e) const;
@@ -267,9 +268,9 @@ private:
     Eigen::VectorXd gravity_;        ///< (3n) at full share
     std::vector<std::size_t> skew_;  ///< actuators: pressure loads with a free rim
     bool conservative_ = true;
-    double force_floor_ = 0;  ///< forces below this are rounding, not load
+    double force_floor_ = 0;  ///< forces below this are rounding errors, not loads
     double energy_rounding_ = 0;
-    double force_rounding_ = 0;  ///< out of balance by no more than this is in balance
+    double force_rounding_ = 0;  ///< out-of-balance forces up to this count as zero
 };
 
 }  // namespace pliant::sim

@@ -8,10 +8,10 @@ namespace pliant::sim {
 namespace {
 
 constexpr double cable_share = 0.1;       // of the tolerance, for the length of a cable with friction
-constexpr double loose_residual = 10;     // of the tolerance, where sliding contact goes back and forth
+constexpr double loose_residual = 10;     // of the tolerance, if sliding contact alternates between states
 constexpr double loose_cable_length = 1;  // likewise
 
-/// How far the friction that was solved with is from that of the state it led to.
+/// Difference between the friction used in the solve and that of the resulting state.
 struct Misfit {
     double residual, length;
     [[nodiscard]] bool within(double tolerance, double most_residual, double most_length) const {

@@ -1,4 +1,4 @@
-// Friction of contact and of cables in their guides, settled over several solutions of one step.
+// Iterates lagged friction, of contact and of cables in their guides, over several solutions of one step.
 #pragma once
 
 #include <optional>
@@ -8,21 +8,22 @@
 
 namespace pliant::sim {
 
-/// The last state at equilibrium, from which a step leads.
+/// The equilibrium at the start of a step.
 struct StepStart {
     const State& state;
     const Controls& controls;
-    std::span<const Drive> drives;  ///< (actuators) what was wanted there: `controls` may hold weighted lengths instead
+    std::span<const Drive> drives;  ///< (actuators) prescribed values there; `controls` may hold weighted lengths
+                                    ///< instead
 };
 
-/// Friction depends on the forces, which depend on friction: frozen, solved, and frozen anew until both agree, at most
-/// `rounds` times (the lagging of Li et al. 2020, section 5; likewise for cables that drag in their guides). Without
-/// friction one solution. `evaluation` of the outcome is that with the friction of the state itself.
+/// Friction depends on the forces, which depend on friction: it is frozen, the step solved, and frozen again until both
+/// agree, at most `rounds` times (lagging, Li et al. 2020, section 5; likewise for cable friction in guides). Without
+/// friction one solution is enough. `evaluation` of the outcome is that with the friction of the state itself.
 ///
-/// Sliding contact may go back and forth between two states for ever. What is then within ten times the tolerance, its
-/// cables within the tolerance, is accepted as `loose`, and `reason` says how far off it is; beyond that the step did
-/// not converge. `controls`: as wanted; friction and weighted lengths are filled in. `known`: of `next`, as long as
-/// there is no friction.
+/// Sliding contact may alternate between two states for ever. If the state is then within ten times the tolerance, and
+/// its cables within the tolerance, it is accepted as `loose`, and `reason` gives the error; otherwise the step did not
+/// converge. `controls`: prescribed values; friction and weighted lengths are filled in. `known`: the evaluation of
+/// `next`, used if there is no friction.
 [[nodiscard]] StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, const StepSettings& settings,
                                           int rounds, const StepStart& start, Controls& controls, State& next,
                                           const Progress& progress, std::optional<Evaluation> known = {});

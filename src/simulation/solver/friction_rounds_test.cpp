@@ -86,7 +86,7 @@ TEST_CASE("what friction leaves over decides: settled within the tolerance, loos
     CHECK(refused > 0);
 }
 
-TEST_CASE("steered by hand, friction is settled as a program settles it") {
+TEST_CASE("interactive control settles friction like a program") {
     const Model model = dragging_bar();
     const Program program{.steps = 6, .tolerance = 1e-5};
     Live live(model, program);

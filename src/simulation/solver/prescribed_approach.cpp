@@ -6,12 +6,12 @@ namespace pliant::sim {
 namespace {
 
 constexpr int most_pieces = 30;
-constexpr double least_piece = 0.01;      // of what is left of the way, below which nothing gives way
-constexpr double probe_share = 1e-3;      // of what is free ahead, to see what the motion does
+constexpr double least_piece = 0.01;      // of the remaining path; below it the robot does not yield
+constexpr double probe_share = 1e-3;      // of the free path ahead, to probe the effect of the motion
 constexpr double kept_J = 0.3;            // of the smallest det F
-constexpr StepSettings between{1e-2, 8};  // near equilibrium is enough, before the next piece
+constexpr StepSettings between{1e-2, 8};  // approximate equilibrium is enough before the next increment
 
-/// One piece of the way after the other, for supports and obstacles alike.
+/// Increment by increment, for supports and obstacles alike.
 class Approach {
 public:
     Approach(const Equilibrium& system, const FactoredLaplacian& laplacian, const Controls& from, const Controls& to,
@@ -33,7 +33,7 @@ public:
     }
 
 private:
-    /// (3n) what is left of the supports' way.
+    /// (3n) the remaining path of the supports.
     [[nodiscard]] Eigen::VectorXd ahead() const {
         Eigen::VectorXd end = state_.x;
         system_.place_supports(to_, end);
@@ -50,8 +50,8 @@ private:
         return system_.largest_step(state_.x, motion, now_, to_.obstacles - now_.obstacles);
     }
 
-    /// Adds to the supports' motion that of the free nodes which keeps their forces as they are: the change of force
-    /// for a small share of it, through the tangent. False: there is no tangent, or nothing is free ahead.
+    /// Adds to the supports' motion the motion of the free nodes that keeps their forces unchanged: the change of force
+    /// for a small share of it, solved with the tangent. False: there is no tangent, or the path ahead is blocked.
     [[nodiscard]] bool answer(Eigen::VectorXd& motion) {
         if (!newton_->refresh(state_, now_, TangentChoice::quickest, {})) return false;
         const double probe = probe_share * free_share(motion);
@@ -65,7 +65,7 @@ private:
         return true;
     }
 
-    /// Goes as far as nothing is met and no tet comes near turning inside out; the share of the way.
+    /// Moves until something would touch or a tet would nearly invert; returns the share of the motion.
     [[nodiscard]] double step(const Eigen::VectorXd& motion) {
         const double least_J = kept_J * system_.evaluate(state_, now_).min_J;
         for (double share = free_share(motion); share >= least_piece; share *= 0.5) {

@@ -1,4 +1,4 @@
-// Supports and obstacles that push against the robot on their way.
+// Prescribed motion of supports and obstacles that push against the robot.
 #pragma once
 
 #include "simulation/solver/curvature.hpp"
@@ -6,12 +6,11 @@
 
 namespace pliant::sim {
 
-/// Brings supports and obstacles from where they are at `from`, with `state` at equilibrium there, to where `to` wants
-/// them, in as many pieces as it takes for nothing to pass through anything: the robot gives way to each piece as its
-/// tangent says, and is brought back near equilibrium before the next. For motions that go further in one step than the
-/// gap that contact leaves. `state` is then near its equilibrium at `to`, and possible. False: the robot is not pushed
-/// away by what comes, or the tangent is not at hand; `state` is then of no use.
-/// Precondition: the model has contact.
+/// Moves supports and obstacles from their positions in `from`, where `state` is in equilibrium, to those in `to`, in
+/// as many increments as needed to avoid intersections: the robot yields to each increment according to its tangent,
+/// and is brought back near equilibrium before the next. For motions larger than the contact gap in one step. `state`
+/// is then physically possible and near its equilibrium at `to`. False: the robot is not pushed away, or the tangent is
+/// not available; `state` is then unusable. Precondition: the model has contact.
 [[nodiscard]] bool approach(const Equilibrium& system, const FactoredLaplacian& laplacian, const Controls& from,
                             const Controls& to, State& state, const Progress& progress);
 

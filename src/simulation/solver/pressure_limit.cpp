@@ -4,8 +4,8 @@ namespace pliant::sim {
 namespace {
 
 constexpr int most_steps = 40;
-constexpr double volume_step = 0.01;  // of the present volume
-constexpr double clear_fall = 1e-3;   // of the largest pressure: more than a tolerance can make up
+constexpr double volume_step = 0.01;  // of the current volume
+constexpr double clear_fall = 1e-3;   // of the largest pressure: clearly above the solver's tolerance
 
 double volume(const Actuator& actuator, const State& state) {
     return actuator.measure({state.x.data(), static_cast<std::size_t>(state.x.size())});

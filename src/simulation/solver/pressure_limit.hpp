@@ -1,4 +1,5 @@
-// Why a pressure cannot be reached: many chambers have a largest one, beyond which they grow at falling pressure.
+// Finds out why a pressure cannot be reached: many chambers have a maximum pressure, beyond which they grow at falling
+// pressure.
 #pragma once
 
 #include <optional>
@@ -7,18 +8,18 @@
 
 namespace pliant::sim {
 
-/// A maximum of a chamber's pressure, with everything else held as it is.
+/// The maximum pressure of a chamber, with everything else held fixed.
 struct PressureLimit {
     std::size_t chamber = 0;  ///< of the model
     double reached_Pa = 0;    ///< where the program stopped
     double largest_Pa = 0;
-    double volume_ratio = 0;  ///< at the largest
+    double volume_ratio = 0;  ///< at the maximum
 };
 
-/// Drives each chamber whose pressure is given by its volume instead, from an equilibrium onwards in steps of one
-/// percent, and looks whether its pressure rises, comes to a maximum and falls. Nothing, if no chamber shows that
-/// within forty steps, or reaches the pressure that `wanted` asks for. `state` is an equilibrium at `controls`; costs a
-/// few solved steps.
+/// Switches each chamber with prescribed pressure to volume control, increases the volume from an equilibrium in steps
+/// of one percent, and checks whether its pressure rises to a maximum and falls. Empty if no chamber shows that within
+/// forty steps, or the pressure prescribed in `wanted` is reached. `state` is an equilibrium at `controls`; costs a few
+/// solved steps.
 [[nodiscard]] std::optional<PressureLimit> find_pressure_limit(const Equilibrium& system, SolverChain& solvers,
                                                                const Controls& controls, const Controls& wanted,
                                                                const StepSettings& settings, const State& state,

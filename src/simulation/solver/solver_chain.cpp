@@ -10,12 +10,13 @@
 namespace pliant::sim {
 namespace {
 
-/// One Newton iteration factorises; that takes about as long as ten with the Laplacian that is factorised already.
+/// Relative cost of an iteration: a Newton iteration factorises, which takes about as long as ten with the factorised
+/// Laplacian.
 int relative_cost(Solver solver) {
     return solver == Solver::newton ? 10 : 1;
 }
 
-constexpr int least_budget = 100;  // iterations of cost 1 that a stand-in gets in any case
+constexpr int least_budget = 100;  // iterations of cost 1 that a fallback gets in any case
 
 void append(std::vector<IterationRecord>& to, const std::vector<IterationRecord>& more) {
     to.insert(to.end(), more.begin(), more.end());
@@ -59,7 +60,7 @@ StepOutcome SolverChain::solve(const Equilibrium& system, const Controls& contro
         solve_step(system, at(0), controls, settings_of(0, settings, 0), state, progress, std::move(known));
     int spent = outcome.iterations * relative_cost(links_[0].solver);
     for (std::size_t k = 1; k < links_.size() && !outcome.converged && !progress.cancelled(); ++k) {
-        // Not every solver leaves a state that is nearer than it found it.
+        // A failed solver may leave a state with a larger error than the initial one.
         if (!(outcome.evaluation.error() < system.evaluate(start, controls).error())) state = start;
         at(k).restart();
         StepOutcome next = solve_step(system, at(k), controls, settings_of(k, settings, spent), state, progress);

@@ -1,4 +1,4 @@
-// The solver of a program and those that stand in for it.
+// The solver of a program and its fallbacks.
 #pragma once
 
 #include <functional>
@@ -10,14 +10,14 @@
 
 namespace pliant::sim {
 
-/// Solves with the first of its solvers and, where that one stalls, with the next on the same step. A step afterwards
-/// begins with the first again. The same input takes the same way every time: nothing depends on a clock.
+/// Solves with the first solver and, if it stalls, with the next one on the same step. The next step starts with the
+/// first again. Deterministic: nothing depends on a clock.
 class SolverChain {
 public:
     using Make = std::function<std::unique_ptr<Curvature>()>;
     struct Link {
         Solver solver;
-        Make make;  ///< called when it is needed for the first time
+        Make make;  ///< called on first use
     };
     /// At least one link.
     explicit SolverChain(std::vector<Link> links);
@@ -25,13 +25,13 @@ public:
     [[nodiscard]] Solver first() const { return links_.front().solver; }
     /// Called at the start of each step of the program.
     void restart();
-    /// What the first solver takes along into the next step, and back again: see Curvature. The others begin anew
-    /// wherever they are needed.
+    /// State of the first solver to carry over into the next step, and its restoration: see Curvature. The others start
+    /// anew whenever they are used.
     [[nodiscard]] std::shared_ptr<const SolverMemory> memory() const;
     void recall(const SolverMemory* memory);
-    /// As solve_step. A stand-in begins where the one before it came nearest, and may cost about as much as that one
-    /// did. With `settings.patience` 0 the patience of a chain of several is its own. `iterations` and `history` are of
-    /// all that took part, `solver` and `evaluation` of the last.
+    /// As solve_step. A fallback starts from the best state of the one before it, and may cost about as much as that
+    /// one did. With `settings.patience` 0 a chain of several uses its own patience. `iterations` and `history` cover
+    /// all solvers used, `solver` and `evaluation` the last one.
     [[nodiscard]] StepOutcome solve(const Equilibrium& system, const Controls& controls, const StepSettings& settings,
                                     State& state, const Progress& progress, std::optional<Evaluation> known = {});
 
@@ -43,8 +43,8 @@ private:
     std::vector<std::unique_ptr<Curvature>> made_;  ///< (links)
 };
 
-/// `asked` alone or, for automatic, newton with quasi-newton to stand in; where the laws have no energy and no
-/// elements actuate, quasi-newton with anderson.
+/// The solver `asked` alone or, for automatic, newton with quasi-newton as fallback; if the laws have no energy and
+/// there are no gap or air elements, quasi-newton with anderson.
 [[nodiscard]] SolverChain make_chain(Solver asked, const Equilibrium& system, const FactoredLaplacian& laplacian);
 
 }  // namespace pliant::sim

@@ -1,4 +1,4 @@
-// Solvers that stand in for one that stalls, the record of iterations, and pressures that cannot be reached.
+// Fallback solvers for one that stalls, the record of iterations, and pressures that cannot be reached.
 #include "simulation/solver/solver_chain.hpp"
 
 #include <doctest/doctest.h>
@@ -52,7 +52,7 @@ Description hollow_block(ChamberTarget target) {
     return d;
 }
 
-/// A solver that finds nothing, or creeps.
+/// A solver that fails, or makes little progress.
 class Hindered final : public Curvature {
 public:
     Hindered(const FactoredLaplacian& laplacian, bool creeps, int& asked)
@@ -97,7 +97,7 @@ TEST_CASE("where the first solver stalls the next one finishes the step, and the
             REQUIRE_MESSAGE(outcome.converged, outcome.reason);
             CHECK(outcome.solver == Solver::quasi_newton);
             CHECK(outcome.evaluation.residual <= 1e-6);
-            CHECK(asked - before == (creeps ? 30 : 3));  // plain and cautious, or until patience ends
+            CHECK(asked - before == (creeps ? 30 : 3));  // once with each tangent, or until patience ends
             before = asked;
             const auto first_of = [&](Solver solver) {
                 return std::ranges::find(outcome.history, solver, &IterationRecord::solver);
@@ -109,7 +109,7 @@ TEST_CASE("where the first solver stalls the next one finishes the step, and the
     }
 }
 
-TEST_CASE("where nobody gets there the reasons of all are given, and each has its budget") {
+TEST_CASE("if all solvers fail all reasons are given, and each has its budget") {
     const auto model = Model::create(pushed_bar());
     REQUIRE(model);
     const Equilibrium system(*model);
@@ -133,7 +133,7 @@ TEST_CASE("a solver that was asked for by name stays alone") {
     const Trajectory result =
         solve(pulled_bar(0.7), {.steps = 1, .tolerance = 1e-6, .solver = Solver::newton, .iteration_limit = 4});
     REQUIRE_MESSAGE(result.converged, result.message);
-    CHECK(result.steps.back().substeps > 1);  // it did not get there at once
+    CHECK(result.steps.back().substeps > 1);  // it needed several substeps
     for (const IterationRecord& record : result.iterations) CHECK(record.solver == Solver::newton);
     CHECK(result.steps.back().solver == Solver::newton);
 }
@@ -227,12 +227,12 @@ TEST_CASE("Anderson's mixing is the inverse of what it has learned, and the plai
     expected << inverse.col(0), inverse.col(0) / 5 + inverse.col(1) / 0.2;
     mixing->solve(asked);
     CHECK((asked - expected).norm() < 1e-8 * expected.norm());
-    // Cautious: the plain step.
+    // Projected: the plain step.
     REQUIRE(mixing->refresh(state, controls, TangentChoice::projected, {}));
     Eigen::MatrixXd plain = columns;
     mixing->solve(plain);
     CHECK((plain - inverse).norm() == 0);
-    // And what has misled is forgotten.
+    // And the misleading history is discarded.
     REQUIRE(mixing->refresh(state, controls, TangentChoice::quickest, {}));
     plain = columns;
     mixing->solve(plain);

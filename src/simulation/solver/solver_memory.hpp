@@ -1,5 +1,5 @@
-// What a solver keeps from one step to the next, as a value. A solver that is given it again takes the same way to the
-// same bits, whatever it has done in between: a factor is not kept, but where it was made.
+// State of a solver between steps, as a value. Restoring it reproduces the same iterations to the bit, whatever was
+// solved in between: the factor itself is not stored, but the state at which it was made.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,29 +13,30 @@
 
 namespace pliant::sim {
 
-/// What newton knows of the inverse at hand, and how quickly steps with it converge.
+/// What newton knows about its current inverse, and the convergence rate of steps with it.
 struct NewtonRates {
     static constexpr double smallest_share_of_projection = 1.0 / 16;
     static constexpr double hoped_left = 0.05;
 
-    double share_ = 0;                                    ///< of the projection in H
-    bool cautious_ = false;                               ///< all of it was asked for
-    double share_wanted_ = smallest_share_of_projection;  ///< when it was needed last
+    double share_ = 0;                                    ///< share of the projection in H
+    bool cautious_ = false;                               ///< the full projection was requested
+    double share_wanted_ = smallest_share_of_projection;  ///< share when it was last needed
     bool usable_ = false;                                 ///< the inverse solves
-    bool hasty_ = false;                                  ///< in this step of the program an old inverse has led astray
-    bool reused_ = false;                                 ///< the present direction is not from the tangent at hand
-    // Of the error, what a step with an inverse from an earlier state leaves.
-    double left_ = hoped_left;           ///< by the next one, as far as is known
-    double left_at_first_ = hoped_left;  ///< by the first one in a later step of the program than the inverse is from
-    double left_by_last_ = 1;            ///< by the last one, with whatever inverse
-    double left_by_new_ = 0;             ///< by the last one of its own state; 0 before and far from equilibrium
+    bool hasty_ = false;                                  ///< in this step of the program an old inverse has failed
+    bool reused_ = false;                                 ///< the current direction comes from an old tangent
+    // Error reduction factor of a step with an inverse from an earlier state.
+    double left_ = hoped_left;           ///< expected for the next one
+    double left_at_first_ = hoped_left;  ///< of the first one in a later step of the program than that of the inverse
+    double left_by_last_ = 1;            ///< of the last one, with whatever inverse
+    double left_by_new_ = 0;             ///< of the last one with an inverse of its own state; 0 before that and far
+                                         ///< from equilibrium
     int uses_ = 0;                       ///< of the inverse since that step
     int age_ = 0;                        ///< of the inverse, in steps of the program
-    bool tried_later_ = false;           ///< in a later one than its own
-    bool two_levels_ = false;            ///< as long as they are quick enough
+    bool tried_later_ = false;           ///< in a later step than its own
+    bool two_levels_ = false;            ///< used as long as they are fast enough
 };
 
-/// Shared parts are never changed: a copy costs next to nothing.
+/// Shared parts are immutable: copies are cheap.
 struct SolverMemory {
     using Cliques = std::vector<std::vector<int>>;
 
@@ -43,16 +44,17 @@ struct SolverMemory {
         State state;
         Controls controls;
     };
-    std::shared_ptr<const Tangent> tangent;  ///< where it was made; null: nowhere yet
+    std::shared_ptr<const Tangent> tangent;  ///< state at which it was made; null: none yet
     TangentInverse::Memory inverse;
     NewtonRates rates;
-    std::shared_ptr<const Cliques> touching;  ///< that the pattern has room for; null: none
-    bool forgets_touching = false;            ///< the next pattern is made without them
+    std::shared_ptr<const Cliques> touching;  ///< contact groups included in the pattern; null: none
+    bool forgets_touching = false;            ///< the next pattern is built without them
     std::vector<std::shared_ptr<const StepPair>> pairs;
-    std::shared_ptr<const StepPair> learnt;           ///< not yet among them; null: nothing
-    std::shared_ptr<const Eigen::VectorXd> followed;  ///< (3n) how the body stood when it was last turned; null: never
+    std::shared_ptr<const StepPair> learnt;           ///< latest pair, not yet included; null: none
+    std::shared_ptr<const Eigen::VectorXd> followed;  ///< (3n) positions at the last rotation of the factor; null:
+                                                      ///< never
 
-    // Follow from `touching`; empty where they have not been made.
+    // Derived from `touching`; empty if not computed.
     std::shared_ptr<const TangentLayout> layout;
     std::shared_ptr<const linalg::Analysis> analysis;
 };

@@ -1,4 +1,4 @@
-// What the last steps taught about the stiffness, on top of a matrix that is at hand.
+// L-BFGS updates of a given matrix from the last steps.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 
 namespace pliant::sim {
 
-/// One step, and the change of force that it made.
+/// One step, and the resulting change of force.
 struct StepPair {
     Eigen::VectorXd step;
     Eigen::VectorXd change;
@@ -17,8 +17,8 @@ struct StepPair {
     double scale = 1;
 };
 
-/// L-BFGS: the inverse of a matrix H, sharpened by the last steps and the changes of force that they made (two-loop
-/// recursion: Nocedal and Wright, Numerical Optimization, algorithm 7.4).
+/// L-BFGS: the inverse of a matrix H, updated with the last steps and their changes of force (two-loop recursion:
+/// Nocedal and Wright, Numerical Optimization, algorithm 7.4).
 class StepMemory {
 public:
     explicit StepMemory(std::size_t most) : most_(most) {}
@@ -26,8 +26,8 @@ public:
     void clear() { pairs_.clear(); }
     [[nodiscard]] bool empty() const { return pairs_.empty(); }
 
-    /// `scale` multiplies H^-1 from here on. A step along which the force did not rise is left out: it would make the
-    /// matrix indefinite.
+    /// `scale` multiplies H^-1 from here on. Steps with non-positive curvature are skipped: they would make the matrix
+    /// indefinite.
     void learn(const Eigen::VectorXd& step, const Eigen::VectorXd& change, double scale = 1) {
         const double curvature = step.dot(change);
         if (!(curvature > 1e-10 * step.norm() * change.norm())) return;
@@ -35,7 +35,7 @@ public:
         if (pairs_.size() > most_) pairs_.pop_front();
     }
 
-    /// columns <- sharpened H^-1 columns, where `solve` does H^-1 on all of them in place.
+    /// columns <- updated H^-1 columns, where `solve` applies H^-1 to all of them in place.
     template <class Solve>
     void apply(Eigen::MatrixXd& columns, const Solve& solve) const {
         Eigen::MatrixXd alpha(static_cast<Eigen::Index>(pairs_.size()), columns.cols());

@@ -18,24 +18,24 @@ namespace {
 
 using linalg::view;
 
-/// The constraint violation may be no larger than this share of the tolerance: the tension follows it closely.
+/// The constraint violation must be below this share of the tolerance, because the tension is sensitive to it.
 constexpr double violation_share = 0.01;
 constexpr std::size_t error_memory = 10;
 constexpr double close = 0.05;  // an error
 
 struct Direction {
     Eigen::VectorXd dx;          ///< (3 free)
-    Eigen::VectorXd multiplier;  ///< (actuators) that goes with the full step
+    Eigen::VectorXd multiplier;  ///< (actuators) for the full step
     double slope_J = 0;          ///< change of energy along dx, to first order
 };
 
-/// Parallel cables make the matrix singular, and pressed patches unsymmetric: the shortest solution.
+/// Parallel cables make the matrix singular, and pressure patches unsymmetric: minimum-norm solution.
 Eigen::VectorXd solve_small(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right_side) {
     return matrix.completeOrthogonalDecomposition().solve(right_side);
 }
 
-/// The multipliers m that solve min m^T S m / 2 - m^T b, where those that `only_pull` may not be negative: each cable
-/// either pulls and keeps its length, or is slack and not too long. S = A^T H^-1 A may be singular (parallel cables).
+/// The multipliers m that minimise m^T S m / 2 - m^T b, with m >= 0 for those that `only_pull`: each cable either pulls
+/// and has its prescribed length, or is slack and not too long. S = A^T H^-1 A may be singular (parallel cables).
 /// Lawson and Hanson 1974, chapter 23.
 Eigen::VectorXd multipliers_that_hold(const Eigen::MatrixXd& S, const Eigen::VectorXd& b,
                                       const std::vector<bool>& only_pull) {
@@ -58,7 +58,7 @@ Eigen::VectorXd multipliers_that_hold(const Eigen::MatrixXd& S, const Eigen::Vec
         active.push_back(worst);
         while (!active.empty()) {
             const Eigen::VectorXd wanted = solve_small(S(active, active), b(active));
-            double share = 1;  // of the way from m to wanted that keeps every tension positive
+            double share = 1;  // of the path from m to wanted on which all tensions stay positive
             for (std::size_t k = 0; k < active.size(); ++k) {
                 const double from = m[active[k]];
                 const double to = wanted[static_cast<Eigen::Index>(k)];
@@ -97,9 +97,9 @@ public:
     }
 
     [[nodiscard]] const Evaluation& evaluation() const { return evaluation_; }
-    /// Share of the last direction that was taken.
+    /// Accepted step length of the last direction.
     [[nodiscard]] double alpha() const { return alpha_; }
-    /// What the shortest step that was tried last does; none: it is possible, but no better.
+    /// Flaw of the shortest step tried last; none: it is possible, but no improvement.
     [[nodiscard]] Evaluation::Flaw obstacle() const { return obstacle_; }
     [[nodiscard]] bool converged(double tolerance) const {
         return evaluation_.residual <= tolerance && evaluation_.violation <= violation_share * tolerance;
@@ -121,7 +121,7 @@ private:
 
     using AddGradient = void (Actuator::*)(std::span<const double>, double, std::span<double>,
                                            std::span<const double>) const;
-    /// Of the actuators whose multipliers are unknown, on free nodes: (3 free, solved), over the measure at rest.
+    /// Of the actuators with unknown multipliers, on free nodes: (3 free, solved), divided by the measure at rest.
     [[nodiscard]] Eigen::MatrixXd gradients_of(AddGradient add_gradient) const {
         Eigen::MatrixXd gradients(3 * system_.model().free_count(), static_cast<Eigen::Index>(solved_.size()));
         for (std::size_t k = 0; k < solved_.size(); ++k) {
@@ -134,7 +134,7 @@ private:
         return gradients;
     }
 
-    /// Rest measures of the solved actuators: multipliers times these are energies, all of one kind.
+    /// Rest measures of the solved actuators: multipliers times these are energies, so that all are comparable.
     [[nodiscard]] Eigen::VectorXd scales() const {
         Eigen::VectorXd scale(static_cast<Eigen::Index>(solved_.size()));
         for (std::size_t k = 0; k < solved_.size(); ++k)
@@ -142,7 +142,7 @@ private:
         return scale;
     }
 
-    /// A sealed gas gives way: a compliance beside the body's own, (solved).
+    /// Compliance of sealed gas, in addition to that of the body, (solved).
     [[nodiscard]] Eigen::VectorXd compliances() const {
         Eigen::VectorXd compliance = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(solved_.size()));
         for (std::size_t k = 0; k < solved_.size(); ++k) {
@@ -174,7 +174,7 @@ private:
             const Eigen::VectorXd compliance = compliances();
             const Eigen::VectorXd now = state_.multiplier(solved_).cwiseProduct(scale);
             Eigen::MatrixXd S = A.transpose() * columns.rightCols(A.cols());
-            // What is too much after the free step; then what it takes beside the present multipliers.
+            // Violation after the unconstrained step; then the correction of the current multipliers.
             const Eigen::VectorXd violation =
                 evaluation_.constraint_violation(solved_) - A.transpose() * columns.col(0);
             S.diagonal() += compliance;
@@ -197,7 +197,7 @@ private:
         return controls_.drives[static_cast<std::size_t>(a)].kind == Drive::Kind::measure;
     }
 
-    /// Halves the step until the state is possible and the merit (or the error) goes down.
+    /// Halves the step until the state is possible and the merit (or the error) decreases.
     bool search(const Direction& direction) {
         raise_penalty_weights(direction);
         const double cost = constraint_penalty(evaluation_);  // a full step removes it
@@ -214,7 +214,8 @@ private:
             Evaluation evaluation = system_.evaluate(next, controls_);
             obstacle_ = evaluation.flaw;
             if (!evaluation.possible() || !(evaluation.min_J > 0.05 * evaluation_.min_J)) continue;
-            // A mixed step may lower the merit although it sets out uphill; then rounding is no excuse.
+            // An accelerated step may lower the merit although it is not a descent direction; then rounding is not
+            // tolerated.
             const double rounding = slope < 0 ? system_.energy_rounding_J() : 0;
             const double merit = evaluation.energy_J + constraint_penalty(evaluation);
             const bool lower = conservative && merit < start - 1e-4 * alpha * std::fabs(slope) + rounding;
@@ -227,8 +228,8 @@ private:
         return false;
     }
 
-    /// Where shares of a motion lead. The solver may turn the body where motion is straight; if it meets something on
-    /// that way, it goes straight, and no further than nothing is met.
+    /// The path of a direction. The solver's retraction may rotate the body; if that path meets something, the straight
+    /// one is used, up to the largest step without contact.
     class Way {
     public:
         Way(const StepSolver& solver, const Eigen::VectorXd& motion) : solver_(solver), motion_(motion) {
@@ -236,18 +237,18 @@ private:
             if (!rotated_) longest_ = solver_.system_.largest_step(solver_.state_.x, motion_, solver_.controls_);
         }
         [[nodiscard]] double longest() const { return longest_; }
-        /// Precondition: alpha is at most longest(), and falls from call to call.
+        /// Precondition: alpha is at most longest(), and decreases from call to call.
         [[nodiscard]] Eigen::VectorXd at(double alpha) {
             if (alpha == 1 && rotated_) return *std::exchange(rotated_, std::nullopt);
             if (std::optional<Eigen::VectorXd> end = free_end(alpha)) return std::move(*end);
-            // Straight on, longest() is known to be free only where the whole turned way was not.
+            // The straight path is known to be free up to longest() only if the whole rotated path was not free.
             const double share =
                 longest_ < 1 ? 1 : solver_.system_.largest_step(solver_.state_.x, alpha * motion_, solver_.controls_);
             return solver_.state_.x + share * alpha * motion_;
         }
 
     private:
-        /// Where the solver goes for this share, if it meets nothing.
+        /// End of the retraction for this share, if its path meets nothing.
         [[nodiscard]] std::optional<Eigen::VectorXd> free_end(double alpha) const {
             const Eigen::VectorXd& x = solver_.state_.x;
             Eigen::VectorXd end = solver_.curvature_.retract(x, alpha * motion_);
@@ -257,11 +258,11 @@ private:
 
         const StepSolver& solver_;
         const Eigen::VectorXd& motion_;
-        std::optional<Eigen::VectorXd> rotated_;  ///< the end of the whole way
+        std::optional<Eigen::VectorXd> rotated_;  ///< end of the whole retraction
         double longest_ = 1;
     };
 
-    /// Penalty that the present constraint violation adds to the merit: a cable that is not too long costs nothing.
+    /// Penalty term of the merit for the current constraint violation: zero for a cable that is not too long.
     [[nodiscard]] double constraint_penalty(const Evaluation& evaluation) const {
         double cost = 0;
         for (const Eigen::Index a : solved_) {
@@ -271,17 +272,16 @@ private:
         return cost;
     }
 
-    /// Without an energy only the error can guide. It is a ratio of forces and rises where a cable begins to pull, so
-    /// it may rise for a while: not above the largest of the last steps, nor at first above what any loaded body has
-    /// (the non-monotone search of Grippo, Lampariello and Lucidi 1986).
-    /// Close to equilibrium, and with tangents that know the skew part, a rise means that the step leads off to another
-    /// equilibrium: none is allowed.
+    /// Without an energy only the error can guide. It is a ratio of forces and increases when a cable begins to pull,
+    /// so it may increase for a while: not above the largest of the last steps, nor initially above that of any loaded
+    /// body (the non-monotone search of Grippo, Lampariello and Lucidi 1986). Close to equilibrium, and with tangents
+    /// that include the skew part, an increase means that the step leads to another equilibrium: none is allowed.
     [[nodiscard]] double allowed_error() const {
         if (system_.has_skew() && evaluation_.error() < close) return evaluation_.error();
         return errors_.size() < error_memory ? 2 : *std::max_element(errors_.begin(), errors_.end());
     }
 
-    /// Excess must cost more than any multiplier that holds it, or the merit would prefer long cables.
+    /// The penalty weight must exceed every multiplier of the constraint, or the merit would prefer long cables.
     void raise_penalty_weights(const Direction& direction) {
         for (const Eigen::Index a : solved_) {
             if (drives_measure(a))
@@ -304,7 +304,7 @@ private:
         if (errors_.size() > error_memory) errors_.pop_front();
     }
 
-    /// Out-of-balance force of the present positions at other multipliers.
+    /// Out-of-balance force at the current positions with other multipliers.
     [[nodiscard]] Eigen::VectorXd force_at(const Eigen::VectorXd& multiplier) const {
         Eigen::VectorXd force = evaluation_.out_of_balance;
         for (const Eigen::Index a : solved_) {
@@ -329,7 +329,7 @@ private:
     std::deque<double> errors_;         ///< of the last steps
 };
 
-/// Counts iterations that brought the error no further.
+/// Counts iterations without progress.
 class Patience {
 public:
     Patience(int limit, double error) : limit_(limit), best_(error) {}

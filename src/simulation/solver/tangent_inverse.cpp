@@ -10,14 +10,14 @@
 namespace pliant::sim {
 namespace {
 
-/// The least error of a solution: the rate at which the last digits of a state then come.
+/// The smallest error of a solve: it determines the convergence rate for the last digits of a state.
 constexpr double least_error = 1e-3;
 
 std::span<double> view(Eigen::MatrixXd& columns) {
     return {columns.data(), static_cast<std::size_t>(columns.size())};
 }
 
-/// A Newton step needs few digits, so the factor is in single precision until that proves too little.
+/// A Newton step needs few digits, so the factor is in single precision until that proves insufficient.
 class DirectInverse final : public TangentInverse {
 public:
     explicit DirectInverse(linalg::Cholesky factor) : factor_(std::move(factor)) {}
@@ -26,14 +26,14 @@ public:
         if (factorise(values)) return true;
         if (!is_single() || effort == Effort::little) return false;
         if (effort == Effort::usual && ++refusals_ % refusals_until_asked != 0) return false;
-        // Double knows whether the matrix is indefinite or only ill-conditioned.
+        // Double precision shows whether the matrix is indefinite or only ill-conditioned.
         factor_.use(linalg::Precision::double_);
         if (factorise(values)) return true;
         if (effort == Effort::usual) factor_.use(linalg::Precision::single_);
         return false;
     }
 
-    /// The first solution with a factor in single precision is refined, unless the factor is known to be good enough.
+    /// The first solution with a single-precision factor is refined, unless the factor is known to be accurate enough.
     [[nodiscard]] Outcome solve(Eigen::MatrixXd& columns, double error) override {
         const int count = static_cast<int>(columns.cols());
         const double wanted = std::max(error, least_error);
@@ -71,8 +71,8 @@ public:
         refusals_ = memory.refusals;
     }
 
-    /// Of a factorisation every number is worked on many times, of a step with one that is there it is read a few
-    /// times. Measured, in nanoseconds: 0.05 a multiply-add, and 3.5 an entry; setting up and solving are in both.
+    /// A factorisation uses every number many times, a solve reads it a few times. Measured, in nanoseconds: 0.05 per
+    /// multiply-add, and 3.5 per entry; setting up and solving are included in both.
     [[nodiscard]] double factorisation_cost() const override {
         return 1.3 + factor_.factor_work() / (70 * factor_.factor_entries());
     }
@@ -89,15 +89,15 @@ private:
         return factor_.factorise(values);
     }
 
-    static constexpr int refusals_until_asked = 4;  // asking costs
-    static constexpr int most_refinements = 8;      // more of them, and double precision is quicker
-    static constexpr int trust = 3;                 // factors after one that was tried that are taken to be as good
+    static constexpr int refusals_until_asked = 4;  // trying double precision is expensive
+    static constexpr int most_refinements = 8;      // with more of them, double precision is faster
+    static constexpr int trust = 3;                 // number of factors assumed to be as accurate after one was tested
 
     linalg::Cholesky factor_;
     std::span<const double> values_;  ///< of the factor
-    bool untried_ = false;            ///< nothing has been solved with this factor, and it may need refining
-    double known_error_ = std::numeric_limits<double>::infinity();  ///< of its solutions, as far as is known
-    int trusted_ = 0;                                               ///< factors to come that need no trial
+    bool untried_ = false;            ///< nothing has been solved with this factor, so it may need refinement
+    double known_error_ = std::numeric_limits<double>::infinity();  ///< of its solutions, if known
+    int trusted_ = 0;                                               ///< number of further factors that need no test
     int refusals_ = 0;                                              ///< by single precision
 };
 
@@ -129,7 +129,7 @@ public:
         (void)set(values, positions, Effort::usual);
     }
 
-    /// A new matrix costs next to nothing.
+    /// Setting a new matrix is nearly free.
     [[nodiscard]] double factorisation_cost() const override { return 0; }
 
 private:
@@ -150,7 +150,7 @@ std::unique_ptr<TangentInverse> make_two_level_inverse(const linalg::SymmetricPa
 }
 
 std::unique_ptr<TangentInverse> make_nested_inverse(const linalg::SymmetricPattern& pattern, linalg::Nesting corners) {
-    constexpr int most_iterations = 40;  // more of them, and a factor is quicker
+    constexpr int most_iterations = 40;  // with more of them, a factor is faster
     return std::make_unique<TwoLevelInverse>(linalg::TwoLevel(pattern, std::move(corners)), most_iterations);
 }
 
@@ -168,8 +168,8 @@ bool nested_levels_are_quicker(const linalg::SymmetricPattern& pattern, double f
 }
 
 bool two_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work) {
-    // Multiply-adds of a factorisation, for each pair of nodes, that take as long as two levels do (measured: 10,000),
-    // and half as much again, because bodies that are hard to solve take two levels longer, but no factor.
+    // Multiply-adds of a factorisation, per pair of nodes, that take as long as the two-level method (measured:
+    // 10,000), and half as much again, because ill-conditioned bodies slow down two levels, but not a factor.
     constexpr double even = 15000;
     return 27 * factor_work > even * pairs_of(pattern);
 }

@@ -1,4 +1,4 @@
-// Two ways to solve with a tangent stiffness: by its factor, or on two levels where that would be too big.
+// Two ways to solve with a tangent stiffness: a factorisation, or a two-level method if that would be too large.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,18 +15,17 @@ class TangentInverse {
 public:
     virtual ~TangentInverse() = default;
 
-    /// How much it may take to make a factor of a matrix that single precision refuses: double is asked now and then,
-    /// or in any case, or not at all.
+    /// Effort for a matrix that single precision cannot factorise: double precision is tried never,
+    /// occasionally or always.
     enum class Effort { little, usual, all };
-    /// Takes a matrix, of which `values` must live on until the next call, and where its nodes are (3 nodes). False if
-    /// it is seen not to be positive definite.
+    /// Sets a matrix, of which `values` must be valid until the next call, and the positions of its nodes (3 nodes).
+    /// False if it is found not to be positive definite.
     [[nodiscard]] virtual bool set(std::span<const double> values, const Eigen::VectorXd& positions, Effort effort) = 0;
     enum class Outcome { solved, indefinite, slow };
-    /// columns (3 nodes, k) <- H^-1 columns, within `error` of each solution in the norm of H; 1e-3 at best, where an
-    /// `error` is smaller. Indefinite, slow: they hold how far it got, which still is a direction in which the energy
-    /// falls.
+    /// columns (3 nodes, k) <- H^-1 columns, within `error` of each solution in the norm of H, but no tighter than
+    /// 1e-3. Outcomes indefinite and slow: columns hold the last iterate, which is still a descent direction.
     [[nodiscard]] virtual Outcome solve(Eigen::MatrixXd& columns, double error) = 0;
-    /// What it knows beside the factor: with it a matrix that was taken before gives the same solutions again.
+    /// State in addition to the factor: with it, a matrix that was set before gives the same solutions again.
     struct Memory {
         bool in_double = false;
         bool untried = false;
@@ -36,11 +35,11 @@ public:
         bool operator==(const Memory&) const = default;
     };
     [[nodiscard]] virtual Memory memory() const = 0;
-    /// Puts that back; the factor at hand must be the one that it belongs to.
+    /// Restores it; the current factor must be the one that it belongs to.
     virtual void restore(const Memory& memory) = 0;
-    /// As set(), with a matrix that was taken before and the memory from after that.
+    /// As set(), with a matrix that was set before and the memory saved after that.
     virtual void recall(std::span<const double> values, const Eigen::VectorXd& positions, const Memory& memory) = 0;
-    /// What it costs to take a matrix and solve with it, in steps with one that is at hand.
+    /// Cost of setting a matrix and solving, relative to a solve with an existing factor.
     [[nodiscard]] virtual double factorisation_cost() const = 0;
 };
 
@@ -48,13 +47,13 @@ public:
 [[nodiscard]] std::unique_ptr<TangentInverse> make_direct_inverse(std::shared_ptr<const linalg::Analysis> analysis,
                                                                   bool exact);
 [[nodiscard]] std::unique_ptr<TangentInverse> make_two_level_inverse(const linalg::SymmetricPattern& pattern);
-/// Of quadratic tets, whose corners are the second level.
+/// For quadratic tets, whose corner nodes form the second level.
 [[nodiscard]] std::unique_ptr<TangentInverse> make_nested_inverse(const linalg::SymmetricPattern& pattern,
                                                                   linalg::Nesting corners);
-/// Which of the two is quicker, by what is known of the pattern alone. `factor_work`: multiply-adds of a factorisation
-/// with one unknown a node.
+/// Which of the two is faster, judged by the pattern alone. `factor_work`: multiply-adds of a factorisation with one
+/// unknown per node.
 [[nodiscard]] bool two_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work);
-/// The same of the second level that the corners of quadratic tets make.
+/// The same for the second level formed by the corners of quadratic tets.
 [[nodiscard]] bool nested_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work);
 
 }  // namespace pliant::sim

@@ -1,4 +1,4 @@
-// The tangent of a bent body solved both ways.
+// The tangent of a bent body, solved by both methods.
 #include "simulation/solver/tangent_inverse.hpp"
 
 #include <doctest/doctest.h>
@@ -31,7 +31,7 @@ Description pushed(Vec3 size, int along, int across, int order, double force_N) 
     return d;
 }
 
-/// Bent to an arc, every plane across still plane.
+/// Bent to an arc; plane cross-sections stay plane.
 Eigen::VectorXd bent(const Equilibrium& system, double radius_m) {
     Eigen::VectorXd x = system.rest().x;
     for (Eigen::Index i = 0; i < x.size(); i += 3) {
@@ -42,7 +42,7 @@ Eigen::VectorXd bent(const Equilibrium& system, double radius_m) {
     return x;
 }
 
-/// A pushed body bent to an arc: its tangent there, and what is out of balance.
+/// A pushed body bent to an arc: its tangent and out-of-balance force there.
 struct Bent {
     Model model;
     Equilibrium system{model};
@@ -133,7 +133,7 @@ TEST_CASE("a bulky body takes two levels, and gets to where its forces are in ba
     CHECK(result.steps.back().residual < 1e-6);
     CHECK(result.iterations.size() < 12);
 
-    // The same with a third of the nodes a side goes by the factor; it is stiffer by what a coarse mesh is.
+    // With a third of the nodes per side the factorisation is used; the coarse mesh makes it stiffer.
     const auto coarse = Model::create(pushed({0.02, 0.02, 0.02}, 6, 6, 1, 20));
     const Trajectory other = run(*coarse, {.steps = 1, .tolerance = 1e-6}, silent);
     REQUIRE_MESSAGE(other.converged, other.message);

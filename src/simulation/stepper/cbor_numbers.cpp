@@ -3,7 +3,7 @@
 namespace pliant::sim::cbor {
 namespace {
 
-/// Looks at the structure alone.
+/// Checks the structure only.
 class Structure final : public nlohmann::json_sax<Json> {
 public:
     explicit Structure(std::size_t most) : most_(most) {}

@@ -1,4 +1,4 @@
-// Vectors of numbers in CBOR, and checked on their way back.
+// Vectors of numbers in CBOR, with checks when reading.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,11 +30,11 @@ template <class T>
     return packed(std::span<const double>(v.data(), static_cast<std::size_t>(v.size())));
 }
 
-/// The map, list or value that the bytes are; discarded where they are none. Lists in lists in lists, deeper than
-/// anything of ours, and lists longer than all bytes count as none: the parser would run out of stack, or throw.
+/// Parses the map, list or value in the bytes; `discarded` if invalid. Lists nested deeper than any of ours, and lists
+/// longer than all bytes, are invalid: the parser would run out of stack, or throw.
 [[nodiscard]] Json parsed(std::string_view bytes);
 
-/// Takes values out of a map; the first that is missing, or is not what it must be, is the error of all.
+/// Reads values from a map; the first one that is missing or invalid is the error of the whole.
 class Reader {
 public:
     /// `map` must outlive it.
@@ -48,7 +48,7 @@ public:
     }
     [[nodiscard]] bool has(const char* key) const { return status_ && map_->contains(key) && !map_->at(key).is_null(); }
 
-    /// Null where it is missing.
+    /// Null if missing.
     [[nodiscard]] const Json& at(const char* key) {
         static const Json none;
         if (!status_) return none;
@@ -88,7 +88,7 @@ public:
     [[nodiscard]] std::vector<T> numbers(const char* key) {
         return numbers_of<T>(key, at(key));
     }
-    /// Of a value that is at hand; `key` names it if it is none.
+    /// For a value already read; `key` names it in the error.
     template <class T>
     [[nodiscard]] std::vector<T> numbers_of(const char* key, const Json& value) {
         std::vector<T> out;
@@ -100,7 +100,7 @@ public:
         if (!out.empty()) std::memcpy(out.data(), value.get_binary().data(), value.get_binary().size());
         return out;
     }
-    /// Finite numbers, as many as that.
+    /// Finite numbers, exactly `size` of them.
     [[nodiscard]] Eigen::VectorXd vector(const char* key, Eigen::Index size) {
         const std::vector<double> numbers = this->numbers<double>(key);
         if (status_ && static_cast<Eigen::Index>(numbers.size()) != size)

@@ -12,7 +12,7 @@ namespace {
 constexpr double cable_share = 0.04, chamber_share = 0.1;  // of the measure at rest
 constexpr double strain_share = 0.01;                      // of the softest stiffness, for tensions and pressures
 
-/// Largest stiffness of the softest material; meshed space that actuators drive is none.
+/// Largest stiffness of the softest material, not counting meshed space that actuators drive.
 double softest_body_Pa(const Description& d) {
     double softest = std::numeric_limits<double>::infinity();
     for (std::size_t m = 0; m < d.materials.size(); ++m) {

@@ -53,7 +53,7 @@ double MotionInTime::kinetic_energy_J(const History& history) const {
     return 0.5 * history.v.dot(momentum);
 }
 
-/// Of the elements alone: what damping by stiffness couples.
+/// Layout of the elements alone, for stiffness damping.
 std::shared_ptr<const TangentLayout> MotionInTime::make_body_layout() const {
     const auto& index = model_.free_index();
     TangentLayout layout{linalg::make_pattern(model_.free_count(), 3, model_.elements().cliques(index)), {}};

@@ -1,4 +1,4 @@
-// A robot that has mass and damping: what a step in time adds to its equations.
+// Mass and damping of a robot: the inertia terms of a step in time.
 #pragma once
 
 #include <memory>
@@ -9,19 +9,19 @@
 
 namespace pliant::sim {
 
-/// Both outlive it.
+/// Both arguments must outlive it.
 class MotionInTime {
 public:
     MotionInTime(const Model& model, const Damping& damping) : model_(model), damping_(damping) {}
 
-    /// Undeformed at `x` (3n) and still, but for objects, which have the velocities that they start with.
+    /// Undeformed at `x` (3n) and with zero velocity, except objects, which have their initial velocities.
     [[nodiscard]] History at_rest(const Eigen::VectorXd& x) const;
-    /// All of it still.
+    /// With zero velocity everywhere.
     [[nodiscard]] static History still(const Eigen::VectorXd& x);
-    /// For a step of `dt` from where `history` ends. Damping by stiffness takes the stiffness there.
+    /// For a step of `dt` from the end of `history`. Stiffness damping uses the stiffness there.
     [[nodiscard]] std::shared_ptr<const Inertia> inertia(const History& history, double dt,
                                                          Scheme scheme = Scheme::even);
-    /// After a step that ends at `x`.
+    /// The history after a step that ends at `x`.
     [[nodiscard]] static History after(const Inertia& inertia, const Eigen::VectorXd& x);
     [[nodiscard]] double kinetic_energy_J(const History& history) const;
 
@@ -30,7 +30,7 @@ private:
 
     const Model& model_;
     Damping damping_;
-    std::shared_ptr<const TangentLayout> body_layout_;  ///< made when damping by stiffness first needs it
+    std::shared_ptr<const TangentLayout> body_layout_;  ///< made on first use by stiffness damping
 };
 
 }  // namespace pliant::sim

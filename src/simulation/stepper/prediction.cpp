@@ -11,8 +11,8 @@
 namespace pliant::sim {
 namespace {
 
-// Errors of states to start from. Beyond the worst the body buckles or something new begins to act: from where it is,
-// at least its tangent is sound.
+// Largest error of an initial state. Beyond it the body buckles or a new contact begins: then the last state is better,
+// because at least its tangent is sound.
 constexpr double worst_start = 0.2;
 constexpr double good_start = 0.03;
 
@@ -24,7 +24,7 @@ double along_of(const RobotState& robot, std::size_t k) {
     return k == 0 ? robot.now.along : past(robot, k).along;
 }
 
-/// Lagrange's polynomials for the last `count` states, the latest first: they sum up to 1.
+/// Lagrange polynomials for the last `count` states, the latest first: they sum to 1.
 std::vector<double> shares_at(double along, const RobotState& robot, std::size_t count) {
     std::vector<double> shares(count, 1.0);
     for (std::size_t k = 0; k < count; ++k) {
@@ -37,16 +37,15 @@ std::vector<double> shares_at(double along, const RobotState& robot, std::size_t
     return shares;
 }
 
-/// On along the polynomial through the last `count` states, at least 2: the multipliers as they are, and for each tet
-/// how far it has turned and grown. A bent body keeps its length so, where its nodes, on straight lines, would stretch
-/// it.
+/// Extrapolates the polynomial through the last `count` states, at least 2: multipliers directly, and for each tet its
+/// rotation and stretch. A bent body thus keeps its length, whereas straight motion of its nodes would stretch it.
 State onward(const Equilibrium& system, const FactoredLaplacian& laplacian, const RobotState& robot, double along,
              std::size_t count, const Controls& controls) {
     const std::vector<double> shares = shares_at(along, robot, count);
     State next{robot.x(), shares[0] * robot.now.state.multiplier};
     system.place_supports(controls, next.x);
     RotatingStep rotating{.now = robot.x().data(), .end = next.x.data()};
-    double beyond = 0;  // the shares of all states before the turn in question
+    double beyond = 0;  // sum of the shares of all states before the rotation in question
     for (std::size_t k = count - 1; k > 0; --k) {
         const State& before = *past(robot, k).state;
         next.multiplier += shares[k] * before.multiplier;
@@ -62,15 +61,15 @@ State onward(const Equilibrium& system, const FactoredLaplacian& laplacian, cons
     return next;
 }
 
-/// On from the last four states or, if that ends far from equilibrium, from fewer, whichever is nearest; nothing where
-/// none is near enough.
+/// Extrapolates the last four states or, if that ends far from equilibrium, fewer, whichever is nearest; empty if none
+/// is near enough.
 std::optional<Prediction> extrapolate(const Equilibrium& system, const FactoredLaplacian& laplacian,
                                       const RobotState& robot, double along, const Controls& controls) {
     std::optional<Prediction> best;
     double least = worst_start;
     for (std::size_t count = robot.past.size() + 1; count >= 2 && least > good_start; --count) {
         State state = onward(system, laplacian, robot, along, count, controls);
-        // First: contact then knows whether anything is near at its end.
+        // This check comes first: contact then knows whether anything is near at the end.
         if (!passes(system, robot, state, controls)) continue;
         Evaluation e = system.evaluate(state, controls);
         if (!e.possible() || !(e.error() < least)) continue;

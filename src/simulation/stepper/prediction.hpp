@@ -1,4 +1,4 @@
-// Where a step begins: on from the last states, or from the last one as its supports move.
+// Initial state of a step: extrapolated from the last states, or the last one with moved supports.
 #pragma once
 
 #include <optional>
@@ -12,26 +12,25 @@ namespace pliant::sim {
 
 struct Prediction {
     State state;
-    Evaluation evaluation;  ///< of `state` at the controls that are wanted
-    std::string reason;     ///< why there is none; empty if there is
+    Evaluation evaluation;  ///< of `state` at the wanted controls
+    std::string reason;     ///< why there is no prediction; otherwise empty
 };
 
-/// On along the way of the last states to `along` or, where that would turn a tet inside out or pass through something
-/// (or no `along` is given), the last state with the supports at their new place, or with the robot pushed out of the
-/// way of what comes.
+/// Extrapolates the last states to `along` or, if that inverts a tet or intersects something (or no `along` is given),
+/// takes the last state with the supports at their new position, or with the robot pushed away by what approaches.
 [[nodiscard]] Prediction predict(const Equilibrium& system, const FactoredLaplacian& laplacian, const RobotState& from,
                                  const Controls& wanted, std::optional<double> along, const Progress& progress);
 
-/// A state that somebody expects, with the supports at their place. Nothing: it is far from equilibrium, it turns a tet
-/// inside out, or the straight way there passes through something.
+/// An expected state, with the supports at their positions. Empty: it is far from equilibrium, it inverts a tet, or the
+/// straight path to it intersects something.
 [[nodiscard]] std::optional<Prediction> start_from(const Equilibrium& system, const RobotState& from,
                                                    const State& expected, const Controls& wanted);
 
-/// A state whose supports stand as `controls` want, and whose other nodes follow as smoothly as possible.
+/// A state with the supports positioned by `controls` and all other nodes following as smoothly as possible.
 [[nodiscard]] State follow_supports(const Equilibrium& system, const FactoredLaplacian& laplacian, const State& from,
                                     const Controls& controls);
 
-/// True if the straight way from one state to another meets nothing.
+/// True if the straight path from one state to another has no intersection.
 [[nodiscard]] bool passes(const Equilibrium& system, const RobotState& from, const State& next,
                           const Controls& controls);
 

@@ -1,4 +1,4 @@
-// A robot at one instant: everything that changes, as a value.
+// The complete state of a robot at one instant, as a value.
 #pragma once
 
 #include <deque>
@@ -13,33 +13,33 @@
 
 namespace pliant::sim {
 
-/// A state, and where it stands on the way that led to it: a time or any other measure of progress.
+/// A state and its position along the path: a time or any other measure of progress.
 struct Moment {
     double along = 0;
     State state;
 };
 
-/// One that is over. The state is shared by all copies.
+/// A previous moment. The state is shared by all copies.
 struct PastMoment {
     double along = 0;
     std::shared_ptr<const State> state;
 };
 
-/// May be copied, kept, and gone on from: a step from a copy gives the same bits as one from the original, whatever was
+/// May be copied, kept and continued: a step from a copy gives the same bits as one from the original, whatever was
 /// solved in between. Belongs to one model. Materials have no internal variables: their forces follow from the
 /// positions.
 struct RobotState {
     Moment now;                    ///< positions and multipliers
-    Inputs inputs;                 ///< as they were asked for: `controls` may hold weighted lengths instead
-    std::optional<Inputs> before;  ///< of the last state of the past, where a step by inputs led on from it
-    std::vector<Drive> drives;     ///< (actuators) as `inputs`, and those that nobody steers
-    /// Under which it is in equilibrium, with contact and friction as they were found.
+    Inputs inputs;                 ///< as requested: `controls` may hold weighted lengths instead
+    std::optional<Inputs> before;  ///< inputs of the last previous state, if a step by inputs started from it
+    std::vector<Drive> drives;     ///< (actuators) those of `inputs`, and of actuators that are not steered
+    /// The controls of its equilibrium, with contact and friction as found.
     Controls controls;
-    Evaluation evaluation;  ///< of all this; follows from it
-    /// The states before, the latest last: where the next one is looked for.
+    Evaluation evaluation;  ///< of all this; derived from it
+    /// Previous states, the latest last: used to predict the next one.
     std::deque<PastMoment> past;
     History history;                             ///< positions and velocities, for a motion in time
-    std::shared_ptr<const SolverMemory> memory;  ///< null: the solver begins anew
+    std::shared_ptr<const SolverMemory> memory;  ///< null: the solver starts anew
 
     [[nodiscard]] const Eigen::VectorXd& x() const { return now.state.x; }
 };

@@ -141,7 +141,7 @@ Json json_of(const SolverMemory& memory) {
 
 // --- read ----------------------------------------------------------------------------------------------------------
 
-/// How long the vectors of a model are.
+/// Sizes of the vectors of a model.
 struct Sizes {
     Eigen::Index coordinates, free_coordinates, actuators, steered, object_coordinates, obstacle_coordinates;
     std::size_t supports;
@@ -160,7 +160,7 @@ Sizes sizes_of(const Stepper& stepper) {
             controls.support_share.size()};
 }
 
-/// What is read of one map; where something is wrong `status` says it, and the rest is of no use.
+/// Reads one map; on an error `status` describes it, and the rest is invalid.
 class StateReader {
 public:
     StateReader(const Stepper& stepper) : stepper_(stepper), sizes_(sizes_of(stepper)) {}
@@ -325,7 +325,7 @@ private:
         return controls;
     }
 
-    /// Of each cable with friction one for each of its segments; of all others none.
+    /// For each cable with friction one number per segment; for all others none.
     std::vector<std::vector<double>> shares(Reader& in) {
         std::vector<std::vector<double>> shares;
         const auto& cables = stepper_.model().description().cables;
@@ -425,7 +425,7 @@ private:
     Status status_;
 };
 
-/// A tangent can be taken only where no tet is turned inside out.
+/// A tangent can only be computed if no tet is inverted.
 Status check_possible(const Stepper& stepper, const RobotState& robot) {
     const auto possible = [&](const State& state) {
         return stepper.model()

@@ -16,7 +16,7 @@ namespace {
 constexpr double rounding = 1e-7;            // of the shortest piece
 constexpr double smallest_share = 1.0 / 64;  // of a step by inputs
 constexpr int friction_rounds = 30;
-constexpr int most_in_vain = 3000;  // iterations, as quasi-newton may take for one attempt
+constexpr int most_in_vain = 3000;  // iterations: as many as quasi-newton may take for one attempt
 
 void note(const std::vector<IterationRecord>& history, double along, StepReport& report) {
     for (IterationRecord record : history) {
@@ -25,13 +25,13 @@ void note(const std::vector<IterationRecord>& history, double along, StepReport&
     }
 }
 
-/// Laws without an energy promise no descent, however short the step is: where as many iterations as one attempt may
-/// take have led nowhere, more of them do not either.
+/// Laws without an energy guarantee no descent, however short the step is: if as many iterations as one attempt may
+/// take were in vain, further ones are too.
 bool is_hopeless(const Model& model, const StepperOptions& options, int in_vain) {
     return !model.elements().has_energy() && in_vain >= std::max(most_in_vain, options.iteration_limit);
 }
 
-/// A step of this length, from stillness, takes a thousandth of the weight to move the robot by its own size.
+/// Time step for which a force of a thousandth of the weight moves the resting robot by its own size.
 double tether_dt_s(const Model& model) {
     constexpr double share = 1e-3, g_m_s2 = 9.81;
     Box3 box;
@@ -41,13 +41,14 @@ double tether_dt_s(const Model& model) {
 
 }  // namespace
 
-/// One piece of a way.
+/// One piece of a path.
 struct Stepper::Target {
     double along;
     Controls controls;
     bool onward;
-    const State* expected;      ///< there; null: not known
-    double* error_m = nullptr;  ///< where the error in time is wanted: gets it; it is not accepted above the next
+    const State* expected;      ///< there; null: unknown
+    double* error_m = nullptr;  ///< receives the error in time if requested; the step is rejected if it is above the
+                                ///< next
     double largest_error_m = 0;
 };
 
@@ -91,7 +92,7 @@ Inputs Stepper::program(double time) const {
     return {time, std::move(drives)};
 }
 
-/// Cables and chambers; pressure loads follow the program.
+/// Number of cables and chambers; pressure loads follow the program.
 std::size_t Stepper::steered() const {
     const Description& d = model_.description();
     return d.cables.size() + d.chambers.size();
@@ -146,13 +147,13 @@ StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progres
     return report;
 }
 
-/// Steps grow and shrink by their error. Where the next would nearly reach the end of the way it is shortened, or two
-/// are made equally long, so that none is very short.
+/// The step length is adapted to the error. If the next step would nearly reach the end of the path it is shortened, or
+/// two are made equally long, so that none is very short.
 StepReport Stepper::step_by_error(RobotState& robot, const Way& way, const Progress& progress) {
     constexpr double first_share = 1.0 / 64, most_growth = 2, most_loss = 0.2, careful = 0.9;
     const double tolerance = options_.dynamics->time_tolerance_m;
     StepReport report;
-    std::string off;  // why the last step that was solved was refused
+    std::string off;  // why the last solved step was rejected
     double piece = robot.history.next_dt;
     if (!(piece > 0)) piece = first_share * (way.end - robot.now.along);
     while (robot.now.along < way.end && !progress.cancelled()) {
@@ -193,7 +194,7 @@ StepReport Stepper::step(RobotState& robot, const Way& way, const Progress& prog
     if (is_adaptive()) return step_by_error(robot, way, progress);
     StepReport report;
     double piece = way.end - robot.now.along;
-    int in_vain = 0;  // iterations of the attempts since the last that arrived
+    int in_vain = 0;  // iterations of the attempts since the last one that succeeded
     while (robot.now.along < way.end) {
         const double along = robot.now.along + piece;
         const double end = along >= way.end - rounding * way.shortest_piece ? way.end : along;
@@ -224,7 +225,7 @@ StepReport Stepper::leap(RobotState& robot, const Way& way, const Progress& prog
     return report;
 }
 
-/// In one go; on the way the robot may meet itself, and is then solved again with contact.
+/// Solves one piece; if the robot meets itself on the way, it is solved again with contact.
 StepOutcome Stepper::go(RobotState& robot, const Target& target, StepReport& report, const Progress& progress) {
     StepOutcome outcome;
     int iterations = 0;
@@ -254,18 +255,18 @@ StepOutcome Stepper::go(RobotState& robot, const Target& target, StepReport& rep
     }
 }
 
-/// Whether a step's formula depends on what happens in it.
+/// True if the formula of a step depends on what happens in it.
 bool Stepper::chooses_scheme() const {
     return options_.dynamics && (is_adaptive() || options_.dynamics->integrator != Integrator::bdf2);
 }
 
-/// What touches moves by formulas that take energy out of what they do not resolve: an impact. The step in which
-/// something begins to touch, and the next, know nothing of before.
+/// Parts in contact use formulas that dissipate unresolved motion, as in an impact. The step in which contact begins,
+/// and the next, do not use earlier states.
 Scheme Stepper::scheme(const RobotState& robot, const Controls& controls) const {
     if (robot.history.touching == 1) return Scheme::euler;
     if (robot.history.touching > 1 || options_.dynamics->integrator == Integrator::bdf2) return Scheme::bdf2;
-    // A prescribed length, volume or angle says where it is to be at the end, not in the mean; a damped joint, what it
-    // loses by then.
+    // A prescribed length, volume or angle refers to the end of the step, not to the mean; a damped joint, to its loss
+    // by then.
     const bool prescribed =
         std::ranges::any_of(controls.drives, [](const Drive& drive) { return drive.kind == Drive::Kind::measure; });
     const bool by_joint = std::ranges::any_of(model_.description().joints, [](const Joint& joint) {
@@ -274,7 +275,7 @@ Scheme Stepper::scheme(const RobotState& robot, const Controls& controls) const 
     return prescribed || by_joint ? Scheme::bdf2 : Scheme::conserving;
 }
 
-/// Loads, torques, tensions and pressures of a conserving step are the means of those at its ends.
+/// Loads, torques, tensions and pressures of a conserving step are the means of their values at both ends.
 void Stepper::take_mean_inputs(const RobotState& robot, Controls& controls) const {
     const Controls begin = system_.controls(robot.controls.time), end = system_.controls(controls.time);
     controls.external_N += 0.5 * (begin.external_N - end.external_N);
@@ -286,7 +287,7 @@ void Stepper::take_mean_inputs(const RobotState& robot, Controls& controls) cons
     }
 }
 
-/// Mean of all masses of how far they are off.
+/// Error in time: mean over all masses.
 double Stepper::time_error_m(const Controls& controls, const State& next) const {
     const Eigen::VectorXd off = controls.inertia->error(next.x);
     double mass = 0;
@@ -294,8 +295,8 @@ double Stepper::time_error_m(const Controls& controls, const State& next) const 
     return mass > 0 ? std::sqrt(std::max(0.0, off.dot(controls.inertia->mass_times(off))) / mass) : 0;
 }
 
-/// Where a step ends in contact though it began without, or finds no end because of it, it is taken again as one that
-/// may lose energy.
+/// If a step ends in contact though it began without, or does not converge because of it, it is repeated with a scheme
+/// that may dissipate energy.
 StepOutcome Stepper::attempt_in_time(const RobotState& robot, const Target& target, Controls& controls, State& next,
                                      const Progress& progress) {
     const Controls wanted = controls;
@@ -318,7 +319,7 @@ StepOutcome Stepper::attempt_in_time(const RobotState& robot, const Target& targ
         }
     }
     if (!outcome.converged) return outcome;
-    if (controls.inertia->scheme() == Scheme::conserving) {  // its forces are those on the way, not at the end
+    if (controls.inertia->scheme() == Scheme::conserving) {  // its forces are those along the path, not at the end
         Controls still = controls;
         still.inertia = nullptr;
         const Evaluation end = system_.evaluate(next, still);
@@ -356,7 +357,7 @@ StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Sche
     return settle(robot, controls, next, progress, std::move(start.evaluation));
 }
 
-/// `known`: of `next`, as long as there is no friction.
+/// `known`: evaluation of `next`, used if there is no friction.
 StepOutcome Stepper::settle(const RobotState& from, Controls& controls, State& next, const Progress& progress,
                             std::optional<Evaluation> known) {
     return settle_friction(system_, solvers_, {options_.tolerance, options_.iteration_limit}, friction_rounds,
@@ -397,14 +398,14 @@ StepReport Stepper::settle_beside(RobotState& robot, State guess, const Progress
         robot.now.state = std::move(guess);
         robot.controls = std::move(controls);
         robot.evaluation = std::move(outcome.evaluation);
-        robot.past.clear();  // they lead along the way that was left
+        robot.past.clear();  // they belong to the old path
     }
     remember(robot);
     return report;
 }
 
 bool Stepper::find(const Controls& controls, State& state, const Progress& progress) {
-    live_.reset();  // the solvers no longer remember what any state does
+    live_.reset();  // the solvers no longer hold the memory of any state
     state = follow_supports(system_, laplacian_, state, controls);
     if (!system_.evaluate(state, controls).possible()) return false;
     solvers_.restart();
@@ -419,7 +420,7 @@ std::shared_ptr<const Inertia> Stepper::inertia(const History& history, double d
     return motion_->inertia(history, dt, scheme);
 }
 
-/// The solvers remember what they did when this state came about.
+/// Restores the solvers' memory of when this state was computed.
 void Stepper::recall(const RobotState& robot) {
     if (robot.memory && robot.memory == live_) return;
     solvers_.recall(robot.memory.get());

@@ -1,4 +1,4 @@
-// Takes a robot from one state to the next: the one engine under programs, live robots and the library.
+// Advances a robot from one state to the next: the common engine of programs, interactive robots and the library.
 #pragma once
 
 #include <functional>
@@ -19,39 +19,39 @@ namespace pliant::sim {
 struct StepperOptions {
     Solver solver = Solver::automatic;
     double tolerance = 1e-4;
-    int iteration_limit = 0;                          ///< for one piece of a step; 0: the solver's own
-    std::optional<Dynamics> dynamics = std::nullopt;  ///< none: at rest at every instant
-    std::size_t most_past = RotatingStep::most_past;  ///< states that a prediction may look back on
-    double time_unit = 1;                             ///< of the model's program: what usually goes in one step
+    int iteration_limit = 0;                          ///< for each piece of a step; 0: that of the solver
+    std::optional<Dynamics> dynamics = std::nullopt;  ///< empty: quasi-static
+    std::size_t most_past = RotatingStep::most_past;  ///< number of states that a prediction may use
+    double time_unit = 1;                             ///< of the model's program: usually one step
 };
 
-/// Of a step of the program or to inputs: shorter pieces than this share are not tried where their error decides.
+/// For a step of the program or to inputs: smallest share of a step in adaptive time stepping.
 inline constexpr double smallest_adaptive_share = 1.0 / (1 << 20);
 
-/// Where a step leads, and on which way: what is wanted at each place on it.
+/// The path of a step: the controls at each point of it.
 struct Way {
-    double end = 0;  ///< how far the step goes; Moment::along says where it begins
+    double end = 0;  ///< end of the step; Moment::along is its start
     std::function<Controls(double along)> at;
-    double shortest_piece = 0;        ///< shorter ones are not tried
-    bool onward = true;               ///< it goes on as the last steps did, so that they tell where it leads
-    const State* expected = nullptr;  ///< about what the state at its end will be; null: not known
-    /// Called with every state that a step passes, its end too. May be empty.
+    double shortest_piece = 0;        ///< shortest piece that is tried
+    bool onward = true;               ///< it continues the last steps, so that they can be extrapolated
+    const State* expected = nullptr;  ///< approximate state at its end; null: unknown
+    /// Called with every intermediate state of a step, including its end. May be empty.
     std::function<void(const RobotState&)> after_piece{};
 };
 
-/// What a step did.
+/// Result of a step.
 struct StepReport {
     bool arrived = false;
-    bool loose = false;  ///< a piece of it was accepted on looser terms than the tolerance: friction_rounds.hpp
-    std::string reason;  ///< why it did not arrive, or on which terms
+    bool loose = false;  ///< a piece was accepted at a looser tolerance: friction_rounds.hpp
+    std::string reason;  ///< why it did not arrive, or at which tolerance
     int iterations = 0;
-    int pieces = 0;                        ///< that were accepted
-    int refused = 0;                       ///< that were solved, but for their error in time, or were not solved
-    Solver solver = Solver::automatic;     ///< that finished the last of them
+    int pieces = 0;                        ///< number of accepted pieces
+    int refused = 0;                       ///< number of rejected pieces: too large an error in time, or not converged
+    Solver solver = Solver::automatic;     ///< of the last piece
     std::vector<IterationRecord> history;  ///< `step` is not filled in
 };
 
-/// Not for two threads at once. The same state and the same way give the same bits, whatever was asked before.
+/// Not thread-safe. The same state and path give the same bits, whatever was solved before.
 class Stepper {
 public:
     /// `model` must outlive it.
@@ -60,45 +60,45 @@ public:
     Stepper& operator=(const Stepper&) = delete;
     ~Stepper();
 
-    /// Undeformed and, with dynamics, still; at the start of the model's program.
+    /// The rest state: undeformed and, with dynamics, with zero velocity; at the start of the model's program.
     [[nodiscard]] RobotState rest() const;
-    /// What the program wants at `time` of a robot in this state.
+    /// The controls of the program at `time` for a robot in this state.
     [[nodiscard]] Controls controls(const RobotState& robot, double time) const;
     /// The same as inputs.
     [[nodiscard]] Inputs program(double time) const;
-    /// What these inputs want; without their force, which belongs to a point that they do not know.
+    /// The controls for these inputs; without their force, which belongs to a point that is not part of them.
     [[nodiscard]] Controls controls(const RobotState& robot, const Inputs& inputs) const;
-    /// A drive of `kind` that keeps actuator `a` as it is.
+    /// A drive of the given kind that keeps actuator `a` as it is.
     [[nodiscard]] Drive hold(const RobotState& robot, std::size_t a, Drive::Kind kind) const;
-    /// Prepares a step from `robot.inputs` to `wanted` on a way from 0 to 1: true if it goes on, or back, along that of
-    /// the last step, which then tells where it leads.
+    /// Prepares a step from `robot.inputs` to `wanted` on a path from 0 to 1: true if it continues, or reverses, the
+    /// path of the last step, which can then be extrapolated.
     [[nodiscard]] bool set_course(RobotState& robot, const Inputs& wanted) const;
     [[nodiscard]] const InputUnits& units() const { return units_; }
 
-    /// Goes to the end of the way, halving what does not converge. Where it does not arrive `robot` is as far as it
-    /// got. With dynamics `along` is time in seconds.
+    /// Steps to the end of the path, halving pieces that do not converge. If it does not arrive, `robot` is as far as
+    /// it got. With dynamics `along` is time in seconds.
     [[nodiscard]] StepReport step(RobotState& robot, const Way& way, const Progress& progress);
-    /// In one piece; `robot` keeps its positions where that does not converge.
+    /// In one piece; `robot` keeps its positions if that does not converge.
     [[nodiscard]] StepReport leap(RobotState& robot, const Way& way, const Progress& progress);
-    /// To equilibrium from `guess`, with `robot` standing still otherwise: on another branch of equilibria than that
-    /// of the last steps, which are forgotten. Without convergence `robot` is as before.
+    /// Solves for equilibrium from `guess`, with everything else of `robot` unchanged: on another branch of equilibria
+    /// than that of the last steps, which are forgotten. Without convergence `robot` is unchanged.
     [[nodiscard]] StepReport settle_beside(RobotState& robot, State guess, const Progress& progress);
-    /// To where the inputs are wanted, on a straight way from where they are, halving what does not converge; what is
-    /// driven by another kind than before begins as it is. With
-    /// dynamics the step takes the time until `wanted.time`, which must be later. Where it does not arrive `robot` and
-    /// its inputs are as far as they got. `expected`: about what the state will be; null: not known.
+    /// Steps to the wanted inputs on a straight path from the current ones, halving pieces that do not converge; an
+    /// actuator driven by another kind than before starts from its current value. With dynamics the step takes the time
+    /// until `wanted.time`, which must be later. If it does not arrive, `robot` and its inputs are as far as they got.
+    /// `expected`: approximate final state; null: unknown.
     [[nodiscard]] StepReport drive(RobotState& robot, const Inputs& wanted, const Progress& progress,
                                    const State* expected = nullptr);
-    /// An equilibrium at `controls` from `state`, as a trial. False: none was found, and `state` is of no use.
+    /// Tries to find an equilibrium at `controls` from `state`. False: none was found, and `state` is unusable.
     [[nodiscard]] bool find(const Controls& controls, State& state, const Progress& progress);
 
     [[nodiscard]] double kinetic_energy_J(const RobotState& robot) const;
-    /// What a step in time of `dt` from where `history` ends adds to the equations. Precondition: has_inertia().
+    /// The inertia of a step in time of `dt` from the end of `history`. Precondition: has_inertia().
     [[nodiscard]] std::shared_ptr<const Inertia> inertia(const History& history, double dt,
                                                          Scheme scheme = Scheme::even) const;
-    /// Steps are as long as their error in time allows.
+    /// True if the step length is adapted to the error in time.
     [[nodiscard]] bool is_adaptive() const { return options_.dynamics && options_.dynamics->time_tolerance_m > 0; }
-    /// In a motion in time and, as a tether, where something is held by nothing: see theory.md.
+    /// True for a motion in time and, through the tether, if something is not held: see theory.md.
     [[nodiscard]] bool has_inertia() const { return motion_.has_value(); }
     [[nodiscard]] const Model& model() const { return model_; }
     [[nodiscard]] const Equilibrium& system() const { return system_; }
@@ -131,9 +131,9 @@ private:
     FactoredLaplacian laplacian_;
     SolverChain solvers_;
     InputUnits units_;
-    mutable std::optional<MotionInTime> motion_;  ///< keeps a pattern that it has made; of a tether too
-    double tether_dt_s_ = 0;                    ///< above 0: at rest at every instant, and something is held by nothing
-    std::shared_ptr<const SolverMemory> live_;  ///< what the solvers remember; null: nothing that a state has
+    mutable std::optional<MotionInTime> motion_;  ///< caches a pattern; also used for a tether
+    double tether_dt_s_ = 0;                      ///< above 0: quasi-static, and something is not held
+    std::shared_ptr<const SolverMemory> live_;    ///< current memory of the solvers; null: that of no state
 };
 
 }  // namespace pliant::sim

@@ -1,5 +1,5 @@
-// The robot on the platform before it is sliced: moved, turned, scaled, copied, in the colours of its materials. A face
-// that is pointed at is laid down, and supports are painted on it.
+// The robot on the platform before slicing: moved, rotated, scaled, copied, in the colours of its materials. Clicking a
+// face lays it on the platform, and supports can be painted on the part.
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import * as THREE from 'three';
@@ -15,7 +15,7 @@ import { layOnFace, placed, rotationOf, type Degrees } from './place';
 import { clock } from './plan';
 import { platformMesh } from './stack';
 
-/// "2", "2 mm" or "0.2 cm" as millimetres; what the slicer will refuse is the usual.
+/// "2", "2 mm" or "0.2 cm" in millimetres; the default for texts that the slicer will refuse.
 function millimetres(text: string | undefined, usual: number): number {
   const match = /^\s*([\d.eE+-]+)\s*(um|µm|mm|cm|m|in)?\s*$/.exec(text ?? '');
   const value = match ? Number(match[1]) : NaN;
@@ -23,10 +23,10 @@ function millimetres(text: string | undefined, usual: number): number {
   return Number.isFinite(value) && value >= 0 ? value * scale : usual;
 }
 
-/// What the pointer does on the part.
+/// What the pointer does to the part.
 type Tool = 'move' | 'face' | 'enforce' | 'block' | 'usual';
 const tool = signal<Tool>('move');
-const brush = signal(2); // radius in mm of the part as it was drawn
+const brush = signal(2); // radius in mm, in the coordinates of the drawn part
 const isBrush = (t: Tool): t is Wish => t === 'enforce' || t === 'block' || t === 'usual';
 
 interface Hands {
@@ -49,13 +49,13 @@ class BedView {
   private platform: THREE.Group | null = null;
   private seen = '';
   private frame = 0;
-  private points = new Float32Array(0); // of the part as it was drawn, three corners a triangle
+  private points = new Float32Array(0); // of the drawn part, three corners per triangle
   private normals = new Float32Array(0);
   private plain = new Float32Array(0); // colours without paint
-  private codes = new Uint8Array(0); // paint of each corner
+  private codes = new Uint8Array(0); // paint code of each corner
   private list: Touch[] = [];
-  private down = new THREE.Vector3(); // of the platform, as the part as it was drawn sees it
-  private flattest = -1; // degrees: undersides flatter than this are shown; below 0: none
+  private down = new THREE.Vector3(); // downward direction of the platform, in the coordinates of the drawn part
+  private flattest = -1; // degrees: undersides flatter than this are highlighted; below 0: none
   private held: { at: THREE.Vector3 } | null = null;
   private last: Touch | null = null;
 
@@ -65,7 +65,7 @@ class BedView {
     this.world.add(new THREE.HemisphereLight(0xffffff, 0x8a8f98, 1.9));
     const key = new THREE.DirectionalLight(0xffffff, 1.6);
     key.position.set(-1, -2, 3);
-    const below = new THREE.DirectionalLight(0xffffff, 0.7); // undersides are what is painted
+    const below = new THREE.DirectionalLight(0xffffff, 0.7); // lights undersides, where supports are painted
     below.position.set(1, -1, -2);
     this.ring.visible = false;
     this.ring.renderOrder = 2;
@@ -73,7 +73,7 @@ class BedView {
     this.build(part);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.draw());
-    // Before those of the controls, which would turn the view.
+    // Registered before those of the controls, which would rotate the view.
     this.listeners = [
       ['pointerdown', (e) => this.grasp(e as PointerEvent), true],
       ['pointermove', (e) => this.follow(e as PointerEvent), true],
@@ -156,11 +156,11 @@ class BedView {
     }
     this.draw();
   }
-  private sized = false; // the shape of the window is known
+  private sized = false; // the window size is known
   private size = 100;
   private height = 0;
 
-  /// `flattest`: undersides flatter than so many degrees are tinted; below 0: none.
+  /// `flattest`: undersides flatter than this angle, in degrees, are highlighted; below 0: none.
   paint(list: Touch[], flattest: number) {
     const grows = list.length >= this.list.length && this.list.every((t, k) => t === list[k]);
     if (!grows) this.codes.fill(0);
@@ -192,13 +192,13 @@ class BedView {
 
   private home() {
     this.controls.target.set(0, 0, this.height / 3);
-    const far = this.size * Math.max(1, 1.4 / this.camera.aspect); // a narrow window sees less
+    const far = this.size * Math.max(1, 1.4 / this.camera.aspect); // move back if the window is narrow
     this.camera.position.set(0.5 * far, -1.35 * far, 0.85 * far);
     this.controls.update();
     this.draw();
   }
 
-  /// From below, where supports are.
+  /// Views the part from below, where supports are.
   lookUp() {
     const far = this.size * Math.max(1, 1.4 / this.camera.aspect);
     this.controls.target.set(0, 0, this.height / 3);
@@ -241,7 +241,7 @@ class BedView {
     if (!this.held) return;
     if (hit && isBrush(t)) return this.touch(hit, t, false);
     if (t !== 'move') return;
-    // Along the plane of the point that is held.
+    // In the plane of the grabbed point.
     const to = ray.ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), -this.held.at.z), new THREE.Vector3());
     if (!to) return;
     const step = [to.x - this.held.at.x, to.y - this.held.at.y].map((v) => Math.round(10 * v) / 10);
@@ -288,7 +288,7 @@ class BedView {
   private key(e: KeyboardEvent) {
     const t = tool.peek();
     if ((e.key === 'Enter' || e.key === ' ') && t !== 'move' && mayDrive.peek()) {
-      // Where the middle of the view is.
+      // The point at the centre of the view.
       const hit = this.hit(this.ray(0, 0));
       e.preventDefault();
       if (!hit?.face) return;
@@ -325,7 +325,7 @@ interface Estimate {
   resin_ml: Record<string, number>;
 }
 
-/// What the print will take, as the planner sees it before anything is sliced.
+/// An estimate of time and resin by the planner, before slicing.
 function useEstimate(order: string, can: boolean): Estimate | null {
   const [estimate, setEstimate] = useState<Estimate | null>(null);
   useEffect(() => {
@@ -335,7 +335,7 @@ function useEstimate(order: string, can: boolean): Estimate | null {
       api('/api/job/estimate', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: order, signal: stop.signal })
         .then((r) => r.json())
         .then((e: Estimate) => setEstimate(e))
-        .catch(() => stop.signal.aborted || setEstimate(null)); // what is wrong is said when it is sliced
+        .catch(() => stop.signal.aborted || setEstimate(null)); // errors are shown when slicing
     }, 350);
     return () => {
       clearTimeout(timer);
@@ -345,7 +345,7 @@ function useEstimate(order: string, can: boolean): Estimate | null {
   return estimate;
 }
 
-/// The brush for supports: what it paints, how wide it is, and back.
+/// The support brush: what it paints, its radius, and undo.
 function Brush({ materials, lookUp }: { materials: string[]; lookUp: () => void }) {
   const on = isBrush(tool.value);
   const pick = (t: Tool) => {
@@ -451,7 +451,7 @@ export function Bed() {
         },
       });
     } catch {
-      return; // no WebGL: the form and the estimate remain
+      return; // no WebGL: form and estimate still work
     }
     shown.current = view;
     if (where && p) view.show(where, turn.value, scale.value, shift.value, p);

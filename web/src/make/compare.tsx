@@ -1,4 +1,4 @@
-// Two jobs beside each other: what they take, and what is different in their layers.
+// Compares two jobs: time and resin, and the differences of their layers.
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { api } from '../store';
@@ -7,7 +7,7 @@ import type { Job, Plan } from '../types';
 import { layer, load } from './layers';
 import { clock } from './plan';
 
-/// "": the job that was at hand before.
+/// "": the previous job.
 const chosen = signal('');
 
 interface Line {
@@ -19,11 +19,11 @@ interface Line {
 const whole = (v: number) => String(Math.round(v));
 const ml = (v: number) => `${v.toFixed(2)} ml`;
 
-/// Of one resin, which may be in several vats.
+/// Total of one resin, which may be in several vats.
 const resinMl = (plan: Plan, resin: string) =>
   plan.vats.filter((v) => v.resin === resin).reduce((sum, v) => sum + (plan.resin_ml[String(v.slot)] ?? 0), 0);
 
-/// What is compared, in its order; resins of either job.
+/// The compared quantities, in order; resins of both jobs.
 export function linesOf(a: Job, b: Job): Line[] {
   const plan = (pick: (p: NonNullable<Job['plan']>) => number) => (j: Job) => (j.plan ? pick(j.plan) : null);
   const resins = [...new Set([a, b].flatMap((j) => j.plan?.vats.map((v) => v.resin) ?? []))];
@@ -43,14 +43,14 @@ export function linesOf(a: Job, b: Job): Line[] {
   ];
 }
 
-/// With its sign; "" where there is none, "same" where they are equal as shown.
+/// With its sign; "" if undefined, "same" if equal to the displayed digits.
 export function differenceText({ show }: Line, a: number | null, b: number | null): string {
   if (a === null || b === null) return '';
   if (show(a) === show(b)) return 'same';
   return `${a > b ? '+' : '−'}${show(Math.abs(a - b))}`;
 }
 
-/// The layer of `other` at the height of layer `l` of `job`; -1: it does not go so high.
+/// The layer of `other` at the height of layer `l` of `job`; -1: it is lower than that.
 export function sameHeight(job: Job, other: Job, l: number): number {
   const { z_um, thickness_um } = job.manifest.layers[l];
   const middle = z_um - thickness_um / 2;
@@ -72,7 +72,7 @@ const here = [34, 110, 200];
 const there = [214, 110, 20];
 const changed = [150, 60, 170];
 
-/// Pixels in this job alone, in the other alone, of another resin, and in both.
+/// Number of pixels only in this job, only in the other, in different resins, and in both.
 async function drawDifference(canvas: HTMLCanvasElement, job: Job, other: Job, l: number): Promise<string> {
   const { width_px, height_px, pixel_um } = job.manifest;
   const [a, b] = await Promise.all([solid(job, l), solid(other, sameHeight(job, other, l))]);

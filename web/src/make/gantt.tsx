@@ -1,4 +1,4 @@
-// The whole print, device by device: zoomed by the wheel or the keys, moved by dragging.
+// Gantt chart of the whole print, device by device: zoomed with the wheel or keys, panned by dragging.
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { api, say } from '../store';
 import { cssColour, theme } from '../theme';
@@ -14,7 +14,7 @@ interface Timeline {
 const rowHeight = 24;
 const scaleHeight = 24;
 
-/// Round steps of time: at most `most` of them in `span` seconds.
+/// Length of a round time step, with at most `most` steps in `span` seconds.
 export function timeStep(span: number, most: number): number {
   for (const step of [1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600, 7200, 14400, 28800, 86400]) if (span / step <= most) return step;
   return Math.ceil(span / most / 86400) * 86400;
@@ -30,7 +30,7 @@ function tickText(seconds: number, step: number): string {
   return `${h}:${two(m)}:${two(s)}`;
 }
 
-/// The place of the first that begins at or after t, among `stride` numbers each with their begin at `at`.
+/// Index of the first entry that begins at or after t; `begin(k)` is the begin of entry k.
 function firstAt(count: number, begin: (k: number) => number, t: number): number {
   let low = 0;
   let high = count;
@@ -67,7 +67,7 @@ export function Gantt({ job, plan }: { job: Job; plan: Plan }) {
 
   const [from, to] = range;
   const span = to - from;
-  // In line with the rows above and below.
+  // Aligned with the rows above and below.
   const labelWidth = width < 600 ? 106 : 164;
   const inner = Math.max(width - labelWidth, 1);
   const x = (t: number) => labelWidth + ((t - from) / span) * inner;
@@ -127,7 +127,7 @@ export function Gantt({ job, plan }: { job: Job; plan: Plan }) {
     line.devices.forEach(({ name, times }, d) => {
       label(d + 1, name);
       const colour = cssColour(kinds[name] ?? (name === 'platform' ? '--c-move' : '--c-swap'));
-      // Bars that fall into one pixel are drawn once.
+      // Bars that fall into the same pixel are drawn once.
       let drawn = -1;
       for (let k = Math.max(firstAt(times.length / 2, (i) => times[2 * i], from) - 1, 0); 2 * k < times.length && times[2 * k] <= to; ++k) {
         const [begin, end] = [times[2 * k], times[2 * k + 1]];

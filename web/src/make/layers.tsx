@@ -6,12 +6,12 @@ import type { Job } from '../types';
 
 export const layer = signal(0);
 const difference = signal(false);
-/// A pixel that the view shall go to.
+/// A pixel to scroll to.
 export const goal = signal<{ row: number; column: number } | null>(null);
 
 const cache = new Map<string, Promise<ImageData | null>>();
 
-/// Grey values of one image; nothing where the material is not in the layer.
+/// Grey values of one image; null if the material is not in the layer.
 export function load(job: Job, l: number, material: number): Promise<ImageData | null> {
   const there = job.manifest.layers[l]?.images.some((i) => i.material === material);
   if (!there) return Promise.resolve(null);
@@ -41,7 +41,8 @@ function rgb(hex: string): [number, number, number] {
   return [n >> 16, (n >> 8) & 255, n & 255];
 }
 
-/// All materials of a layer in their colours; with `below`, what is new in green and what ends in red instead.
+/// All materials of a layer in their colours; with `withDifference`, compared with the layer below: new pixels in
+/// green, ended ones in red.
 async function compose(job: Job, l: number, withDifference: boolean): Promise<ImageData> {
   const { width_px, height_px, materials } = job.manifest;
   const out = new ImageData(width_px, height_px);
@@ -75,7 +76,7 @@ async function compose(job: Job, l: number, withDifference: boolean): Promise<Im
   return out;
 }
 
-/// Bounds of all that is ever lit, from a few layers.
+/// Bounds of all lit pixels, from a sample of layers.
 async function lit(job: Job): Promise<[number, number, number, number]> {
   const n = job.manifest.layers.length;
   let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
@@ -102,7 +103,7 @@ interface Place {
   zoom: number;
 }
 
-/// `of`: of a job that is still being made, how many layers there will be.
+/// `of`: for a job that is still being sliced, its final number of layers.
 export function Layers({ job, of }: { job: Job; of?: number }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const image = useRef<OffscreenCanvas | null>(null);

@@ -12,11 +12,11 @@ import { PlanView } from './plan';
 import { Stack } from './stack';
 import { UnderWay } from './under_way';
 
-/// Before anything is sliced the robot stands on the platform.
+/// Before slicing the robot is shown on the platform.
 const tabs = ['bed', 'layers', 'stack', 'plan', 'compare'] as const;
 const tab = signal<(typeof tabs)[number]>('layers');
 
-/// Arrow keys, Home and End lead from tab to tab.
+/// Arrow keys, Home and End switch tabs.
 function walk(e: KeyboardEvent) {
   const at = tabs.indexOf(tab.value);
   const to = { ArrowRight: (at + 1) % tabs.length, ArrowLeft: (at + tabs.length - 1) % tabs.length, Home: 0, End: tabs.length - 1 }[e.key];
@@ -85,11 +85,11 @@ export function Make() {
   const [name, setName] = useState('');
   const stage = useRef<HTMLElement>(null);
   const known = useRef(j?.revision);
-  const seen = (slicing.value?.layers ?? 0) > 0; // there is something to look at before the job is whole
+  const seen = (slicing.value?.layers ?? 0) > 0; // some layers can be viewed before the job is complete
   useEffect(() => {
-    // Where form and layers stand one below the other, a new job is led to.
+    // If form and layers are stacked vertically, scroll to a new job.
     if (j && j.revision !== known.current && window.matchMedia('(max-width: 900px)').matches) stage.current?.scrollIntoView({ behavior: 'smooth' });
-    // Whoever has sliced wants to see what came of it.
+    // After slicing, show the result.
     if (j && j.revision !== known.current && tab.value === 'bed') tab.value = 'layers';
     known.current = j?.revision;
   }, [j?.revision]);

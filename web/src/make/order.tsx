@@ -1,4 +1,4 @@
-// What is asked of the slicer: the options of `pliant slice` in groups. What is wrong stands at its field.
+// The slicing form: the options of `pliant slice` in groups. Errors are shown at their fields.
 import { computed, signal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
@@ -36,18 +36,18 @@ interface Light {
 export const printer = signal('tower');
 export const printerInfo = signal<PrinterInfo | null>(null);
 export const copies = signal(1);
-/// Texts of the fields, by option; "" is not given.
+/// Texts of the fields, by option; "": not set.
 export const fields = signal<Record<string, string>>({ layer: '100' });
 export const turn = signal<[number, number, number]>([0, 0, 0]);
 export const scale = signal(1);
-/// Of the part's middle from the platform's, mm.
+/// Offset of the part's centre from that of the platform, mm.
 export const shift = signal<[number, number]>([0, 0]);
 const plainPixels = signal(false);
 const bonds = signal<Bond[]>([]);
 const lights = signal<Record<string, Light>>({});
 export const support = signal('');
 
-/// The option that the last error speaks of, and what it says of it.
+/// The option that the last error refers to, and its message.
 const wrong = computed(() => {
   const match = /^--([a-z-]+)(?: ([^:]*))?: (.*)$/s.exec(sliceError.value);
   return match ? { option: match[1], value: match[2] ?? '', text: match[3] } : null;
@@ -55,7 +55,7 @@ const wrong = computed(() => {
 
 const unitOf: Record<string, string> = { layer: 'um', 'least-layer': 'um', 'support-angle': '' };
 
-/// A number with its field's unit; whoever writes a unit is taken at their word.
+/// A number with its field's unit; a unit in the text takes precedence.
 function quantity(option: string, text: string): string {
   const unit = unitOf[option] ?? 'mm';
   return unit && /^[\d.eE+-]+$/.test(text.trim()) ? `${text.trim()} ${unit}` : text.trim();
@@ -63,7 +63,7 @@ function quantity(option: string, text: string): string {
 
 const seconds = (text: string) => (/^[\d.]+$/.test(text.trim()) ? `${text.trim()} s` : text.trim());
 
-/// With what is painted by hand, which is more than an estimate asks for.
+/// Including painted supports, which an estimate does not need.
 const wholeOrder = (materials: string[]) => {
   const order = orderJson(materials);
   const table = support.value ? paintTable(touches()) : '';
@@ -129,7 +129,7 @@ function Field({ option, label, hint, title }: { option: string; label: string; 
   );
 }
 
-/// A group is open where something in it is wrong.
+/// A group is open if it contains an error.
 function Group({ name, options, given, children }: { name: string; options: string[]; given: boolean; children: ComponentChildren }) {
   const has = wrong.value !== null && options.includes(wrong.value.option);
   const [open, setOpen] = useState(false);
@@ -385,7 +385,7 @@ export function SliceForm() {
     <form
       class="slice-form"
       onKeyDown={(e) => {
-        // Enter takes a value, as in any other field of the page; only the button slices.
+        // Enter confirms a value, as in any other field of the page; only the button slices.
         if (e.key !== 'Enter' || !(e.target instanceof HTMLInputElement)) return;
         e.preventDefault();
         e.target.dispatchEvent(new Event('change', { bubbles: true }));
@@ -393,7 +393,7 @@ export function SliceForm() {
       onSubmit={(e) => {
         e.preventDefault();
         sliceError.value = '';
-        // A refusal of the order itself has its field too.
+        // Errors in the order itself are shown at their field too.
         void post('/api/job/slice', wholeOrder(materials), (text) => (sliceError.value = text));
       }}
     >

@@ -1,4 +1,4 @@
-// Supports painted by hand: touches of a brush on the part as it was drawn, as `pliant slice --support-paint` reads them.
+// Painted supports: brush touches on the drawn part, in the format of `pliant slice --support-paint`.
 import { signal } from '@preact/signals';
 import * as THREE from 'three';
 
@@ -6,7 +6,7 @@ export type Wish = 'enforce' | 'block' | 'usual';
 
 export interface Touch {
   wish: Wish;
-  at: [number, number, number]; // mm, on the part as it was drawn
+  at: [number, number, number]; // mm, in the coordinates of the drawn part
   normal: [number, number, number]; // outward, of length 1
   radius: number; // mm
 }
@@ -22,14 +22,14 @@ export const columns = 'wish,x (mm),y (mm),z (mm),nx,ny,nz,radius (mm)';
 
 const text = (v: number, digits: number) => String(Number(v.toFixed(digits)));
 
-/// "" where nothing is painted.
+/// The table; "" if nothing is painted.
 export function paintTable(list: Touch[]): string {
   if (list.length === 0) return '';
   const rows = list.map((t) => [t.wish, ...t.at.map((v) => text(v, 4)), ...t.normal.map((v) => text(v, 4)), text(t.radius, 3)].join(','));
   return `${columns}\n${rows.join('\n')}\n`;
 }
 
-/// The way back, of a table that this page or a person has written. Errors: thrown, with the line.
+/// Parses a table written by this page or by hand. Throws an error that names the line.
 export function readPaint(table: string): Touch[] {
   const lines = table.split(/\r?\n/).map((l) => l.trim());
   const rows = lines.map((l, k) => ({ l, k })).filter(({ l }) => l && !l.startsWith('#'));
@@ -42,8 +42,8 @@ export function readPaint(table: string): Touch[] {
   });
 }
 
-/// Triangles in small ones, none with a side longer than `side` unless that takes more than some 100,000 of them: what
-/// is painted on a large face must be seen. `from`: the triangle that each came from.
+/// Subdivides triangles until no side is longer than `side`, up to some 100,000 triangles, so that paint on large faces
+/// is visible. `from`: the original triangle of each new one.
 export function refined(points: Float32Array, triangles: Uint32Array, side: number): { points: Float32Array; from: Uint32Array } {
   const most = 100_000;
   const corner = (i: number) => new THREE.Vector3(points[3 * i], points[3 * i + 1], points[3 * i + 2]);
@@ -79,8 +79,8 @@ export function refined(points: Float32Array, triangles: Uint32Array, side: numb
 
 export const wishColours: Record<Exclude<Wish, 'usual'>, string> = { enforce: '#1668d8', block: '#d9780b' };
 
-/// What is painted on each corner of these triangles: the last touch whose ball holds it, on a face that looks the same
-/// way. 0: nothing, 1: enforce, 2: block.
+/// The paint on each corner of these triangles: that of the last touch whose ball contains it, on a face with a similar
+/// normal. 0: none, 1: enforce, 2: block.
 export function painted(points: Float32Array, normals: Float32Array, list: Touch[], into: Uint8Array, first = 0) {
   for (const t of list.slice(first)) {
     const code = { usual: 0, enforce: 1, block: 2 }[t.wish];

@@ -1,20 +1,20 @@
-// Where a part stands before it is sliced: turned, on the platform, with its copies. As the slicer does it.
+// Placement of a part before slicing: rotation, position on the platform, copies. Same as in the slicer.
 import * as THREE from 'three';
 
 export type Degrees = [number, number, number];
 
-/// About x, then y, then z.
+/// Rotation about x, then y, then z.
 export function rotationOf([x, y, z]: Degrees): THREE.Matrix4 {
   const rad = Math.PI / 180;
   return new THREE.Matrix4().makeRotationFromEuler(new THREE.Euler(x * rad, y * rad, z * rad, 'ZYX'));
 }
 
-/// Where a direction of the part looks once it is turned.
+/// A direction of the part after rotation.
 export function turned(degrees: Degrees, { x, y, z }: { x: number; y: number; z: number }): THREE.Vector3 {
   return new THREE.Vector3(x, y, z).transformDirection(rotationOf(degrees));
 }
 
-/// The angles of a rotation, to a thousandth of a degree.
+/// The angles of a rotation, rounded to a thousandth of a degree.
 export function degreesOf(rotation: THREE.Matrix4): Degrees {
   const e = new THREE.Euler().setFromRotationMatrix(rotation, 'ZYX');
   const tidy = (rad: number) => {
@@ -24,7 +24,7 @@ export function degreesOf(rotation: THREE.Matrix4): Degrees {
   return [tidy(e.x), tidy(e.y), tidy(e.z)];
 }
 
-/// So turned that a face with this outward normal (of the part as it is turned now) lies on the platform.
+/// The rotation after which the face with this outward normal (of the currently rotated part) lies on the platform.
 export function layOnFace(now: Degrees, normal: { x: number; y: number; z: number }): Degrees {
   const down = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(normal.x, normal.y, normal.z).normalize(), new THREE.Vector3(0, 0, -1));
   return degreesOf(new THREE.Matrix4().makeRotationFromQuaternion(down).multiply(rotationOf(now)));
@@ -32,12 +32,12 @@ export function layOnFace(now: Degrees, normal: { x: number; y: number; z: numbe
 
 export interface Placed {
   size: [number, number, number]; // of all copies, mm
-  least: THREE.Vector3; // corner of the turned part
-  shifts: [number, number][]; // of each copy from the first
+  least: THREE.Vector3; // minimum corner of the rotated part
+  shifts: [number, number][]; // offset of each copy from the first
   fits: boolean;
 }
 
-/// The grid of copies in as few rows as the image's width allows, as `pliant slice --copies` lays them.
+/// The grid of copies in as few rows as the image's width allows, as placed by `pliant slice --copies`.
 export function placed(points: Float32Array, turn: Degrees, copies: number, spacing: number, [width, depth]: [number, number], height: number, scale = 1, at: [number, number] = [0, 0]): Placed {
   const m = rotationOf(turn).scale(new THREE.Vector3(scale, scale, scale));
   const box = new THREE.Box3();

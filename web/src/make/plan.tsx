@@ -1,4 +1,5 @@
-// What the print takes: time, swaps, resin; one swap and the whole job as bars; orders and printers beside each other.
+// What the print needs: time, swaps, resin; one swap and the whole job as bars; comparison of material orders and
+// printers.
 import { useEffect, useState } from 'preact/hooks';
 import { api, say } from '../store';
 import type { Job, Plan } from '../types';
@@ -57,7 +58,7 @@ function Figures({ plan }: { plan: Plan }) {
   );
 }
 
-/// Layers as bars from left to right, in bundles where there are more than fit.
+/// Time of each layer as bars from left to right, grouped if there are too many.
 function LayerTimes({ plan }: { plan: Plan }) {
   const n = plan.layers;
   const bins = Math.min(n, 160);
@@ -87,7 +88,7 @@ function LayerTimes({ plan }: { plan: Plan }) {
   );
 }
 
-/// Which vat prints what: one row a vat, layers from left to right.
+/// Which vat prints what: one row per vat, layers from left to right.
 function VatRows({ job, plan }: { job: Job; plan: Plan }) {
   return (
     <figure class="chart">

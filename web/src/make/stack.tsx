@@ -1,5 +1,5 @@
-// The job as it will stand on the platform: its outer faces, cut open at a layer, whose image lies on the cut; and a mark
-// at each place that the slicer has remarked on.
+// The job as it will stand on the platform: its outer faces, cut at a layer whose image is shown on the cut; and a
+// marker for each finding of the slicer.
 import { useEffect, useRef, useState } from 'preact/hooks';
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
@@ -17,7 +17,7 @@ const mostMarks = 40;
 type Issue = Job['issues'][number];
 const isMarked = (issue: Issue) => issue.row !== undefined && issue.layer >= 0;
 
-/// The first and last row and column of anything in the part, in pixels.
+/// Bounding rows and columns of the part, in pixels.
 function boundsOf(part: Part) {
   const box = { x0: Infinity, y0: Infinity, x1: 0, y1: 0 };
   for (const { runs } of part.slabs)
@@ -30,7 +30,7 @@ function boundsOf(part: Part) {
   return box;
 }
 
-/// The layer in its materials' colours, as far as `box` goes.
+/// The layer in its materials' colours, within `box`.
 function sheetCanvas(job: Job, images: (ImageData | null)[], { x0, y0, x1, y1 }: ReturnType<typeof boundsOf>) {
   const shrink = Math.max(1, Math.ceil(Math.max(x1 - x0, y1 - y0) / 1024));
   const canvas = document.createElement('canvas');
@@ -57,14 +57,14 @@ class StackView {
   private readonly camera = new THREE.PerspectiveCamera(32, 1, 1, 5000);
   private readonly controls: OrbitControls;
   private readonly mesh: PartMesh;
-  private readonly pivot = new THREE.Group(); // the part stands: it is drawn as it hangs
+  private readonly pivot = new THREE.Group(); // the part is shown upright, but modelled as it hangs
   private readonly resize: ResizeObserver;
   private readonly sheet: THREE.Mesh;
   private readonly keys: (e: KeyboardEvent) => void;
   private bounds = { x0: 0, y0: 0, x1: 1, y1: 1 };
   private labels: Label[] = [];
   private frame = 0;
-  private sized = false; // the shape of the window is known
+  private sized = false; // the window size is known
 
   constructor(private readonly canvas: HTMLCanvasElement, private readonly job: Job) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
@@ -105,14 +105,14 @@ class StackView {
     this.draw();
   }
 
-  /// Nothing above this height is seen; null: all is.
+  /// Hides everything above this height; null: nothing.
   cut(z_mm: number | null) {
     this.renderer.clippingPlanes = z_mm === null ? [] : [new THREE.Plane(new THREE.Vector3(0, 0, -1), z_mm + 1e-3)];
     this.sheet.visible = false;
     this.draw();
   }
 
-  /// The image of the layer that the part is cut at.
+  /// Sets the image of the layer at the cut.
   lay(images: (ImageData | null)[], z_mm: number) {
     const material = this.sheet.material as THREE.MeshBasicMaterial;
     material.map?.dispose();
@@ -123,7 +123,7 @@ class StackView {
     material.needsUpdate = true;
     const [a, b] = [this.mesh.placeOf(this.bounds.y0, this.bounds.x0, z_mm), this.mesh.placeOf(this.bounds.y1, this.bounds.x1, z_mm)];
     this.sheet.position.copy(a).add(b).multiplyScalar(0.5);
-    // The image's columns go to +x of the plane, its rows to -y.
+    // The image's columns run along +x of the plane, its rows along -y.
     this.sheet.scale.set(b.x - a.x, a.y - b.y, 1);
     this.sheet.visible = true;
     this.draw();
@@ -173,7 +173,7 @@ class StackView {
   }
 }
 
-/// The platform with its border and a line every 10 mm.
+/// The platform with its border and a grid of 10 mm.
 export function platformMesh(width: number, depth: number) {
   const group = new THREE.Group();
   const plate = new THREE.Mesh(new THREE.PlaneGeometry(width, depth), new THREE.MeshBasicMaterial({ color: 0x8a93a0, transparent: true, opacity: 0.14, side: THREE.DoubleSide, depthWrite: false }));
@@ -191,7 +191,7 @@ export function platformMesh(width: number, depth: number) {
   return group;
 }
 
-/// A mark is a button: it leads to the layer and the pixel.
+/// Markers are buttons that open the layer and pixel.
 function Marks({ issues, marks, open }: { issues: Issue[]; marks: { current: (HTMLElement | null)[] }; open: () => void }) {
   return (
     <div class="marks">

@@ -1,4 +1,4 @@
-// The layers of a job while it is being sliced: the first ones are seen before the last one is made.
+// The layers of a job while it is being sliced.
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { api, slicing } from '../store';
 import type { Job } from '../types';
@@ -11,13 +11,13 @@ interface SoFar {
   manifest: Job['manifest'];
 }
 
-const between = 700; // ms from one look to the next
-let slicings = 0; // tells the images of one from those of the next
+const between = 700; // ms between updates
+let slicings = 0; // distinguishes the images of different jobs
 
 export function UnderWay() {
   const [soFar, setSoFar] = useState<SoFar | null>(null);
   const run = useRef(0);
-  const newest = useRef(true); // nobody has gone to another layer
+  const newest = useRef(true); // show the newest layer, until the user selects another
   const shown = useRef(-1);
   useEffect(() => {
     run.current = ++slicings;
@@ -29,7 +29,7 @@ export function UnderWay() {
       if (newest.current) layer.value = shown.current = told.manifest.layers.length - 1;
       setSoFar(told);
     };
-    const timer = setInterval(() => void look().catch(() => {}), between); // the next look may find it
+    const timer = setInterval(() => void look().catch(() => {}), between); // retried by the next update
     void look().catch(() => {});
     return () => {
       gone = true;

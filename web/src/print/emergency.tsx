@@ -1,4 +1,5 @@
-// The emergency stop: at one place of the window in every section, for every page, as long as there is a machine.
+// The emergency stop: at a fixed place of the window in every section, for every page, as long as a machine is
+// connected.
 import { post } from '../store';
 import { info } from './state';
 

@@ -1,4 +1,5 @@
-// A picture as large as the window: the light of the moment, the cured block. It covers all but the emergency stop.
+// A picture as large as the window: the current exposure, or the cured block. It covers everything except the emergency
+// stop.
 import { signal } from '@preact/signals';
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import { Icon } from '../icons';

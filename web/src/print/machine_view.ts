@@ -1,4 +1,4 @@
-// The machine in 3D, from simple boxes: tower with its vats, carriage with the cleaning vat, platform with the part.
+// The machine in 3D, made of simple boxes: tower with its vats, carriage with the cleaning vat, platform with the part.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { placeLabels } from '../labels';
@@ -26,13 +26,13 @@ export class MachineView {
   private readonly light: THREE.Mesh;
   private readonly spray: THREE.Points;
   private readonly resize: ResizeObserver;
-  private near = false; // the part alone, not all of the machine
-  private seen = new THREE.Box3(); // of the part, when the camera was last placed for it
+  private near = false; // shows the part alone, not the whole machine
+  private seen = new THREE.Box3(); // bounds of the part when the camera was last positioned for it
   private last: Now | null = null;
-  private shown = ''; // what of it is in the picture
+  private shown = ''; // identifies what is currently drawn
   private frame = 0;
 
-  /// `colours` of what is in the vats, by resin; `materials`: those of the job.
+  /// `colours` of the vats' contents, by resin; `materials`: those of the job.
   constructor(canvas: HTMLCanvasElement, private readonly machine: MachineInfo, colours: Record<string, string>, materials: string[], private readonly names: HTMLElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.camera.up.set(0, 0, 1);
@@ -45,7 +45,7 @@ export class MachineView {
     const key = new THREE.DirectionalLight(0xffffff, 1.8);
     key.position.set(-1, -2, 3);
     this.world.add(key);
-    // What hangs is seen from below too.
+    // Hanging parts are also seen from below.
     const lamp = new THREE.DirectionalLight(0xffffff, 0.9);
     lamp.position.set(0, 0, 1);
     this.camera.add(lamp);
@@ -96,7 +96,7 @@ export class MachineView {
     this.resize.observe(canvas.parentElement!);
   }
 
-  /// All of the machine, or the part alone.
+  /// Shows the whole machine, or the part alone.
   lookAt(near: boolean) {
     this.near = near;
     this.shown = '';
@@ -107,7 +107,7 @@ export class MachineView {
     this.draw();
   }
 
-  /// Comes back to the part whenever it has outgrown what was seen.
+  /// Repositions the camera whenever the part has outgrown the view.
   private lookAtPart() {
     const box = this.part.box.isEmpty() ? new THREE.Box3(new THREE.Vector3(-20, -20, -20), new THREE.Vector3(20, 20, 0)) : this.part.box.clone();
     if (!this.seen.isEmpty() && this.seen.containsBox(box)) return;
@@ -123,7 +123,7 @@ export class MachineView {
     const w = this.machine.platform.width * 1.15;
     const reach = this.machine.store === 'tower' ? this.machine.carriage.tower - this.machine.carriage.print : 0;
     const size = Math.abs(reach) + 1.6 * w;
-    // All of the tower is in sight: its vats hang below the one at hand.
+    // The whole tower is in view: its vats hang below the current one.
     const deep = this.depth();
     const far = Math.max(2.1 * size, 1.15 * size + 1.5 * deep);
     this.controls.target.set(0.3 * reach, 0, 0.1 * size - 0.42 * deep);
@@ -131,7 +131,7 @@ export class MachineView {
     this.controls.update();
   }
 
-  /// How far the tower reaches below the vat at hand, mm.
+  /// Extent of the tower below the current vat, mm.
   private depth() {
     return this.machine.store === 'tower' ? Math.max(...this.machine.vats.map((v) => v.slot)) * this.machine.tower.pitch : 0;
   }
@@ -142,7 +142,7 @@ export class MachineView {
     return mesh;
   }
 
-  /// A vat: glass walls and what is in it. Its rim is at z = 0.
+  /// A vat: glass walls and its contents. Its rim is at z = 0.
   private openBox(w: number, d: number, h: number, colour: string, empty = false) {
     const group = new THREE.Group();
     const glass = new THREE.Mesh(
@@ -198,7 +198,7 @@ export class MachineView {
     else this.draw();
   }
 
-  /// What has not changed is not drawn again.
+  /// Only redraws what has changed.
   show(now: Now) {
     this.last = now;
     const { axes, slot, pump } = now.machine;
@@ -224,24 +224,25 @@ export class MachineView {
     }
     this.tower.position.set(reach, 0, at('tower') - tower.first);
     const z = at('platform') - Math.max(this.machine.wall, 20) * 0.62;
-    // The part alone stays where it is, and the eye with it.
+    // The part alone stays in place, and so does the camera.
     this.platform.position.z = this.near ? 0 : z;
     this.showLight(now);
     this.spray.visible = now.machine.pump;
     this.draw();
   }
 
-  /// Under the part, as wide as it is; under the whole platform while nothing is there.
+  /// Below the part, as wide as it is; below the whole platform while there is no part.
   private showLight(now: Now) {
     this.light.visible = now.progress.lit;
-    (this.light.material as THREE.MeshBasicMaterial).opacity = this.near ? 0.4 : 0.95; // the part is seen through it
+    (this.light.material as THREE.MeshBasicMaterial).opacity = this.near ? 0.4 : 0.95; // so that the part is visible
+                                                                                       // through it
     const { width, depth } = this.machine.platform;
     const box = this.part.box.isEmpty() ? new THREE.Box3(new THREE.Vector3(-0.3 * width, -0.3 * depth, 0), new THREE.Vector3(0.3 * width, 0.3 * depth, 0)) : this.part.box;
     this.light.position.set((box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2, this.platform.position.z + box.min.z - 0.3);
     this.light.scale.set(box.max.x - box.min.x, box.max.y - box.min.y, 1);
   }
 
-  /// What is what: the vats by their slot and resin, and the things that move.
+  /// Labels: the vats with slot and resin, and the moving parts.
   private nameParts() {
     this.names.replaceChildren();
     const add = (text: string, of: THREE.Object3D, up: number) => {
@@ -272,7 +273,7 @@ export class MachineView {
     placeLabels(labels, this.camera, canvas.clientWidth, canvas.clientHeight);
   }
 
-  /// At most once a frame.
+  /// At most once per frame.
   private draw() {
     if (this.frame) return;
     this.frame = requestAnimationFrame(() => {

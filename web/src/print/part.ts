@@ -1,4 +1,4 @@
-// The part as far as it is printed: slabs of cells, fetched piece by piece as they grow.
+// The part printed so far: slabs of cells, fetched piece by piece as it grows.
 import { signal } from '@preact/signals';
 import { readPacket } from '../packet';
 import { api, onEvent } from '../store';
@@ -15,7 +15,7 @@ interface Head {
 export interface Slab {
   bottom: number; // mm below the platform
   top: number;
-  runs: Uint32Array; // three numbers a run, see docs/reference/studio.md
+  runs: Uint32Array; // three numbers per run, see docs/reference/studio.md
 }
 
 export interface Part {
@@ -24,7 +24,7 @@ export interface Part {
   cell_px: number;
   revision: number;
   slabs: Slab[];
-  changedFrom: number; // slabs before it are those of the part before, if the revision is the same
+  changedFrom: number; // slabs before this index are unchanged, if the revision is the same
 }
 
 export const part = signal<Part | null>(null);
@@ -32,9 +32,9 @@ export const part = signal<Part | null>(null);
 let closed = 0;
 let fetching = false;
 let stale = false;
-let wanted = 0; // views that show it
+let wanted = 0; // number of views that show it
 
-/// What a packet says of a part, of which `known` was there before.
+/// Decodes a packet; `known` is the part received before.
 export function partOf(buffer: ArrayBuffer, known: Part | null): { part: Part; closed: number } {
   const packet = readPacket<Head>(buffer);
   const { head } = packet;
@@ -58,7 +58,7 @@ function take(buffer: ArrayBuffer) {
   part.value = read.part;
 }
 
-/// One request at a time: a page on a slow line gets larger steps.
+/// One request at a time: on a slow connection the increments are larger.
 async function fetchPart() {
   if (fetching) {
     stale = true;
@@ -72,7 +72,7 @@ async function fetchPart() {
       const answer = await api(`/api/print/part?revision=${known?.revision ?? -1}&from=${known ? closed : 0}`);
       take(await answer.arrayBuffer());
     } catch {
-      part.value = null; // no machine, or no studio: it is asked for again when there is news
+      part.value = null; // no machine, or no studio: requested again after the next event
     }
   } while (stale);
   fetching = false;
@@ -83,7 +83,7 @@ onEvent((event) => {
   if (wanted > 0 && event.type === 'part') void fetchPart();
 });
 
-/// While a view is open the part is kept up to date.
+/// Keeps the part up to date while a view is open.
 export function followPart() {
   ++wanted;
   void fetchPart();

@@ -1,12 +1,12 @@
-// The printed part as its outer faces. Cells that show the same way side by side become one face, so that a plain part
-// costs little however many cells it has. It hangs from the platform, whose underside is z = 0.
+// The outer faces of the printed part. Coplanar faces of adjacent cells are merged, so that a plain part is cheap
+// however many cells it has. It hangs from the platform, whose underside is z = 0.
 import * as THREE from 'three';
 import type { Part } from './part';
 import type { Projector } from '../types';
 
 const grey = new THREE.Color(0x8f99a5);
 
-/// Faces, four corners each, in arrays that grow.
+/// Faces, four corners each, in growing arrays.
 class Faces {
   count = 0;
   positions = new Float32Array(0);
@@ -25,12 +25,12 @@ class Faces {
     this.colours = grown(this.colours, new Float32Array(room));
   }
 
-  /// A rectangle across `axis` (0 to 2) at `at`, from low to high along the two other axes in their order.
+  /// A rectangle normal to `axis` (0 to 2) at `at`, from low to high along the two other axes in order.
   add(axis: number, at: number, towards: 1 | -1, [a0, a1]: [number, number], [b0, b1]: [number, number], colour: THREE.Color) {
     this.reserve(this.count + 1);
     const [u, v] = [[1, 2], [2, 0], [0, 1]][axis];
     const [u0, u1, v0, v1] = u < v ? [a0, a1, b0, b1] : [b0, b1, a0, a1];
-    // Counter-clockwise as seen from where it faces: u, v and the axis are right-handed.
+    // Counter-clockwise seen from the front: u, v and the axis are right-handed.
     const corners = towards > 0 ? [[u0, v0], [u1, v0], [u1, v1], [u0, v1]] : [[u0, v0], [u0, v1], [u1, v1], [u1, v0]];
     for (let k = 0; k < 4; ++k) {
       const i = 12 * this.count + 3 * k;
@@ -47,7 +47,7 @@ class Faces {
   }
 }
 
-/// Stretches of one row after the other; those that are the same from row to row become one.
+/// Merges identical stretches of consecutive rows into one.
 class Chains {
   private open = new Map<string, { row: number; end: number; begin: number; to: number; material: number }>();
   constructor(private readonly done: (row: number, end: number, begin: number, to: number, material: number) => void) {}
@@ -73,11 +73,11 @@ class Chains {
 
 export class PartMesh {
   readonly group = new THREE.Group();
-  /// Of all that is there, mm; z downwards from the platform is negative.
+  /// Bounds of the part, mm; z downwards from the platform is negative.
   readonly box = new THREE.Box3();
   private readonly faces = new Faces();
   private readonly mesh: THREE.Mesh;
-  private starts: number[] = [0]; // first face of each slab
+  private starts: number[] = [0]; // index of the first face of each slab
   private revision = -1;
   private columns = 0;
   private rows = 0;
@@ -86,15 +86,16 @@ export class PartMesh {
     private readonly projector: Projector,
     private readonly colours: THREE.Color[],
   ) {
-    // Faces of different lengths meet; through the hair between them the other side of the part is seen, not the background.
+    // Adjacent faces of different lengths leave hairline gaps: double-sided, so that the far side of the part shows
+    // through, not the background.
     this.mesh = new THREE.Mesh(new THREE.BufferGeometry(), new THREE.MeshStandardMaterial({ roughness: 0.62, vertexColors: true, side: THREE.DoubleSide }));
     this.mesh.frustumCulled = false;
     this.group.add(this.mesh);
-    // Images are turned with the part.
+    // Images are rotated with the part.
     this.group.rotation.z = (-projector.rotation * Math.PI) / 180;
   }
 
-  /// Where a pixel of a layer is in the group.
+  /// Position of a layer's pixel in the group.
   placeOf(row: number, column: number, z_mm: number) {
     const { width, height, pixel, mirror_x, mirror_y, offset_x, offset_y } = this.projector;
     const x = (mirror_x ? -1 : 1) * (column - width / 2) * pixel - offset_x;

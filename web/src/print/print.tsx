@@ -24,7 +24,7 @@ import { wizard } from '../wizard/state';
 const speeds = [1, 10, 60, 300];
 const ticks = signal<Record<string, boolean>>({});
 
-/// What the studio has looked at itself.
+/// The results of the studio's own checks.
 function Known() {
   const n = now.value!;
   const i = info.value!;
@@ -94,7 +94,7 @@ function Checklist() {
   );
 }
 
-/// A print of this job that was broken off: the journal knows how far it was.
+/// An interrupted print of this job: the journal holds its progress.
 function GoOn() {
   const [lit, setLit] = useState('');
   const [untouched, setUntouched] = useState(false);
@@ -161,7 +161,7 @@ function GoOn() {
   );
 }
 
-/// Exposure of each material from the next layer on, and layers to be skipped.
+/// Exposure of each material from the next layer on, and layers to skip.
 function Light() {
   const n = now.value!;
   const i = info.value!;
@@ -205,7 +205,7 @@ function Light() {
   );
 }
 
-/// What is shown is as old as the connection.
+/// Connection lost: what is shown may be outdated.
 function Lost() {
   return (
     <div class="prompt bad" role="alert" data-testid="lost">
@@ -221,7 +221,7 @@ function Lost() {
 
 const refillOf = (prompt: string | null) => info.value!.refills.find((r) => r.text === prompt);
 
-/// Why a paused print waits, and what a person has to do.
+/// Why a paused print waits, and what the user must do.
 function Waiting() {
   const n = now.value!;
   const prompt = n.progress.prompt;
@@ -304,7 +304,7 @@ function Steering() {
   );
 }
 
-/// The cured block beside the drawing; enlarged when it is clicked.
+/// The cured block beside the drawing; a click enlarges it.
 function VerdictPicture() {
   const [failed, setFailed] = useState(false);
   if (failed) return null;
@@ -316,7 +316,7 @@ function VerdictPicture() {
   );
 }
 
-/// What came of it, where that can be known.
+/// The verdict on the print, if known.
 function Verdict() {
   if (!known.value || busy.value || !now.value!.progress.finished) return null;
   if (!info.value!.twin) return <p class="quiet">Everything was exposed as planned. Inspect the part to see whether it cured.</p>;
@@ -429,7 +429,7 @@ function Picture() {
   );
 }
 
-/// What the 3D view knows of the part, and how.
+/// Caption: what the 3D view shows of the part.
 function PartCaption() {
   const p = part.value;
   if (!p || p.slabs.length === 0) return null;
@@ -455,7 +455,7 @@ function Machine3D() {
     try {
       view = new MachineView(canvas.current!, i.machine, colours, i.materials.map((m) => m.colour), names.current!);
     } catch {
-      return; // no WebGL: the print is steered without the picture
+      return; // no WebGL: the print can be controlled without the picture
     }
     shown.current = view;
     const stops = [followPart(), part.subscribe((p) => view.showPart(p)), now.subscribe((n) => n && view.show(n))];
@@ -550,11 +550,11 @@ export function ByHand() {
 
 function Log() {
   const list = useRef<HTMLOListElement>(null);
-  const atEnd = useRef(true); // who has scrolled up is left there
+  const atEnd = useRef(true); // do not scroll if the user has scrolled up
   const top = useRef(0);
   const shown = events.value.filter((e) => e.kind !== 'dark').slice(-120);
   const begun = now.value!.progress.begun;
-  // Counted as the time elapsed is: from the beginning of the print.
+  // Counted like the elapsed time: from the start of the print.
   const at = (e: { clock: number }) => (begun === null || e.clock < begun - 0.5 ? '' : clock(Math.max(0, e.clock - begun)));
   const last = shown[shown.length - 1]?.number;
   useEffect(() => {

@@ -1,4 +1,4 @@
-// Jobs that wait to be printed. A person takes each part off, so that no print begins by itself.
+// The print queue. A person must remove each part, so that no print starts by itself.
 import { signal } from '@preact/signals';
 import { useEffect, useState } from 'preact/hooks';
 import { counted } from '../counted';
@@ -23,7 +23,7 @@ onEvent((event) => {
 
 const set = (jobs: string[]) => post('/api/print/queue', { jobs });
 
-/// What is known of each; the names are there at once.
+/// Details of each job; the names are available at once.
 function useLines(): Waiting[] {
   const [lines, setLines] = useState<Waiting[]>([]);
   const names = queue.value;
@@ -97,13 +97,13 @@ export function Queue() {
   );
 }
 
-/// Behind a print that is over: the next one, on the same machine.
+/// Shown after a completed print: the next job, on the same machine.
 export function NextInQueue() {
   const next = queue.value[0];
   const i = info.value;
   if (!next || !i?.machine || !known.value || busy.value || !now.value?.progress.finished) return null;
   const take = async () => {
-    // Whoever takes the part off and puts the next job on stands at the machine: the same connection, another job.
+    // The person who removes the part and starts the next job is at the machine: reconnect it with the next job.
     if (!(await post('/api/print/leave')) || !(await post('/api/open', { name: next }))) return;
     if (i.twin) await post('/api/print/twin', { speed: i.speed });
   };

@@ -1,8 +1,8 @@
-// What watches over the machine, as its printer file has it: door, limit switches, the emergency line.
+// Safety devices of the machine, according to its printer file: door, limit switches, the emergency line.
 import { post } from '../store';
 import { flags, info, known, maySteer, now, type MachineInfo } from './state';
 
-/// What an emergency stop pulls.
+/// The effect of an emergency stop.
 function lineText(line: MachineInfo['emergency'], twin: boolean): string {
   const on = line.device ? ` (${line.device})` : '';
   if (line.signal === 'controller') return `a relay at pin ${line.pin} of the board cuts the power when the firmware is killed`;

@@ -1,4 +1,4 @@
-// The print as the studio tells it.
+// The print, as reported by the studio.
 import { batch, computed, effect, signal } from '@preact/signals';
 import { api, lines, mayDrive, onEvent, online, post, say } from '../store';
 import type { Projector } from '../types';
@@ -46,7 +46,7 @@ export interface MachineInfo {
   wall: number;
   projector: Projector;
   switches: { axis: string; end: 'min' | 'max'; name: string }[];
-  door: string | null; // the input that its switch is at
+  door: string | null; // the input that its switch is connected to
   emergency: { signal: 'none' | 'controller' | 'dtr' | 'rts' | 'file'; device: string; pin: number };
 }
 
@@ -57,10 +57,10 @@ export interface PrintInfo {
   speed: number;
   file: string;
   materials: { name: string; resin: string; exposure_s: number; colour: string }[];
-  taken: number; // tells this machine's pictures from those of the one before
+  taken: number; // distinguishes this machine's pictures from those of an earlier one
   job: string;
   seconds: number;
-  /** What of the job cannot be proved. */
+  /** What of the job could not be verified. */
   warnings: string[];
   vats: { slot: number; resin: string; ml: number; materials: number[] }[];
   refills: { layer: number; slot: number; text: string }[];
@@ -72,12 +72,12 @@ export const events = signal<Now['events']>([]);
 export const flags = computed(() => now.value?.state.flags ?? {});
 export const busy = computed(() => ['printing', 'pausing', 'paused', 'cancelling'].some((f) => flags.value[f]));
 
-/// What came of a complete print; null: nobody knows.
+/// Verdict on a complete print; null: unknown.
 export const verdict = signal<{ passed: boolean; reasons: string[] } | null>(null);
 
-/// The line whose studio has told where the print stands.
+/// The connection over which the studio last reported the print.
 const toldBy = signal(0);
-/// False: what is shown is as old as the line that was lost, and may be of a studio that has ended.
+/// False: the display dates from a lost connection, and the studio may have ended.
 export const known = computed(() => online.value && toldBy.value === lines.value);
 export const maySteer = computed(() => mayDrive.value && known.value);
 
@@ -93,7 +93,7 @@ function take(next: Now) {
 let loading = 0;
 let meanwhile: Now[] = [];
 
-/// What the studio says while its answer is under way may be newer than the answer: it is taken after it.
+/// Events that arrive while a response is pending may be newer than it: they are applied after it.
 async function load() {
   const mine = ++loading;
   const line = lines.value;
@@ -114,7 +114,7 @@ async function load() {
 const retryAfter = 1000; // ms
 function loadSurely() {
   load().catch((e: Error) => {
-    if (!online.value) return; // the next line asks again
+    if (!online.value) return; // requested again on the next connection
     say(e.message);
     setTimeout(loadSurely, retryAfter);
   });

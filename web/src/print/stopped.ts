@@ -1,13 +1,13 @@
-// What a stop was, in words: the firmware's own say what it did, not what has happened or what to do.
+// Explains a stop: the firmware's own message says what it did, but not why or what to do.
 import { events, info, now } from './state';
 
 export interface Stop {
   title: string;
   text: string;
-  cause: string; // the firmware's words, "" where they add nothing
+  cause: string; // the firmware's message, "" if it adds nothing
 }
 
-/// An emergency stop since the machine was last connected or set to work.
+/// True if there was an emergency stop since the machine was last connected or started.
 function askedFor(): boolean {
   const list = events.value;
   let since = list.length;
@@ -15,7 +15,7 @@ function askedFor(): boolean {
   return list.slice(since).some((e) => e.kind === 'error' && /^emergency stop/.test(e.text));
 }
 
-/// Null: the machine has not been halted.
+/// Null: the machine is not halted.
 export function stopOf(): Stop | null {
   const n = now.value;
   if (!n?.state.flags.error) return null;

@@ -1,4 +1,4 @@
-// Before a print: which machine, and what the journals of the folder tell.
+// Before a print: the choice of machine, and the print history of the folder.
 import { useEffect, useState } from 'preact/hooks';
 import { counted } from '../counted';
 import { Icon } from '../icons';
@@ -17,7 +17,7 @@ interface Ports {
 
 interface JournalLine {
   name: string;
-  file: string; // its job
+  file: string; // file of its job
   virtual: boolean;
   state: 'complete' | 'cancelled' | 'interrupted' | 'not begun' | 'damaged';
   error?: string;
@@ -57,7 +57,7 @@ function TakeTwin() {
   );
 }
 
-/// A job that was only sliced lies in no folder yet.
+/// A job that was only sliced has no file yet.
 function SaveFirst() {
   const j = job.value!;
   const [name, setName] = useState(`${j.manifest.name.replace(/[^\w-]+/g, '_')}.zip`);
@@ -90,7 +90,7 @@ function TakePort() {
       .then((r) => r.json())
       .then((p: Ports) => {
         setKnown(p);
-        // What someone is about to type is not overtaken by a proposal.
+        // A suggestion must not replace what the user is typing.
         const typing = document.activeElement?.tagName === 'INPUT' || document.activeElement?.tagName === 'TEXTAREA';
         if (typing) return;
         setDevice((d) => d || p.ports[0]?.device || '');
@@ -219,7 +219,7 @@ function JournalView({ name, close }: { name: string; close: () => void }) {
   );
 }
 
-/// When a print of which the journal was kept has ended, in the time of this place; "": the last one of its job.
+/// End of a print whose journal was kept, in local time; "": the last print of its job.
 function endOf(name: string): string {
   const m = /\.(\d{4}-\d{2}-\d{2})_(\d{2})(\d{2})(\d{2})\.journal$/.exec(name);
   return m ? new Date(`${m[1]}T${m[2]}:${m[3]}:${m[4]}Z`).toLocaleString() : '';

@@ -1,4 +1,4 @@
-// What a print tells those who look elsewhere: in the title and the icon of the tab, and as notifications.
+// Shows the state of a print outside the page: in the title and icon of the tab, and as notifications.
 import { effect, signal } from '@preact/signals';
 import { onEvent } from '../store';
 import { busy, flags, info, known, now } from './state';
@@ -6,7 +6,7 @@ import { tellingOf, type Telling } from './telling';
 
 const usualTitle = document.title;
 
-/// A ring that fills; null: the page's own icon.
+/// A progress ring; null: the page's own icon.
 function iconOf({ share, colour }: Telling): string | null {
   if (!colour) return null;
   const around = 2 * Math.PI * 11;
@@ -45,7 +45,7 @@ onEvent((event) => {
   new Notification('Pliant', { body: String(event.text), tag: 'pliant-print' });
 });
 
-/// Whether this browser tells of the end of a print, and of what it waits for.
+/// Setting: notify of the end of a print, and of interventions it waits for.
 export function Notifications() {
   if (!('Notification' in window)) return null;
   const toggle = async () => {

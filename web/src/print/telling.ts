@@ -1,12 +1,12 @@
-// What the title and the icon of the tab say of a print.
+// The text and icon of the tab for a print.
 
 export interface Telling {
   title: string;
-  share: number | null; // of a print under way
+  share: number | null; // progress of a running print
   colour: string;
 }
 
-/// What the tab shows. Nothing of a print is told by a page that does not know it.
+/// What the tab shows. Nothing about a print if the page does not know its state.
 export function tellingOf(is: { machine: boolean; known: boolean; busy: boolean; paused: boolean; error: boolean; finished: boolean; completion: number; job: string }, usual: string): Telling {
   const plain = { title: usual, share: null, colour: '' };
   if (!is.machine) return plain;

@@ -1,10 +1,10 @@
-// The machine as a camera sees it, where `pliant studio --webcam` names one.
+// The camera image of the machine, if `pliant studio --webcam` gives an address.
 import { useEffect, useState } from 'preact/hooks';
 import { api } from '../store';
 
-const every = 2000; // ms: a picture; a stream renews itself
+const every = 2000; // ms between still pictures; a stream updates itself
 
-/// Streams are left alone, pictures are asked for again.
+/// Streams are shown as they are, still pictures are reloaded.
 const isStream = (address: string) => /stream|mjpe?g|\.cgi|action=/i.test(address);
 
 export function Webcam() {

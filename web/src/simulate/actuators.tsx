@@ -14,14 +14,14 @@ const kinds: Record<string, { label: string; unit: string; step: number }> = {
   pressure_kPa: { label: 'Pressure', unit: 'kPa', step: 0.1 },
   gas_ratio: { label: 'Gas ratio', unit: '', step: 0.005 },
 };
-/// Of each kind the unit, '' of a ratio.
+/// Unit of each kind, '' for ratios.
 export const units: Record<string, string> = Object.fromEntries(Object.entries(kinds).map(([kind, { unit }]) => [kind, unit]));
 const kindsOf = {
   cable: ['length_ratio', 'shortening_mm', 'tension_N'],
   chamber: ['volume_ratio', 'volume_change_mm3', 'pressure_kPa', 'gas_ratio'],
 };
 
-/// What the actuator is at now, as its kind counts.
+/// The actuator's current value, in the unit of this kind.
 export function reading(actuator: Actuator, kind: string): number {
   const head = frame.value?.head;
   const all = scene.value?.head.actuators ?? [];
@@ -62,7 +62,7 @@ function range(actuator: Actuator, kind: string, value: number): [number, number
   }
 }
 
-/// What there can be at all; the slider shows a part of it.
+/// All possible values; the slider covers a part of them.
 function possible(actuator: Actuator, kind: string): Range {
   switch (kind) {
     case 'shortening_mm':
@@ -98,7 +98,7 @@ export function driveTo(values: Record<string, { kind: string; value: number }>)
   driveAll();
 }
 
-/// From the program to the hand: everything else stays where it is.
+/// Takes over from the program: everything else keeps its current value.
 function holdOthers(names: string[]) {
   const all = scene.value?.head.actuators ?? [];
   wanted.value = Object.fromEntries(
@@ -113,7 +113,7 @@ function holdOthers(names: string[]) {
 function Control({ actuator }: { actuator: Actuator }) {
   const want = wanted.value[actuator.name] ?? { kind: actuator.kind, value: 1 };
   const now = reading(actuator, want.kind);
-  // Where the program leads it, or another page, what it is at says more than what was asked for here.
+  // If the program or another page controls it, show its current value rather than this page's last request.
   const value = (following.value || !mayDrive.value) && Number.isFinite(now) ? now : want.value;
   const kind = kinds[want.kind];
   const [low, high] = range(actuator, want.kind, value);

@@ -1,4 +1,4 @@
-// A second robot beside the first one, in the same hands: it gets the same inputs, and its numbers stand next to the others.
+// A second robot for comparison: it receives the same inputs, and its numbers are shown beside those of the first.
 import { batch, computed, effect, signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { useDismiss } from '../dismiss';
@@ -10,14 +10,14 @@ import { channelsOf } from './tracks';
 import { theView } from './the_view';
 import { RobotView, type ViewOptions } from './view';
 
-/// What it was opened from; '': there is none.
+/// The file it was opened from; '': there is none.
 export const title = signal('');
 export const comparing = computed(() => title.value !== '');
 const sceneBeside = signal<Scene | null>(null);
 const frameBeside = signal<Frame | null>(null);
 const stage = signal('');
 const problem = signal('');
-/// Lowest and highest of each view, so that one colour is one value in both.
+/// Range of each view, so that a colour means the same value in both.
 export const ranges = signal<[[number, number] | null, [number, number] | null]>([null, null]);
 
 async function loadScene() {
@@ -41,7 +41,7 @@ onEvent((event) => {
   }
   if (event.type !== 'beside') return;
   const inner = event.event as { type: string; stage?: string; lines?: Problem[] };
-  if (inner.type === 'scene') loadScene().catch(() => {}); // it was left meanwhile
+  if (inner.type === 'scene') loadScene().catch(() => {}); // it was closed meanwhile
   if (inner.type === 'build') stage.value = inner.stage ?? '';
   if (inner.type === 'problem') problem.value = (inner.lines ?? []).map((p) => `${p.line > 0 ? `line ${p.line} ` : ''}${p.text}`).join('; ');
 });
@@ -51,14 +51,14 @@ onBesideFrame((next) => {
 effect(() => {
   if (lines.value > 0) title.value = '';
 });
-/// Where a marker was led, and is let go, both robots go.
+/// Dragging and releasing a marker applies to both robots.
 let wasLed = false;
 effect(() => {
   const led = Boolean(frame.value?.head.lead);
   if (wasLed && !led && comparing.peek() && mayDrive.peek()) setTimeout(driveAll, 0);
   wasLed = led;
 });
-/// Once it is there, it goes where the first one is.
+/// After it is built, it is driven to the state of the first one.
 effect(() => {
   if (sceneBeside.value && mayDrive.peek()) setTimeout(driveAll, 0);
 });
@@ -102,7 +102,7 @@ export function Compare() {
   );
 }
 
-/// Its picture: the same look, and the camera goes with that of the first one.
+/// Its view: same settings, and the camera follows that of the first one.
 export function CanvasBeside({ options }: { options: () => ViewOptions }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
@@ -110,7 +110,7 @@ export function CanvasBeside({ options }: { options: () => ViewOptions }) {
     try {
       made = new RobotView(canvas.current!);
     } catch {
-      return; // the first view has said why
+      return; // the first view has shown the reason
     }
     made.mayGrab = () => false;
     made.onData = (low, high) => (ranges.value = [ranges.peek()[0], [low, high]]);
@@ -167,7 +167,7 @@ export function CanvasBeside({ options }: { options: () => ViewOptions }) {
 const show = (v: number) => (Number.isFinite(v) ? `${+v.toPrecision(4)}` : '–');
 const wantedKinds = ['tension_N', 'pressure_kPa', 'displacement_mm', 'force_N', 'energy_mJ'];
 
-/// The same results of both, and what the second one has more.
+/// The results that both have, and further ones of the second.
 export function Compared() {
   const [a, b] = [frame.value, frameBeside.value];
   const [one, other] = [scene.value?.head, sceneBeside.value?.head];

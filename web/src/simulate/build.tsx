@@ -1,5 +1,5 @@
-// The robot file without typing: parameters, materials, and what is placed by pointing at the robot. Each change is made in
-// the text by the studio, with comments and order kept.
+// Edits the robot file without typing: parameters, materials, and things placed by clicking on the robot. The studio
+// makes each change in the text, keeping comments and order.
 import { computed, effect, signal } from '@preact/signals';
 import { counted } from '../counted';
 import { Icon } from '../icons';
@@ -14,7 +14,7 @@ type Point = [number, number, number];
 type Kind = 'marker' | 'support' | 'cable' | 'chamber';
 
 const placing = signal<Kind | null>(null);
-/// Points of a cable that is not finished, mm.
+/// Points of an unfinished cable, mm.
 export const placed = signal<Point[]>([]);
 const depth = signal(2); // mm below the surface
 const radius = signal(3); // mm
@@ -34,7 +34,7 @@ const words: Record<Kind, string> = {
   chamber: '',
 };
 
-/// How a chamber is given: a ball or a box of air in a body, or a cavity that the bodies have already.
+/// Shape of a chamber: a ball or box of air in a body, or an existing cavity.
 type Shape = 'ball' | 'box' | 'cavity';
 const shape = signal<Shape>('ball');
 const shapes: [Shape, string, string][] = [
@@ -44,17 +44,17 @@ const shapes: [Shape, string, string][] = [
 ];
 const boxSize = [10, 6, 6].map((v) => signal(v)); // mm
 const boxPlace = signal<{ at: Point; inward: Point } | null>(null);
-/// The box that is about to be made; null: none.
+/// The box that is being placed; null: none.
 export const draft = computed(() => {
   const p = boxPlace.value;
   if (!p || placing.value !== 'chamber' || shape.value !== 'box') return null;
   const size = boxSize.map((s) => s.value) as Point;
-  // Its nearest wall is so deep below the surface.
+  // Its nearest wall is at this depth below the surface.
   const half = 0.5 * p.inward.reduce((sum, n, k) => sum + Math.abs(n) * size[k], 0);
   return { centre: p.at.map((v, k) => v + (depth.value + half) * p.inward[k]) as Point, size };
 });
 
-/// A name that no actuator, marker or support has.
+/// A name not used by any actuator, marker or support.
 export function freeName(kind: string, taken: string[]): string {
   for (let k = 1; ; ++k) if (!taken.includes(`${kind} ${k}`)) return `${kind} ${k}`;
 }
@@ -64,11 +64,11 @@ function taken(): string[] {
   return head ? [...head.actuators.map((a) => a.name), ...head.markers.map((m) => m.name), ...head.supports] : [];
 }
 
-/// In the unit of the file, with as many digits as matter.
+/// In the unit of the file, with the significant digits only.
 const inFile = (p: readonly number[]) => p.map((v) => +(v / (scene.peek()?.head.unit_mm ?? 1)).toPrecision(6));
 const add = (kind: Kind, entry: Record<string, unknown>) => post('/api/robot/add', { list: lists[kind], entry: { name: freeName(kind, taken()), ...entry } });
 
-/// A place that was clicked. False if none is wanted.
+/// Handles a clicked position. False if none is expected.
 export function takePlace(rest: Point, inward: Point): boolean {
   const kind = placing.peek();
   if (!kind || !mayDrive.peek()) return false;
@@ -79,10 +79,10 @@ export function takePlace(rest: Point, inward: Point): boolean {
   if (kind === 'support') void add(kind, { sphere: { center: inFile(rest), radius: +(radius.peek() / unit).toPrecision(6) } });
   if (kind === 'chamber' && shape.peek() === 'box') {
     boxPlace.value = { at: rest, inward };
-    return true; // it is made when its size is as it should be
+    return true; // created once its size is confirmed
   }
   if (kind === 'chamber' && shape.peek() === 'cavity') {
-    // The body is behind the wall, and the air before it.
+    // The body is behind the wall, and the air in front of it.
     const size = Math.hypot(...[0, 1, 2].map((k) => theView.peek()?.extent[k] ?? 10));
     void add(kind, { inside: inFile(rest.map((v, k) => v - 2e-3 * size * inward[k])), target: { pressure: '10 kPa' } });
   }
@@ -172,13 +172,13 @@ function Placing() {
 }
 
 let waiting = 0;
-/// The latest of several moves of a slider is sent.
+/// Only the latest of several slider moves is sent.
 function setParameter(name: string, value: number) {
   clearTimeout(waiting);
   waiting = window.setTimeout(() => void post('/api/robot/set', { changes: [{ key: `parameters.${name}`, value }] }), 150);
 }
 
-/// Whole numbers stay whole; the slider goes from none to twice as much as the number was when it was first seen.
+/// Whole numbers stay whole; the slider ranges from zero to twice the value first seen.
 const seen = new Map<string, number>();
 function Parameters() {
   const list = parametersOf(theirs.value);

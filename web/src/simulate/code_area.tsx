@@ -1,4 +1,4 @@
-// The text of the robot file: colours, errors at their lines, keys that can be completed.
+// The text of the robot file, with syntax colours, errors at their lines, and completion of keys.
 import { autocompletion, type CompletionContext, type CompletionResult } from '@codemirror/autocomplete';
 import { defaultKeymap, history, historyKeymap, indentWithTab } from '@codemirror/commands';
 import { HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/language';
@@ -36,7 +36,7 @@ const look = EditorView.theme({
   '.cm-panels': { backgroundColor: 'var(--sunk)', color: 'var(--ink)' },
 });
 
-/// Keys of the table that the cursor is in; after a bracket the tables themselves.
+/// Keys of the table at the cursor; after a bracket the tables themselves.
 function complete(context: CompletionContext): CompletionResult | null {
   const header = context.matchBefore(/^\s*\[+[\w.]*/);
   if (header) {
@@ -94,7 +94,7 @@ export function CodeArea({ text, problems, readOnly, onApply }: Props) {
       }),
     }));
     const stops = [
-      // What comes from elsewhere is no step of the typist's.
+      // External changes are not part of the undo history.
       effect(() => {
         const next = text.value;
         const now = made.state.doc.toString();

@@ -1,8 +1,8 @@
-// The colours of fields. Lightness rises evenly in all but the one that has a middle.
+// Colour maps of fields. Lightness increases evenly in all but the diverging one.
 type Stop = readonly [number, number, number];
 
-/// The first is that of src/presentation/draw/colour.cpp; cividis is read alike by people who do not tell red from green
-/// (Nuñez, Anderton and Renslow 2018, in nine stops); blue to red has its middle at the middle of the range.
+/// The first is that of src/presentation/draw/colour.cpp; cividis suits people with red-green colour blindness
+/// (Nuñez, Anderton and Renslow 2018, in nine stops); blue to red has its centre in the middle of the range.
 export const maps: Record<string, { label: string; stops: readonly Stop[] }> = {
   pliant: {
     label: 'Violet to yellow',
@@ -19,10 +19,10 @@ export const maps: Record<string, { label: string; stops: readonly Stop[] }> = {
   grey: { label: 'Grey', stops: [[0.12, 0.12, 0.13], [0.94, 0.94, 0.93]] },
 };
 
-/// In the middle of one of so many bands; 0: as it is.
+/// Rounded to the centre of one of `bands` bands; 0: unchanged.
 const banded = (t: number, bands: number) => (bands > 0 ? (Math.min(Math.floor(t * bands), bands - 1) + 0.5) / bands : t);
 
-/// sRGB in [0, 1] of a value in [0, 1].
+/// sRGB in [0, 1] for a value in [0, 1].
 export function fieldColour(t: number, map = 'pliant', bands = 0): [number, number, number] {
   const stops = (maps[map] ?? maps.pliant).stops;
   const x = banded(Math.min(Math.max(Number.isFinite(t) ? t : 0, 0), 1), bands) * (stops.length - 1);

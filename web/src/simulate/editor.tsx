@@ -10,19 +10,19 @@ import { setKey } from './toml_edit';
 import { pinned } from './view_state';
 
 export const text = signal('');
-/// The text as the studio has it.
+/// The studio's version of the text.
 export const theirs = signal('');
 
-/// Forgets what has not been applied.
+/// Discards changes that have not been applied.
 export function revert() {
   text.value = theirs.value;
 }
 
-let applied: string | null = null; // on its way to the studio
-let savedLine = 0; // the line, and whether the text was in a file, when it was last heard of
+let applied: string | null = null; // being sent to the studio
+let savedLine = 0; // the connection, and whether the text was in a file, at the last update
 let wasUnsaved = false;
 
-/// What has not been applied is kept, and so is what a studio that was started again does not have any more.
+/// Changes that have not been applied are kept, and so is text that a restarted studio no longer has.
 async function load() {
   const line = lines.value;
   const next = await (await api('/api/robot')).text();
@@ -55,7 +55,7 @@ export async function apply(next: string): Promise<boolean> {
   }
 }
 
-/// So that a change can be seen against what was before.
+/// Pins the current state, so that a change can be compared with it.
 export function pinNow(label: string) {
   const now = frame.peek();
   if (now) pinned.value = { label, positions: new Float32Array(now.f32('positions')), frame: now };
@@ -113,11 +113,11 @@ export function Materials() {
 
 let checking = 0;
 let checked = '';
-/// What is typed is checked a moment later, without being built.
+/// Typed text is checked after a short pause, without building it.
 effect(() => {
   const next = text.value;
   clearTimeout(checking);
-  // What the studio has built it has checked, unless something else was said meanwhile.
+  // Text that the studio has built has been checked, unless there was another error meanwhile.
   if (next === checked || (next === theirs.peek() && checked === '') || !mayDrive.peek()) return;
   checking = window.setTimeout(async () => {
     const response = await api('/api/robot/check', { method: 'POST', headers: { 'Content-Type': 'text/plain' }, body: next }).catch(() => null);

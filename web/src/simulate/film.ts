@@ -1,4 +1,4 @@
-// The states since rest as a film, drawn as the view shows them: WebM recorded by the browser, or GIF made here.
+// Exports the states since rest as a film, as shown in the view: WebM recorded by the browser, or GIF encoded here.
 import { signal } from '@preact/signals';
 import { cssColour } from '../theme';
 import { animatedGif, type Picture } from './gif';
@@ -6,19 +6,19 @@ import { frames } from './tracks';
 import { theView } from './the_view';
 import { shownFrame } from './view_state';
 
-/// Share that has been recorded; null: none is.
+/// Recorded share; null: not recording.
 export const filming = signal<number | null>(null);
 let stopped = false;
 
-/// Nothing is kept of it.
+/// The recording is discarded.
 export function stopFilming() {
   stopped = true;
 }
 
 const framesPerSecond = 25;
-const shortest_ms = 2000; // a film of few states is slower
+const shortest_ms = 2000; // a film of few states is slowed down
 
-/// WebM. Null where there is nothing to show, it was given up, or the browser cannot record.
+/// WebM. Null if there is nothing to show, it was cancelled, or the browser cannot record.
 export async function film(): Promise<Blob | null> {
   const canvas = theView.peek()?.renderer.domElement;
   const all = frames.slice();
@@ -50,7 +50,7 @@ const gifWidth = 640;
 const mostPictures = 80;
 const pause_ms = 1200; // on the last state
 
-/// On the stage's own background: a GIF knows no half transparent pixels.
+/// On the stage's background: GIF has no partial transparency.
 function background(context: CanvasRenderingContext2D, width: number, height: number) {
   const fill = context.createLinearGradient(0, 0, 0, height);
   fill.addColorStop(0, cssColour('--stage-top'));
@@ -59,13 +59,13 @@ function background(context: CanvasRenderingContext2D, width: number, height: nu
   context.fillRect(0, 0, width, height);
 }
 
-/// At most so many of the states, the first and the last among them.
+/// At most `most` of the states, including the first and the last.
 function thinned<T>(all: T[], most: number): T[] {
   if (all.length <= most) return all;
   return Array.from({ length: most }, (_, k) => all[Math.round((k * (all.length - 1)) / (most - 1))]);
 }
 
-/// GIF, 640 pixels wide. Null where there is nothing to show, or it was given up.
+/// GIF, 640 pixels wide. Null if there is nothing to show, or it was cancelled.
 export async function gif(): Promise<Blob | null> {
   const view = theView.peek();
   const all = thinned(frames.slice(), mostPictures);
@@ -84,7 +84,7 @@ export async function gif(): Promise<Blob | null> {
       background(context, width, height);
       context.drawImage(canvas, 0, 0, width, height);
       pictures.push(context.getImageData(0, 0, width, height));
-      await new Promise((next) => setTimeout(next, 0)); // so that the page stays awake, and may give it up
+      await new Promise((next) => setTimeout(next, 0)); // keeps the page responsive, so that it can be cancelled
       if (stopped) return null;
     }
     filming.value = 0.95;

@@ -1,4 +1,4 @@
-// Where a camera must be for all points to be seen, whatever their shape.
+// Finds the camera position from which all points are visible.
 
 type Vec = readonly [number, number, number];
 const dot = (p: Vec, q: Vec) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
@@ -8,9 +8,9 @@ export interface Fit {
   target: [number, number, number];
 }
 
-/// Looking along `forward` (unit, as `right` and `up`, orthogonal) with half angles of which these are the tangents:
-/// the nearest place that has every point (3n) within them. Between the frustum's planes that touch the points on
-/// either side it is in the middle.
+/// For a view along `forward` (unit and orthogonal, as `right` and `up`) with half angles of these tangents: the
+/// nearest position that has all points (3n) in view, centred between the frustum planes that touch the points on
+/// either side.
 export function fitPoints(points: ArrayLike<number>, right: Vec, up: Vec, forward: Vec, tanX: number, tanY: number): Fit {
   const most = [-Infinity, -Infinity, -Infinity, -Infinity];
   let [near, far] = [Infinity, -Infinity];

@@ -1,5 +1,5 @@
-// Geometry that is dropped onto the page, or picked: it goes into the project folder, is read there, and becomes bodies of
-// a new robot or of the one at hand.
+// Geometry files dropped onto the page, or picked: uploaded into the project folder, read there, and used as bodies of
+// a new or the current robot.
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { unlessLost } from '../discard';
@@ -7,11 +7,11 @@ import { api, documentState, mayDrive, page, post, say, scene } from '../store';
 import { freeName, library } from './build';
 import { theirs } from './editor';
 
-/// What a file holds, as the studio has read it.
+/// Contents of a file, as read by the studio.
 export interface Content {
   name: string;
   kind: 'surface' | 'step' | '3mf' | 'tets';
-  unit_mm: number; // 0: the file does not say
+  unit_mm: number; // 0: not in the file
   low: [number, number, number];
   high: [number, number, number];
   text: string;
@@ -32,7 +32,7 @@ type State =
 const state = signal<State | null>(null);
 let request: XMLHttpRequest | null = null;
 
-/// Sends one file; the studio reads it before it keeps it.
+/// Uploads one file; the studio reads it before storing it.
 function transfer(file: File, replace: boolean) {
   if (file.size > mostBytes) {
     state.value = { step: 'refused', why: `${file.name}: larger than 256 MB; copy it into the project folder yourself` };
@@ -62,7 +62,7 @@ function transfer(file: File, replace: boolean) {
   r.send(file);
 }
 
-/// Files that were dropped or picked: a robot file is opened, geometry is sent. One at a time.
+/// Handles dropped or picked files, one at a time: a robot file is opened, geometry is uploaded.
 export function takeFiles(files: ArrayLike<File>) {
   const file = files[0];
   if (!file) return;
@@ -82,7 +82,7 @@ const quoted = (s: string) => JSON.stringify(s);
 export const stem = (file: string) => file.replace(/\.[^.]*$/, '').trim() || 'robot';
 
 const round = (v: number, digits = 4) => +v.toPrecision(digits);
-/// Of lengths: 1, 2, 2.5, 5 times a power of ten, not above.
+/// For lengths: the largest of 1, 2, 2.5, 5 times a power of ten that is not above `v`.
 function nice(v: number): number {
   const power = 10 ** Math.floor(Math.log10(v));
   return round(power * ([5, 2.5, 2].find((f) => f * power <= v) ?? 1));
@@ -98,13 +98,13 @@ export const sides: [Side, string][] = [
   ['z', 'its top (high z)'],
 ];
 
-/// The end of its longest side: what is long is held at one end.
+/// One end of the longest side: long parts are usually held at one end.
 export function usualSide({ low, high }: Pick<Content, 'low' | 'high'>): Side {
   const size = [0, 1, 2].map((k) => high[k] - low[k]);
   return `-${'xyz'[size.indexOf(Math.max(...size))]}` as Side;
 }
 
-/// The bodies of a file, as entries of [[body]]: one, or one for each of its parts.
+/// The bodies of a file as [[body]] entries: one, or one for each of its parts.
 export function bodiesOf(content: Content, path: string, material: string, taken: string[], scale = 1): Record<string, unknown>[] {
   const names = [...taken];
   const named = (wish: string) => {
@@ -120,10 +120,10 @@ export function bodiesOf(content: Content, path: string, material: string, taken
 
 const toml = (v: unknown): string => (typeof v === 'object' && v !== null ? `{ ${Object.entries(v).map(([k, w]) => `${k} = ${toml(w)}`).join(', ')} }` : typeof v === 'string' ? quoted(v) : `${v}`);
 
-/// A robot of this file alone, held at one side, with a marker in the middle of the other.
+/// A robot made of this file alone, held at one side, with a marker in the middle of the opposite side.
 export function robotOf(content: Content, unit: string, material: string, side: Side): string {
   const { low, high } = content;
-  // A file that says its own unit is put into the robot's by its reader.
+  // The reader converts a file with its own unit to the robot's.
   const per = content.unit_mm > 0 ? content.unit_mm / units[unit] : 1;
   const [from, to] = [low, high].map((p) => p.map((v) => v * per));
   const size = [0, 1, 2].map((k) => to[k] - from[k]);
@@ -152,7 +152,7 @@ export function robotOf(content: Content, unit: string, material: string, side: 
   ].join('\n');
 }
 
-/// From the folder of the robot file at hand to the project folder, where the file lies.
+/// Relative path from the folder of the current robot file to the project folder, where the file is.
 const upwards = () => '../'.repeat(documentState.peek().name.split('/').length - 1);
 
 function Ready({ content, close }: { content: Content; close: () => void }) {
@@ -280,7 +280,7 @@ function Body({ now, close }: { now: State; close: () => void }) {
   );
 }
 
-/// The place to drop on is the whole page.
+/// The whole page accepts dropped files.
 export function GeometryDrop() {
   const [over, setOver] = useState(false);
   const box = useRef<HTMLDivElement>(null);
@@ -292,7 +292,8 @@ export function GeometryDrop() {
       e.preventDefault();
       setOver(true);
       clearTimeout(timer);
-      timer = window.setTimeout(() => setOver(false), 300); // dragover comes again and again while it is held there
+      timer = window.setTimeout(() => setOver(false), 300); // dragover is repeated as long as something is held over
+                                                            // the page
     };
     const drop = (e: DragEvent) => {
       if (!carries(e)) return;
@@ -327,7 +328,7 @@ export function GeometryDrop() {
   );
 }
 
-/// For who has no mouse to drag with.
+/// For users without a mouse.
 export function PickGeometry({ label, testId }: { label: string; testId: string }) {
   return (
     <label class="button small">

@@ -1,14 +1,14 @@
-// Animated GIF from pictures of a canvas: one palette for all of them, and of each only the pixels that have changed.
-// The format is that of CompuServe's GIF89a specification.
+// Animated GIF from canvas pictures: one palette for all of them, and only the changed pixels of each. Format:
+// CompuServe's GIF89a specification.
 
 export interface Picture {
   data: Uint8ClampedArray; // RGBA
 }
 
-const colours = 255; // one of 256 says that a pixel has not changed
+const colours = 255; // one of 256 means that a pixel has not changed
 const unchanged = 255;
 
-/// 5 bits of red, green and blue.
+/// 5 bits each of red, green and blue.
 const cellOf = (r: number, g: number, b: number) => ((r >> 3) << 10) | ((g >> 3) << 5) | (b >> 3);
 
 interface Box {
@@ -16,7 +16,7 @@ interface Box {
   pixels: number;
 }
 
-/// Red, green or blue of a cell.
+/// Red, green or blue component of a cell.
 const part = (cell: number, axis: number) => (cell >> (10 - 5 * axis)) & 31;
 
 function widest(box: Box): { axis: number; width: number } {
@@ -33,7 +33,7 @@ function widest(box: Box): { axis: number; width: number } {
   return best;
 }
 
-/// Halves of as many pixels, along the widest colour.
+/// Splits a box into halves of equal pixel count, along its widest colour axis.
 function halves(box: Box, counts: Uint32Array): [Box, Box] {
   const { axis } = widest(box);
   const cells = box.cells.slice().sort((a, b) => part(a, axis) - part(b, axis));
@@ -45,7 +45,7 @@ function halves(box: Box, counts: Uint32Array): [Box, Box] {
   ];
 }
 
-/// Median cut (Heckbert 1982) over all pictures: the colours, and which of them each cell of the cube becomes.
+/// Median cut (Heckbert 1982) over all pictures: the colours, and the index for each cell of the colour cube.
 function palette(pictures: Picture[]): { table: Uint8Array; of: Uint8Array } {
   const counts = new Uint32Array(32768);
   const sums = [0, 1, 2].map(() => new Float64Array(32768));
@@ -58,7 +58,7 @@ function palette(pictures: Picture[]): { table: Uint8Array; of: Uint8Array } {
   const used = Array.from(counts.keys()).filter((cell) => counts[cell] > 0);
   const boxes: Box[] = [{ cells: used, pixels: used.reduce((n, cell) => n + counts[cell], 0) }];
   while (boxes.length < colours) {
-    // What is large in the picture and wide in colour is cut first.
+    // Boxes with many pixels and a wide colour range are split first.
     let [best, most] = [-1, 0];
     boxes.forEach((box, k) => {
       const weight = box.cells.length > 1 ? Math.sqrt(box.pixels) * widest(box).width : 0;
@@ -76,7 +76,7 @@ function palette(pictures: Picture[]): { table: Uint8Array; of: Uint8Array } {
   return { table, of };
 }
 
-/// A file that grows.
+/// A growing byte buffer.
 class Bytes {
   private bytes = new Uint8Array(1 << 16);
   private length = 0;
@@ -106,7 +106,7 @@ class Bytes {
 const clear = 256;
 const end = 257;
 
-/// The words of LZW as bits, in blocks of up to 255 bytes.
+/// Writes LZW codes as bits, in blocks of up to 255 bytes.
 function writeImage(out: Bytes, pixels: Uint8Array) {
   out.byte(8);
   let block: number[] = [];
@@ -156,7 +156,7 @@ function writeImage(out: Bytes, pixels: Uint8Array) {
   out.byte(0);
 }
 
-/// Runs for ever, so many milliseconds a picture, the last one `last_ms`. All are of one size; at least one.
+/// Loops for ever, with `frame_ms` per picture and `last_ms` for the last one. All of one size; at least one.
 export function animatedGif(pictures: Picture[], width: number, height: number, frame_ms: number, last_ms: number): Uint8Array {
   const { table, of } = palette(pictures);
   const out = new Bytes();
@@ -177,7 +177,7 @@ export function animatedGif(pictures: Picture[], width: number, height: number, 
       shown[i] = now;
     }
     const hundredths = Math.max(2, Math.round((k + 1 === pictures.length ? last_ms : frame_ms) / 10));
-    out.all([0x21, 0xf9, 4, 0x05]); // what is there stays, and one colour is none
+    out.all([0x21, 0xf9, 4, 0x05]); // keep the previous picture; one colour is transparent
     out.short(hundredths);
     out.all([unchanged, 0, 0x2c, 0, 0, 0, 0]);
     out.short(width);

@@ -1,4 +1,4 @@
-// Where a marker is wanted, and which actuators may bring it there.
+// The wanted positions of a marker, and the actuators that may be used to reach them.
 import { batch, effect, signal } from '@preact/signals';
 import { NumberField } from '../number_field';
 import { api, frame, mayDrive, say, scene } from '../store';
@@ -17,16 +17,16 @@ interface Input {
   used: boolean;
 }
 
-/// The search uses the elements of the robot that was built.
+/// The search uses the element order of the current robot.
 const isLinear = () => scene.value?.head.order === 1;
 
 const marker = signal('');
-/// Where it is wanted, one place after the other; the view shows them.
+/// The wanted positions in order; shown in the view.
 export const path = signal<Point[]>([]);
 const tolerance = signal(0.1);
 export const inputs = signal<Input[]>([]);
 
-let known = ''; // the robot that the inputs are of
+let known = ''; // the robot that the inputs belong to
 effect(() => {
   const head = scene.value?.head;
   if (!head) return;

@@ -1,8 +1,8 @@
-// A soft shadow under the robot: what lies low darkens the ground more than what is high above it.
+// A soft shadow below the robot: low parts darken the ground more than high ones.
 import * as THREE from 'three';
 
 const pixels = 256;
-/// What casts a shadow is on this layer too.
+/// Objects that cast a shadow are on this layer too.
 export const shadowLayer = 1;
 
 const vertexShader = 'varying vec2 at; void main() { at = uv; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }';
@@ -27,7 +27,7 @@ function blurMaterial() {
   });
 }
 
-/// Dark where the robot is near: the height above the ground as alpha.
+/// Alpha encodes the height above the ground: dark where the robot is near.
 function heightMaterial() {
   return new THREE.ShaderMaterial({
     vertexShader: 'varying float high; void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); high = gl_Position.z * 0.5 + 0.5; }',
@@ -56,14 +56,14 @@ export class Ground {
     this.sheet.add(new THREE.Mesh(new THREE.PlaneGeometry(1, 1), this.blur));
   }
 
-  /// Under a box, mm; to be called when what stands on it has moved.
+  /// Places the shadow below a box, mm; call it when what stands on the ground has moved.
   update(renderer: THREE.WebGLRenderer, world: THREE.Scene, box: THREE.Box3) {
     const size = box.getSize(new THREE.Vector3());
     const centre = box.getCenter(new THREE.Vector3());
     const span = 1.5 * Math.max(size.x, size.y, 0.35 * size.z);
     const floor = box.min.z - 0.004 * span;
     this.plane.position.set(centre.x, centre.y, floor);
-    this.plane.scale.set(-span, span, 1); // its picture is taken from below
+    this.plane.scale.set(-span, span, 1); // mirrored, because the picture is taken from below
     // From below, so that it sees what is nearest to the ground.
     this.from.left = this.from.bottom = -span / 2;
     this.from.right = this.from.top = span / 2;

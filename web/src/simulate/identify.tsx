@@ -1,4 +1,4 @@
-// Numbers of the robot from a table of measurements.
+// Identifies parameters of the robot from a table of measurements.
 import { effect, signal } from '@preact/signals';
 import { api, mayDrive, say, scene } from '../store';
 import { apply, pinNow, text } from './editor';
@@ -7,7 +7,7 @@ import { assign } from './toml_edit';
 
 interface Unknown {
   key: string;
-  shown: string; // its value now
+  shown: string; // its current value
 }
 
 const unknowns = signal<Unknown[]>([]);
@@ -82,7 +82,7 @@ function Table() {
   );
 }
 
-/// Puts what was found into the text of the file.
+/// Writes the results into the text of the file.
 function take(found: IdentifyFound) {
   let next: string | null = text.value;
   for (const assignment of found.assignments) {

@@ -1,4 +1,4 @@
-// What the colours mean, and how they are chosen.
+// The colour legend, and its settings.
 import { useRef, useState } from 'preact/hooks';
 import { useDismiss } from '../dismiss';
 import { NumberField } from '../number_field';

@@ -1,10 +1,10 @@
-// An address that brings back robot, view and state.
+// A link that restores robot, view and state.
 import { documentState, driveAll, following, post, scene, say, sendInput, wanted, wantedTime, type Wanted } from '../store';
 import { theView } from './the_view';
 import * as look from './view_state';
 
 interface Kept {
-  file: string; // '' where the robot is in no file of the folder
+  file: string; // '' if the robot has no file in the folder
   robot: string;
   pose: number[];
   field: look.FieldName;
@@ -28,7 +28,7 @@ export function linkText(): string {
   return `${location.origin}${location.pathname}#simulate?${encodeURIComponent(JSON.stringify(kept))}`;
 }
 
-/// What the address asks for; null if it asks for nothing, or not in this form.
+/// The state requested by the address; null if there is none, or it is invalid.
 export function readLink(hash: string): Kept | null {
   const at = hash.indexOf('?');
   if (at < 0) return null;
@@ -45,7 +45,7 @@ export function readLink(hash: string): Kept | null {
 let pending = readLink(location.hash);
 if (location.hash.includes('?') && !pending) setTimeout(() => say('The link cannot be read: its state is ignored.'), 0);
 
-/// Once its robot and the view are there; the robot of a file is opened first.
+/// Applies it once robot and view are ready; a robot from a file is opened first.
 export async function restoreLink() {
   const kept = pending;
   const head = scene.peek()?.head;

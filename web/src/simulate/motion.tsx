@@ -1,4 +1,4 @@
-// The whole program as `pliant simulate` runs it, played: in seconds where the robot moves in time.
+// Playback of the whole program, run like `pliant simulate`: in seconds if the robot moves in time.
 import { computed, effect, signal } from '@preact/signals';
 import { Icon } from '../icons';
 import { readPacket } from '../packet';
@@ -19,9 +19,9 @@ interface Motion extends Found {
   revision: number;
 }
 
-/// What is at hand to be played; null: nothing.
+/// The motion available for playback; null: none.
 export const motion = signal<Motion | null>(null);
-export const loading = signal<number | null>(null); // share of the states that are here
+export const loading = signal<number | null>(null); // share of the states that have been loaded
 const playing = signal(false);
 const at = signal(0); // s
 const speed = signal(1);
@@ -29,7 +29,7 @@ const speed = signal(1);
 const serverFields = ['von_mises', 'stretch', 'J', 'energy'];
 let wantedLoad = 0;
 
-/// All states, with the field that is looked at.
+/// Loads all states, with the current field.
 async function load(found: Found, revision: number, field: string) {
   const mine = ++wantedLoad;
   const query = serverFields.includes(field) ? `?field=${field}` : '';
@@ -61,7 +61,7 @@ let loaded: unknown = null;
 effect(() => {
   const mine = own.value;
   if (!mine) {
-    // Another robot, or another result: what was loaded of this robot can still be played.
+    // After a change of robot or result, what was loaded can still be played.
     if (motion.peek() && motion.peek()!.revision !== scene.value?.head.revision) leaveMotion();
     return;
   }
@@ -83,7 +83,7 @@ function show() {
   if (frame && look.shownFrame.peek() !== frame) look.shownFrame.value = frame;
 }
 
-/// The last state that is not later.
+/// Index of the last state that is not later than t.
 export function indexAt(times: number[], t: number): number {
   let [low, high] = [0, times.length - 1];
   while (low < high) {
@@ -100,7 +100,8 @@ function tick(now: number) {
   if (!m || !playing.peek()) return;
   const passed = Math.min((now - last) / 1000, 0.1);
   last = now;
-  const next = at.peek() + passed * speed.peek() * (m.timed ? 1 : m.duration / 3); // a program without seconds takes three
+  const next = at.peek() + passed * speed.peek() * (m.timed ? 1 : m.duration / 3); // a program without seconds is
+                                                                                   // played in three
   at.value = Math.min(next, lastTime(m));
   if (at.peek() >= lastTime(m)) playing.value = false;
   show();
@@ -124,7 +125,7 @@ export function leaveMotion() {
 
 const words = (seconds: number, m: Motion) => (m.timed ? `${seconds.toFixed(seconds < 10 ? 2 : 1)} s` : `${Math.round((100 * seconds) / m.duration)} %`);
 
-/// In the timeline's place of the replay while there is one.
+/// Replaces the timeline of the replay while there is a motion.
 export function MotionTrack() {
   const m = motion.value;
   if (!m) return null;
@@ -172,7 +173,7 @@ export function MotionTrack() {
   );
 }
 
-/// Runs it in the studio; progress and a way to end it while it does.
+/// Runs the program in the studio; shows progress and a cancel button meanwhile.
 export function RunMotion() {
   const head = scene.value?.head;
   const busy = searching.value;
@@ -201,7 +202,7 @@ export function RunMotion() {
   );
 }
 
-/// Why there is none, and what is to be known about it.
+/// Why there is no motion, and its warnings.
 export function MotionNotes() {
   const why = refused.value?.kind === 'motion' ? refused.value.why : '';
   const m = motion.value;

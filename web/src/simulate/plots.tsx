@@ -1,4 +1,4 @@
-// Results beside the robot: over the motion, or any over any other; kept runs and measurements over them.
+// Plots beside the robot: results over the motion, or over one another; stored runs and measurements are overlaid.
 import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
@@ -9,7 +9,7 @@ import { say, scene } from '../store';
 import { cssColour, theme } from '../theme';
 import { keepRun, readTable, runs, tracks, tracksVersion, valuesOf, type Channel } from './tracks';
 
-/// Powers of ten, few enough to be told apart: every line of a logarithmic axis over many decades is a grey block.
+/// Powers of ten, thinned out: grid lines of a logarithmic axis over many decades would merge into a grey block.
 function decades(least: number, most: number): number[] {
   const mostLines = 5;
   const [from, to] = [Math.ceil(Math.log10(least) - 1e-9), Math.floor(Math.log10(most) + 1e-9)];
@@ -19,10 +19,10 @@ function decades(least: number, most: number): number[] {
   return lines;
 }
 
-// Told apart by people who do not tell red from green (Okabe and Ito), on light and on dark.
+// Distinguishable with red-green colour blindness (Okabe and Ito), on light and on dark.
 const palette = ['#d55e00', '#0072b2', '#009e73', '#b9770e', '#a64d86', '#3f8fc4'];
 
-/// Over the seconds of motion (''), or over a channel.
+/// Over time (''), or over a channel.
 interface Shown {
   title: string;
   y: string[];
@@ -38,7 +38,7 @@ const shortLabel = (c: Channel, all: boolean) => (all ? c.label.replace(/: [^:]*
 const readable = (v: number | undefined, unit: string, log = false) =>
   v === undefined || !Number.isFinite(v) ? '–' : `${log ? v.toExponential(1) : +v.toPrecision(5)}${unit && ` ${unit}`}`;
 
-/// What is drawn: of every result the quadratic states, and where there are any the linear ones apart, dashed.
+/// The curves: for every result the quadratic states and, if there are any, the linear ones separately, dashed.
 function curvesOf(shown: Shown): Curve[] {
   const sameKind = new Set(shown.y.map((k) => channel(k)?.kind)).size === 1;
   const xs = shown.x ? valuesOf(shown.x) : tracks.seconds;
@@ -62,7 +62,7 @@ function curvesOf(shown: Shown): Curve[] {
   return curves;
 }
 
-/// All points in the order of x, for the scales and the cursor.
+/// All points sorted by x, for the scales and the cursor.
 function aligned(curves: Curve[]): uPlot.AlignedData {
   const x: number[] = [];
   const ys: (number | null | undefined)[][] = curves.map(() => []);
@@ -75,7 +75,7 @@ function aligned(curves: Curve[]): uPlot.AlignedData {
   return [x, ...ys] as uPlot.AlignedData;
 }
 
-/// Each curve in the order of its states: over another result it may turn back.
+/// Draws each curve in the order of its states: x may decrease if it is a result.
 function drawCurves(u: uPlot, curves: Curve[]) {
   const { ctx } = u;
   ctx.save();
@@ -198,7 +198,7 @@ function Plot({ shown, onClose }: { shown: Shown; onClose?: () => void }) {
   );
 }
 
-/// Plots that were asked for: a result over another.
+/// Requested plots: a result over another.
 export const asked = signal<{ x: string; y: string }[]>([]);
 const wantX = signal('');
 const wantY = signal('');

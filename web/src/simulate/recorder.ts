@@ -1,4 +1,4 @@
-// Records what the hands do as a program: [[program.key]] of a robot file.
+// Records the user's actions as a program: [[program.key]] of a robot file.
 import { signal } from '@preact/signals';
 import { scene } from '../store';
 import { reading } from './actuators';
@@ -22,7 +22,7 @@ export function startRecording() {
   recording.value = true;
   started = performance.now();
   const take = () => {
-    // As the file's own targets count, so that the keys fit it.
+    // In the units of the file's own targets, so that the keys fit it.
     const all = scene.peek()?.head.actuators ?? [];
     const values = Object.fromEntries(all.map((a) => [a.name, { kind: a.kind, value: reading(a, a.kind) }]));
     recorded.value = [...recorded.value, { time: (performance.now() - started) / 1000, values }];
@@ -35,7 +35,7 @@ export function stopRecording() {
   recording.value = false;
 }
 
-/// Whether the keys between two lie on the straight line from one to the other, to a thousandth.
+/// True if all keys between two lie on the straight line from one to the other, to a thousandth.
 function isStraight(keys: Key[], from: number, to: number, names: string[]): boolean {
   const a = keys[from];
   const b = keys[to];
@@ -48,8 +48,8 @@ function isStraight(keys: Key[], from: number, to: number, names: string[]): boo
   });
 }
 
-/// The keys that the others can be drawn between. Each stretch is held against all of its keys: of a motion that bends
-/// slowly no three neighbours show that it bends.
+/// The keys needed for linear interpolation of the others. Each stretch is checked against all of its keys: in a slowly
+/// bending motion no three neighbours show the bend.
 function corners(keys: Key[], names: string[]): Key[] {
   const kept = keys.slice(0, 1);
   let from = 0;
@@ -61,7 +61,7 @@ function corners(keys: Key[], names: string[]): Key[] {
   return keys.length > 1 ? [...kept, keys[keys.length - 1]] : kept;
 }
 
-/// [[program.key]] for each, from what actuators are driven by.
+/// A [[program.key]] for each, with the values that drive the actuators.
 export function programKeys(keys: Key[]): string {
   const bare = (n: string) => (/^[A-Za-z0-9_-]+$/.test(n) ? n : JSON.stringify(n));
   const text = ({ kind, value }: { kind: string; value: number }) => {
@@ -73,13 +73,13 @@ export function programKeys(keys: Key[]): string {
     .join('\n\n');
 }
 
-/// The file with these keys in place of those that it has.
+/// The file with its keys replaced by these.
 export function insertKeys(file: string, keys: string): Promise<boolean> {
   const without = file.replace(/\n*\[\[program\.key\]\][^[]*/g, '\n');
   return apply(`${without.trimEnd()}\n\n${keys}\n`);
 }
 
-/// Of each actuator only what it was driven by at the end, and of keys in a straight line only the ends.
+/// Uses for each actuator only the kind that drove it last, and drops collinear keys.
 export function asProgram(): string {
   const keys = recorded.value;
   const names = scene.peek()?.head.actuators.map((a) => a.name) ?? [];

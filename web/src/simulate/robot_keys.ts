@@ -1,4 +1,4 @@
-// The keys of robot files, by table, with what each takes: docs/reference/robot.md, and a test compares the two.
+// The keys of robot files, by table, with the type of each; a test compares them with docs/reference/robot.md.
 export const robotKeys: Record<string, Record<string, string>> = {
   '': {
     name: 'text',

@@ -1,4 +1,4 @@
-/// Hands a file to the browser, which keeps it under this name.
+/// Downloads a blob as a file with this name.
 export function saveBlob(blob: Blob, name: string) {
   const link = document.createElement('a');
   link.href = URL.createObjectURL(blob);

@@ -1,4 +1,4 @@
-// A search that runs in the studio: its progress, its end, what it has found. One at a time, for all pages.
+// A search that runs in the studio: its progress, end and result. One at a time, for all pages.
 import { effect, signal } from '@preact/signals';
 import { api, lines, onEvent, post, say } from '../store';
 
@@ -25,14 +25,14 @@ export interface IdentifyFound {
 
 interface Result {
   kind?: Kind;
-  revision?: number; // of the robot that it is about
+  revision?: number; // of the robot that was searched
   found?: unknown;
 }
 
 export const searching = signal<{ kind: Kind; stage: string; fraction: number } | null>(null);
 export const refused = signal<{ kind: Kind; why: string } | null>(null);
 export const result = signal<Result>({});
-/// Counts the results, so that a picture of one is never taken for that of another.
+/// Counts results, so that pictures of different results have different addresses.
 export const resultNumber = signal(0);
 
 async function load(number: number) {
@@ -48,7 +48,7 @@ onEvent((event) => {
   }
   if (event.type === 'searched') load(event.result as number).catch((e: Error) => say(e.message));
 });
-// A studio that was started again knows of no search.
+// A restarted studio has no search.
 effect(() => {
   if (lines.value > 0) searching.value = null;
 });
@@ -58,7 +58,7 @@ export function begin(kind: Kind, order: unknown) {
   void post(`/api/${kind}`, order, (why) => (refused.value = { kind, why }));
 }
 
-/// The button that begins, or progress with a way to end it, and why nothing was found.
+/// The start button, or progress with a cancel button, and the error of a failed search.
 export function Search({ kind, label, ready, onBegin }: { kind: Kind; label: string; ready: boolean; onBegin: () => void }) {
   const busy = searching.value;
   const mine = busy?.kind === kind;

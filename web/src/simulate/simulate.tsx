@@ -1,4 +1,4 @@
-// The live robot: 3D view, actuators, plots, file.
+// The interactive robot: 3D view, actuators, plots, file.
 import { effect, signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { counted } from '../counted';
@@ -71,7 +71,7 @@ function options() {
   };
 }
 
-/// One colour is one value in both robots; null where there is one only.
+/// A common range, so that a colour means the same value in both robots; null if there is only one.
 function rangeOfBoth(): [number, number] | null {
   const [a, b] = ranges.value;
   return comparing.value && a && b ? [Math.min(a[0], b[0]), Math.max(a[1], b[1])] : null;
@@ -123,7 +123,7 @@ function Canvas() {
       effect(() => {
         if (!scene.value) return;
         made.setScene(scene.value);
-        // Which of the two effects runs first is not said: a frame before its scene would be lost.
+        // The order of the two effects is undefined: a frame before its scene would be lost.
         const shown = look.shownFrame.peek() ?? frame.peek();
         if (shown) made.setFrame(shown);
         void restoreLink();
@@ -352,8 +352,8 @@ function Export() {
 
 const setAccuracy = (accuracy: Accuracy) => void post('/api/accuracy', { accuracy });
 
-/// How accurate linear elements are: too stiff in bending, the more so the fewer there are through a wall. Of a robot
-/// that is refined by itself as soon as the hand rests, the sign at its numbers is enough.
+/// A hint on the accuracy of linear elements: too stiff in bending, especially with few elements through a wall. If the
+/// robot is refined automatically as soon as the input rests, the mark at its numbers is enough.
 function Rough() {
   const accuracy = scene.value?.head.accuracy;
   if (accuracy === 'automatic' && scene.value?.head.order === 2) return null;
@@ -572,7 +572,7 @@ export function Simulate() {
     ['identify', 'Identify'],
     ['sweep', 'Sweep'],
   ];
-  /// Arrow keys, Home and End walk through them.
+  /// Arrow keys, Home and End move between them.
   const walk = (e: KeyboardEvent) => {
     const step = { ArrowRight: 1, ArrowLeft: -1, ArrowDown: 4, ArrowUp: -4 }[e.key];
     const now = tabs.findIndex(([name]) => name === panel.value);

@@ -1,4 +1,4 @@
-// What stands over the 3D view: cube, axes, scale bar, the section's handle, what is measured.
+// Overlays of the 3D view: cube, axes, scale bar, section handle, measurements.
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { useDismiss } from '../dismiss';
 import { Icon } from '../icons';
@@ -18,7 +18,7 @@ const presets: [Side, string, string][] = [
   ['bottom', 'Bottom', '6'],
 ];
 
-/// The number keys turn to a side.
+/// Number keys select a side view.
 export function presetKey(key: string): boolean {
   const found = presets.find(([, , k]) => k === key);
   if (found) theView.value?.lookAt(found[0]);
@@ -54,7 +54,7 @@ export function ViewMenu() {
 
 type Vec = [number, number, number];
 const cross = (a: Vec, b: Vec): Vec => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-/// Normal of the face, and what is up on it.
+/// Normal and up direction of each face.
 const faces: [Side, string, Vec, Vec][] = [
   ['front', 'Front', [0, -1, 0], [0, 0, 1]],
   ['back', 'Back', [0, 1, 0], [0, 0, 1]],
@@ -65,7 +65,7 @@ const faces: [Side, string, Vec, Vec][] = [
 ];
 const half = 23; // px
 
-/// On the page y points down: every axis of the world with its y turned round.
+/// Screen y points down: the y component of every world axis is negated.
 function faceTransform(normal: Vec, up: Vec): string {
   const right = cross(up, normal);
   const flip = ([x, y, z]: Vec): Vec => [x, -y, z];
@@ -73,7 +73,7 @@ function faceTransform(normal: Vec, up: Vec): string {
   return `matrix3d(${columns.map((c, k) => [...c, k === 3 ? 1 : 0].join(',')).join(',')})`;
 }
 
-/// The six sides as a cube that turns with the view. By keyboard the same is under "View" and on the number keys.
+/// The six sides as a cube that rotates with the view. The same views are under "View" and on the number keys.
 export function ViewCube() {
   const cube = useRef<HTMLDivElement>(null);
   const axes = useRef<SVGSVGElement>(null);
@@ -130,11 +130,11 @@ export function ScaleBar() {
   return <div class="scale-bar" ref={bar} data-testid="scale-bar" />;
 }
 
-/// Drags the plane along its axis; arrows do too.
+/// Drags the section plane along its axis; arrow keys do the same.
 export function SectionHandle() {
   const handle = useRef<HTMLDivElement>(null);
   const axis = look.sectionAxis.value;
-  const along = useRef<[number, number]>([1, 0]); // pixels from one end of the robot to the other
+  const along = useRef<[number, number]>([1, 0]); // screen vector in pixels from one end of the robot to the other
   useEffect(() => {
     if (!axis) return;
     const stop = onDrawn((project) => {
@@ -186,9 +186,9 @@ function angle(a: Vec, at: Vec, b: Vec): number {
   return (Math.atan2(length(cross(u, v)), u[0] * v[0] + u[1] * v[1] + u[2] * v[2]) * 180) / Math.PI;
 }
 
-/// Two places give a distance, three an angle at the middle one. They move with the robot.
+/// Two points give a distance, three an angle at the middle one. They move with the robot.
 export function Measure() {
-  frame.value; // what is measured moves
+  frame.value; // measured values change with the frame
   look.shownFrame.value;
   if (!look.measuring.value) return null;
   const markers = scene.value?.head.markers ?? [];
@@ -247,7 +247,7 @@ export function Measure() {
   );
 }
 
-/// A fourth place begins anew.
+/// A fourth point starts a new measurement.
 export function takePick(pick: look.Pick) {
   look.picks.value = look.picks.value.length >= 3 ? [pick] : [...look.picks.value, pick];
 }

@@ -1,4 +1,5 @@
-// One or two numbers of the robot over their ranges, and what its program comes to: a response plot.
+// Parameter sweep: one or two numbers of the robot over their ranges, and the results of its program as a response
+// plot.
 import { effect, signal } from '@preact/signals';
 import { counted } from '../counted';
 import { NumberField } from '../number_field';
@@ -18,8 +19,8 @@ interface Known {
   unit: string;
 }
 interface Axis {
-  key: string; // '': none is chosen yet
-  other: boolean; // it is typed
+  key: string; // '': not chosen yet
+  other: boolean; // typed by the user
   unit: string;
   from: number;
   to: number;
@@ -30,7 +31,7 @@ const none: Axis = { key: '', other: false, unit: '', from: 0, to: 1, count: 7 }
 const axes = signal<[Axis, Axis | null]>([none, null]);
 const known = signal<Known[]>([]);
 const column = signal('');
-const chosen = signal(-1); // a run
+const chosen = signal(-1); // index of the selected run
 const mostRuns = 400;
 
 const targets: Record<string, [string, string]> = {
@@ -41,7 +42,7 @@ const targets: Record<string, [string, string]> = {
   pressure_kPa: ['pressure', 'kPa'],
 };
 
-/// Parameters first, then the targets of the actuators, then what else the robot has.
+/// Lists parameters first, then the targets of the actuators, then other numbers of the robot.
 async function learn() {
   const head = scene.peek()?.head;
   if (!head) return;
@@ -58,11 +59,11 @@ async function learn() {
   known.value = list;
 }
 effect(() => {
-  theirs.value; // parameters are in the text
+  theirs.value; // parameters are part of the text
   if (scene.value) learn().catch(() => {});
 });
 
-/// From half to one and a half times what it is.
+/// Default range: from half to one and a half times the current value.
 function axisOf(key: string): Axis {
   const k = known.peek().find((one) => one.key === key);
   if (!k) return { ...none, key };
@@ -133,7 +134,7 @@ const size = { width: 336, height: 220, left: 54, right: 12, top: 10, bottom: 40
 const show = (v: number) => (Math.abs(v) >= 1e5 || (v !== 0 && Math.abs(v) < 1e-3) ? v.toExponential(1) : `${+v.toPrecision(4)}`);
 const shortKey = (a: SweepFound['axes'][0]) => `${a.key.replace(/^parameters\./, '')}${a.unit && `, ${a.unit}`}`;
 
-/// From values to places in the picture.
+/// Maps values to positions in the picture.
 function scaleOf([low, high]: [number, number], from: number, to: number) {
   return (v: number) => from + ((v - low) / (high - low || 1)) * (to - from);
 }
@@ -224,7 +225,7 @@ function Chosen({ found }: { found: SweepFound }) {
   );
 }
 
-/// As a run that plots can lay over others.
+/// The sweep as a run that plots can overlay.
 function overlay(found: SweepFound) {
   const columns: Record<string, number[]> = Object.fromEntries(found.columns.map((c, k) => [c.key, columnOf(found, k)]));
   found.axes.forEach((a, k) => (columns[a.key] = found.runs.map((r) => r.inputs[k])));

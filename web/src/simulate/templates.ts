@@ -1,4 +1,4 @@
-// What a new robot may begin with.
+// Templates of new robots.
 const head = (name: string) => `name = "${name}"
 length_unit = "mm"
 

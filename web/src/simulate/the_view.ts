@@ -1,4 +1,4 @@
-// The 3D view that is on the page, for what stands over it.
+// The current 3D view, for its overlays.
 import { signal } from '@preact/signals';
 import type { PerspectiveCamera } from 'three';
 import type { RobotView } from './view';
@@ -8,7 +8,7 @@ export const theView = signal<RobotView | null>(null);
 type Project = (p: [number, number, number]) => [number, number];
 const listeners = new Set<(project: Project, camera: PerspectiveCamera) => void>();
 
-/// Hears of every picture that is drawn.
+/// The listener is called after every drawn frame.
 export function onDrawn(listener: (project: Project, camera: PerspectiveCamera) => void) {
   listeners.add(listener);
   theView.peek()?.invalidate();

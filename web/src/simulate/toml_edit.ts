@@ -1,8 +1,8 @@
-// Changes one number of a robot file's text and leaves all else as it is.
+// Changes one number in a robot file's text and leaves everything else unchanged.
 
 const escaped = (s: string) => s.replace(/[.*+?^${}()|[\]\\]/g, '\\$&');
 
-/// `text` with [table] key = value; the value is TOML. Null where the table cannot be found.
+/// `text` with [table] key = value; the value is TOML. Null if the table is not found.
 export function setKey(text: string, table: string, key: string, value: string): string | null {
   const lines = text.split('\n');
   const name = table.split('.').map((part) => `"?${escaped(part)}"?`).join('\\s*\\.\\s*');
@@ -31,8 +31,8 @@ export function setKey(text: string, table: string, key: string, value: string):
   return lines.join('\n');
 }
 
-/// `text` with "material.soft.youngs_modulus" or "cable.flexor.friction" = value, as the program's --set has it: of tables,
-/// inline tables and entries of [[cable]] by their name. Null where it has no place yet.
+/// `text` with "material.soft.youngs_modulus" or "cable.flexor.friction" = value, as for the program's --set: supports
+/// tables, inline tables and entries such as [[cable]] by their name. Null if the key's table is not found.
 export function assign(text: string, path: string, value: string): string | null {
   const parts = path.split('.');
   for (let k = parts.length - 1; k > 0; --k) {
@@ -42,7 +42,7 @@ export function assign(text: string, path: string, value: string): string | null
   return parts.length > 2 ? setInEntry(text, parts[0], parts[1], parts.slice(2).join('.'), value) : null;
 }
 
-/// In the entry of [[list]] that has this name.
+/// In the entry of [[list]] with this name.
 function setInEntry(text: string, list: string, name: string, key: string, value: string): string | null {
   const lines = text.split('\n');
   const header = new RegExp(`^\\s*\\[\\[\\s*${escaped(list)}\\s*\\]\\]`);
@@ -62,14 +62,14 @@ function setInEntry(text: string, list: string, name: string, key: string, value
   return null;
 }
 
-/// The table that a text ends in: "material" of [material.soft], "cable" of [[cable]], '' at the top.
+/// The table at the end of a text: "material" of [material.soft], "cable" of [[cable]], '' at the top.
 export function tableAt(before: string): string {
   const headers = [...before.matchAll(/^[ \t]*\[{1,2}\s*([A-Za-z_\x22'][^\],\n]*?)\s*\]{1,2}/gm)];
   const name = headers.at(-1)?.[1] ?? '';
   return name === 'program.key' ? name : name.split('.')[0];
 }
 
-/// Numbers under [parameters]: what formulas of the file are made of.
+/// Numbers under [parameters], which formulas in the file refer to.
 export function parametersOf(text: string): { name: string; value: number }[] {
   const list: { name: string; value: number }[] = [];
   let inside = false;

@@ -1,4 +1,4 @@
-// What has been seen since the robot was built: numbers for the plots, frames for the replay.
+// Recorded since the robot was built: numbers for the plots, frames for the replay.
 import { effect, signal } from '@preact/signals';
 import { frame, isRough, scene } from '../store';
 import type { Frame, FrameHead, SceneHead } from '../types';
@@ -6,7 +6,7 @@ import type { Frame, FrameHead, SceneHead } from '../types';
 const mostPoints = 4000;
 const mostFrames = 900;
 
-/// A number of every state that can be plotted.
+/// A number of each state that can be plotted.
 export interface Channel {
   key: string; // also the column of a table
   label: string;
@@ -18,7 +18,7 @@ export interface Channel {
 
 const length = (p: readonly number[]) => Math.hypot(...p);
 
-/// All that a robot has.
+/// All channels of a robot.
 export function channelsOf(head: SceneHead): Channel[] {
   const cables = head.actuators.filter((a) => a.type === 'cable');
   const chambers = head.actuators.filter((a) => a.type === 'chamber');
@@ -63,15 +63,15 @@ export function channelsOf(head: SceneHead): Channel[] {
 }
 
 export interface Tracks {
-  seconds: number[]; // of motion: what passes while nothing moves is left out
-  rough: boolean[]; // found with linear elements
+  seconds: number[]; // seconds of motion: time without motion is not counted
+  rough: boolean[]; // computed with linear elements
   channels: Channel[];
   values: number[][]; // (channels)(states)
 }
 
 export let tracks: Tracks = empty(null);
 export let frames: Frame[] = [];
-/// Counts up with every change of the two.
+/// Incremented with every change of the two.
 export const tracksVersion = signal(0);
 
 function empty(head: SceneHead | null): Tracks {
@@ -85,12 +85,12 @@ export function clearTracks() {
   tracksVersion.value = tracksVersion.peek() + 1;
 }
 
-/// The values of one channel; of none that there is, nothing.
+/// The values of one channel; empty if it does not exist.
 export function valuesOf(key: string): number[] {
   return tracks.values[tracks.channels.findIndex((c) => c.key === key)] ?? [];
 }
 
-const longestStep = 0.1; // s between two states: who thinks longer than that does not move the robot
+const longestStep = 0.1; // s between two states: longer pauses count as no motion
 let last = 0;
 let seenRevision = -1;
 
@@ -118,7 +118,7 @@ effect(() => {
   add(next);
 });
 
-/// Everything that can be plotted, as a table; `elements` are 1 (linear, only a preview) or 2.
+/// All channels as a table; `elements` is 1 (linear, only a preview) or 2.
 export function tracksCsv(): string {
   const quoted = (s: string) => (/^[A-Za-z0-9_]+$/.test(s) ? s : `"${s.replace(/"/g, '""')}"`);
   const columns = ['seconds', 'elements', ...tracks.channels.map((c) => quoted(c.key))];
@@ -126,10 +126,10 @@ export function tracksCsv(): string {
   return [columns.join(','), ...rows].join('\r\n') + '\r\n';
 }
 
-/// A run that is kept to compare with, or a table of measurements.
+/// A stored run for comparison, or a table of measurements.
 export interface Run {
   name: string;
-  columns: Record<string, number[]>; // by key of the channel
+  columns: Record<string, number[]>; // by channel key
 }
 export const runs = signal<Run[]>([]);
 
@@ -140,7 +140,7 @@ export function keepRun(name: string) {
   runs.value = [...runs.value, { name, columns: { ...columns, seconds: pick(tracks.seconds) } }];
 }
 
-/// A table of measurements: a head line of names, then numbers. What is wrong is said with its line.
+/// Parses a table of measurements: a header of names, then numbers. Errors name the line.
 export function readTable(name: string, text: string): Run | string {
   const lines = text.split(/\r?\n/);
   const cells = (l: string) => [...l.matchAll(/(?:"((?:[^"]|"")*)"|([^,;\t"]*))(?:[,;\t]|$)/g)].map((m) => (m[1]?.replace(/""/g, '"') ?? m[2]).trim()).slice(0, l.match(/[,;\t]$/) ? undefined : -1);

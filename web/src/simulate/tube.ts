@@ -1,4 +1,4 @@
-// A round tube along a chain of points, as cables are drawn.
+// A round tube along a polyline, for drawing cables.
 import * as THREE from 'three';
 
 const sides = 12;
@@ -23,7 +23,7 @@ export class Tube {
       const along = way(Math.min(k, n - 2)).add(way(Math.max(k - 1, 0)));
       if (along.lengthSq() < 1e-12) along.copy(way(Math.min(k, n - 2)));
       along.normalize();
-      // The frame is carried along, so that the tube does not twist.
+      // Parallel transport of the frame, so that the tube does not twist.
       across.addScaledVector(along, -across.dot(along));
       if (across.lengthSq() < 1e-6) across = new THREE.Vector3(along.y, along.z, -along.x).addScaledVector(along, -along.dot(new THREE.Vector3(along.y, along.z, -along.x)));
       across.normalize();

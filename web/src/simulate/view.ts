@@ -1,4 +1,4 @@
-// The robot in 3D. Draws when something has changed, and only then.
+// The robot in 3D. Redraws only when something has changed.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { Line2 } from 'three/addons/lines/Line2.js';
@@ -17,7 +17,7 @@ export interface ViewOptions {
   scale: number;
   map?: string;
   bands?: number;
-  range?: [number, number] | null; // of the colours, in the unit of the legend; null: of the state
+  range?: [number, number] | null; // of the colours, in the unit of the legend; null: that of the state
   wireframe: boolean;
   ghost: boolean;
   inside: boolean;
@@ -29,7 +29,7 @@ export interface ViewOptions {
   beside: boolean;
 }
 
-/// What is held: a point of the surface, or a marker.
+/// What the user has grabbed: a point of the surface, or a marker.
 export interface Grab {
   vertex: number;
   marker: number; // -1: none
@@ -42,17 +42,17 @@ const cableColour = 0xcc1a24;
 const objectColour = 0xd9a441;
 const reachColour = 0x2e86ab;
 
-/// Of the lines on the ground: 1, 2 or 5 times a power of ten, some ten to the length of the robot.
+/// Spacing of the ground grid: 1, 2 or 5 times a power of ten, about ten per length of the robot.
 const gridCell = (size: number) => niceBelow(size / 8);
 
-/// So that an object that turns is seen to turn.
+/// Edges make the rotation of an object visible.
 function edgesOf(geometry: THREE.BufferGeometry) {
   const lines = new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 24), new THREE.LineBasicMaterial({ color: 0x5c4410, transparent: true, opacity: 0.7 }));
   lines.frustumCulled = false;
   return lines;
 }
 
-/// A box of edges over everything, of size 1.
+/// A box of edges drawn over everything, of size 1.
 function draftBox() {
   const box = new THREE.LineSegments(new THREE.EdgesGeometry(new THREE.BoxGeometry(1, 1, 1)), new THREE.LineBasicMaterial({ color: 0x2f9bff, depthTest: false, transparent: true }));
   box.visible = false;
@@ -60,8 +60,8 @@ function draftBox() {
   return box;
 }
 
-/// Seen through, but each part by its own front alone: first its depth is drawn, then what is nearest. It loses against
-/// what lies in the same place, so that nothing flickers.
+/// Transparent, but showing only the front of each part: its depth is drawn first, then the nearest surface. A depth
+/// offset avoids flicker with coincident surfaces.
 function veil(geometry: THREE.BufferGeometry, colour: number, opacity: number, order: number) {
   const offset = { polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 8 };
   const veil = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ color: colour, transparent: true, opacity, depthWrite: false, ...offset }));
@@ -85,7 +85,7 @@ const sides: Record<Side, [number, number, number]> = {
   bottom: [0, -0.0001, -1],
 };
 
-/// Looks solid where it is cut: the inner side of a surface is drawn flat, in the colour of the material.
+/// Makes cut bodies look solid: the inner side of a surface is drawn flat, in the colour of the material.
 function insideMaterial(colour: THREE.ColorRepresentation) {
   return new THREE.MeshBasicMaterial({ color: colour, side: THREE.BackSide });
 }
@@ -134,13 +134,13 @@ export class RobotView {
   private grabbing: { vertex: number; marker: number; plane: THREE.Plane } | null = null;
   onGrab: (grab: Grab | null) => void = () => {};
   mayGrab = () => true;
-  /// Of a press while something is measured or placed: what is under the pointer. True: it was taken.
-  /// `rest` is its place in the robot at rest, `inward` the unit normal there into the body.
+  /// Called for a press while measuring or placing, with what is under the pointer. True: handled. `rest` is the
+  /// position at rest, `inward` the unit normal there into the body.
   onPick: (pick: Pick, rest: [number, number, number], inward: [number, number, number]) => boolean = () => false;
   onRange: (low: number, high: number) => void = () => {};
-  /// Lowest and highest value of the field in this state, in the legend's unit, whatever range is shown.
+  /// Called with the field's range in this state, in the legend's unit, whatever range is shown.
   onData: (low: number, high: number) => void = () => {};
-  /// The camera has been turned.
+  /// Called after a camera rotation.
   onTurned: () => void = () => {};
   onDraw: (project: (p: [number, number, number]) => [number, number], camera: THREE.PerspectiveCamera) => void = () => {};
 
@@ -199,7 +199,7 @@ export class RobotView {
     this.root.clear();
     this.build(scene);
     this.setPath(this.path);
-    if (first) this.lookAt('home', 0.62); // room to bend
+    if (first) this.lookAt('home', 0.62); // leaves room for bending
     if (this.options) this.setOptions(this.options);
     this.invalidate();
   }
@@ -218,7 +218,7 @@ export class RobotView {
     body.setIndex(new THREE.BufferAttribute(new Uint32Array(triangles), 1));
     body.boundingSphere = new THREE.Sphere(this.centre.clone(), 50 * this.size);
     this.body = body;
-    // Triangles stand in the order of their materials: one group each.
+    // Triangles are sorted by material: one group each.
     scene.head.materials.forEach((_, m) => {
       let begin = -1;
       let end = 0;
@@ -258,7 +258,7 @@ export class RobotView {
     return new THREE.MeshStandardMaterial({ color: colour, roughness: 0.62, metalness: 0, side: THREE.FrontSide });
   }
 
-  /// Each material moves away from the middle of the robot.
+  /// Exploded view: each material moves away from the centre of the robot.
   private buildOffsets(scene: Scene, rest: Float32Array, material: Uint32Array) {
     const sums = scene.head.materials.map(() => ({ at: new THREE.Vector3(), n: 0 }));
     for (let v = 0; v < material.length; ++v) {
@@ -328,7 +328,7 @@ export class RobotView {
     });
   }
 
-  /// A half-space: a sheet with a grid, which fades out towards its rim and lets what is behind it be seen.
+  /// A half-space: a sheet with a grid, which fades out towards its rim and is transparent.
   private groundMesh(geometry: THREE.BufferGeometry) {
     const sphere = (geometry.computeBoundingSphere(), geometry.boundingSphere!);
     const material = new THREE.ShaderMaterial({
@@ -351,13 +351,13 @@ export class RobotView {
     return mesh;
   }
 
-  /// Draws this state at once, for a picture of it.
+  /// Draws this state immediately, for a screenshot.
   show(frame: Frame) {
     this.setFrame(frame);
     this.draw();
   }
 
-  /// Where a marker can get, mm: sheets as surfaces, all places as dots, or one line of them.
+  /// The workspace of a marker, mm: sheets as surfaces, all positions as dots, or a line of them.
   setReach(reach: { sheet_points: number[]; triangles: number[]; points: number[] } | null) {
     for (const c of this.reach.children as THREE.Mesh[]) {
       c.geometry.dispose();
@@ -384,7 +384,7 @@ export class RobotView {
     this.invalidate();
   }
 
-  /// A box that is about to become a chamber, mm at rest; null: none.
+  /// A box that is being placed as a chamber, mm at rest; null: none.
   setDraft(box: { centre: [number, number, number]; size: [number, number, number] } | null) {
     this.draft.visible = box !== null;
     if (box) {
@@ -422,7 +422,7 @@ export class RobotView {
     }
   }
 
-  /// Area-weighted; vertices are doubled along sharp edges already.
+  /// Area-weighted; vertices are already duplicated along sharp edges.
   private updateNormals() {
     const body = this.body!;
     const p = body.getAttribute('position').array as Float32Array;
@@ -465,7 +465,7 @@ export class RobotView {
     return values;
   }
 
-  /// Graded bodies have the colours of both materials, mixed as they are.
+  /// Graded bodies are drawn with a mix of both materials' colours.
   private mixColours() {
     const scene = this.scene!;
     if (!scene.has('share')) return;
@@ -541,7 +541,7 @@ export class RobotView {
     this.handle.scale.setScalar(0.012 * this.size);
   }
 
-  /// Where a marker is wanted, as rings over everything.
+  /// Wanted positions of a marker, as rings drawn over everything.
   setPath(path: [number, number, number][]) {
     this.path = path;
     for (const dot of this.wanted) {
@@ -598,7 +598,7 @@ export class RobotView {
     this.invalidate();
   }
 
-  /// What is inside is drawn first, then the front of the body over it.
+  /// Interior parts are drawn first, then the front of the body over them.
   private setTransparent(options: ViewOptions) {
     const body = this.meshes[0];
     this.bodyDepth!.visible = options.inside;
@@ -609,7 +609,7 @@ export class RobotView {
       m.opacity = options.inside ? 0.36 : 1;
     }
     const depth = this.bodyDepth!.material as THREE.MeshBasicMaterial;
-    depth.transparent = options.inside; // so that it is drawn after everything that is solid
+    depth.transparent = options.inside; // so that it is drawn after all opaque objects
   }
 
   private placeSection(options: ViewOptions) {
@@ -621,7 +621,7 @@ export class RobotView {
     const keep = (options.sectionAxis === 'y') !== (options.sectionFlipped ?? false) ? 1 : -1;
     this.plane.normal.set(0, 0, 0).setComponent(axis, keep);
     this.plane.constant = -keep * at;
-    // The sheet that is drawn where it cuts, a little larger than the robot.
+    // The sheet drawn at the section plane, a little larger than the robot.
     const size = box.getSize(new THREE.Vector3()).addScalar(0.08 * this.size);
     const centre = box.getCenter(new THREE.Vector3()).setComponent(axis, at);
     this.sectionSheet.position.copy(centre);
@@ -633,7 +633,7 @@ export class RobotView {
     this.sectionPlace = { centre, axis, low: box.min.getComponent(axis), high: box.max.getComponent(axis) };
   }
 
-  /// Where the sheet of the section is, and what its slider reaches, mm.
+  /// Position of the section plane, and the range of its slider, mm.
   sectionPlace: { centre: THREE.Vector3; axis: number; low: number; high: number } | null = null;
 
   private buildSheet() {
@@ -645,7 +645,7 @@ export class RobotView {
     this.sectionSheet.visible = false;
   }
 
-  /// A point of what is drawn, mm.
+  /// Position of a picked point as drawn, mm.
   placeOfPick(pick: Pick): THREE.Vector3 | null {
     if ('marker' in pick) return this.markers[pick.marker]?.position.clone() ?? null;
     const p = this.body?.getAttribute('position');
@@ -715,7 +715,8 @@ export class RobotView {
     mesh.position.set(0, options.beside ? 1.6 * (box.max.y - box.min.y) + 0.1 * this.size : 0, 0);
   }
 
-  /// All of it, from this side; without one, from where it is looked at. The margin is room for what stands over it.
+  /// Fits the robot into view from this side or, without one, from the current direction. The margin leaves room for
+  /// overlays.
   lookAt(side?: Side, margin = 0.74) {
     const back = side ? new THREE.Vector3(...sides[side]).normalize() : this.camera.getWorldDirection(new THREE.Vector3()).negate();
     const forward = back.clone().negate();
@@ -735,7 +736,7 @@ export class RobotView {
     this.onTurned();
   }
 
-  /// Where it is looked from and at, mm; to be restored.
+  /// Position and target of the camera, mm; can be restored.
   get pose(): number[] {
     return [...this.camera.position.toArray(), ...this.controls.target.toArray()].map((v) => +v.toFixed(2));
   }
@@ -746,7 +747,7 @@ export class RobotView {
     this.invalidate();
   }
 
-  /// From where another view looks.
+  /// Copies the camera of another view.
   lookLike(other: RobotView) {
     this.camera.position.copy(other.camera.position);
     this.controls.target.copy(other.controls.target);
@@ -757,13 +758,13 @@ export class RobotView {
     this.invalidate();
   }
 
-  /// Lengths of the robot at rest along the axes, mm.
+  /// Size of the robot at rest along the axes, mm.
   get extent(): [number, number, number] {
     const rest = this.scene?.f32('rest') ?? new Float32Array();
     return new THREE.Box3().setFromArray(rest as unknown as number[]).getSize(new THREE.Vector3()).toArray();
   }
 
-  /// How many pixels a millimetre has where it is looked at.
+  /// Pixels per millimetre at the camera's target.
   get pixelsPerMm(): number {
     const distance = this.camera.position.distanceTo(this.controls.target);
     return this.canvas.clientHeight / (2 * Math.tan((this.camera.fov * Math.PI) / 360) * distance);
@@ -793,7 +794,7 @@ export class RobotView {
     this.hold(e, { vertex, marker: -1 });
   }
 
-  /// The vertex of the surface that is nearest to what is under the pointer, or -1.
+  /// The surface vertex nearest to the hit under the pointer, or -1.
   private vertexAt(e: PointerEvent) {
     const hit = this.hitAt(e);
     if (!hit?.face) return -1;
@@ -802,7 +803,7 @@ export class RobotView {
     return [hit.face.a, hit.face.b, hit.face.c].sort((a, b) => distance(a) - distance(b))[0];
   }
 
-  /// What the section has cut away is not hit.
+  /// Ignores what the section has cut away.
   private hitAt(e: PointerEvent) {
     const hits = this.ray(e).intersectObject(this.meshes[0], false);
     return hits.find((hit) => !this.options?.sectionAxis || this.plane.distanceToPoint(hit.point) >= 0);
@@ -819,13 +820,13 @@ export class RobotView {
     return this.onPick({ vertex: this.vertexAt(e) }, ...this.restOf(hit)) && this.keep(e);
   }
 
-  /// The press is not one of the camera's.
+  /// Keeps the press from the camera controls.
   private keep(e: PointerEvent) {
     e.stopImmediatePropagation();
     return true;
   }
 
-  /// Where a point of the surface is at rest, mm, and the way into the body there.
+  /// Rest position of a surface point, mm, and the direction into the body there.
   private restOf(hit: THREE.Intersection): [[number, number, number], [number, number, number]] {
     const [p, rest] = [this.body!.getAttribute('position') as THREE.BufferAttribute, this.scene!.f32('rest')];
     const corners = [hit.face!.a, hit.face!.b, hit.face!.c];
@@ -900,7 +901,7 @@ export class RobotView {
     this.onDraw(this.placer(), this.camera);
   }
 
-  /// From mm to pixels of the canvas, from its top left corner.
+  /// Projects mm to pixels of the canvas, from its top left corner.
   private placer() {
     const box = this.canvas.getBoundingClientRect();
     return (p: [number, number, number]): [number, number] => {
@@ -920,7 +921,7 @@ export class RobotView {
     this.ground.update(this.renderer, this.world, box);
   }
 
-  /// As it is seen; with a width, so many pixels wide.
+  /// The current view as PNG; with a width, scaled to that many pixels.
   async png(width?: number): Promise<Blob | null> {
     const ratio = this.renderer.getPixelRatio();
     if (width) this.renderer.setPixelRatio(width / this.canvas.clientWidth);

@@ -1,4 +1,4 @@
-// What is shown of the robot, and how.
+// Display settings of the robot view.
 import { signal } from '@preact/signals';
 import type { Frame } from '../types';
 
@@ -20,19 +20,19 @@ export const showInside = signal(false);
 export const sectionAxis = signal<'' | 'x' | 'y' | 'z'>('');
 export const sectionAt = signal(0.5);
 export const sectionFlipped = signal(false);
-/// Lowest and highest value shown, in the legend's unit.
+/// Displayed range, in the legend's unit.
 export const fieldRange = signal<[number, number]>([0, 1]);
-/// What the colours reach from and to; null: the lowest and the highest value of the state.
+/// Fixed range of the colours; null: the range of the state.
 export const fixedRange = signal<{ field: FieldName; low: number; high: number } | null>(null);
 export const map = signal('pliant');
 export const bands = signal(0);
-/// What is measured between, in order: a point of the surface, or a marker.
+/// End points of a measurement, in order: a surface point, or a marker.
 export type Pick = { vertex: number } | { marker: number };
 export const measuring = signal(false);
 export const picks = signal<Pick[]>([]);
-/// A frame of the recording that is shown instead of the live one.
+/// A recorded frame shown instead of the live one.
 export const shownFrame = signal<Frame | null>(null);
-/// The state that was pinned to compare with.
+/// A pinned state for comparison.
 export interface Pinned {
   label: string;
   positions: Float32Array;

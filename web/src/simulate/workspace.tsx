@@ -1,4 +1,4 @@
-// Where the markers can get within the ranges of the actuators: drawn around the robot.
+// The workspace of the markers within the ranges of the actuators, drawn around the robot.
 import { computed, effect, signal } from '@preact/signals';
 import { counted } from '../counted';
 import { NumberField } from '../number_field';
@@ -21,7 +21,7 @@ interface WorkspaceFound {
 
 const side = signal(7);
 const between = signal(20);
-const shown = signal<string | null>(null); // marker that is drawn; null: the first
+const shown = signal<string | null>(null); // the displayed marker; null: the first
 
 const found = computed(() => (result.value.kind === 'workspace' && result.value.revision === scene.value?.head.revision ? (result.value.found as WorkspaceFound) : null));
 /// What the view draws; null: nothing.
@@ -33,7 +33,8 @@ effect(() => {
   if (found.value === null) shown.value = null;
 });
 
-/// As src/simulation/inverse/workspace.cpp plans it: sheets of two inputs with all others at an end, and what lies between.
+/// Number of samples, as planned in src/simulation/inverse/workspace.cpp: sheets of two inputs with all others at an
+/// end, plus the samples in between.
 export function samplesOf(count: number, places: number, inBetween: number): number {
   if (count === 1) return places;
   const most = 5;

@@ -1,4 +1,4 @@
-// Axes and swap: home, jog, limits, and one swap tried, on the virtual printer or the machine.
+// Axes and swap: home, jog, limits, and a test swap, on the virtual printer or the machine.
 import { useState } from 'preact/hooks';
 import { counted } from '../counted';
 import { ByHand } from '../print/print';

@@ -1,4 +1,4 @@
-// Test pieces for setting a machine up: robots as text, with nothing in them that moves.
+// Test pieces for machine setup: robots as text, without moving parts.
 import type { PrinterSetup } from './state';
 
 const f = (v: number) => String(Number(v.toFixed(4)));
@@ -9,7 +9,7 @@ export const coupon = { width: 9, depth: 11, base: 0.6, height: 2.6, gap: 2 };
 /// Widths of the fins, in pixels.
 export const fins = [2, 3, 5, 8];
 
-/// A plate with fins of so many pixels, and as many studs at its front as its number.
+/// A plate with fins of these widths, and studs at its front that count its number.
 function boxesOf(number: number, x: number, y: number, pixel: number): Box[] {
   const { width, depth, base, height } = coupon;
   const boxes: Box[] = [[x, y, 0, x + width, y + depth, base]];
@@ -34,7 +34,7 @@ const head = (name: string) => `name = "${name}"\nlength_unit = "mm"\n`;
 const quoted = (text: string) => JSON.stringify(text);
 const material = (name: string, resin: string, more = '') => `\n[material.${name}]\nyoungs_modulus = "1 MPa"\npoisson_ratio = 0.45\nresin = ${quoted(resin)}\n${more}`;
 
-/// One piece for each exposure, in rows as the image has room for; all stick to the platform alike.
+/// One piece for each exposure, in as many rows as the image needs; the bottom layers of all are exposed equally long.
 export function exposureRobot(setup: PrinterSetup, resin: string, seconds: number[], bottom: number): string {
   const p = setup.projector;
   const room = Math.min(p.width * p.pixel, setup.platform.width_mm);
@@ -49,7 +49,7 @@ export function exposureRobot(setup: PrinterSetup, resin: string, seconds: numbe
   return head('exposure finder') + material('test', resin, foot) + bodies.join('') + fixed;
 }
 
-/// Two small plates beside each other, each in the resin of a vat of its own where there are two: one swap.
+/// Two small plates side by side, each in the resin of a different vat if there are two: one swap.
 export function swapRobot(setup: PrinterSetup): string {
   const resins = [...new Set(setup.vats.map((v) => v.resin).filter(Boolean))].slice(0, 2);
   const bodies = resins.map((_, k) => `\n[[body]]\nname = "plate ${k + 1}"\nmaterial = "m${k + 1}"\ngeometry = ${boxText([6 * k, 0, 0, 6 * k + 6, 6, 0.5])}\n`);

@@ -1,4 +1,4 @@
-// Exposure finder: one print of many small pieces, each with its own exposure; the one that came out right is kept.
+// Exposure finder: one print of many small pieces, each with its own exposure; the best one is saved.
 import { signal } from '@preact/signals';
 import { useState } from 'preact/hooks';
 import { counted } from '../counted';
@@ -15,7 +15,7 @@ const resin = signal('');
 const low = signal('');
 const high = signal('');
 const count = signal('7');
-/// Of the job that was made: revision, and the exposures of its pieces.
+/// The job that was made: its revision, and the exposures of its pieces.
 const made = signal<{ revision: number; seconds: number[]; resin: string } | null>(null);
 const best = signal(-1);
 
@@ -46,7 +46,7 @@ function Pieces({ list, children }: { list: number[]; children?: (s: number, k: 
   );
 }
 
-/// A piece as it lies on the platform, seen from above.
+/// A piece on the platform, seen from above.
 function Piece({ number }: { number: number }) {
   const px = 0.1;
   let at = 1;
@@ -157,7 +157,7 @@ function Pick() {
   );
 }
 
-/// The bottom layers keep their share.
+/// The bottom layers keep their exposure ratio.
 async function writeBest(tell: (why: string) => void): Promise<boolean> {
   const m = made.value!;
   const r = setup.value?.resins.find((x) => x.name === m.resin);

@@ -1,4 +1,4 @@
-// First print: from the robot to the part, with what comes next always named.
+// First print: from the robot to the part, always showing the next step.
 import { signal } from '@preact/signals';
 import { counted } from '../counted';
 import { printer, printerInfo } from '../make/order';
@@ -9,7 +9,7 @@ import { PickFile } from './parts';
 import { file, setup, waiting, wizard } from './state';
 import type { Step } from './wizard';
 
-/// The job that was at hand when slicing was asked for.
+/// Revision of the job when slicing was requested.
 const before = signal(0);
 
 function go(to: Section) {
@@ -17,7 +17,7 @@ function go(to: Section) {
   location.hash = to;
 }
 
-/// To the print itself, which is where the wizard is: it makes room and waits at the foot.
+/// Opens the print section, to which this step belongs: the wizard shrinks to its bar.
 function toPrint() {
   waiting.value = 'first';
   wizard.value = null;

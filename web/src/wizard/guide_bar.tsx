@@ -1,4 +1,4 @@
-// A wizard that was left for another section is a line at the bottom of it, with the way back.
+// A wizard that was left for another section shrinks to a bar at the bottom, with a way back.
 import { Icon } from '../icons';
 import { section } from '../store';
 import { step, titles, waiting, wizard } from './state';

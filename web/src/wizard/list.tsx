@@ -1,4 +1,4 @@
-// Where the wizards begin.
+// The list of wizards.
 import { mayDrive } from '../store';
 import { open, titles, type WizardName } from './state';
 

@@ -1,4 +1,4 @@
-// Set up a machine: a printer file from a built-in one, the board that answers, axes, vats.
+// Machine setup: a printer file based on a built-in one, the connected board, axes, vats.
 import { signal } from '@preact/signals';
 import { useEffect, useState } from 'preact/hooks';
 import { Icon } from '../icons';
@@ -84,7 +84,7 @@ async function begin(tell: (why: string) => void): Promise<boolean> {
   }
   if (!(await post('/api/printer/new', { from: from.value, name: fileName.value }, tell))) return false;
   file.value = fileName.value;
-  from.value = fileName.value; // going back does not make it again
+  from.value = fileName.value; // going back does not create it again
   return title.value === '' || write([{ key: 'name', value: title.value }], tell);
 }
 
@@ -180,7 +180,7 @@ const axisFields = ['min', 'max', 'speed', 'acceleration', 'homing_speed'] as co
 type AxisField = (typeof axisFields)[number];
 const shownOf = (a: AxisSetup, f: AxisField) => axisTexts.value[`${a.name}.${f}`] ?? String(a[f]);
 
-/// What has been typed and differs, as changes of the file.
+/// Typed values that differ, as changes of the file.
 export function axisChanges(axes: AxisSetup[], texts: Record<string, string>): Change[] {
   const changes: Change[] = [];
   for (const a of axes) {

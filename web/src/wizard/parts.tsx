@@ -1,4 +1,4 @@
-// What several wizards ask.
+// Components shared by several wizards.
 import { useEffect, useState } from 'preact/hooks';
 import { api, say } from '../store';
 import { device, file, projectorAt } from './state';
@@ -24,7 +24,7 @@ export function usePorts(): [Ports | null, () => void] {
   return [ports, look];
 }
 
-/// Printer files of the folder; with `builtIn` those of the program too, which a wizard can look at but not change.
+/// Printer files of the folder; with `builtIn` also those of the program, which a wizard can show but not change.
 export function PickFile({ builtIn }: { builtIn?: boolean }) {
   const [names, setNames] = useState<string[] | null>(null);
   useEffect(() => {

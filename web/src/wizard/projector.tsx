@@ -1,4 +1,4 @@
-// Focus and size of the projector: test patterns, and what is measured on them written as the size of a pixel.
+// Focus and size of the projector: test patterns, and the pixel size computed from measurements on them.
 import { signal } from '@preact/signals';
 import { useEffect, useState } from 'preact/hooks';
 import { api, mayDrive, post, say } from '../store';
@@ -120,7 +120,7 @@ function Size() {
 
 async function writeSize(tell: (why: string) => void): Promise<boolean> {
   const f = found.value;
-  if (!f?.pixel_um) return true; // not measured: stays
+  if (!f?.pixel_um) return true; // not measured: unchanged
   const done = await write([{ key: 'projector.pixel', value: `${f.pixel_um.toFixed(3)} um` }], tell);
   if (done) across.value = along.value = '';
   return done;

@@ -1,4 +1,4 @@
-// Which wizard is open, how far it is, and the printer file that it writes.
+// The open wizard, its progress, and the printer file that it writes.
 import { effect, signal } from '@preact/signals';
 import { api, post, say } from '../store';
 import type { Projector } from '../types';
@@ -14,7 +14,7 @@ export const titles: Record<WizardName, string> = {
 };
 
 export const wizard = signal<WizardName | null>(null);
-/// Left for another section, or for the print that it asked for; it waits there.
+/// The wizard left for another section, or for a print that it requires.
 export const waiting = signal<WizardName | null>(null);
 export const step = signal(0);
 
@@ -47,7 +47,7 @@ export interface PrinterSetup {
   projector: Projector;
 }
 
-/// The printer file at hand, "" before one was chosen; what it says.
+/// The current printer file, "" before one is chosen; and its contents.
 export const file = signal('');
 export const setup = signal<PrinterSetup | null>(null);
 export const device = signal('');
@@ -76,7 +76,7 @@ export interface Change {
   value: unknown;
 }
 
-/// Writes values where they stand in the printer file. False: refused, and `tell` has heard why.
+/// Writes values in place into the printer file. False: refused, with the reason given to `tell`.
 export async function write(changes: Change[], tell?: (why: string) => void): Promise<boolean> {
   if (changes.length === 0) return true;
   if (!(await post('/api/printer/set', { name: file.value, changes }, tell))) return false;

@@ -1,9 +1,9 @@
-// A small job made for a wizard: sliced, saved where a machine at a port needs that, connected.
+// A small job for a wizard: sliced, saved if a real machine needs that, and connected.
 import { effect } from '@preact/signals';
 import { api, job, post, sliceError, slicing } from '../store';
 import { file, setup } from './state';
 
-/// Resolves when the slicer is done, with what it says: "" where there is a new job.
+/// Resolves when slicing has ended, with its error: "" if there is a new job.
 function endOfSlicing(before: number): Promise<string> {
   return new Promise((resolve) => {
     let begun = false;
@@ -20,7 +20,7 @@ function endOfSlicing(before: number): Promise<string> {
   });
 }
 
-/// "" or why not.
+/// "" or the error.
 export async function sliceTest(robot: string, more: object = {}): Promise<string> {
   const before = job.value?.revision ?? 0;
   let refused = '';
@@ -31,7 +31,7 @@ export async function sliceTest(robot: string, more: object = {}): Promise<strin
   return ended;
 }
 
-/// Under the first of name.zip, name_2.zip, ... that is free. "" or why not.
+/// Saves under the first free name of name.zip, name_2.zip, ... "" or the error.
 export async function saveTest(name: string): Promise<string> {
   if (job.value?.saved) return '';
   let why = '';

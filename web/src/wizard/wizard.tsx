@@ -1,4 +1,4 @@
-// The frame of a wizard: its steps, back and next. Nothing moves or lights before it is asked for.
+// The frame of a wizard: its steps, back and next. Nothing moves or lights up before it is requested.
 import type { ComponentChildren } from 'preact';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { Icon } from '../icons';
@@ -13,11 +13,11 @@ import { step, titles, wizard, type WizardName } from './state';
 export interface Step {
   name: string;
   body: () => ComponentChildren;
-  /// Why it cannot go on yet; "": it can.
+  /// Why the wizard cannot continue yet; "": it can.
   lacks?: () => string;
-  /// Writes what the step has asked. False: refused, and `tell` has heard why.
+  /// Writes the entries of the step. False: refused, with the reason given to `tell`.
   leave?: (tell: (why: string) => void) => Promise<boolean>;
-  next?: string; // what the button says
+  next?: string; // label of the button
 }
 
 const steps: Record<WizardName, () => Step[]> = {
