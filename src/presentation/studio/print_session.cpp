@@ -385,16 +385,17 @@ Status PrintSession::leave() {
 }
 
 Status PrintSession::discard() {
-    const std::lock_guard one_at_a_time(orders_);
     const auto machine = this->machine();
     if (!machine || !machine->twin) return failure("there is no virtual printer");
     const host::Snapshot now = machine->control.snapshot();
     if (under_way(now.state) || !now.can_resume) return failure("there is no interrupted print");
+    const std::filesystem::path journal = machine->ready.job.journal;
     std::error_code error;
-    if (!std::filesystem::remove(machine->ready.job.journal, error) || error)
-        return failure("{}: cannot be removed: {}", machine->ready.job.journal.string(), error.message());
-    if (Status loaded = machine->control.load(machine->ready.job); !loaded) return loaded;
-    return machine->control.connect();
+    if (!std::filesystem::remove(journal, error) || error)
+        return failure("{}: cannot be removed: {}", journal.string(), error.message());
+    // The interrupted print may have left a vat on the carriage: the next one begins on another virtual printer.
+    const Order order{machine->file, machine->colours, machine->keeps_journal ? journal : std::filesystem::path()};
+    return take_twin(order, machine->twin->pace().speed());
 }
 
 Status PrintSession::set_speed(double speed) {

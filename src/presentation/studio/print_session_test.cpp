@@ -157,5 +157,9 @@ TEST_CASE("a virtual print with a journal beside its job is gone on with by the 
     CHECK(b.about()["now"]["job"]["canResume"] == true);
     REQUIRE(b.session.discard().has_value());
     CHECK(b.about()["now"]["job"]["canResume"] == false);
+    CHECK(b.about()["speed"] == 10000);
     CHECK_FALSE(fs::exists(b.order.journal));
+    // Wherever the vats were then, the next print begins on a machine that is ready.
+    REQUIRE(b.session.ask("POST", "/api/job", R"({"command":"start"})").status == 204);
+    CHECK(Json::parse(b.verdict())["passed"] == true);
 }
