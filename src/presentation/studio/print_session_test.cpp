@@ -49,6 +49,15 @@ struct Bench {
     }
 };
 
+/// Until the machine that was connected has answered.
+void wait_until_ready(const PrintSession& session) {
+    for (int i = 0; i < 6000; ++i) {
+        if (Json::parse(session.describe())["now"]["state"]["flags"]["ready"] == true) return;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    FAIL_CHECK("the machine is not ready");
+}
+
 }  // namespace
 
 TEST_CASE("without a machine there is nothing to ask, to see or to steer") {
@@ -135,6 +144,7 @@ TEST_CASE("a virtual print with a journal beside its job is gone on with by the 
     {
         PrintSession first([](const std::string&) {});
         REQUIRE(first.take_twin(b.order, 200).has_value());
+        wait_until_ready(first);
         REQUIRE(first.ask("POST", "/api/job", R"({"command":"start"})").status == 204);
         for (int i = 0; i < 6000; ++i) {
             const Json about = Json::parse(first.describe());
@@ -160,6 +170,7 @@ TEST_CASE("a virtual print with a journal beside its job is gone on with by the 
     CHECK(b.about()["speed"] == 10000);
     CHECK_FALSE(fs::exists(b.order.journal));
     // Wherever the vats were then, the next print begins on a machine that is ready.
+    wait_until_ready(b.session);
     REQUIRE(b.session.ask("POST", "/api/job", R"({"command":"start"})").status == 204);
     CHECK(Json::parse(b.verdict())["passed"] == true);
 }

@@ -145,18 +145,20 @@ TEST_CASE("a program of waypoints moves motors and sliders as the robot's own pr
     const std::string arm = R"(
 name = "arm"
 length_unit = "mm"
+material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.45, density = "1000 kg/m^3" }
+body = [{ name = "post", material = "soft", geometry = { box = [[0, -40, 0], [10, -30, 10]] } }]
+fixed = [{ name = "foot", box = [[0, -40, 0], [10, -30, 0]] }]
 object = [{ name = "bar", geometry = { box = [[0, -5, -5], [100, 5, 5]] }, mass = "10 g" },
           { name = "car", geometry = { box = [[0, 40, 0], [10, 50, 10]] }, mass = "10 g" }]
 joint = [{ name = "elbow", kind = "motor", between = ["world", "bar"], point = [0, 0, 0], axis = [0, 1, 0], torque = "4 N*mm" },
          { name = "rail", kind = "slider", between = ["world", "car"], point = [5, 45, 5], axis = [1, 0, 0], position = "3 mm" }]
 [program]
-time_step = "10 ms"
-key = [{ time = "1 s", elbow = "15 N mm", rail = "2 mm" }, { time = "2 s", elbow = "5 N mm" }]
+key = [{ time = "0.5 s", elbow = "15 N mm", rail = "2 mm" }, { time = "1 s", elbow = "5 N mm" }]
 )";
     std::ofstream(file) << arm;
     const auto robot = load_robot(file);
     REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
-    const auto text = program_text(*robot, file, {}, folder.path(), {{0.5, {}}, {2, {}}}, 1, 1e-5);
+    const auto text = program_text(*robot, file, {}, folder.path(), {{0.25, {}}, {1, {}}}, 1, 1e-5);
     REQUIRE_MESSAGE(text, (text ? "" : text.error().message));
     std::ofstream(folder.path() / "program.toml") << *text;
     const auto led = load_robot(folder.path() / "program.toml");
