@@ -123,12 +123,11 @@ Status Checkpoint::keep(const RunState& run) const {
     Result<H5File> out = H5File::create(&balance_.ranks(), aside);
     if (!out) return tl::unexpected(out.error());
     const Rows rows{nodes_.total(), nodes_.first(), nodes_.rows()};
-    Status status = out->write("x", rows, 3, sorted(run.now.x));
-    if (status && run.before) status = out->write("x_before", rows, 3, sorted(run.before->x));
-    if (status) status = out->write_bytes("run", json.dump());
-    if (status) status = out->write_bytes("steps", bytes_of(run.so_far));
-    if (status) status = out->close();
-    if (!status) return status;
+    out->write("x", rows, 3, sorted(run.now.x));
+    if (run.before) out->write("x_before", rows, 3, sorted(run.before->x));
+    out->write_bytes("run", json.dump());
+    out->write_bytes("steps", bytes_of(run.so_far));
+    if (Status status = out->close(); !status) return status;
     std::error_code code;
     if (balance_.ranks().is_root()) std::filesystem::rename(aside, file(), code);
     return balance_.ranks().agree(code ? Status(failure("{}: cannot be written: {}", file().string(), code.message()))

@@ -54,10 +54,10 @@ Status write_frame_mesh(const std::filesystem::path& folder, const Description& 
     if (material.empty())
         for (const int region : d.mesh.region)
             material.push_back(d.material_of_region[static_cast<std::size_t>(region)]);
-    Status status = file->write("tets", rows, d.mesh.nodes_per_tet(), d.mesh.nodes);
-    if (status) status = file->write("region", rows, 1, d.mesh.region);
-    if (status) status = file->write("material", rows, 1, material);
-    return status ? file->close() : status;
+    file->write("tets", rows, d.mesh.nodes_per_tet(), d.mesh.nodes);
+    file->write("region", rows, 1, d.mesh.region);
+    file->write("material", rows, 1, material);
+    return file->close();
 }
 
 Frames::Frames(const Balance& balance, std::filesystem::path folder)
@@ -80,10 +80,9 @@ Status Frames::write(int step, const Eigen::VectorXd& x) {
     for (double& value : fields.energy_density_Pa) value *= 1e-3;
     Result<H5File> file = H5File::create(&balance_.ranks(), folder_ / file_name(step));
     if (!file) return tl::unexpected(file.error());
-    Status status{};
     const auto put = [&](const char* name, const FileOrder& order, int width, std::span<const double> values) {
         const std::vector<double> sorted = order.sorted(values, width);
-        if (status) status = file->write(name, {order.total(), order.first(), order.rows()}, width, sorted);
+        file->write(name, {order.total(), order.first(), order.rows()}, width, sorted);
     };
     put("points_mm", nodes_, 3, points);
     put("displacement_mm", nodes_, 3, displacement);
@@ -91,7 +90,7 @@ Status Frames::write(int step, const Eigen::VectorXd& x) {
     put("von_mises_kPa", tets_, 1, fields.von_mises_Pa);
     put("max_stretch", tets_, 1, fields.max_stretch);
     put("energy_density_kPa", tets_, 1, fields.energy_density_Pa);
-    return status ? file->close() : status;
+    return file->close();
 }
 
 std::string frames_xdmf(const std::string& robot, int nodes, int tets, int order, const std::vector<FrameTime>& steps) {

@@ -90,21 +90,20 @@ Result<H5File> H5File::open(const Ranks& ranks, const std::filesystem::path& pat
     return file;
 }
 
-Status H5File::write(const std::string& name, hid_t type, Rows rows, int width, const void* values) {
+void H5File::write(const std::string& name, hid_t type, Rows rows, int width, const void* values) {
     const Id space = table_space(rows, width);
     const Id set(H5Dcreate2(file_, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
     select(space, rows, width);
     const Id memory = memory_space(rows, width), list = transfer(ranks_);
-    const bool good = set >= 0 && H5Dwrite(set, type, memory, space, list, values) >= 0;
-    return agree(good, "written; is the disk full?");
+    written_ = set >= 0 && H5Dwrite(set, type, memory, space, list, values) >= 0 && written_;
 }
 
-Status H5File::write(const std::string& name, Rows rows, int width, std::span<const double> values) {
-    return write(name, H5T_NATIVE_DOUBLE, rows, width, values.data());
+void H5File::write(const std::string& name, Rows rows, int width, std::span<const double> values) {
+    write(name, H5T_NATIVE_DOUBLE, rows, width, values.data());
 }
 
-Status H5File::write(const std::string& name, Rows rows, int width, std::span<const int> values) {
-    return write(name, H5T_NATIVE_INT, rows, width, values.data());
+void H5File::write(const std::string& name, Rows rows, int width, std::span<const int> values) {
+    write(name, H5T_NATIVE_INT, rows, width, values.data());
 }
 
 Result<std::vector<double>> H5File::read(const std::string& name, Rows rows, int width) const {
@@ -126,11 +125,11 @@ Result<std::vector<double>> H5File::read(const std::string& name, Rows rows, int
     return values;
 }
 
-Status H5File::write_bytes(const std::string& name, std::string bytes) {
+void H5File::write_bytes(const std::string& name, std::string bytes) {
     if (ranks_ != nullptr) ranks_->broadcast(bytes);
     const auto total = static_cast<int>(bytes.size());
     const bool writes = ranks_ == nullptr || ranks_->is_root();
-    return write(name, H5T_NATIVE_CHAR, {total, 0, writes ? total : 0}, 1, bytes.data());
+    write(name, H5T_NATIVE_CHAR, {total, 0, writes ? total : 0}, 1, bytes.data());
 }
 
 Result<std::string> H5File::read_bytes(const std::string& name) const {
@@ -149,8 +148,8 @@ Result<std::string> H5File::read_bytes(const std::string& name) const {
 }
 
 Status H5File::close() {
-    const bool good = H5Fclose(std::exchange(file_, -1)) >= 0;
-    return agree(good, "written; is the disk full?");
+    const bool closed = H5Fclose(std::exchange(file_, -1)) >= 0;
+    return agree(closed && written_, "written; is the disk full?");
 }
 
 }  // namespace pliant::sim::distributed

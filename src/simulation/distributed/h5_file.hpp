@@ -18,7 +18,8 @@ struct Rows {
     int total = 0, first = 0, count = 0;
 };
 
-/// All functions are collective unless the file is one rank's own. Errors are the same on all ranks.
+/// All functions are collective unless the file is one rank's own. Errors are the same on all ranks; those of writing
+/// come with close().
 class H5File {
 public:
     /// In place of what is there. `ranks`: null for a file that this rank writes alone.
@@ -29,23 +30,24 @@ public:
     ~H5File();
 
     /// A table (total, width), of one column where width is 1.
-    [[nodiscard]] Status write(const std::string& name, Rows rows, int width, std::span<const double> values);
-    [[nodiscard]] Status write(const std::string& name, Rows rows, int width, std::span<const int> values);
+    void write(const std::string& name, Rows rows, int width, std::span<const double> values);
+    void write(const std::string& name, Rows rows, int width, std::span<const int> values);
     [[nodiscard]] Result<std::vector<double>> read(const std::string& name, Rows rows, int width) const;
     /// Root's bytes.
-    [[nodiscard]] Status write_bytes(const std::string& name, std::string bytes);
+    void write_bytes(const std::string& name, std::string bytes);
     [[nodiscard]] Result<std::string> read_bytes(const std::string& name) const;
-    /// What is written is in the file from here on.
+    /// What was written is in the file, or an error says why not.
     [[nodiscard]] Status close();
 
 private:
     H5File(const Ranks* ranks, std::filesystem::path path, hid_t file);
     [[nodiscard]] Status agree(bool good, const char* what) const;
-    [[nodiscard]] Status write(const std::string& name, hid_t type, Rows rows, int width, const void* values);
+    void write(const std::string& name, hid_t type, Rows rows, int width, const void* values);
 
     const Ranks* ranks_;
     std::filesystem::path path_;
     hid_t file_;
+    bool written_ = true;  ///< all that was asked for
 };
 
 }  // namespace pliant::sim::distributed

@@ -19,11 +19,16 @@ int piece_of(std::size_t size, std::size_t begin) {
     return static_cast<int>(std::min(most_bytes, size - begin));
 }
 
-/// MPI's own waiting takes a whole core.
+/// MPI's own waiting takes a whole core. What comes at once is not slept for.
 void wait_asleep(MPI_Request& request) {
-    for (int done = 0; done == 0;) {
+    constexpr int looks_awake = 2000;
+    for (int done = 0, looks = 0; done == 0; ++looks) {
         must(MPI_Test(&request, &done, MPI_STATUS_IGNORE));
-        if (done == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        if (done != 0) return;
+        if (looks < looks_awake)
+            std::this_thread::yield();
+        else
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
 }
 
