@@ -156,11 +156,12 @@ double peak_memory_MB(const Ranks& ranks) {
     return ranks.sum(static_cast<double>(usage.ru_maxrss) / 1024);
 }
 
-void print_work(const sim::distributed::LinearWork& work, double memory_MB) {
-    fmt::print(
-        "{} matrices: {:.2f} s to assemble, {:.2f} s to set up; {} solutions, {} iterations, {:.2f} s; {:.0f} MB in "
-        "all\n",
-        work.matrices, work.assemble_s, work.set_up_s, work.solutions, work.iterations, work.solve_s, memory_MB);
+void print_work(const sim::distributed::RunResult& result, double memory_MB) {
+    const sim::distributed::LinearWork &work = result.work, &turning = result.turning;
+    fmt::print("{} matrices: {:.2f} s to assemble, {:.2f} s to set up; {} solutions, {} iterations, {:.2f} s\n",
+               work.matrices, work.assemble_s, work.set_up_s, work.solutions, work.iterations, work.solve_s);
+    fmt::print("steps that turn: {:.2f} s to set up; {} solutions, {} iterations, {:.2f} s; {:.0f} MB in all\n",
+               turning.set_up_s, turning.solutions, turning.iterations, turning.solve_s, memory_MB);
 }
 
 /// On root.
@@ -181,7 +182,7 @@ Result<int> tell(const Ranks& ranks, const Options& options, const Job& job, con
         fmt::print("{}", report::summary_json(simulation));
     } else if (!options.quiet) {
         print_summary(simulation, ranks.count());
-        print_work(result.work, memory_MB);
+        print_work(result, memory_MB);
         if (!options.folder.empty()) fmt::print("results: {}, open frames.xdmf there in ParaView\n", options.folder);
     }
     for (const std::string& warning : result.trajectory.warnings)

@@ -1,5 +1,7 @@
 #include "simulation/distributed/checkpoint.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -54,13 +56,16 @@ Status read_steps(const std::string& bytes, Trajectory& into) {
     return {};
 }
 
-Result<Eigen::VectorXd> multipliers_of(const Json& json, const char* key, std::size_t count) {
-    const Json list = json.value(key, Json());
-    const bool good = list.is_array() && list.size() == count &&
+/// Without its positions.
+Status take(const Json& json, std::size_t actuators, Moment& moment) {
+    const Json along = json.value("along", Json()), list = json.value("multiplier", Json());
+    const bool good = along.is_number() && list.is_array() && list.size() == actuators &&
                       std::ranges::all_of(list, [](const Json& value) { return value.is_number(); });
-    if (!good) return input_error("its {} is damaged", key);
+    if (!good) return input_error("its states are damaged");
     const auto values = list.get<std::vector<double>>();
-    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(count)));
+    moment.along = along.get<double>();
+    moment.state.multiplier = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(actuators));
+    return {};
 }
 
 /// All but the positions.
@@ -72,23 +77,16 @@ Status take(const Json& json, const std::string& steps, const std::string& origi
         return input_error("a checkpoint of another version; this Pliant reads version {}", version);
     if (json.value("origin", Json()) != origin)
         return input_error("a checkpoint of another robot file or mesh, or the file or what --set changes has changed");
-    for (const char* key : {"step", "along", "along_before", "setup_s", "solve_s"})
+    for (const char* key : {"step", "setup_s", "solve_s"})
         if (!json.value(key, Json()).is_number()) return input_error("its {} is damaged", key);
     run.step = json["step"].get<int>();
     if (run.step < 0 || run.step > program.steps) return input_error("its step is damaged");
-    run.along = json["along"].get<double>();
-    run.along_before = json["along_before"].get<double>();
     run.so_far.solver = name(Solver::newton);
     run.so_far.setup_s = json["setup_s"].get<double>();
     run.so_far.solve_s = json["solve_s"].get<double>();
-    Result<Eigen::VectorXd> now = multipliers_of(json, "multiplier", actuators);
-    if (!now) return tl::unexpected(now.error());
-    run.now.multiplier = std::move(*now);
-    if (json.contains("multiplier_before")) {
-        Result<Eigen::VectorXd> before = multipliers_of(json, "multiplier_before", actuators);
-        if (!before) return tl::unexpected(before.error());
-        run.before.emplace().multiplier = std::move(*before);
-    }
+    if (Status status = take(json, actuators, run.now); !status) return status;
+    for (const Json& before : json.value("past", Json::array()))
+        if (Status status = take(before, actuators, run.past.emplace_back()); !status) return status;
     if (Status status = read_steps(steps, run.so_far); !status) return status;
     return run.so_far.steps.size() == static_cast<std::size_t>(run.step) + 1 ? Status{}
                                                                              : input_error("its steps are damaged");
@@ -113,18 +111,20 @@ Status Checkpoint::keep(const RunState& run) const {
               {"version", version},
               {"origin", origin_},
               {"step", run.step},
-              {"along", run.along},
-              {"along_before", run.along_before},
+              {"along", run.now.along},
               {"setup_s", run.so_far.setup_s},
               {"solve_s", run.so_far.solve_s},
-              {"multiplier", numbers_of(run.now.multiplier)}};
-    if (run.before) json["multiplier_before"] = numbers_of(run.before->multiplier);
+              {"multiplier", numbers_of(run.now.state.multiplier)},
+              {"past", Json::array()}};
+    for (const Moment& before : run.past)
+        json["past"].push_back({{"along", before.along}, {"multiplier", numbers_of(before.state.multiplier)}});
     const std::filesystem::path aside = file().string() + ".partial";
     Result<H5File> out = H5File::create(&balance_.ranks(), aside);
     if (!out) return tl::unexpected(out.error());
     const Rows rows{nodes_.total(), nodes_.first(), nodes_.rows()};
-    out->write("x", rows, 3, sorted(run.now.x));
-    if (run.before) out->write("x_before", rows, 3, sorted(run.before->x));
+    out->write("x", rows, 3, sorted(run.now.state.x));
+    for (std::size_t k = 0; k < run.past.size(); ++k)
+        out->write(fmt::format("x_before_{}", k), rows, 3, sorted(run.past[k].state.x));
     out->write_bytes("run", json.dump());
     out->write_bytes("steps", bytes_of(run.so_far));
     if (Status status = out->close(); !status) return status;
@@ -150,14 +150,18 @@ Result<RunState> Checkpoint::read(const Program& program) const {
     if (!status) status = input_error("{}: {}", file().string(), status.error().message);
     if (status = balance_.ranks().agree(status); !status) return tl::unexpected(status.error());
     const Rows rows{nodes_.total(), nodes_.first(), nodes_.rows()};
-    for (State* state : {&run.now, run.before ? &*run.before : nullptr}) {
-        if (state == nullptr) continue;
-        const Result<std::vector<double>> x = in->read(state == &run.now ? "x" : "x_before", rows, 3);
+    const auto place = [&](const std::string& name, State& state) -> Status {
+        const Result<std::vector<double>> x = in->read(name, rows, 3);
         if (!x) return tl::unexpected(x.error());
         const std::vector<double> own = nodes_.given_back(*x, 3);
-        state->x = balance_.nodes().spread(
+        state.x = balance_.nodes().spread(
             Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size())));
-    }
+        return {};
+    };
+    status = place("x", run.now.state);
+    for (std::size_t k = 0; status && k < run.past.size(); ++k)
+        status = place(fmt::format("x_before_{}", k), run.past[k].state);
+    if (!status) return tl::unexpected(status.error());
     return run;
 }
 

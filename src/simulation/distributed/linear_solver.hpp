@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "base/core/aligned_array.hpp"
-#include "base/linalg/sparse.hpp"
 #include "simulation/distributed/balance.hpp"
+#include "simulation/distributed/known_pattern.hpp"
+#include "simulation/distributed/linear_work.hpp"
 #include "simulation/distributed/petsc.hpp"
 
 namespace pliant::sim::distributed {
@@ -18,18 +19,12 @@ enum class Preconditioner {
     hypre  ///< BoomerAMG
 };
 
-/// What solutions have cost so far.
-struct LinearWork {
-    int matrices = 0, solutions = 0, iterations = 0;
-    double assemble_s = 0, set_up_s = 0, solve_s = 0;
-};
-
 /// All functions are collective. Conjugate gradients where the tangent is symmetric, else GMRES; what PETSC_OPTIONS
 /// says goes before all that is chosen here.
 class LinearSolver {
 public:
-    /// `balance` must outlive it.
-    LinearSolver(const Balance& balance, Preconditioner preconditioner);
+    /// `balance` and `known` must outlive it.
+    LinearSolver(const Balance& balance, const KnownPattern& known, Preconditioner preconditioner);
 
     /// Takes the tangent of a state, or that of which every part is made positive semi-definite.
     void take(const State& state, bool project);
@@ -43,33 +38,28 @@ public:
     [[nodiscard]] const LinearWork& work() const { return work_; }
 
 private:
-    void lay_out();
-    void make_matrix();
-    void add_rows(std::span<const double> values, double across, bool skew);
-    void hold();
-    void set_near_null_space(const Eigen::VectorXd& x);
-    void set_options(Preconditioner preconditioner);
+    void add_rows(Mat matrix, std::span<const double> values, double across, bool skew);
+    void hold(Mat matrix);
+    void set_near_null_space();
+    void make_preconditioner();
+    [[nodiscard]] KSPConvergedReason solve_by(KSP ksp, const Eigen::VectorXd& b, double error, Eigen::VectorXd& x);
+    void set_options();
 
     const Balance& balance_;
-    linalg::SymmetricPattern pattern_;  ///< over the known nodes, held ones too
-    BlockSums sums_;
-    /// Rows of the whole matrix, of which the pattern has the lower triangle: (known nodes).
-    std::vector<int> row_start_;
-    struct Place {
-        int slot = 0;    ///< of the pattern
-        int column = 0;  ///< known node
-        bool transposed = false;
-    };
-    std::vector<Place> places_;
+    const KnownPattern& known_;
+    Preconditioner preconditioner_;
     std::vector<const Eigen::Matrix3d*> may_move_;  ///< (known nodes), null where a node is free or fixed
     AlignedArray<double> values_;
     double held_stiffness_ = 1;
     Owned<Mat, MatDestroy> matrix_;
     Owned<KSP, KSPDestroy> ksp_;
     Owned<Vec, VecDestroy> right_, solution_;
-    bool taken_ = false;        ///< a preconditioner has been made
-    int first_iterations_ = 0;  ///< of the first solution with the aggregates at hand
-    int last_iterations_ = 0;
+    Owned<KSP, KSPDestroy> sturdy_;  ///< GMRES with the same preconditioner, for where conjugate gradients break down
+    Eigen::VectorXd places_;         ///< (3 owned) where the matrix at hand was taken
+    bool projected_ = false;         ///< it is a projection
+    bool aged_ = true;               ///< the aggregates are of an earlier matrix, or there are none
+    double first_cost_ = 0;          ///< iterations for each digit of the first solution with the aggregates at hand
+    double last_cost_ = 0;
     LinearWork work_;
 };
 

@@ -20,6 +20,8 @@ constexpr double smallest_alpha = 1e-7;
 constexpr double smallest_J_left = 0.05;
 constexpr std::size_t error_memory = 10;
 constexpr int default_iteration_limit = 100;
+constexpr double straight_share = 0.05;  // of what is wanted, that a step may spoil by not turning
+constexpr double turning_error = 1e-3;
 /// Errors of linear solutions: a direction need not be better than what is left of the residual after it.
 constexpr double largest_solution_error = 1e-3, smallest_solution_error = 1e-11, share_of_wanted = 0.1;
 
@@ -31,9 +33,10 @@ struct Direction {
 
 class Newton {
 public:
-    Newton(const Balance& balance, LinearSolver& linear, const Controls& controls, State& state)
+    Newton(const Balance& balance, LinearSolver& linear, Turning& turning, const Controls& controls, State& state)
         : balance_(balance),
           linear_(linear),
+          turning_(turning),
           controls_(controls),
           state_(state),
           evaluation_(balance.evaluate(state, controls)) {
@@ -59,7 +62,7 @@ public:
         for (const bool project : {false, true}) {
             linear_.take(state_, project);
             const std::optional<Direction> direction = find_direction(tolerance);
-            if (direction && search(*direction)) return true;
+            if (direction && search(*direction, tolerance)) return true;
         }
         return false;
     }
@@ -132,7 +135,7 @@ private:
     }
 
     /// Halves the step until the state is possible and the merit (or the error) goes down.
-    bool search(const Direction& direction) {
+    bool search(const Direction& direction, double tolerance) {
         for (const Eigen::Index a : solved_)
             if (drives_measure(a))
                 penalty_weights_[a] =
@@ -142,9 +145,11 @@ private:
         const double slope = direction.slope_J - cost;
         const bool conservative = balance_.conservative();
         const Eigen::VectorXd motion = balance_.nodes().spread(direction.dx);
+        const bool straight = evaluation_.error() * evaluation_.error() < straight_share * tolerance;
         for (double alpha = 1; alpha > smallest_alpha; alpha *= 0.5) {
             State next = state_;
             next.x += alpha * motion;
+            if (!straight) next.x = turning_.rotate({.now = state_.x.data(), .end = next.x.data()}, turning_error);
             next.multiplier += alpha * (direction.multiplier - state_.multiplier);
             Evaluation evaluation = balance_.evaluate(next, controls_);
             obstacle_ = evaluation.flaw;
@@ -182,6 +187,7 @@ private:
 
     const Balance& balance_;
     LinearSolver& linear_;
+    Turning& turning_;
     const Controls& controls_;
     State& state_;
     Evaluation evaluation_;
@@ -205,9 +211,9 @@ IterationRecord record(int iteration, const Evaluation& e, double alpha) {
 
 }  // namespace
 
-StepOutcome solve_step(const Balance& balance, LinearSolver& linear, const Controls& controls,
+StepOutcome solve_step(const Balance& balance, LinearSolver& linear, Turning& turning, const Controls& controls,
                        const StepSettings& settings, State& state) {
-    Newton newton(balance, linear, controls, state);
+    Newton newton(balance, linear, turning, controls, state);
     StepOutcome outcome;
     outcome.solver = Solver::newton;
     outcome.history.push_back(record(0, newton.evaluation(), 0));

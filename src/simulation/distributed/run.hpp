@@ -8,16 +8,16 @@
 #include "simulation/distributed/balance.hpp"
 #include "simulation/distributed/linear_solver.hpp"
 #include "simulation/run/trajectory.hpp"
+#include "simulation/stepper/robot_state.hpp"
 
 namespace pliant::sim::distributed {
 
 /// A run between two steps: whatever it needs to go on. States are over the nodes that this rank knows.
 struct RunState {
     int step = 0;  ///< the last that was done; 0: none
-    double along = 0, along_before = 0;
-    State now;
-    std::optional<State> before;  ///< the one before it, which tells where the next may be
-    Trajectory so_far;            ///< the rest state and `step` steps, without positions; the same on all ranks
+    Moment now;
+    std::vector<Moment> past;  ///< those before it, the latest last: they tell where the next may be
+    Trajectory so_far;         ///< the rest state and `step` steps, without positions; the same on all ranks
 };
 
 struct RunOptions {
@@ -35,7 +35,8 @@ struct RunOptions {
 
 struct RunResult {
     Trajectory trajectory;  ///< without positions, the same on all ranks
-    LinearWork work;
+    LinearWork work;        ///< of the tangents
+    LinearWork turning;     ///< of steps that turn
 };
 
 /// A step that does not converge is halved, and halved again, down to 1/64 of a step; a program that cannot finish
