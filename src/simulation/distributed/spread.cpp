@@ -9,6 +9,26 @@
 namespace pliant::sim::distributed {
 namespace {
 
+/// By its number in the whole mesh, which its rank does not know where it finds it.
+Status check_flat(const mesh::TetMesh& mesh) {
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const auto point = [&](std::size_t k) { return mesh.points[static_cast<std::size_t>(mesh.tet(t)[k])]; };
+        const double volume = mesh::signed_tet_volume(point(0), point(1), point(2), point(3));
+        if (!(volume > 0))
+            return input_error("tetrahedron {} of the mesh is flat or inside out at rest (volume {:.3g} m^3)", t,
+                               volume);
+    }
+    return {};
+}
+
+/// Which nodes are held, of a robot that is good.
+Result<HeldNodes> checked(const Description& description) {
+    Result<HeldNodes> held = check(description);
+    if (!held) return held;
+    if (Status status = check_flat(description.mesh); !status) return tl::unexpected(status.error());
+    return held;
+}
+
 /// Root's own share; all others are on their way.
 Result<Share> cut_and_send(const Ranks& ranks, const Description& description, const HeldNodes& held,
                            const std::vector<int>& owner) {
@@ -25,7 +45,7 @@ Result<Share> cut_and_send(const Ranks& ranks, const Description& description, c
 }  // namespace
 
 Result<Balance> spread(const Ranks& ranks, Description description) {
-    Result<HeldNodes> held = ranks.is_root() ? check(description) : HeldNodes::create({}, 0);
+    Result<HeldNodes> held = ranks.is_root() ? checked(description) : HeldNodes::create({}, 0);
     if (Status status = ranks.agree(held ? Status{} : tl::unexpected(held.error())); !status)
         return tl::unexpected(status.error());
     const std::vector<int> owner = node_owners(ranks, description.mesh);
