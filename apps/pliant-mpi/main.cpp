@@ -78,7 +78,8 @@ int give_up(const char* why) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+// Only what breaks while an error is told can escape, and that ends the program in any case.
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     // Errors come back as values, and signals do what they do to any program.
     PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
     if (PetscInitializeNoArguments() != 0) return app::exit_failed;
