@@ -27,6 +27,16 @@ if(PLIANT_TESTS)
   pkg_check_modules(x11 REQUIRED IMPORTED_TARGET x11)
 endif()
 
+if(PLIANT_MPI)
+  pkg_check_modules(petsc REQUIRED IMPORTED_TARGET PETSc)
+  pkg_check_modules(hdf5mpi REQUIRED IMPORTED_TARGET hdf5-openmpi)
+  set_target_properties(PkgConfig::petsc PROPERTIES INTERFACE_COMPILE_OPTIONS "") # how Debian compiles is not how we do
+  pkg_check_modules(mpi REQUIRED IMPORTED_TARGET ompi-c)
+  add_library(pliant_petsc INTERFACE)
+  target_link_libraries(pliant_petsc INTERFACE PkgConfig::petsc PkgConfig::hdf5mpi PkgConfig::mpi)
+  target_compile_definitions(pliant_petsc INTERFACE OMPI_SKIP_MPICXX)
+endif()
+
 # A library that ships neither a CMake package nor a pkg-config file.
 function(pliant_find_plain target header library)
   find_path(${target}_INCLUDE ${header} PATH_SUFFIXES suitesparse REQUIRED)

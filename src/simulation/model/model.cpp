@@ -8,6 +8,7 @@
 #include "geometry/mesh/order_in_space.hpp"
 #include "simulation/actuators/chamber_surface.hpp"
 #include "simulation/elements/elements.hpp"
+#include "simulation/model/check.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -346,15 +347,13 @@ Result<std::unique_ptr<contact::Contact>> create_contact(const Description& d, c
     return std::make_unique<contact::Contact>(std::move(*contact));
 }
 
-}  // namespace
+/// What the checks find out on their way.
+struct Checked {
+    HeldNodes held;
+    std::vector<std::vector<int>> free_pieces;
+};
 
-Model::Model() = default;
-Model::Model(Model&&) noexcept = default;
-Model& Model::operator=(Model&&) noexcept = default;
-Model::~Model() = default;
-
-Result<Model> Model::create(Description description) {
-    Model model;
+Result<Checked> checked(const Description& description) {
     const int nodes = static_cast<int>(description.mesh.points.size());
     Status status = check_mesh(description);
     if (status) status = check_loads(description, nodes);
@@ -372,15 +371,37 @@ Result<Model> Model::create(Description description) {
         if (status = check_joint(joint, description, nodes); !status) return tl::unexpected(status.error());
     Result<HeldNodes> held = HeldNodes::create(description.supports, nodes);
     if (!held) return tl::unexpected(held.error());
-    if (status = check_held(description, model.free_pieces_); !status) return tl::unexpected(status.error());
-    number_free_nodes(description, *held, model.free_index_, model.free_count_);
-    model.held_ = std::make_unique<HeldNodes>(std::move(*held));
+    Checked result{std::move(*held), {}};
+    if (status = check_held(description, result.free_pieces); !status) return tl::unexpected(status.error());
+    return result;
+}
+
+}  // namespace
+
+Model::Model() = default;
+Model::Model(Model&&) noexcept = default;
+Model& Model::operator=(Model&&) noexcept = default;
+Model::~Model() = default;
+
+Result<HeldNodes> check(const Description& description) {
+    Result<Checked> found = checked(description);
+    if (!found) return tl::unexpected(found.error());
+    return std::move(found->held);
+}
+
+Result<Model> Model::create(Description description) {
+    Model model;
+    Result<Checked> found = checked(description);
+    if (!found) return tl::unexpected(found.error());
+    number_free_nodes(description, found->held, model.free_index_, model.free_count_);
+    model.held_ = std::make_unique<HeldNodes>(std::move(found->held));
+    model.free_pieces_ = std::move(found->free_pieces);
     model.description_ = std::move(description);
     Result<Elements> elements = Elements::create(model.description_);
     if (!elements) return tl::unexpected(elements.error());
     model.elements_ = std::make_unique<Elements>(std::move(*elements));
     model.make_objects();
-    if (status = model.make_contact(); !status) return tl::unexpected(status.error());
+    if (Status status = model.make_contact(); !status) return tl::unexpected(status.error());
     return model;
 }
 

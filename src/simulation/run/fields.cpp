@@ -8,6 +8,7 @@
 #include "simulation/elements/elements.hpp"
 #include "simulation/material/response.hpp"
 #include "simulation/model/model.hpp"
+#include "simulation/run/element_fields.hpp"
 #include "simulation/run/trajectory.hpp"
 
 namespace pliant::sim {
@@ -21,9 +22,11 @@ double von_mises(const linalg::Matrix3& cauchy) {
 }  // namespace
 
 Fields compute_fields(const Model& model, std::span<const Vec3> positions) {
-    const Elements& elements = model.elements();
+    return fields_of(model.elements(), {&positions.data()->x, 3 * positions.size()});
+}
+
+Fields fields_of(const Elements& elements, std::span<const double> x) {
     const std::size_t count = elements.tet_count();
-    const std::span<const double> x(&positions.data()->x, 3 * positions.size());
     Fields fields{std::vector<double>(count), std::vector<double>(count), std::vector<double>(count),
                   std::vector<double>(count)};
     parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {

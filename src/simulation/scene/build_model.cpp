@@ -11,6 +11,7 @@
 #include "simulation/scene/build_cables.hpp"
 #include "simulation/scene/build_chambers.hpp"
 #include "simulation/scene/build_contact.hpp"
+#include "simulation/scene/build_description.hpp"
 #include "simulation/scene/build_grades.hpp"
 #include "simulation/scene/build_joints.hpp"
 #include "simulation/scene/build_places.hpp"
@@ -94,7 +95,7 @@ Status check_free_motion(const Robot& robot, sim::Description& description) {
 
 }  // namespace
 
-Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh) {
+Result<sim::Description> build_description(const Robot& robot, mesh::TetMesh mesh) {
     ModelDraft draft(robot, std::move(mesh));
     const sim::Attacher attacher(draft.bodies);
     sim::Description& description = draft.description;
@@ -132,7 +133,13 @@ Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh) {
     if (!draft.problems.empty()) return tl::unexpected(error_of(Cause::input, draft.problems));
     description.notes = draft.notes_on_points();
     if (Status held = check_free_motion(robot, description); !held) return tl::unexpected(held.error());
-    Result<sim::Model> model = sim::Model::create(std::move(description));
+    return std::move(description);
+}
+
+Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh) {
+    Result<sim::Description> description = build_description(robot, std::move(mesh));
+    if (!description) return tl::unexpected(description.error());
+    Result<sim::Model> model = sim::Model::create(std::move(*description));
     if (!model) return tl::unexpected(Error{model.error().cause, robot.file.string() + ": " + model.error().message});
     return model;
 }

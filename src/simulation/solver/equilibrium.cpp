@@ -10,6 +10,7 @@
 #include "base/core/parallel.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
+#include "simulation/solver/drives.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -195,44 +196,11 @@ Drive Equilibrium::drive(std::size_t actuator, double target) const {
 }
 
 Drive Equilibrium::drive(std::size_t actuator, double target, double offset) const {
-    const Description& d = model_->description();
-    const double rest = actuators_[actuator].rest_measure();
-    if (actuator < d.cables.size()) {
-        switch (d.cables[actuator].target.kind) {
-            case CableTarget::Kind::length_ratio:
-                return {Drive::Kind::measure, target * rest + offset};
-            case CableTarget::Kind::shortening_m:
-                return {Drive::Kind::measure, rest - target + offset};
-            case CableTarget::Kind::tension_N:
-                return {Drive::Kind::multiplier, std::max(0.0, target + offset)};
-        }
-    }
-    switch (d.chambers[actuator - d.cables.size()].target.kind) {
-        case ChamberTarget::Kind::volume_ratio:
-            return {Drive::Kind::measure, target * rest + offset};
-        case ChamberTarget::Kind::volume_change_m3:
-            return {Drive::Kind::measure, rest + target + offset};
-        case ChamberTarget::Kind::pressure_Pa:
-            return {Drive::Kind::multiplier, -(target + offset)};
-        case ChamberTarget::Kind::gas_ratio:
-            break;
-    }
-    return {Drive::Kind::gas, target * d.ambient_pressure_Pa * rest};
+    return drive_of(model_->description(), actuator, target, offset, actuators_[actuator].rest_measure());
 }
 
 Drive Equilibrium::drive_at(std::size_t actuator, double time) const {
-    const Description& d = model_->description();
-    if (actuator < d.cables.size()) {
-        const CableTarget& target = d.cables[actuator].target;
-        return drive(actuator, target.at(time), target.offset_at(time));
-    }
-    const std::size_t chamber = actuator - d.cables.size();
-    if (chamber < d.chambers.size()) {
-        const ChamberTarget& target = d.chambers[chamber].target;
-        return drive(actuator, target.at(time), target.offset_at(time));
-    }
-    const PressureLoad& load = d.pressures[chamber - d.chambers.size()];
-    return {Drive::Kind::multiplier, -load.share.at(time) * load.pressure_Pa};
+    return sim::drive_at(model_->description(), actuator, time, actuators_[actuator].rest_measure());
 }
 
 Controls Equilibrium::controls(double time) const {

@@ -1,0 +1,97 @@
+// pliant-mpi: one robot on many machines. Started by mpirun or srun, as many times as there are ranks.
+#include <fmt/core.h>
+#include <petscsys.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <CLI/Validators.hpp>
+#include <cstdio>
+#include <map>
+#include <new>
+#include <string>
+
+#include "base/core/error.hpp"
+#include "simulate.hpp"
+#include "simulation/distributed/petsc.hpp"
+
+namespace {
+
+using namespace pliant;
+using sim::distributed::Preconditioner;
+
+constexpr const char* about =
+    "Pliant on many machines: one robot, of which each rank has a part. Start it by mpirun or srun.";
+
+void add_options(CLI::App& command, app::Options& options) {
+    command.add_option("robot", options.robot, "robot file (TOML)")->required();
+    command.add_option("-o,--output", options.folder, "folder for the results; without it only a summary is printed");
+    command.add_option("--steps", options.steps, "number of steps, in place of the file's")
+        ->check(CLI::Range(1, 100000));
+    command.add_option("--set", options.assignments, "KEY=VALUE: change any key")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+    command.add_option("--preconditioner", options.preconditioner, "gamg or hypre (gamg)")
+        ->transform(CLI::CheckedTransformer(
+            std::map<std::string, Preconditioner>{{"gamg", Preconditioner::gamg}, {"hypre", Preconditioner::hypre}}));
+    command.add_option("--frames-every", options.frames_every, "a frame for ParaView every so many steps; 0: none (1)")
+        ->check(CLI::Range(0, 100000));
+    command
+        .add_option("--checkpoint-every", options.checkpoint_every,
+                    "keep the run every so many steps, in FOLDER.checkpoint; 0: never (1)")
+        ->check(CLI::Range(0, 100000));
+    command.add_flag("--resume", options.resume, "go on from FOLDER.checkpoint, on any number of ranks");
+    command.add_flag("-q,--quiet", options.quiet, "print errors only");
+    command.add_flag("--json", options.json, "print the summary as JSON");
+    command.footer("Example: mpirun -n 4 pliant-mpi simulate examples/cable_gripper/gripper.toml -o out");
+}
+
+/// The same on all ranks; root tells people.
+int run(const sim::distributed::Ranks& ranks, int argc, char** argv) {
+    CLI::App app(about, "pliant-mpi");
+    app.set_version_flag("--version", std::string(PLIANT_VERSION));
+    app.require_subcommand(1);
+    app::Options options;
+    add_options(*app.add_subcommand("simulate", "run the actuation program of a robot file"), options);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        const bool asked = error.get_exit_code() == 0;
+        if (ranks.is_root()) app.exit(error);
+        return asked ? app::exit_done : app::exit_bad_input;
+    }
+    const Result<int> status = simulate(ranks, options);
+    if (status) return *status;
+    if (ranks.is_root()) fmt::print(stderr, "{}\n", status.error().message);
+    return status.error().cause == Cause::input ? app::exit_bad_input : app::exit_failed;
+}
+
+/// One rank cannot go on, and the others wait for it: all end.
+int give_up(const char* why) {
+    int rank = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    fmt::print(stderr, "pliant-mpi: rank {}: {}\n", rank, why);
+    std::fflush(stderr);
+    MPI_Abort(MPI_COMM_WORLD, app::exit_failed);
+    return app::exit_failed;
+}
+
+}  // namespace
+
+// Only what breaks while an error is told can escape, and that ends the program in any case.
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
+    // Errors come back as values, and signals do what they do to any program.
+    PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
+    if (PetscInitializeNoArguments() != 0) return app::exit_failed;
+    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+    int status = app::exit_failed;
+    try {
+        status = run(sim::distributed::Ranks(PETSC_COMM_WORLD), argc, argv);
+    } catch (const sim::distributed::LibraryFailure& failure) {
+        return give_up(failure.what());
+    } catch (const std::bad_alloc&) {
+        return give_up("out of memory");
+    }
+    PetscFinalize();
+    return status;
+}

@@ -1,0 +1,249 @@
+#include "simulate.hpp"
+
+#include <fmt/core.h>
+#include <sys/resource.h>
+
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "base/core/digest.hpp"
+#include "base/core/files.hpp"
+#include "base/core/own_core.hpp"
+#include "base/core/stopwatch.hpp"
+#include "ending.hpp"
+#include "presentation/report/summary.hpp"
+#include "results.hpp"
+#include "robot/bodies/build.hpp"
+#include "robot/file/robot_file.hpp"
+#include "simulation/distributed/abilities.hpp"
+#include "simulation/distributed/checkpoint.hpp"
+#include "simulation/distributed/frames.hpp"
+#include "simulation/distributed/meeting.hpp"
+#include "simulation/distributed/run.hpp"
+#include "simulation/distributed/spread.hpp"
+#include "simulation/scene/build_description.hpp"
+
+namespace pliant::app {
+namespace {
+
+namespace fs = std::filesystem;
+using sim::distributed::Balance;
+using sim::distributed::Checkpoint;
+using sim::distributed::Frames;
+using sim::distributed::Ranks;
+
+/// What root keeps of the robot after it is spread, for the results; nothing on the other ranks.
+struct Told {
+    std::string name;
+    mesh::TetMesh mesh;
+    std::vector<std::string> notes;
+    double mesh_s = 0;
+    std::optional<sim::ContactRules> contact;
+};
+
+/// What all ranks know before the robot is spread.
+struct Job {
+    sim::Program program;
+    std::string origin;  ///< tells checkpoints apart
+};
+
+fs::path kept_folder(const Options& options) {
+    return options.folder + ".checkpoint";
+}
+
+std::string digest_of(const Options& options, const std::string& text, const mesh::TetMesh& mesh) {
+    Digest digest;
+    digest.add(text.data(), text.size());
+    for (const std::string& change : options.assignments) digest.add(change.data(), change.size());
+    digest.add(mesh.points.data(), mesh.points.size() * sizeof(Vec3));
+    digest.add(mesh.nodes.data(), mesh.nodes.size() * sizeof(int));
+    return digest.text();
+}
+
+/// On root: the robot, meshed and tied together.
+Result<sim::Description> read(const Options& options, Job& job, Told& told) {
+    std::vector<std::string> assignments = options.assignments;
+    if (options.steps > 0) assignments.push_back(fmt::format("program.steps={}", options.steps));
+    Result<robot::Robot> robot = robot::load_robot(options.robot, assignments);
+    if (!robot) return tl::unexpected(robot.error());
+    const Result<std::string> text = read_file(options.robot);
+    if (!text) return tl::unexpected(text.error());
+    Stopwatch watch;
+    Progress silent;
+    Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, silent);
+    if (!mesh) return tl::unexpected(mesh.error());
+    job = {robot->program, digest_of(options, *text, *mesh)};
+    told.name = robot->name;
+    told.notes = mesh->notes;
+    Result<sim::Description> description = robot::build_description(*robot, std::move(*mesh));
+    if (!description) return tl::unexpected(description.error());
+    if (Status able = sim::distributed::check_able(*description, robot->program); !able)
+        return input_error("{}: {}", options.robot, able.error().message);
+    told.mesh = description->mesh;
+    told.contact = description->contact;
+    told.notes.insert(told.notes.end(), description->notes.begin(), description->notes.end());
+    told.mesh_s = watch.read_s();
+    return description;
+}
+
+void broadcast(const Ranks& ranks, Job& job) {
+    static_assert(std::is_trivially_copyable_v<sim::Program>);
+    std::string bytes(sizeof job.program, '\0');
+    std::memcpy(bytes.data(), &job.program, sizeof job.program);
+    ranks.broadcast(bytes);
+    std::memcpy(&job.program, bytes.data(), sizeof job.program);
+    ranks.broadcast(job.origin);
+}
+
+/// The folder in which a run is kept while it goes on. A new run begins with an empty one.
+Status make_kept_folder(const Options& options, const sim::Description& description) {
+    if (options.folder.empty()) return {};
+    if (!may_replace_folder(options.folder, "summary.json"))
+        return input_error("{}: is there already, and holds no results; name another folder", options.folder);
+    const fs::path kept = kept_folder(options);
+    std::error_code code;
+    if (options.resume && fs::exists(kept / "state.h5", code)) return {};
+    if (options.resume) return input_error("{}: no checkpoint is there", kept.string());
+    if (!may_replace_folder(kept, "frames"))
+        return input_error("{}: is there already, and is no checkpoint; move it away", kept.string());
+    fs::remove_all(kept, code);
+    fs::create_directories(kept / "frames", code);
+    if (code) return failure("{}: cannot be made: {}", kept.string(), code.message());
+    return options.frames_every > 0 ? sim::distributed::write_frame_mesh(kept / "frames", description) : Status{};
+}
+
+std::string at_end(const Options& options, int step, int steps) {
+    if (step == 0 || options.folder.empty() || options.checkpoint_every == 0)
+        return "pliant-mpi: the job has been ended from outside\n";
+    const int kept = step - step % options.checkpoint_every;
+    if (kept == 0) return "pliant-mpi: the job has been ended from outside, before the first checkpoint\n";
+    return fmt::format(
+        "pliant-mpi: the job has been ended from outside; the same command with --resume goes on after step {} of {}\n",
+        kept, steps);
+}
+
+/// Callbacks of a run; `frames` and `checkpoint` must outlive it.
+sim::distributed::RunOptions run_options(const Ranks& ranks, const Options& options, const Job& job, Frames& frames,
+                                         const Checkpoint& checkpoint) {
+    sim::distributed::RunOptions run{.preconditioner = options.preconditioner};
+    const int steps = job.program.steps;
+    run.on_step = [&ranks, &options, &frames, steps](const sim::Step& step, const Eigen::VectorXd& x) -> Status {
+        if (ranks.is_root() && !options.quiet && !options.json && step.index > 0) {
+            fmt::print("step {} of {}: {} iterations, residual {:.1e}, {:.2f} s\n", step.index, steps, step.iterations,
+                       step.residual, step.wall_s);
+            std::fflush(stdout);
+        }
+        const bool drawn = options.frames_every > 0 && step.index % options.frames_every == 0;
+        return drawn && !options.folder.empty() ? frames.write(step.index, x) : Status{};
+    };
+    run.on_checkpoint = [&ranks, &options, &checkpoint, steps](const sim::distributed::RunState& state) -> Status {
+        if (options.folder.empty() || options.checkpoint_every == 0 || state.step % options.checkpoint_every != 0)
+            return {};
+        Status status = checkpoint.keep(state);
+        if (status && ranks.is_root()) say_at_end(at_end(options, state.step, steps));
+        return status;
+    };
+    return run;
+}
+
+double peak_memory_MB(const Ranks& ranks) {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return ranks.sum(static_cast<double>(usage.ru_maxrss) / 1024);
+}
+
+void print_work(const sim::distributed::RunResult& result, double memory_MB) {
+    const sim::distributed::LinearWork &work = result.work, &turning = result.turning;
+    fmt::print("{} matrices: {:.2f} s to assemble, {:.2f} s to set up; {} solutions, {} iterations, {:.2f} s\n",
+               work.matrices, work.assemble_s, work.set_up_s, work.solutions, work.iterations, work.solve_s);
+    fmt::print("steps that turn: {:.2f} s to set up; {} solutions, {} iterations, {:.2f} s; {:.0f} MB in all\n",
+               turning.set_up_s, turning.solutions, turning.iterations, turning.solve_s, memory_MB);
+}
+
+/// On root.
+Result<int> tell(const Ranks& ranks, const Options& options, const Job& job, const Told& told,
+                 sim::distributed::RunResult result, double memory_MB) {
+    result.trajectory.warnings.insert(result.trajectory.warnings.begin(), told.notes.begin(), told.notes.end());
+    report::Simulation simulation{.robot = told.name, .mesh = told.mesh, .result = result.trajectory};
+    simulation.tolerance = job.program.tolerance;
+    simulation.peak_memory_MB = memory_MB;
+    simulation.timing.mesh_s = told.mesh_s;
+    if (!options.folder.empty()) {
+        if (Status status = write_results(options.folder, kept_folder(options), simulation); !status)
+            return tl::unexpected(status.error());
+        std::error_code code;
+        fs::remove_all(kept_folder(options), code);
+    }
+    if (options.json) {
+        fmt::print("{}", report::summary_json(simulation));
+    } else if (!options.quiet) {
+        print_summary(simulation, ranks.count());
+        print_work(result, memory_MB);
+        if (!options.folder.empty()) fmt::print("results: {}, open frames.xdmf there in ParaView\n", options.folder);
+    }
+    for (const std::string& warning : result.trajectory.warnings)
+        fmt::print(stderr, "{}: warning: {}\n", options.robot, warning);
+    if (result.trajectory.converged) return exit_done;
+    return failure("{}: {}", options.robot, result.trajectory.message);
+}
+
+Result<int> solve(const Ranks& ranks, const Options& options, const Job& job, Told told, sim::Description description) {
+    Result<Balance> balance = sim::distributed::spread(ranks, std::move(description));
+    if (!balance) {
+        const Error& error = balance.error();
+        return tl::unexpected(Error{error.cause, options.robot + ": " + error.message});
+    }
+    Frames frames(*balance, kept_folder(options) / "frames");
+    const Checkpoint checkpoint(*balance, kept_folder(options), job.origin);
+    const sim::distributed::Meeting meeting(*balance, told.contact);
+    if (meeting.crosses_at_rest())
+        told.notes.push_back("the robot passes through itself already at rest: nothing looks whether it meets itself");
+    auto run = run_options(ranks, options, job, frames, checkpoint);
+    run.meets = [&meeting](const Eigen::VectorXd& from, const Eigen::VectorXd& to) { return meeting.meets(from, to); };
+    if (options.resume) {
+        Result<sim::distributed::RunState> begin = checkpoint.read(job.program);
+        if (!begin) return tl::unexpected(begin.error());
+        if (ranks.is_root() && !options.quiet && !options.json)
+            fmt::print("going on after step {} of {}\n", begin->step, job.program.steps);
+        if (ranks.is_root()) say_at_end(at_end(options, begin->step, job.program.steps));
+        run.begin = std::move(*begin);
+    }
+    Result<sim::distributed::RunResult> result = sim::distributed::run(*balance, job.program, std::move(run));
+    if (!result) return tl::unexpected(result.error());
+    const double memory_MB = peak_memory_MB(ranks);
+    Result<int> status = exit_done;
+    const bool converged = result->trajectory.converged;
+    if (ranks.is_root()) status = tell(ranks, options, job, told, std::move(*result), memory_MB);
+    if (Status all = ranks.agree(status ? Status{} : tl::unexpected(status.error())); !all)
+        return tl::unexpected(all.error());
+    return converged ? exit_done : exit_failed;
+}
+
+}  // namespace
+
+Result<int> simulate(const Ranks& ranks, const Options& options) {
+    if (options.resume && options.folder.empty())
+        return input_error("--resume needs --output: the checkpoint stands beside that folder");
+    say_at_end(ranks.is_root() ? at_end(options, 0, 0) : "");
+    Job job;
+    Told told;
+    sim::Description description;
+    Status status{};
+    if (ranks.is_root()) {
+        Result<sim::Description> read_one = read(options, job, told);
+        if (read_one) description = std::move(*read_one);
+        status = read_one ? make_kept_folder(options, description) : Status(tl::unexpected(read_one.error()));
+    }
+    if (status = ranks.agree(status); !status) return tl::unexpected(status.error());
+    broadcast(ranks, job);
+    Result<int> result = exit_failed;
+    // One thread for each rank: mpirun and srun say how many ranks share a machine.
+    on_own_core([&] { result = solve(ranks, options, job, std::move(told), std::move(description)); });
+    return result;
+}
+
+}  // namespace pliant::app
