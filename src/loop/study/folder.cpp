@@ -15,12 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// True if the folder holds only what a study killed before it had a plan may have left.
+/// True if the folder holds only what a study killed before it had a plan may have left, or a plan that another process
+/// has placed just now.
 bool is_beginning(const fs::path& folder) {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
         const std::string name = entry.path().filename().string();
-        if (name != "records" && name != "lock" && name != "slurm" && name != "rows" && !name.starts_with("plan.json."))
+        if (name != "records" && name != "lock" && name != "slurm" && name != "rows" && name != "plan.json" &&
+            !name.starts_with("plan.json."))
             return false;
     }
     return !error;
