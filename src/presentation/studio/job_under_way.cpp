@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "presentation/studio/dumped.hpp"
 #include "printing/job/manifest.hpp"
 
 namespace pliant::studio {
@@ -52,8 +53,7 @@ std::string JobUnderWay::json() const {
     Json listed = Json::parse(job::to_json(manifest));
     std::size_t i = 0;
     for (const auto& [number, kept] : kept_) listed["layers"][i++]["number"] = number;
-    return Json{{"layers", layers_}, {"count", count_}, {"colours", colours_}, {"manifest", std::move(listed)}}.dump(
-        -1, ' ', false, Json::error_handler_t::replace);
+    return dumped({{"layers", layers_}, {"count", count_}, {"colours", colours_}, {"manifest", std::move(listed)}});
 }
 
 Result<std::string> JobUnderWay::image(int layer, int material) const {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/journal_names.hpp"
 #include "printing/host/journal.hpp"
 #include "printing/host/journal_facts.hpp"
@@ -40,10 +41,6 @@ Json line_of(const std::string& name, const host::JournalFacts& facts) {
             {"state", state_of(facts)},
             {"lights", std::count_if(facts.lights.begin(), facts.lights.end(), given)},
             {"layer", facts.last_light ? facts.lights.at(*facts.last_light).layer : -1}};
-}
-
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 /// "layer=3 material=0 planned=2.5", the first line of a program.

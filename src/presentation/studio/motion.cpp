@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/state_json.hpp"
 #include "simulation/run/simulate.hpp"
 
@@ -12,10 +13,6 @@ namespace pliant::studio {
 namespace {
 
 using Json = nlohmann::json;
-
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 }  // namespace
 

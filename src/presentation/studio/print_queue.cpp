@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/core/files.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "printing/job/job.hpp"
 #include "printing/operate/job_file.hpp"
 
@@ -12,10 +13,6 @@ namespace pliant::studio {
 namespace {
 
 using Json = nlohmann::json;
-
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 /// The total time in the job's plan; nullopt: it has none.
 std::optional<double> planned_s(const job::Archive& archive) {

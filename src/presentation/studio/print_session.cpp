@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "presentation/studio/access.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/growing_part.hpp"
 #include "presentation/studio/journal_names.hpp"
+#include "presentation/studio/printer_files.hpp"
 #include "printing/host/journal.hpp"
 #include "printing/host/journal_facts.hpp"
 #include "printing/machine/switches.hpp"
@@ -24,10 +26,6 @@ using Json = nlohmann::json;
 
 constexpr std::chrono::milliseconds between_messages{200};
 constexpr double slowest = 0.1, fastest = 10000;
-
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 double mm(int um) {
     return um / 1e3;
@@ -80,13 +78,9 @@ Json printer_json(const machine::Printer& p) {
     }
     for (const machine::Vat& vat : p.vats)
         vats.push_back({{"slot", vat.slot}, {"resin", vat.resin}, {"fill_ml", vat.fill_ml}});
-    const char* store = p.store() == machine::Store::tower   ? "tower"
-                        : p.store() == machine::Store::wall  ? "wall"
-                        : p.store() == machine::Store::table ? "table"
-                                                             : "none";
     Json json = {
         {"name", p.name},
-        {"store", store},
+        {"store", store_name(p.store())},
         {"axes", axes},
         {"vats", vats},
         {"carriage", {{"print", mm(p.carriage.print_um)}, {"tower", mm(p.carriage.tower_um)}}},

@@ -4,6 +4,7 @@
 
 #include "base/core/files.hpp"
 #include "base/core/toml_edit.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
 #include "presentation/studio/print_session.hpp"
 #include "printing/machine/board_report.hpp"
@@ -17,25 +18,8 @@ using Json = nlohmann::json;
 
 constexpr std::uintmax_t largest_file = 4 << 20;
 
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 double mm(int um) {
     return um / 1e3;
-}
-
-const char* store_of(const machine::Printer& p) {
-    switch (p.store()) {
-        case machine::Store::tower:
-            return "tower";
-        case machine::Store::wall:
-            return "wall";
-        case machine::Store::table:
-            return "table";
-        default:
-            return "none";
-    }
 }
 
 Json axes_json(const machine::Printer& p) {
@@ -90,6 +74,19 @@ Result<std::filesystem::path> own_file(const ProjectFolder& folder, const std::s
 }
 
 }  // namespace
+
+std::string_view store_name(machine::Store store) {
+    switch (store) {
+        case machine::Store::tower:
+            return "tower";
+        case machine::Store::wall:
+            return "wall";
+        case machine::Store::table:
+            return "table";
+        default:
+            return "none";
+    }
+}
 
 Result<prepare::PrinterFile> read_printer(const ProjectFolder& folder, const std::string& name) {
     auto text = text_of(folder, name);
@@ -146,7 +143,7 @@ std::string printer_setup_json(const std::string& name, const machine::Printer& 
     return dumped({{"name", name},
                    {"title", p.name},
                    {"built_in", built_in},
-                   {"store", store_of(p)},
+                   {"store", store_name(p.store())},
                    {"layer_um", p.layer_um},
                    {"baud_rate", p.controller.baud_rate},
                    {"dialect", p.controller.dialect == machine::Dialect::marlin ? "marlin" : "marlin-classic"},
@@ -170,7 +167,7 @@ std::string built_in_printers_json() {
         list.push_back(
             {{"name", file.name},
              {"title", p->name},
-             {"store", store_of(*p)},
+             {"store", store_name(p->store())},
              {"vats", p->vats.size()},
              {"size_mm", {mm(p->platform.width_um), mm(p->platform.depth_um), mm(p->platform.build_height_um)}},
              {"pixel_um", p->projector.pixel_um},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,9 @@
 #include "printing/prepare/slice_job.hpp"
 
 namespace pliant::studio {
+
+/// How a machine keeps its vats, as the pages name it: "tower", "wall", "table" or "none".
+[[nodiscard]] std::string_view store_name(machine::Store store);
 
 /// A built-in printer ("tower") or one of the folder ("mine.toml"), with its mask, which must be in the folder too.
 /// Errors: it does not exist, or is invalid.

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
 #include "presentation/studio/job_json.hpp"
 #include "presentation/studio/job_part.hpp"
@@ -17,10 +18,6 @@ namespace pliant::studio {
 namespace {
 
 using Json = nlohmann::json;
-
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 Response no_job() {
     return error_response(404, "there is no job yet: slice the robot, or open a job file");

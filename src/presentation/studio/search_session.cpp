@@ -8,6 +8,7 @@
 #include "presentation/report/identified.hpp"
 #include "presentation/report/inverse_tables.hpp"
 #include "presentation/report/workspace_files.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/sweep.hpp"
 #include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
@@ -21,10 +22,6 @@ namespace pliant::studio {
 namespace {
 
 using Json = nlohmann::json;
-
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 Result<SearchResult> found_inputs(const Built& built, const sim::InverseTask& task, Progress& progress) {
     sim::StepperOptions stepping = sim::stepper_options(built.robot.program);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/state_json.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/run/simulate.hpp"
@@ -24,10 +25,6 @@ constexpr std::chrono::milliseconds pause{80};      // after the last input befo
                                                     // come faster
 constexpr double quick_s = 0.05;                    // per increment: fast enough for interaction
 constexpr double slow_s = 0.15;
-
-std::string dumped(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 double diagonal(const std::vector<Vec3>& points) {
     Vec3 low = points.front(), high = points.front();

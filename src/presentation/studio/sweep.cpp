@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "presentation/studio/dumped.hpp"
 #include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/run/simulate.hpp"
@@ -152,8 +153,7 @@ std::string sweep_json(const SweepOrder& order, const Sweep& sweep) {
         columns.push_back({{"key", column.key}, {"label", column.label}, {"unit", column.unit}});
     for (const SweepRun& run : sweep.runs)
         runs.push_back({{"inputs", run.inputs}, {"results", run.results}, {"why", run.why}});
-    const Json json = {{"axes", axes}, {"columns", columns}, {"runs", runs}};
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return dumped({{"axes", axes}, {"columns", columns}, {"runs", runs}});
 }
 
 }  // namespace pliant::studio
