@@ -113,19 +113,8 @@ Eigen::VectorXd Inertia::mass_times(const Eigen::VectorXd& v) const {
 Eigen::VectorXd Inertia::stiffness_times(const Eigen::VectorXd& v) const {
     Eigen::VectorXd force = Eigen::VectorXd::Zero(v.size());
     if (!stiffness_) return force;
-    const linalg::SymmetricPattern& pattern = *stiffness_->pattern;
-    const auto& index = *free_index_;
-    Eigen::VectorXd free = Eigen::VectorXd::Zero(pattern.size());
-    for (std::size_t node = 0; node < index.size(); ++node) {
-        if (index[node] >= 0) free.segment<3>(3 * index[node]) = v.segment<3>(3 * static_cast<Eigen::Index>(node));
-    }
-    Eigen::VectorXd product = Eigen::VectorXd::Zero(pattern.size());
-    linalg::add_product(pattern, stiffness_->values, {free.data(), static_cast<std::size_t>(free.size())}, 1,
-                        {product.data(), static_cast<std::size_t>(product.size())});
-    for (std::size_t node = 0; node < index.size(); ++node) {
-        if (index[node] >= 0)
-            force.segment<3>(3 * static_cast<Eigen::Index>(node)) = product.segment<3>(3 * index[node]);
-    }
+    linalg::add_product(*stiffness_->pattern, stiffness_->values, {v.data(), static_cast<std::size_t>(v.size())}, 1,
+                        {force.data(), static_cast<std::size_t>(force.size())});
     return force;
 }
 
@@ -166,14 +155,11 @@ void Inertia::add_hessian(const std::vector<int>& index, const linalg::Symmetric
     elements_->add_mass(index, pattern, values, mass_entry_);
     if (!stiffness_) return;
     const linalg::SymmetricPattern& own = *stiffness_->pattern;
-    std::vector<int> place(static_cast<std::size_t>(own.nodes));  // of each free node in the pattern
-    for (std::size_t node = 0; node < index.size(); ++node) {
-        if ((*free_index_)[node] >= 0) place[static_cast<std::size_t>((*free_index_)[node])] = index[node];
-    }
     const double factor = rate_ * damping_.stiffness_s;
     for (int j = 0; j < own.nodes; ++j) {
         for (int k = own.node_start[j]; k < own.node_start[j + 1]; ++k) {
-            const int row = place[own.node_row[k]], column = place[j];
+            const int row = index[static_cast<std::size_t>(own.node_row[k])], column = index[static_cast<std::size_t>(j)];
+            if (row < 0 || column < 0) continue;
             const double* block = stiffness_->values.data() + static_cast<std::size_t>(k) * own.block_entries();
             if (row >= column)
                 pattern.add_block(values, row, column, [&](int r, int c) { return factor * block[3 * c + r]; });

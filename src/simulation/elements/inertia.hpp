@@ -34,7 +34,8 @@ enum class Scheme {
     conserving,  ///< mean of the forces along the path, with the mean of the velocities at its ends
 };
 
-/// A symmetric matrix over free nodes. The pattern is the same for all steps.
+/// A symmetric matrix over all nodes: those that supports hold move too, and what moves as a whole is not damped. The
+/// pattern is the same for all steps.
 struct StiffnessMatrix {
     std::shared_ptr<const linalg::SymmetricPattern> pattern;  ///< block 3
     std::vector<double> values;

@@ -125,3 +125,21 @@ TEST_CASE("a free swing at large amplitude gains no energy, and damping brings i
         }
     }
 }
+
+TEST_CASE("stiffness damping acts on deformation alone: a body that its support carries at constant speed feels none") {
+    constexpr double way = 0.5, duration = 1;
+    Description d = beam(2, 0);
+    d.supports[0].move_m = {way, 0, way};
+    d.supports[0].share = {{0, duration}, {0, 1}};
+    const Trajectory carried = solve(
+        d, {.steps = 50, .duration = duration, .tolerance = 1e-5, .dynamics = Dynamics{Damping{0, 0.02}}});
+    REQUIRE_MESSAGE(carried.converged, carried.message);
+    const Step& last = carried.steps.back();
+    // What the start shook has come to rest.
+    const double mass = density * length * thickness * thickness;
+    CHECK(last.kinetic_energy_J == near(0.5 * mass * 2 * way * way, {.relative = 1e-3}));
+    CHECK(last.markers[0].position_m.x == near(length + way, {.relative = 1e-4}));
+    CHECK(last.markers[0].position_m.z == near(thickness / 2 + way, {.relative = 1e-4}));
+    const double weight = 9.81 * mass;
+    CHECK(norm(last.supports[0].force_N) < 1e-2 * weight);
+}

@@ -1,7 +1,10 @@
 #include "simulation/stepper/motion_in_time.hpp"
 
 #include <Eigen/Geometry>
+#include <numeric>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "base/linalg/sparse.hpp"
 #include "base/linalg/vectors.hpp"
@@ -53,10 +56,11 @@ double MotionInTime::kinetic_energy_J(const History& history) const {
     return 0.5 * history.v.dot(momentum);
 }
 
-/// Layout of the elements alone, for stiffness damping.
+/// Layout of the elements alone, over all nodes, for stiffness damping.
 std::shared_ptr<const TangentLayout> MotionInTime::make_body_layout() const {
-    const auto& index = model_.free_index();
-    TangentLayout layout{linalg::make_pattern(model_.free_count(), 3, model_.elements().cliques(index)), {}};
+    std::vector<int> index(model_.free_index().size());
+    std::iota(index.begin(), index.end(), 0);
+    TangentLayout layout{linalg::make_pattern(static_cast<int>(index.size()), 3, model_.elements().cliques(index)), {}};
     layout.element_sums = model_.elements().block_sums(index, layout.pattern);
     return std::make_shared<const TangentLayout>(std::move(layout));
 }
