@@ -158,7 +158,8 @@ void Inertia::add_hessian(const std::vector<int>& index, const linalg::Symmetric
     const double factor = rate_ * damping_.stiffness_s;
     for (int j = 0; j < own.nodes; ++j) {
         for (int k = own.node_start[j]; k < own.node_start[j + 1]; ++k) {
-            const int row = index[static_cast<std::size_t>(own.node_row[k])], column = index[static_cast<std::size_t>(j)];
+            const int row = index[static_cast<std::size_t>(own.node_row[k])],
+                      column = index[static_cast<std::size_t>(j)];
             if (row < 0 || column < 0) continue;
             const double* block = stiffness_->values.data() + static_cast<std::size_t>(k) * own.block_entries();
             if (row >= column)

@@ -58,7 +58,7 @@ struct StiffnessMatrix {
 /// is that of the energy there times w/s. Inertia is then 2/h^2 M (x - x_n - h v_n), damping C (x - x_n)/h.
 class Inertia {
 public:
-    /// `stiffness` may be null where there is no damping by stiffness; all must outlive the step.
+    /// `stiffness` is over all nodes, or null where there is no damping by stiffness; all must outlive the step.
     Inertia(const Elements& elements, const std::vector<int>& free_index, History history, double dt,
             const Damping& damping, std::shared_ptr<const StiffnessMatrix> stiffness, Scheme scheme = Scheme::even);
 

@@ -193,7 +193,7 @@ TEST_CASE("motion in time") {
     const Case c(std::move(d));
     State state = disturbed(c.system, 0, 2e3);
     const State before = disturbed(c.system, 0, 0, 4), rest = c.system.rest();
-    const TangentLayout layout = c.system.lay_out_tangent();
+    const TangentLayout layout = c.system.lay_out_tangent({}, TangentNodes::all);
     auto stiffness = std::make_shared<StiffnessMatrix>();
     stiffness->pattern = std::make_shared<const linalg::SymmetricPattern>(layout.pattern);
     stiffness->values.assign(layout.pattern.entries(), 0.0);

@@ -131,8 +131,8 @@ TEST_CASE("stiffness damping acts on deformation alone: a body that its support 
     Description d = beam(2, 0);
     d.supports[0].move_m = {way, 0, way};
     d.supports[0].share = {{0, duration}, {0, 1}};
-    const Trajectory carried = solve(
-        d, {.steps = 50, .duration = duration, .tolerance = 1e-5, .dynamics = Dynamics{Damping{0, 0.02}}});
+    const Trajectory carried =
+        solve(d, {.steps = 50, .duration = duration, .tolerance = 1e-5, .dynamics = Dynamics{Damping{0, 0.02}}});
     REQUIRE_MESSAGE(carried.converged, carried.message);
     const Step& last = carried.steps.back();
     // What the start shook has come to rest.

@@ -197,7 +197,7 @@ inline RandomProgram random_free_program(unsigned seed) {
     made.program.steps = 3 + dice.up_to(9);
     made.program.iteration_limit = 60;
     if (dice.chance(0.8)) {
-        made.program.dynamics = Dynamics{{dice.between(0, 2), 0}};
+        made.program.dynamics = Dynamics{{dice.between(0, 2), dice.chance(0.5) ? dice.between(0, 0.01) : 0}};
         made.program.duration = made.program.steps * std::pow(10, dice.between(-3.3, -1.7));
     }
     return made;

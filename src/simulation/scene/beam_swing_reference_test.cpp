@@ -24,8 +24,8 @@ struct Point {
 /// What the tip has sunk by, from its release on.
 std::vector<Point> measured(const std::string& run) {
     std::vector<Point> points;
-    for (const auto& row :
-         sim::reference::load_csv(sim::reference::data_folder() + "/experiments/beam_dragonskin10/series_" + run + ".csv"))
+    for (const auto& row : sim::reference::load_csv(sim::reference::data_folder() +
+                                                    "/experiments/beam_dragonskin10/series_" + run + ".csv"))
         points.push_back({std::stod(row.at("t_s")), -std::stod(row.at("tip1_dz_mm"))});
     return points;
 }
@@ -57,8 +57,8 @@ double lowest_mm(const std::vector<Point>& points) {
     return std::ranges::max_element(points, {}, &Point::sunk_mm)->sunk_mm;
 }
 
-/// Both swing about the same rest, and as fast, within 5 %: the modulus of silicone in motion is a few percent larger than at
-/// rest. The first swing goes at most 12 % lower, because the hand took some 0.03 s to let go.
+/// Both swing about the same rest, and as fast, within 5 %: the modulus of silicone in motion is a few percent larger
+/// than at rest. The first swing goes at most 12 % lower, because the hand took some 0.03 s to let go.
 void check_swing(const std::string& at_rest, const std::string& in_swing, const std::string& run, double seconds) {
     const std::vector<Point> still = simulated(at_rest), ours = simulated(in_swing), theirs = measured(run);
     double rest_mm = 0;

@@ -1,5 +1,5 @@
-// A robot of the SoftRobots examples in the scene in which it is published (softrobots/README.md of the reference data):
-// on the ground, held by nothing.
+// A robot of the SoftRobots examples in the scene in which it is published (softrobots/README.md of the reference
+// data): on the ground, held by nothing.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
