@@ -15,7 +15,7 @@ TEST_CASE("a small number is not near another one because both are small") {
     CHECK(1.69e-5 == near(1.7e-5, {.relative = 1e-2}));
 }
 
-TEST_CASE("the larger tolerance counts, and its edge is inside") {
+TEST_CASE("the larger tolerance counts, and its limit is included") {
     CHECK(1.5 == near(1, {.relative = 0.5}));
     CHECK(0.5 == near(1, {.absolute = 0.5}));
     CHECK_FALSE(1.500001 == near(1, {.relative = 0.5}));
@@ -44,7 +44,7 @@ TEST_CASE("NaN is near nothing, an infinity only itself") {
     CHECK(nan != near(nan, {.relative = 1}));
 }
 
-TEST_CASE("whole numbers are measured as well") {
+TEST_CASE("integers are compared with tolerances too") {
     const std::size_t count = 99;
     CHECK(count == near(100, {.relative = 0.01}));
     CHECK(count != near(100, {.relative = 0.001}));

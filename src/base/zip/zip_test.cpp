@@ -170,7 +170,7 @@ TEST_CASE("duplicate or overlong names and oversized entries are refused") {
     CHECK(read->read(longest, 9).value() == "3");
 }
 
-TEST_CASE("nothing is left without close(), or when the disk is full") {
+TEST_CASE("nothing is left without close(), or on a full disk") {
     const File file;
     { CHECK(ZipWriter::create(file.path)->add("a", "1", Method::store).has_value()); }
     CHECK_FALSE(fs::exists(file.path));
@@ -191,7 +191,7 @@ TEST_CASE("nothing is left without close(), or when the disk is full") {
     CHECK(holds(ZipWriter::create(file.folder / "none/a.zip").error().message, "cannot be written: "));
 }
 
-TEST_CASE("what is not a file or not an archive is refused") {
+TEST_CASE("missing files, folders, pipes and files that are no archive are refused") {
     const File file;
     CHECK(ZipReader::open(file.path).error().message == file.path.string() + ": no such file");
     CHECK(holds(ZipReader::open(file.folder.path()).error().message, ": is not a regular file"));
@@ -253,7 +253,7 @@ TEST_CASE("64-bit sizes are read and checked like 32-bit ones") {
     }
 }
 
-TEST_CASE("more entries than two bytes can count") {
+TEST_CASE("an archive with more than 65,535 entries is written and read") {
     const File file;
     constexpr int count = 70000;
     {

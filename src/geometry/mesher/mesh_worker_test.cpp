@@ -68,7 +68,7 @@ TEST_CASE("one process serves request after request, and a killed one is replace
     CHECK(meshers() != before);
 }
 
-TEST_CASE("requests at one time have processes of their own and the same answers") {
+TEST_CASE("simultaneous requests have separate processes and get the same answers") {
     Progress silent;
     const Result<TetMesh> expected = mesh_cube(2, silent);
     REQUIRE(expected);
@@ -134,7 +134,7 @@ TEST_CASE("time and memory limits are reported") {
 #endif
 }
 
-TEST_CASE("a missing or wrong mesher is reported by name") {
+TEST_CASE("a missing or invalid mesher is reported by name") {
     kill_all();
     Progress silent;
     {

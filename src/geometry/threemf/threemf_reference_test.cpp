@@ -108,7 +108,7 @@ TEST_CASE("consortium: core, units, colours, production") {
     CHECK(volume(production) == near(112366.3, {.relative = 1e-6}));
 }
 
-TEST_CASE("consortium: slice stacks have the area times height of the bodies they were made of") {
+TEST_CASE("consortium: slice stacks have the volume of the bodies they were made from") {
     const ThreeMf box = read("consortium/slices_box_sliced.3mf"), sphere = read("consortium/slices_sphere_sliced.3mf");
     REQUIRE(box.bodies.size() == 1);
     CHECK(stack_volume(box.bodies[0]) == near(6173.54, {.relative = 1e-5}));

@@ -57,7 +57,7 @@ Records survived() {
 
 }  // namespace
 
-TEST_CASE("a journal is told: light in pieces adds up, the clock counts on, faults are survived") {
+TEST_CASE("a print's story: parts of an exposure add up, the time continues, faults were survived") {
     const PrintStory story = story_of(survived()).value();
     CHECK(story.end == PrintEnd::complete);
     CHECK(story.sessions == 2);
@@ -75,7 +75,7 @@ TEST_CASE("a journal is told: light in pieces adds up, the clock counts on, faul
     CHECK(story.happenings[1].text == "the computer has been started anew, and the controller has lost its position");
 }
 
-TEST_CASE("a print that was broken off and left says so; one that is damaged names the record") {
+TEST_CASE("a print left unfinished is called interrupted; a damaged journal names the record") {
     Records records = survived();
     records.resize(5);  // the exposure of layer 1 is on
     const PrintStory story = story_of(records).value();
@@ -88,7 +88,7 @@ TEST_CASE("a print that was broken off and left says so; one that is damaged nam
     CHECK(story_of({}).value().end == PrintEnd::not_begun);
 }
 
-TEST_CASE("a pause tells what somebody was asked to do") {
+TEST_CASE("a pause says what somebody was asked to do") {
     Records records = survived();
     records.resize(4);  // begin, session, light and dark of layer 0
     add(records, "pause", {{"asked", "refill the vat of slot 2 with rigid-flex"}});
@@ -102,7 +102,7 @@ TEST_CASE("a pause tells what somebody was asked to do") {
     CHECK(story.faults == 0);
 }
 
-TEST_CASE("a plot over the layers has a line for every series, and rounds its scale") {
+TEST_CASE("a plot over the layers has a line for every series, and a rounded scale") {
     const std::string svg = layer_plot("Light", "s", {{"soft <i>", "red", {{0, 0}, {9, 3}}, false}}, 10);
     CHECK(svg.find("points=\"54.0,222.0 590.0,8.0 \"") != std::string::npos);
     CHECK(svg.find(">2.5</text>") == std::string::npos);
@@ -110,7 +110,7 @@ TEST_CASE("a plot over the layers has a line for every series, and rounds its sc
     CHECK(svg.find("soft &lt;i&gt;") != std::string::npos);
 }
 
-TEST_CASE("the report of a print is one page: pictures, lights, faults, resin; another job's journal is refused") {
+TEST_CASE("a print report is one page with pictures, exposures, faults and resin; another job's journal is refused") {
     const pliant::test::Folder folder("report");
     const fs::path file = folder / "job.zip", journal = folder / "job.zip.journal";
     machine::Printer printer = plan::test::tower();

@@ -48,7 +48,7 @@ TEST_CASE("motion is symmetric in time") {
     CHECK(position_at(way, {}, to, 99).um[0] == 100000);
 }
 
-TEST_CASE("homing goes to the switch at homing speed") {
+TEST_CASE("homing takes the distance to the switch over the homing speed") {
     const Printer p = simple();
     CHECK(home_seconds(p, Axis::platform, 40000) == near(12, {.relative = 1e-12}));
     CHECK(home_seconds(p, Axis::carriage, 40000) == near(8, {.relative = 1e-12}));

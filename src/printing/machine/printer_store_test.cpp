@@ -54,7 +54,7 @@ TEST_CASE("a magnet instead of hooks is read, and its force is checked") {
               .empty());
 }
 
-TEST_CASE("mistakes in the table of a magnet are named") {
+TEST_CASE("mistakes in a magnet's table are named") {
     check_slips("tower_magnet",
                 {{"\"electromagnet\"", "\"magnet\"", "hooks.kind"},
                  {"on = \"M42 P11 S255\"", "on = \"G1 X5\"", "must be an M106, M107 or M42 command"},
@@ -70,7 +70,7 @@ TEST_CASE("mistakes in the table of a magnet are named") {
     check_slips("tower", {{"[hooks]\n", "[hooks]\nengage = \"1 s\"\n", "needs kind = \"electromagnet\""}});
 }
 
-TEST_CASE("a wall of vats has its places in rows and columns") {
+TEST_CASE("a wall of vats has slots in rows and columns") {
     const Printer p = load_printer("examples/printers/wall.toml").value();
     CHECK(p.store() == Store::wall);
     CHECK(p.has_carriage());
@@ -83,7 +83,7 @@ TEST_CASE("a wall of vats has its places in rows and columns") {
     CHECK(axis_name(Axis::tower, p.store()) == "lift");
 }
 
-TEST_CASE("mistakes in the table of a wall are named") {
+TEST_CASE("mistakes in a wall's table are named") {
     check_slips("wall",
                 {{"rows = 4", "rows = 0", "wall.rows: is 0, must be from 1 to 100"},
                  {"bay = [\"480 mm\", \"300 mm\"]", "bay = [\"480 mm\"]", "wall.bay"},

@@ -64,7 +64,7 @@ TEST_CASE("if the host is killed during an exposure, the guard turns it off and 
     CHECK(*on_s <= now_s() - before_s);
 }
 
-TEST_CASE("a host killed between its note and the exposure has given none") {
+TEST_CASE("a host killed between its journal entry and the exposure: 0 s of light") {
     const pliant::test::Folder folder;
     const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
     die(options, [](ProcessGuard&) {});
@@ -72,7 +72,7 @@ TEST_CASE("a host killed between its note and the exposure has given none") {
     CHECK(std::filesystem::exists(options.shown));
 }
 
-TEST_CASE("a host killed between exposure and note: it was on until then") {
+TEST_CASE("a host killed between an exposure and its journal entry: the whole exposure counts") {
     const pliant::test::Folder folder;
     const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
     die(options, [&](ProcessGuard& guard) {

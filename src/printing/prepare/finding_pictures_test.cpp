@@ -49,7 +49,7 @@ TEST_CASE("an island is listed, and white in its picture") {
     CHECK(std::count(image->pixels.begin(), image->pixels.end(), 255) == 24);
 }
 
-TEST_CASE("the grain of the raster is one finding, after those that matter") {
+TEST_CASE("islands of raster size are one finding, after the important ones") {
     slice::Findings found;
     const auto group = [](slice::Severity severity, int islands, std::int64_t pixels, int layer) {
         slice::IslandGroup g;

@@ -196,7 +196,7 @@ TEST_CASE("the display shows a job's images pixel by pixel, and black before, be
     CHECK_FALSE(release_display(0).value());
 }
 
-TEST_CASE("lights end by themselves and are as long as asked, to a frame of 60 Hz, by the frames presented") {
+TEST_CASE("an exposure ends by itself and lasts the time asked for, to one frame of 60 Hz") {
     Session session;
     if (cannot_start(session)) return;
     const job::Image white = test_pattern("white", {width_px, height_px, 0, 1, 5, 3}).value();
@@ -221,7 +221,7 @@ TEST_CASE("lights end by themselves and are as long as asked, to a frame of 60 H
     CHECK(comes([&] { return session.server.all(0); }));  // the host does nothing
 }
 
-TEST_CASE("kill -9 of the host in the middle of a light leaves black, and the next host goes on") {
+TEST_CASE("killing the host during an exposure makes the display black, and the next host can continue") {
     Session session;
     if (cannot_start(session)) return;
     const Server& x = session.server;
@@ -259,7 +259,7 @@ TEST_CASE("kill -9 of the host in the middle of a light leaves black, and the ne
     CHECK(comes([&] { return x.all(0); }));
 }
 
-TEST_CASE("when the process that holds the display is killed, another one makes it black again") {
+TEST_CASE("if the process that holds the display is killed, another one makes it black") {
     Session session;
     if (cannot_start(session)) return;
     const Server& x = session.server;
@@ -274,7 +274,7 @@ TEST_CASE("when the process that holds the display is killed, another one makes 
     CHECK(comes([&] { return ScreenProjector::open("0", options()).has_value(); }));
 }
 
-TEST_CASE("a display of another size, or one that is not there, is an error with numbers") {
+TEST_CASE("a display of another size, or a missing one, is an error with numbers") {
     Session session;
     if (cannot_start(session)) return;
     const auto wrong = ScreenProjector::open("0", options(1920, 1080));

@@ -46,7 +46,7 @@ TEST_CASE("M110 sets the number") {
     CHECK(reader.last_number() == 41);
 }
 
-TEST_CASE("lines without a number are not verified; comments, blanks and empty lines are dropped") {
+TEST_CASE("lines without a number are not checked; comments, blanks and empty lines are removed") {
     LineReader reader;
     CHECK(read(reader, " M400*33\n")[0].command == "M400");
     CHECK(read(reader, "\n\r\n;only\n").empty());

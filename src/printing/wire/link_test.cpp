@@ -55,7 +55,7 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("lines are numbered and checksummed from M110 on") {
+TEST_CASE("lines have numbers and checksums, starting with M110") {
     Bench b(good_answer);
     CHECK(b.error_of_print() == "");
     // xor of "N0 M110 N0" and of "N1 G1 X1", by hand.
@@ -66,7 +66,7 @@ TEST_CASE("lines are numbered and checksummed from M110 on") {
     CHECK(b.link.resends() == 0);
 }
 
-TEST_CASE("a refused line is sent again from there, with or without the whole answer") {
+TEST_CASE("a refused line and those after it are sent again, even if the answer is incomplete") {
     for (const char* answer : {"Error:checksum mismatch, Last Line: 2\nResend: 3\nok\n",  // the normal case
                                "Error:checksum mismatch, Last Line: 2\nResend: 3\n",      // without ok
                                "Error:checksum mismatch, Last Line: 2\nok\n",             // without Resend
@@ -79,7 +79,7 @@ TEST_CASE("a refused line is sent again from there, with or without the whole an
     }
 }
 
-TEST_CASE("numbers that count no lines are garbage") {
+TEST_CASE("impossible line numbers in answers are ignored") {
     for (const char* number : {"9223372036854775807", "99999999999999999999", "2147483648", "-3"}) {
         CAPTURE(number);
         Bench b(
@@ -91,7 +91,7 @@ TEST_CASE("numbers that count no lines are garbage") {
     CHECK_FALSE(b.link.last_line());
 }
 
-TEST_CASE("a lost ok is detected by querying the last line: no resend, no damage counted") {
+TEST_CASE("a lost ok is found by asking for the last line: nothing is sent again or counted as damage") {
     bool lost = false;
     Bench b(
         [&](const std::string& line) -> std::string {
@@ -106,7 +106,7 @@ TEST_CASE("a lost ok is detected by querying the last line: no resend, no damage
     CHECK(b.link.resends() == 0);
 }
 
-TEST_CASE("the last line number counts once received twice: a truncated one does not") {
+TEST_CASE("the last line number is accepted when received twice; a truncated one is not") {
     int asked = 0;
     Bench b([&](const std::string& line) {
         return is_probe(line) ? refusal(++asked == 1 ? 1004 : 1000004) : good_answer(line);
@@ -115,7 +115,7 @@ TEST_CASE("the last line number counts once received twice: a truncated one does
     CHECK(asked == 3);
 }
 
-TEST_CASE("an ok for another host's line is not that of M110") {
+TEST_CASE("an ok for another host's line is not taken for that of M110") {
     // M110 is lost; an ok for an old line arrives instead.
     Bench b(Once{"M110", "ok N77 P15 B3\n"});
     b.wire.forgets = "M110";
@@ -126,8 +126,7 @@ TEST_CASE("an ok for another host's line is not that of M110") {
     CHECK(b.link.resends() == 0);
 }
 
-TEST_CASE(
-    "a printer that does not answer: port and baud rate, or a board that was halted, if it is known to have been") {
+TEST_CASE("a silent printer: the error names port and baud rate, or the reset button after a halt") {
     const auto deaf = [](const std::string&) { return std::string(); };
     CHECK(holds(Bench(deaf).error_of_print(), "baud rate? A board that was halted"));
     LinkOptions halted;
@@ -140,7 +139,7 @@ TEST_CASE(
     CHECK(b.clock.now_s < 15);
 }
 
-TEST_CASE("halting: M410, and M112 between 5 and 20 ms later") {
+TEST_CASE("halting sends M410, and M112 between 5 and 20 ms later") {
     Bench b(good_answer);
     REQUIRE(b.link.connect());
     const double before_s = b.clock.now_s;
@@ -152,7 +151,7 @@ TEST_CASE("halting: M410, and M112 between 5 and 20 ms later") {
     CHECK(b.link.has_halted());
 }
 
-TEST_CASE("a move that the firmware leaves out ends the print, and so does homing that fails") {
+TEST_CASE("a move that the firmware leaves out, and homing that fails, end the print") {
     CHECK(holds(Bench(Once{"X3*", "echo:Home X First\nok\n"}).error_of_print(), "left a move out: Home X First"));
     const std::string killed = "echo:Homing Failed\nError:Printer halted. kill() called!\n//action:poweroff\n";
     const std::string message = Bench(Once{"X3*", killed}).error_of_print();
@@ -160,7 +159,7 @@ TEST_CASE("a move that the firmware leaves out ends the print, and so does homin
     CHECK(holds(message, "reset the board"));
 }
 
-TEST_CASE("a fence with an end: late is late, though the printer says that it is busy") {
+TEST_CASE("a fence with a time limit fails at that limit, even while the printer says busy") {
     bool blocked = false;
     Bench b([&](const std::string& line) {
         blocked = blocked || line.find("G28") != std::string::npos;
@@ -208,7 +207,7 @@ TEST_CASE("busy restarts the timeout") {
     CHECK(link.resends() == 0);
 }
 
-TEST_CASE("signs that the machine is not in the expected state end the print") {
+TEST_CASE("messages of an unknown command, a restart or a halt end the print") {
     CHECK(holds(Bench(Once{"X3*", "echo:Unknown command: \"G1 X3\"\nok\n"}).error_of_print(), "does not know"));
     CHECK(holds(Bench(Once{"X3*", "start\necho: External Reset\n"}).error_of_print(), "restarted"));
     CHECK(holds(Bench(Once{"X3*", "Watchdog Reset\n"}).error_of_print(), "restarted"));
@@ -221,7 +220,7 @@ TEST_CASE("signs that the machine is not in the expected state end the print") {
     CHECK(holds(Bench(Once{"X3*", "Resend: 77\nok\n"}).error_of_print(), "asks for line 77"));
 }
 
-TEST_CASE("endless refusal and endless silence are given up") {
+TEST_CASE("endless refusals, and endless silence, end with an error") {
     const auto refuse = [](const std::string& line) -> std::string {
         return line.find("X3*") != std::string::npos ? "Error:checksum mismatch, Last Line: 2\nResend: 3\nok\n"
                                                      : good_answer(line);
@@ -233,7 +232,7 @@ TEST_CASE("endless refusal and endless silence are given up") {
     CHECK(holds(Bench([](const std::string&) { return std::string(); }).error_of_print(), "does not answer"));
 }
 
-TEST_CASE("other lines are not answers") {
+TEST_CASE("a printer that sends other lines:") {
     constexpr const char* talk = "T:20.0 /0.0 B:20.0 /0.0\n";
     SUBCASE("one that never answers is given up") {
         Bench b([](const std::string&) { return std::string(); });
@@ -244,7 +243,7 @@ TEST_CASE("other lines are not answers") {
         CHECK_FALSE(b.link.last_line());
         CHECK(b.clock.now_s < 200);
     }
-    SUBCASE("a lost ok is found out meanwhile") {
+    SUBCASE("a lost ok is found all the same") {
         int seen = 0;
         Bench b(
             [&](const std::string& line) -> std::string {
@@ -270,7 +269,7 @@ TEST_CASE("garbage between the lines is ignored") {
     CHECK(b.error_of_print() == "");
 }
 
-TEST_CASE("the window holds lines and bytes back") {
+TEST_CASE("the window limits the lines and bytes that are under way") {
     // Nothing is answered: only what fits the window is written.
     bool is_deaf = false;
     const auto deaf = [&](const std::string& line) { return deaf_to_moves(line, is_deaf); };
@@ -285,7 +284,7 @@ TEST_CASE("the window holds lines and bytes back") {
     CHECK(bytes.times_written("N3 ") == 0);
 }
 
-TEST_CASE("a command that would not survive the wire is refused") {
+TEST_CASE("a command that the wire cannot carry is refused") {
     Bench b(good_answer);
     REQUIRE(b.link.connect());
     CHECK_FALSE(b.link.send(""));
@@ -294,7 +293,7 @@ TEST_CASE("a command that would not survive the wire is refused") {
     CHECK_FALSE(b.link.send(std::string(81, 'G')));
 }
 
-TEST_CASE("a wire that damages every third line is not trusted, one that damages every tenth is") {
+TEST_CASE("a wire that damages every third line is refused, one that damages every tenth is used") {
     for (const long every : {3L, 10L}) {
         CAPTURE(every);
         long damaged = 0;

@@ -217,12 +217,12 @@ Program in_time(int steps) {
 
 }  // namespace
 
-TEST_CASE("thrown objects that meet a soft body and the ground, by all numbers, starts and places") {
+TEST_CASE("gradients of thrown objects that hit a soft body and the ground, by numbers, velocities and places") {
     const Worst worst = worst_error(scene(0), in_time(6), true);
     MESSAGE("worst: ", worst.error, " (", worst.name, ")");
 }
 
-TEST_CASE("the same with friction that remembers") {
+TEST_CASE("gradients of thrown objects with friction whose anchors are kept") {
     const Worst worst = worst_error(scene(0.5), in_time(6), false);
     MESSAGE("worst: ", worst.error, " (", worst.name, ")");
 }

@@ -227,7 +227,7 @@ void try_robots(const std::function<test::RandomProgram(unsigned seed)>& made) {
 
 }  // namespace
 
-TEST_CASE("random robots, by what is wanted of them and by what they are made with") {
+TEST_CASE("gradients of random robots, by their goals and by their parameters") {
     try_robots([](unsigned seed) {
         test::RandomProgram p = test::random_program(seed);
         p.robot = with_more(std::move(p.robot), seed);
@@ -235,7 +235,7 @@ TEST_CASE("random robots, by what is wanted of them and by what they are made wi
     });
 }
 
-TEST_CASE("random bodies that nothing holds, with objects over a ground, at rest and thrown") {
+TEST_CASE("gradients of random free bodies with objects over a ground, at rest and thrown") {
     try_robots([](unsigned seed) {
         test::RandomProgram p = test::random_free_program(seed);
         for (const FreeObject& object : p.robot.objects)

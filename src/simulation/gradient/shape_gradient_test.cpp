@@ -74,7 +74,7 @@ using ChamberKind = ChamberTarget::Kind;
 
 }  // namespace
 
-TEST_CASE("rest positions, with what is wanted as a share of rest, as a change of it, and as such") {
+TEST_CASE("gradients by rest positions, for targets as ratio, change and value") {
     const std::vector<std::pair<CableTarget, ChamberTarget>> wanted = {
         {{CableKind::length_ratio, 0.95}, {ChamberKind::gas_ratio, 1.3}},
         {{CableKind::shortening_m, 0.1 * edge}, {ChamberKind::volume_ratio, 1.2}},
@@ -99,7 +99,7 @@ TEST_CASE("rest positions, with what is wanted as a share of rest, as a change o
     MESSAGE("rest positions: ", worst);
 }
 
-TEST_CASE("rest positions of a robot with gap elements") {
+TEST_CASE("gradients by rest positions of a robot with gap elements") {
     Description d = plain();
     d.materials.push_back({"gap", gap_law(1e6), 0});
     d.cables = {flexor(d.mesh, {CableKind::length_ratio, 0.99})};
@@ -117,7 +117,7 @@ TEST_CASE("rest positions of a robot with gap elements") {
                          [&](double change) { return robot.values_of_robot(moved_rest(d, motion, change)); }) < 1e-6);
 }
 
-TEST_CASE("guide points: carried by a tet, spread over a patch, fixed in space; of either order") {
+TEST_CASE("gradients by guide points: in a tet, spread over a patch, fixed in space; both orders") {
     double worst = 0;
     for (const int order : {1, 2}) {
         Description d = shaped(order, {CableKind::length_ratio, 0.95}, {ChamberKind::gas_ratio, 1.2});
@@ -172,7 +172,7 @@ Description met_ends(const std::array<Vec3, 3>& cable, const std::array<Vec3, 3>
     return d;
 }
 
-TEST_CASE("rest positions and guide points where ends of a cable's and of a spring's segments have met") {
+TEST_CASE("gradients by rest positions and guide points where segment ends of a cable and a spring meet") {
     const std::array<Vec3, 3> cable = {Vec3{2.9 * edge, 0.5 * edge, 0.98 * edge},
                                        {2.88 * edge, 0.5 * edge, 1.0 * edge},
                                        {1.45 * edge, 0.62 * edge, 0.93 * edge}};
@@ -205,7 +205,7 @@ TEST_CASE("rest positions and guide points where ends of a cable's and of a spri
     }
 }
 
-TEST_CASE("tet by tet: constants of the law, Young's modulus, density; and together those of the whole material") {
+TEST_CASE("gradients tet by tet: law constants, Young's modulus, density; their sum is the material's") {
     double worst = 0;
     for (const int order : {1, 2}) {
         const Description d = shaped(order, {CableKind::length_ratio, 0.95}, {ChamberKind::gas_ratio, 1.2});
@@ -256,7 +256,7 @@ TEST_CASE("tet by tet: constants of the law, Young's modulus, density; and toget
     MESSAGE("tet by tet: ", worst);
 }
 
-TEST_CASE("changes along any direction are those of the gradients: the Jacobian and its transpose") {
+TEST_CASE("directional changes agree with the gradients: the Jacobian and its transpose") {
     Description d = shaped(1, {CableKind::length_ratio, 0.95}, {ChamberKind::gas_ratio, 1.2});
     d.materials.push_back({"B", material::Ogden{2, {1.5e5, -0.3e5}, {1.3, -2.0}, 18e5}, 1100});
     d.material_of_tet.assign(d.mesh.tet_count(), 0);

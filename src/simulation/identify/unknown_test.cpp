@@ -33,7 +33,7 @@ std::string problem(const Bar& bar, const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("every number that a robot offers is one that --set takes, with its value or another") {
+TEST_CASE("every number that a robot offers as unknown can be set with --set") {
     const Bar bar(rich);
     const auto all = possible_unknowns(bar.robot());
     CHECK(all.size() == 25);
@@ -49,7 +49,7 @@ TEST_CASE("every number that a robot offers is one that --set takes, with its va
     }
 }
 
-TEST_CASE("coordinates and their rates") {
+TEST_CASE("coordinates of unknowns and their derivatives") {
     for (const Scale scale : {Scale::linear, Scale::log, Scale::poisson}) {
         const Unknown unknown{"k", "", 0.3, 0, 1, scale, 0.2};
         const double u = unknown.coordinate(0.3), h = 1e-5;
@@ -59,7 +59,7 @@ TEST_CASE("coordinates and their rates") {
     }
 }
 
-TEST_CASE("bounds, with units where the key has one") {
+TEST_CASE("bounds are read, with units where the key has one") {
     const Bar bar(rich);
     const auto E = *find_unknown(bar.robot(), "material.soft.youngs_modulus=0.5 MPa..900kPa");
     CHECK(E.low == near(0.5e6, {.relative = 1e-12}));

@@ -40,7 +40,7 @@ void check_same(const Workspace& a, const Workspace& b) {
 
 }  // namespace
 
-TEST_CASE("every sample is the equilibrium of its inputs, and the sheets cover all ends of the ranges") {
+TEST_CASE("every sample is the equilibrium of its inputs, and the sheets include all ends of the ranges") {
     const Model model = made(bar(3));
     const InverseTask task = task_for(model, {{0.85, 1}, {0.85, 1}, {0.9, 1}});
     Progress silent;

@@ -68,7 +68,7 @@ TEST_CASE("cable finger, linear tets: tension and tip within 0.1 %") {
     CHECK(rows == 5);
 }
 
-TEST_CASE("cable finger, linear tets: five digits of an independent solver with the same length constraint") {
+TEST_CASE("cable finger, linear tets: agrees to five digits with an independent solver") {
     const auto named = reference::load_tet(reference::data_folder() + "/fem/finger_p1_8563.tet", mm);
     check(named, 0.45, 0.95, 36.59042, {-8.51257, 0, 27.24588}, 2e-5, 1e-7);
     check(named, 0.45, 0.80, 132.22907, {-74.04073, 0, 59.79902}, 2e-5, 1e-7);

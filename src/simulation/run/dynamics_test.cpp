@@ -44,7 +44,7 @@ double frequency_Hz() {
 
 }  // namespace
 
-TEST_CASE("the mass matrix moves as the whole body does") {
+TEST_CASE("the mass matrix gives a moving body its momentum and kinetic energy") {
     for (const int order : {1, 2}) {
         const Description d = beam(order, 0);
         const auto elements = Elements::create(d);
@@ -65,7 +65,7 @@ TEST_CASE("the mass matrix moves as the whole body does") {
     }
 }
 
-TEST_CASE("a beam let go under gravity swings at its natural frequency and gains no energy") {
+TEST_CASE("a beam released under gravity swings at its natural frequency and gains no energy") {
     const double period = 1 / frequency_Hz();
     const Description d = beam(2, 0.5);  // little gravity: small motion
     const int steps = 120;

@@ -141,25 +141,25 @@ Tally throw_all(unsigned otherwise, const std::function<RandomProgram(unsigned)>
 
 }  // namespace
 
-TEST_CASE("random programs converge or say why not, and keep the last good state") {
+TEST_CASE("random programs converge or give the reason, and keep the last good state") {
     const Tally tally = throw_all(30, random_program);
     // Only about half of these programs are feasible. Of 30 the loss of two is detected.
     CHECK(tally.converged >= 0.45 * tally.count);
     CHECK(tally.refused < tally.count / 10);
 }
 
-TEST_CASE("bodies that nothing holds, thrown about: nothing passes through anything, or it is said why not") {
+TEST_CASE("random free bodies that are thrown: no surfaces cross, or the run gives the reason") {
     const Tally tally = throw_all(20, sim::test::random_free_program);
     CHECK(tally.converged >= 0.6 * tally.count);  // laws without an energy among them
     CHECK(tally.refused == 0);
 }
 
-TEST_CASE("programs that once ended in a state that no body can have") {
+TEST_CASE("programs that once ended in impossible states no longer do") {
     // Past failures: walls of an evacuated chamber passed through each other; a rotating step passed through the table.
     for (const unsigned seed : {479U, 489U, 537U, 611U}) run_and_check(seed);
 }
 
-TEST_CASE("a program that fails is left with nothing but what it fails by") {
+TEST_CASE("a failing program is reduced to the parts that it needs to fail") {
     const auto rubs_and_hangs = [](const RandomProgram& p) {
         bool rubs = false;
         for (const Cable& c : p.robot.cables) rubs = rubs || c.friction > 0;
