@@ -23,7 +23,7 @@ TEST_CASE("a print through the control gives the same part as a plain print, and
 namespace {
 
 /// The host may be killed at each of its device operations; bench/kill_print.cpp tries all of them.
-const long every = std::getenv("PLIANT_EVERY_MOMENT") != nullptr ? 1 : 7;
+const long moment_stride = std::getenv("PLIANT_EVERY_MOMENT") != nullptr ? 1 : 7;
 
 /// The cured block, for comparison with an undisturbed print.
 std::string block_of(twin::Twin& twin) {
@@ -44,10 +44,10 @@ constexpr std::array both_releases = {machine::MarlinRelease::v2_1_1, machine::M
 
 /// Alternates between firmware releases along the moments of a print.
 machine::MarlinRelease release_at(long moment) {
-    return both_releases[static_cast<std::size_t>(moment / every % 2)];
+    return both_releases[static_cast<std::size_t>(moment / moment_stride % 2)];
 }
 
-twin::Options of(machine::MarlinRelease release) {
+twin::Options options_of(machine::MarlinRelease release) {
     twin::Options options;
     options.release = release;
     return options;
@@ -78,8 +78,8 @@ TEST_CASE("after a host is killed at any point, the next host finishes the same 
     const long deeds = undisturbed.life->deeds;
     MESSAGE(deeds << " deeds in a print");
     int resumed = 0;
-    for (long n = 1; n < deeds; n += every) {
-        ControlBench b(of(release_at(n)));
+    for (long n = 1; n < deeds; n += moment_stride) {
+        ControlBench b(options_of(release_at(n)));
         b.life->dies_at = n;
         CAPTURE(n);
         REQUIRE_FALSE(b.start());
@@ -95,7 +95,7 @@ TEST_CASE("after a host is killed at any point, the next host finishes the same 
         CHECK(block_of(*b.twin) == whole);
         b.must_be_whole();
     }
-    CHECK(resumed > deeds / every / 2);
+    CHECK(resumed > deeds / moment_stride / 2);
 }
 
 TEST_CASE("after a controller restart anywhere the light is off; the print resumes unless a vat is half hooked") {
@@ -104,8 +104,8 @@ TEST_CASE("after a controller restart anywhere the light is off; the print resum
     const std::string whole = block_of(*undisturbed.twin);
     const long deeds = undisturbed.life->deeds;
     int resumed = 0, refused = 0, before = 0;
-    for (long n = 1; n < deeds; n += every) {
-        ControlBench b(of(release_at(n)));
+    for (long n = 1; n < deeds; n += moment_stride) {
+        ControlBench b(options_of(release_at(n)));
         b.life->at_deed = [&](long deed) {
             if (deed == n) b.twin->reset();
         };
@@ -124,8 +124,8 @@ TEST_CASE("after a controller restart anywhere the light is off; the print resum
         ++(has_gone_on(b, whole) ? resumed : refused);
     }
     MESSAGE(resumed << " resumed, " << refused << " refused, " << before << " not disturbed");
-    CHECK(resumed > deeds / every / 2);
-    CHECK(refused < deeds / every / 10);
+    CHECK(resumed > deeds / moment_stride / 2);
+    CHECK(refused < deeds / moment_stride / 10);
 }
 
 TEST_CASE("after a power cut anywhere the print resumes; only an exposure of unknown length is asked about") {
@@ -134,8 +134,8 @@ TEST_CASE("after a power cut anywhere the print resumes; only an exposure of unk
     const std::string whole = block_of(*undisturbed.twin);
     const long deeds = undisturbed.life->deeds;
     int asked = 0, refused = 0, resumed = 0;
-    for (long n = 1; n < deeds; n += every) {
-        ControlBench b(of(release_at(n)));
+    for (long n = 1; n < deeds; n += moment_stride) {
+        ControlBench b(options_of(release_at(n)));
         b.guarded = false;
         b.new_host();
         double lit_since_s = 0, lit_s = 0;
@@ -161,7 +161,7 @@ TEST_CASE("after a power cut anywhere the print resumes; only an exposure of unk
         ++(has_gone_on(b, whole) ? resumed : refused);
     }
     MESSAGE(resumed << " resumed, " << asked << " asked about, " << refused << " refused");
-    CHECK(asked > 10 / every);
+    CHECK(asked > 10 / moment_stride);
 }
 
 namespace {
@@ -171,7 +171,7 @@ using host::Snapshot;
 using host::State;
 
 /// A person at the machine: acts once, at a given point of the print, and resumes every pause.
-struct Person {
+struct Operator {
     ControlBench& b;
     std::function<bool(const Snapshot&)> reached;
     std::function<void()> action;
@@ -181,7 +181,7 @@ struct Person {
     bool lit_while_paused = false;
     std::vector<std::string> prompts;
 
-    Person(ControlBench& bench, std::function<bool(const Snapshot&)> when, std::function<void()> what)
+    Operator(ControlBench& bench, std::function<bool(const Snapshot&)> when, std::function<void()> what)
         : b(bench), reached(std::move(when)), action(std::move(what)) {
         b.life->at_look = [this] { look(); };
     }
@@ -222,7 +222,7 @@ TEST_CASE("pausing, now or after the exposure, changes nothing in the part") {
         for (const double at : {0.05, 0.2, 0.31, 0.5, 0.77, 0.9}) {
             CAPTURE(at);
             ControlBench b;
-            Person person(b, completion_above(at), [&] { CHECK(b.control->pause(how)); });
+            Operator person(b, completion_above(at), [&] { CHECK(b.control->pause(how)); });
             b.start();
             INFO(b.last_error());
             CHECK(person.pauses == 1);
@@ -237,7 +237,7 @@ TEST_CASE("pausing, now or after the exposure, changes nothing in the part") {
 TEST_CASE("a pause during an exposure: at once, with the rest exposed later, or after the exposure and the peel") {
     for (const auto how : {PauseWhen::now, PauseWhen::after_exposure}) {
         ControlBench b;
-        Person person(b, lit_on_layer(3), [&] { CHECK(b.control->pause(how)); });
+        Operator person(b, lit_on_layer(3), [&] { CHECK(b.control->pause(how)); });
         b.start();
         CHECK(person.pauses == 1);
         CHECK_FALSE(person.lit_while_paused);
@@ -252,7 +252,7 @@ TEST_CASE("after cancelling anywhere the light is off, the machine is parked and
     for (double at = 0.02; at < 1; at += 0.07) {
         CAPTURE(at);
         ControlBench b;
-        Person person(b, completion_above(at), [&] { CHECK(b.control->cancel()); });
+        Operator person(b, completion_above(at), [&] { CHECK(b.control->cancel()); });
         b.start();
         INFO(b.last_error());
         CHECK(b.snapshot().state == State::idle);
@@ -271,7 +271,7 @@ TEST_CASE("a suspended print parks the machine, and resumes from the same place"
     for (const double at : {0.1, 0.35, 0.6, 0.85}) {
         CAPTURE(at);
         ControlBench b;
-        Person person(b, completion_above(at), [&] { CHECK(b.control->suspend()); });
+        Operator person(b, completion_above(at), [&] { CHECK(b.control->suspend()); });
         b.start();
         CHECK_FALSE(b.twin->interlock().hooked_vat());
         REQUIRE(b.snapshot().can_resume);
@@ -297,7 +297,7 @@ TEST_CASE("an interrupted print can be cancelled for good") {
 TEST_CASE("an emergency stop turns the light off and halts the board at once; after a reset the print resumes") {
     ControlBench b;
     double stopped_s = 0, dark_s = 0;
-    Person person(b, lit_on_layer(2), [&] {
+    Operator person(b, lit_on_layer(2), [&] {
         stopped_s = b.twin->now();
         b.control->emergency_stop();
     });
@@ -339,9 +339,9 @@ public:
 
 TEST_CASE("after an emergency stop in a move the axis stops there; resuming before a reset gives the remedy") {
     for (const auto release : both_releases) {
-        ControlBench b(of(release));
+        ControlBench b(options_of(release));
         int moving_um = 0;
-        Person person(b, completion_above(0.4), [&] {
+        Operator person(b, completion_above(0.4), [&] {
             b.twin->advance_to(b.twin->now() + 0.1);
             moving_um = b.twin->motors_position()[machine::Axis::platform];
             b.control->emergency_stop();
@@ -415,7 +415,7 @@ TEST_CASE("a failed start at the wrong port leaves no journal: the next start pr
 TEST_CASE("a board just started, one that resets when its port opens, and one losing 10 % of its oks all print") {
     for (const auto release : both_releases) {
         CAPTURE(machine::name_of(release));
-        twin::Options options = of(release);
+        twin::Options options = options_of(release);
         options.boot_s = 1.5;
         options.homes_first = true;
         ControlBench fresh(options);
@@ -438,7 +438,7 @@ TEST_CASE("an ok that belongs to a killed host is not counted for the next host"
     for (const auto release : both_releases) {
         for (long n = 200; n < 260; n += 7) {
             CAPTURE(n);
-            twin::Options options = of(release);
+            twin::Options options = options_of(release);
             options.advanced_ok = true;
             ControlBench b(options);
             b.must_die(n);
@@ -510,7 +510,7 @@ TEST_CASE("an emergency stop pulls the emergency line before it sends M112; conn
         alive = !b.twin->log().power_cut;  // M112 would have switched off the board's own relay
         return {};
     };
-    Person person(b, lit_on_layer(1), [&] { b.control->emergency_stop(); });
+    Operator person(b, lit_on_layer(1), [&] { b.control->emergency_stop(); });
     b.start();
     CHECK(line.pulls == 1);
     CHECK(line.pulled);
@@ -543,13 +543,13 @@ void with_door(machine::Printer& printer) {
 }
 
 /// A person who constantly tries to resume, with a record of what happened.
-struct Impatient {
+struct OperatorAtOpenDoor {
     ControlBench& b;
     int refused = 0, paused = 0;
     bool lit_behind_door = false, moved = false;
     machine::Position at;
 
-    explicit Impatient(ControlBench& bench) : b(bench) {
+    explicit OperatorAtOpenDoor(ControlBench& bench) : b(bench) {
         b.life->at_look = [this] { look(); };
     }
     void look() {
@@ -569,7 +569,7 @@ TEST_CASE("door opened during an exposure: dark within 0.5 s, no motion, and the
     for (const int light : {1, 4, 7}) {
         CAPTURE(light);
         ControlBench b(faulty(twin::Fault::Kind::door_open, light, 40), "tower", 5, with_door);
-        Impatient person(b);
+        OperatorAtOpenDoor person(b);
         b.start();
         INFO(b.last_error());
         CHECK(b.snapshot().finished);
@@ -690,7 +690,7 @@ TEST_CASE("a firmware without emergency parser is found by its capabilities, and
     twin::Options options;
     options.emergency_parser = false;
     ControlBench b(options);
-    Person person(b, completion_above(0.3), [&] { b.control->emergency_stop(); });
+    Operator person(b, completion_above(0.3), [&] { b.control->emergency_stop(); });
     b.start();
     CHECK(has_event(b, "log", "no EMERGENCY_PARSER"));
     CHECK(b.life->resets == 1);
@@ -699,7 +699,7 @@ TEST_CASE("a firmware without emergency parser is found by its capabilities, and
 
 TEST_CASE("a changed exposure takes effect at the next layer and is kept across a restart of the host") {
     ControlBench b;
-    Person person(b, lit_on_layer(2), [&] {
+    Operator person(b, lit_on_layer(2), [&] {
         CHECK(b.control->set_exposure(0, 3.5));
         CHECK_FALSE(b.control->set_exposure(2, 3));
         CHECK_FALSE(b.control->set_exposure(0, 61));  // the machine's limit is 60 s
@@ -725,7 +725,7 @@ TEST_CASE("a changed exposure takes effect at the next layer and is kept across 
 
 TEST_CASE("the host reports every exposure that ended, broken off or complete") {
     ControlBench b(faulty(twin::Fault::Kind::door_open, 4, 40), "tower", 5, with_door);
-    const Impatient person(b);
+    const OperatorAtOpenDoor person(b);
     b.start();
     REQUIRE(b.snapshot().finished);
     std::size_t whole = 0, broken = 0;
@@ -743,7 +743,7 @@ TEST_CASE("the host reports every exposure that ended, broken off or complete") 
 
 TEST_CASE("a skipped layer is not exposed") {
     ControlBench b;
-    Person person(b, lit_on_layer(1), [&] {
+    Operator person(b, lit_on_layer(1), [&] {
         CHECK(b.control->skip_layer(3));
         CHECK_FALSE(b.control->skip_layer(1));
         CHECK_FALSE(b.control->skip_layer(5));
@@ -761,7 +761,7 @@ TEST_CASE("resin is asked for before the layer that needs it, and a picture is t
     std::vector<int> pictures;
     b.after_layer = [&](int layer) { pictures.push_back(layer); };
     b.new_host();
-    Person person(
+    Operator person(
         b, [](const Snapshot&) { return false; }, [] {});
     b.start();
     INFO(b.last_error());
@@ -810,7 +810,7 @@ TEST_CASE("commands that the current state does not allow are refused") {
     CHECK_FALSE(b.control->cancel());
     CHECK_FALSE(b.control->home({}));
     CHECK_FALSE(b.control->set_exposure(0, 2));
-    Person person(b, completion_above(0.3), [&] {
+    Operator person(b, completion_above(0.3), [&] {
         CHECK_FALSE(b.control->start({}));
         CHECK_FALSE(b.control->home({}));
         CHECK_FALSE(b.control->disconnect());
@@ -823,7 +823,7 @@ TEST_CASE("commands that the current state does not allow are refused") {
 
 TEST_CASE("a second host on the same job is refused, and so is starting an interrupted job without --resume") {
     ControlBench b;
-    Person person(b, completion_above(0.3), [&] {
+    Operator person(b, completion_above(0.3), [&] {
         CHECK(host::Journal::open(b.journal(), false).error().message.find("another host") != std::string::npos);
     });
     b.must_die(400);
@@ -861,8 +861,8 @@ TEST_CASE("a host that connects first and resumes later finishes the same part a
     const std::string whole = block_of(*undisturbed.twin);
     const long deeds = undisturbed.life->deeds;
     int resumed = 0;
-    for (long n = 40; n < deeds; n += 6 * every) {
-        ControlBench b(of(release_at(n)));
+    for (long n = 40; n < deeds; n += 6 * moment_stride) {
+        ControlBench b(options_of(release_at(n)));
         b.life->dies_at = n;
         CAPTURE(n);
         REQUIRE_FALSE(b.start());
@@ -950,8 +950,8 @@ TEST_CASE("a full disk stops the print with light, pump and axes off; it resumes
         CAPTURE(at);
         ControlBench b;
         std::unique_ptr<FullDisk> full;
-        Person person(b, completion_above(at),
-                      [&] { full = std::make_unique<FullDisk>(std::filesystem::file_size(b.journal())); });
+        Operator person(b, completion_above(at),
+                        [&] { full = std::make_unique<FullDisk>(std::filesystem::file_size(b.journal())); });
         b.start();
         full.reset();
         CHECK(b.last_error().find("the journal cannot be written") != std::string::npos);
@@ -966,8 +966,8 @@ TEST_CASE("a full disk stops the print with light, pump and axes off; it resumes
 TEST_CASE("disk full during an exposure: the light goes off, and resuming needs --assume-lit") {
     ControlBench b;
     std::unique_ptr<FullDisk> full;
-    Person person(b, lit_on_layer(2, 1),
-                  [&] { full = std::make_unique<FullDisk>(std::filesystem::file_size(b.journal())); });
+    Operator person(b, lit_on_layer(2, 1),
+                    [&] { full = std::make_unique<FullDisk>(std::filesystem::file_size(b.journal())); });
     b.start();
     full.reset();
     CHECK_FALSE(b.projector->lit);
@@ -985,7 +985,7 @@ TEST_CASE("an unplugged USB cable stops the print with the light off; plugged in
     for (const double at : {0.15, 0.3, 0.55, 0.8}) {
         CAPTURE(at);
         ControlBench b;
-        Person person(b, completion_above(at), [&] { b.life->unplugged = true; });
+        Operator person(b, completion_above(at), [&] { b.life->unplugged = true; });
         b.start();
         CHECK(b.last_error().find("the device is gone") != std::string::npos);
         CHECK(b.snapshot().state == State::halted);

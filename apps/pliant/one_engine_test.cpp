@@ -74,7 +74,7 @@ struct TwoPrints {
 };
 
 /// Removes timing; lines are counted from the start of their session.
-std::string timeless(const std::vector<host::JournalRecord>& records) {
+std::string without_times(const std::vector<host::JournalRecord>& records) {
     std::string text;
     long base = 0;
     for (const host::JournalRecord& record : records) {
@@ -133,7 +133,7 @@ TEST_CASE("print --twin and a print over the wire write the same journal, with a
         CAPTURE(cases[i].fault);
         const TwoPrints& p = *prints[i];
         CAPTURE(p.said);
-        const std::string here = timeless(p.twin), there = timeless(p.port);
+        const std::string here = without_times(p.twin), there = without_times(p.port);
         CHECK(here == there);
         CHECK(here.find(cases[i].ends) != std::string::npos);
         // A port has no oracle: defects of the part only fail the virtual print.

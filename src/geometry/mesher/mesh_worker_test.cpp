@@ -38,7 +38,7 @@ Result<TetMesh> mesh_cube(double size, Progress& progress) {
 }
 
 /// Cancels the work after a while.
-class Impatient : public Progress {
+class CancelledAfter300ms : public Progress {
 public:
     [[nodiscard]] bool cancelled() const override { return std::chrono::steady_clock::now() > until_; }
 
@@ -103,7 +103,7 @@ TEST_CASE("a mesher that dies at work is one error, and the next request is serv
 }
 
 TEST_CASE("cancelling ends the mesher at once") {
-    Impatient impatient;
+    CancelledAfter300ms impatient;
     const auto begin = std::chrono::steady_clock::now();
     const Result<TetMesh> mesh = mesh_cube(0.1, impatient);
     REQUIRE_FALSE(mesh);

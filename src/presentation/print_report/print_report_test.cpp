@@ -41,7 +41,7 @@ void dark(Records& records, long number, double on_s, bool done, const std::stri
 
 /// Layer 0 as planned; during the exposure of layer 1 the host dies after 1 s; another gives the rest after a restart
 /// of the computer, whose clock starts anew.
-Records survived() {
+Records interrupted_and_resumed() {
     Records records;
     add(records, "begin", {{"job", "<b>two</b>"}, {"digest", "d"}, {"printer", "tower"}, {"format", "1"}});
     add(records, "session", {{"base", "1"}, {"before", "-1"}, {"boot", "a"}, {"state", "s"}});
@@ -58,7 +58,7 @@ Records survived() {
 }  // namespace
 
 TEST_CASE("a print's story: parts of an exposure add up, the time continues, faults were survived") {
-    const PrintStory story = story_of(survived()).value();
+    const PrintStory story = story_of(interrupted_and_resumed()).value();
     CHECK(story.end == PrintEnd::complete);
     CHECK(story.sessions == 2);
     REQUIRE(story.lights.size() == 3);
@@ -76,7 +76,7 @@ TEST_CASE("a print's story: parts of an exposure add up, the time continues, fau
 }
 
 TEST_CASE("a print left unfinished is called interrupted; a damaged journal names the record") {
-    Records records = survived();
+    Records records = interrupted_and_resumed();
     records.resize(5);  // the exposure of layer 1 is on
     const PrintStory story = story_of(records).value();
     CHECK(story.end == PrintEnd::interrupted);
@@ -89,7 +89,7 @@ TEST_CASE("a print left unfinished is called interrupted; a damaged journal name
 }
 
 TEST_CASE("a pause says what somebody was asked to do") {
-    Records records = survived();
+    Records records = interrupted_and_resumed();
     records.resize(4);  // begin, session, light and dark of layer 0
     add(records, "pause", {{"asked", "refill the vat of slot 2 with rigid-flex"}});
     add(records, "resume", {});
@@ -131,7 +131,8 @@ TEST_CASE("a print report is one page with pictures, exposures, faults and resin
     REQUIRE(writer->finish(m));
     const auto archive = job::Archive::open(file);
     REQUIRE(archive);
-    const auto page = print_report(*archive, printer, survived(), {"virtual printer", "Marlin", 1234, 5, nullptr});
+    const auto page =
+        print_report(*archive, printer, interrupted_and_resumed(), {"virtual printer", "Marlin", 1234, 5, nullptr});
     REQUIRE_MESSAGE(page, (page ? "" : page.error().message));
     for (const std::string text :
          {"&lt;b&gt;two", "3 of 3", "2</b><span>faults", "1234", "5 resent", "survived: the light went on in layer 1",

@@ -50,9 +50,9 @@ ScreenOptions options() {
 }
 
 /// Waits for a condition; the test's own time limit ends it otherwise.
-bool comes(const std::function<bool()>& true_at_last) {
+bool becomes_true(const std::function<bool()>& condition) {
     for (int i = 0; i < 2000; ++i) {
-        if (true_at_last()) return true;
+        if (condition()) return true;
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     return false;
@@ -92,7 +92,7 @@ TEST_CASE("an exposure ends without the host, and a new one replaces a running o
     auto projector = ScreenProjector::open(folder.path.string(), options());
     REQUIRE(projector);
     REQUIRE(projector->show_for(noise(1), 0.2));
-    CHECK(comes([&] { return !folder.lit(); }));  // the host says and does nothing
+    CHECK(becomes_true([&] { return !folder.lit(); }));  // the host says and does nothing
     REQUIRE(projector->show_for(noise(2), 60));
     CHECK(folder.image("shown.png") == noise(2));
     CHECK(projector->last_light()->asked_s == near(0.2, {.relative = 1e-12}));
@@ -124,7 +124,7 @@ TEST_CASE("when the host ends, also by kill -9, the exposure ends") {
             CHECK(folder.image("shown.png") == noise(1));
             ::kill(host, signal);
         }
-        CHECK(comes([&] { return !folder.lit(); }));
+        CHECK(becomes_true([&] { return !folder.lit(); }));
         int how = 0;
         ::waitpid(host, &how, 0);
         ::close(ends[0]);
@@ -168,5 +168,5 @@ TEST_CASE("if the process that holds the panel dies, the host gets an error and 
     REQUIRE(projector->holder_process() > 0);
     REQUIRE(::kill(projector->holder_process(), SIGKILL) == 0);
     CHECK_FALSE(projector->finish());
-    CHECK(comes([&] { return !folder.lit(); }));
+    CHECK(becomes_true([&] { return !folder.lit(); }));
 }

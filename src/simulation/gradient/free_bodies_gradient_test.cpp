@@ -74,7 +74,7 @@ struct Steps {
 };
 
 /// As the program takes them.
-Steps taken(const Description& d, const Program& program) {
+Steps steps_of_program(const Description& d, const Program& program) {
     const Case c(d);
     Stepper stepper(c.model, stepper_options(program));
     RobotState robot = stepper.rest();
@@ -159,7 +159,7 @@ Worst worst_error(const Description& d, const Program& program, bool by_place) {
     Progress silent;
     auto found = program_gradient(c.model, program, objective, {.by = {.rest = by_place}}, silent);
     REQUIRE_MESSAGE(found, found.error().message);
-    const Steps as = taken(d, program);
+    const Steps as = steps_of_program(d, program);
     CHECK(found->value == near(value_of(d, as, objective), {.relative = 1e-6}));
     Worst worst;
     const auto note = [&](const std::string& name, double told, double size, const auto& value) {

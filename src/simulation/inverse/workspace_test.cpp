@@ -17,9 +17,9 @@ using namespace pliant::sim::inverse::testing;
 namespace {
 
 /// Cancels after so many samples.
-class Impatient final : public Progress {
+class CancelAfterSamples final : public Progress {
 public:
-    explicit Impatient(int samples) : left_(samples) {}
+    explicit CancelAfterSamples(int samples) : left_(samples) {}
     void advance(std::string_view, double) override { --left_; }
     [[nodiscard]] bool cancelled() const override { return left_ <= 0; }
 
@@ -75,7 +75,7 @@ TEST_CASE("a resumed search gives the same bits") {
         kept[k] = piece;
         return {};
     };
-    Impatient impatient(20);
+    CancelAfterSamples impatient(20);
     const auto stopped = find_workspace(model, tight, task, options, known, keep, impatient);
     REQUIRE(stopped);
     CHECK(stopped->cancelled);

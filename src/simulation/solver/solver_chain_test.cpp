@@ -53,15 +53,15 @@ Description hollow_block(ChamberTarget target) {
 }
 
 /// A solver that fails, or makes little progress.
-class Hindered final : public Curvature {
+class StallingSolver final : public Curvature {
 public:
-    Hindered(const FactoredLaplacian& laplacian, bool creeps, int& asked)
-        : laplacian_(&laplacian), creeps_(creeps), asked_(&asked) {}
+    StallingSolver(const FactoredLaplacian& laplacian, bool slow, int& asked)
+        : laplacian_(&laplacian), slow_(slow), asked_(&asked) {}
     [[nodiscard]] Solver solver() const override { return Solver::newton; }
     [[nodiscard]] int default_iteration_limit() const override { return 1000; }
     [[nodiscard]] bool refresh(const State&, const Controls&, TangentChoice, Errors) override {
         ++*asked_;
-        return creeps_;
+        return slow_;
     }
     void solve(Eigen::MatrixXd& columns) override {
         laplacian_->solve(columns);
@@ -70,7 +70,7 @@ public:
 
 private:
     const FactoredLaplacian* laplacian_;
-    bool creeps_;
+    bool slow_;
     int* asked_;
 };
 
@@ -83,9 +83,9 @@ TEST_CASE("if the first solver stalls the next one finishes the step, and the ne
     const FactoredLaplacian laplacian(system);
     const Controls controls = system.controls(0.2);
     Progress silent;
-    for (const bool creeps : {false, true}) {
+    for (const bool slow : {false, true}) {
         int asked = 0;
-        SolverChain chain({{Solver::newton, [&] { return std::make_unique<Hindered>(laplacian, creeps, asked); }},
+        SolverChain chain({{Solver::newton, [&] { return std::make_unique<StallingSolver>(laplacian, slow, asked); }},
                            {Solver::quasi_newton, [&] { return make_quasi_newton(laplacian); }}});
         int before = 0;
         for (int round = 0; round < 2; ++round) {
@@ -97,14 +97,14 @@ TEST_CASE("if the first solver stalls the next one finishes the step, and the ne
             REQUIRE_MESSAGE(outcome.converged, outcome.reason);
             CHECK(outcome.solver == Solver::quasi_newton);
             CHECK(outcome.evaluation.residual <= 1e-6);
-            CHECK(asked - before == (creeps ? 30 : 3));  // once with each tangent, or until patience ends
+            CHECK(asked - before == (slow ? 30 : 3));  // once with each tangent, or until patience ends
             before = asked;
             const auto first_of = [&](Solver solver) {
                 return std::ranges::find(outcome.history, solver, &IterationRecord::solver);
             };
             CHECK(first_of(Solver::newton) == outcome.history.begin());
             CHECK(first_of(Solver::quasi_newton)->iteration == 0);
-            CHECK(outcome.history.back().iteration + (creeps ? 30 : 1) == outcome.iterations);
+            CHECK(outcome.history.back().iteration + (slow ? 30 : 1) == outcome.iterations);
         }
     }
 }
@@ -116,7 +116,7 @@ TEST_CASE("if all solvers fail all reasons are given, and each has used its own 
     const FactoredLaplacian laplacian(system);
     const Controls controls = system.controls(0.2);
     int asked = 0;
-    SolverChain chain({{Solver::newton, [&] { return std::make_unique<Hindered>(laplacian, false, asked); }},
+    SolverChain chain({{Solver::newton, [&] { return std::make_unique<StallingSolver>(laplacian, false, asked); }},
                        {Solver::local_global, [&] { return make_local_global(laplacian); }}});
     State state = system.rest();
     system.place_supports(controls, state.x);
