@@ -32,7 +32,7 @@ TEST_CASE("without a tolerance numbers must be equal, and there is no default") 
     CHECK_FALSE(std::is_convertible_v<double, Near>);
 }
 
-TEST_CASE("NaN is near nothing, an infinity only itself") {
+TEST_CASE("NaN is near nothing, and infinity only near itself") {
     const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
     CHECK_FALSE(nan == near(1, {.relative = 1, .absolute = 1e300}));
     CHECK_FALSE(nan == near(nan, {.absolute = infinite}));

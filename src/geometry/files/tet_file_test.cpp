@@ -80,7 +80,7 @@ TEST_CASE("binary files, other cells, unused points and inverted tets are read")
     CHECK(mesh->notes == std::vector<std::string>{"1 of 1 tets were inside out and were turned"});
 }
 
-TEST_CASE("version 5 files keep offsets and connectivity apart") {
+TEST_CASE("version 5 files store offsets and connectivity separately") {
     const std::string text =
         "# vtk DataFile Version 5.1\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n"
         "METADATA\nINFORMATION 0\n\nCELLS 2 4\nOFFSETS vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n0 1 2 "

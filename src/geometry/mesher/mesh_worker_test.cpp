@@ -48,7 +48,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("one process serves request after request, and a killed one is replaced") {
+TEST_CASE("one process serves all requests, and a killed one is replaced") {
     kill_all();
     Progress silent;
     const Result<TetMesh> first = mesh_cube(5, silent);
@@ -87,7 +87,7 @@ TEST_CASE("simultaneous requests have separate processes and get the same answer
     }
 }
 
-TEST_CASE("a mesher that dies at work is one error, and the next request is served") {
+TEST_CASE("a mesher that is killed at work gives one error, and the next request is served") {
     std::thread killer([] {
         std::this_thread::sleep_for(std::chrono::milliseconds(500));
         kill_all();
@@ -164,7 +164,7 @@ TEST_CASE("a mesher is found with an installation that PATH names") {
     CHECK(mesher_on((folder / "empty/bin").string()).empty());
 }
 
-TEST_CASE("cached answers need no mesher, are identical, and are dropped when the cache is full") {
+TEST_CASE("cached answers need no mesher, are identical, and are removed when the cache is full") {
     Progress silent;
     const Result<TetMesh> first = mesh_cube(5, silent);
     REQUIRE(first);

@@ -86,7 +86,7 @@ TEST_CASE("a STEP body is joined to bodies it touches, and its curved faces stay
     CHECK(signed_volume(*surface) == near(2000 + 4.0 / 3 * std::numbers::pi * 27, {.relative = 1e-3}));
 }
 
-TEST_CASE("a STEP file that is cut off, of another kind, or without a solid is refused with its name") {
+TEST_CASE("a STEP file that is cut off, of another kind, or without a solid is refused by name") {
     const pliant::test::Folder folder("step");
     const fs::path path = written(folder);
     const Result<std::string> whole = read_file(path);

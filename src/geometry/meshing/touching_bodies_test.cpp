@@ -96,7 +96,7 @@ TEST_CASE("a group holds all bodies that touch, and no other") {
     CHECK(touching_groups(std::span(bodies).first(3), 2)->empty());
 }
 
-TEST_CASE("a surface that encloses nothing is named") {
+TEST_CASE("a surface that encloses nothing is refused by name") {
     TriMesh sheet;
     constexpr int side = 24;
     for (int i = 0; i <= side; ++i) {

@@ -165,7 +165,7 @@ TEST_CASE("edges closer than the mesh size are merged; edges that part at a smal
     CHECK(sharp_edges(LabelledSpace({roof}), size, 30).dropped == 0);
 }
 
-TEST_CASE("a size too coarse for the surface is reduced, with a note") {
+TEST_CASE("a mesh size too coarse for the surface is reduced, with a note") {
     TriMesh frame = cube({0, 0, 0}, 20);
     TriMesh room = cube({2, 2, -5}, 16);
     for (auto& t : room.triangles) std::swap(t[0], t[1]);

@@ -133,7 +133,7 @@ TEST_CASE("unusual but valid outlines are read") {
     CHECK(read("{ prism = [[0,0],[4,0],[4,4],[2,1],[0,4]], from = 0, to = 1 }", solid).empty());  // not convex
 }
 
-TEST_CASE("copies of copies of copies are counted before they are made") {
+TEST_CASE("copies of copies of copies are refused before they are made, if there are too many") {
     Solid solid;
     const std::string thousand = "{ repeat = 1000, step = [2,0,0], of = ";
     CHECK(read(thousand + "{ box = [[0,0,0],[1,1,1]] } }", solid).empty());

@@ -39,7 +39,7 @@ Result<ChunkRecords> parsed(const Plan& plan, std::string_view text) {
 
 }  // namespace
 
-TEST_CASE("records are read back to the last bit") {
+TEST_CASE("records are read back bit for bit") {
     const Plan plan = ten_rows();
     RowRecord failed{5, false, true, "no convergence: \"x\"\n at step 3", {NAN, -0.0}, 1, 2};
     const TaskRecord task{"node1 job 7_3", 3, 2.5, 2.25};

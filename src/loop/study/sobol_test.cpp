@@ -6,7 +6,7 @@
 
 using namespace pliant::study;
 
-TEST_CASE("the first points of the sequence are those that are published") {
+TEST_CASE("the first Sobol points are the published ones") {
     // Bratley and Fox, and every table since: the first eight points of three dimensions.
     const std::vector<double> expected = {0,     0,     0,     0.5,   0.5,   0.5,   0.75,  0.25,
                                           0.25,  0.25,  0.75,  0.75,  0.375, 0.375, 0.625, 0.875,

@@ -93,7 +93,7 @@ TEST_CASE("projection and ray agree") {
     CHECK(depth == near(7, {.relative = 1e-12}));
 }
 
-TEST_CASE("stages show rest, the end and even steps between") {
+TEST_CASE("stages are rest, end and evenly spaced steps between") {
     const auto points = box_corners({0.1, 0.02, 0.06});
     const StageLayout layout = lay_out_stages(view_of_motion({1, 0, 1}), points, 31, 1600, 880);
     CHECK(layout.columns == 2);

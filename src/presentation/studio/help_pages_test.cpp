@@ -31,7 +31,7 @@ struct Installation {
 
 }  // namespace
 
-TEST_CASE("the pages are found from the program's folder and served with their types") {
+TEST_CASE("the help pages are found from the program's folder, and served with their types") {
     const Installation there;
     const auto folder = find_help_pages(there.root / "bin");
     REQUIRE(!folder.empty());

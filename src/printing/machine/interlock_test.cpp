@@ -138,7 +138,7 @@ TEST_CASE("with a brush the part may be 1 mm above the rim, only while the vat g
     CHECK(b.refused(Axis::platform, 85549, "the platform is down"));
 }
 
-TEST_CASE("the height needed above a vat grows with the part, and the part is not pressed on the floor") {
+TEST_CASE("the height needed above a vat grows with the part, and the part is not pressed onto the floor") {
     Bench b;
     b.printer.cleaning.brush = false;
     b.home();

@@ -31,7 +31,7 @@ TEST_CASE("a long move is a trapezoid, a short one a triangle") {
     CHECK(move_seconds(p, {{0, 0, 0}}, {{0, 0, 0}}, 0) == 0);
 }
 
-TEST_CASE("in a coordinated move the slowest axis sets the pace") {
+TEST_CASE("in a coordinated move the slowest axis sets the time") {
     const Printer p = simple();
     // Along the diagonal both axes move 20 mm: the platform alone would take 20/4 + 4/8.
     CHECK(move_seconds(p, {{0, 0, 0}}, {{20000, 20000, 0}}, 0) == near(5.5, {.relative = 1e-12}));

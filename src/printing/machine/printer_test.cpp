@@ -34,7 +34,7 @@ std::string message_with(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-TEST_CASE("the tower of the thesis is read in micrometres and seconds") {
+TEST_CASE("the printer file of the thesis' tower is read in micrometres and seconds") {
     const auto printer = load_printer(tower_file);
     REQUIRE_MESSAGE(printer, (printer ? "" : printer.error().message));
     CHECK(printer->layer_um == 50);
@@ -74,7 +74,7 @@ TEST_CASE("XY compensation and elephant foot belong to a resin") {
                 "resin.semi-flex.xy_compensation: must be -10 mm to 10 mm"));
 }
 
-TEST_CASE("a wrong printer file gets a line with file, key and remedy") {
+TEST_CASE("an invalid printer file gives a line with file, key and remedy") {
     CHECK(holds(message_with("letter = \"Y\"", "letter = \"Z\""), "has the letter of the platform axis"));
     CHECK(holds(message_with("letter = \"Y\"", "letter = \"yy\""), "p.toml:36: axis.tower.letter"));
     CHECK(holds(message_with("slots = 8", "slots = 3"), "must be from 1 to 3"));

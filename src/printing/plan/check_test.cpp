@@ -26,7 +26,7 @@ std::string error_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("a valid sequence passes") {
+TEST_CASE("a valid program passes") {
     CHECK(error_of(start + load + "G1 Z0.05\nM400\n" + light) == "");
     CHECK(error_of("; only a comment\n\nM84 S0\n") == "");
 }
@@ -40,7 +40,7 @@ TEST_CASE("actions that are never allowed are refused with their line") {
     CHECK(holds(error_of(start + "G1 Z401\n"), "outside its travel"));
 }
 
-TEST_CASE("commands outside the dialect are refused") {
+TEST_CASE("commands outside the supported dialect are refused") {
     CHECK(holds(error_of("G91\n"), "G91 does not belong"));
     CHECK(holds(error_of("M112\n"), "M112 is not a command"));
     CHECK(holds(error_of("g1 x1\n"), "not a command"));

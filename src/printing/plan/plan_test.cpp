@@ -35,7 +35,7 @@ std::string error_of(const job::Manifest& job, const machine::Printer& printer) 
 
 }  // namespace
 
-TEST_CASE("two halves of 200 layers: 200 swaps, their time and resin") {
+TEST_CASE("two halves of 200 layers: 200 swaps, with their time and resin") {
     const machine::Printer printer = plan::test::tower();
     const job::Manifest job = plan::test::make_job(repeated({0, 1}, 200), two);
     const Plan plan = planned(job, printer);

@@ -18,7 +18,7 @@ const slice::Raster raster{400, 300, 100};
 
 }  // namespace
 
-TEST_CASE("an island is listed, and white in its picture") {
+TEST_CASE("an island is listed, and drawn white in its picture") {
     // A gate with something that hangs between its legs.
     const std::vector<slice::Body> bodies{{"soft", box({-4000, -500, 0}, {-3000, 500, 900}), ""},
                                           {"soft", box({3000, -500, 0}, {4000, 500, 900}), ""},

@@ -29,7 +29,7 @@ struct Source {
 
 }  // namespace
 
-TEST_CASE("the next image is ready when requested, and every image is fetched once") {
+TEST_CASE("the next image is ready when it is requested, and every image is fetched once") {
     Source source;
     const ImageAhead::Order order = {{0, 0}, {0, 1}, {1, 1}, {1, 0}, {9, 0}, {2, 0}};
     {

@@ -284,7 +284,7 @@ TEST_CASE("parts outside the image, below the platform or without solid surface 
     CHECK(refused({cube}, {raster, 50, {true, 0, 20}}).find("threshold 0") == 0);
 }
 
-TEST_CASE("bodies too small to appear and floating parts are reported") {
+TEST_CASE("bodies too small to be lit, and floating parts, are reported") {
     const Sliced s = slice_all({{"soft", box({-1000, -1000, 0}, {1000, 1000, 100}), ""},
                                 {"speck", box({0, 0, 30}, {1, 1, 31}), ""},
                                 {"hair", box({1500, 0, 0}, {1501, 1000, 100}), ""},

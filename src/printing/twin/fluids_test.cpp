@@ -64,7 +64,7 @@ TEST_CASE("solution that holds resin cleans less, and carries resins into other 
     CHECK(fluids.clean(15) == near(0.0525, {.relative = 1e-12}));
 }
 
-TEST_CASE("used solution counts as foreign resin") {
+TEST_CASE("resin in used solution counts as foreign resin") {
     auto printer = printer_with_film();
     printer.solution = {100, 100, 0.2, 0, 0, 0, 1, 0, 0};
     Fluids fluids(printer);
@@ -101,7 +101,7 @@ TEST_CASE("fresh resin dilutes contamination; removing the part removes its film
     CHECK(fluids.enter(2, 100) == 0);
 }
 
-TEST_CASE("faults are named on the command line") {
+TEST_CASE("faults are parsed from the command line") {
     CHECK(parse_fault("stall:40:90")->kind == Fault::Kind::stall);
     CHECK(parse_fault("stall:40:90")->n == 40);
     CHECK(parse_fault("stall:40:90")->amount == 90);

@@ -288,7 +288,7 @@ TEST_CASE("one pixel darkened or added is found, even by one grey value") {
     CHECK(verdict(job_of(pyramid), stray, lights_of(stray)).wrong_images == 1);
 }
 
-TEST_CASE("overcure below an underside is expected up to the known depth; more fails unless accepted") {
+TEST_CASE("overcure below an underside is allowed up to the known depth; more fails unless accepted") {
     // A table: twenty layers of a leg, twenty of its plate.
     std::vector<job::Image> table(20, corner);
     table.resize(40, all_lit);

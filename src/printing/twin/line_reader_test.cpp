@@ -39,7 +39,7 @@ TEST_CASE("errors come in Marlin's order: number, then presence, then value of t
     CHECK(reader.last_number() == 0);
 }
 
-TEST_CASE("M110 sets the number") {
+TEST_CASE("M110 sets the line number") {
     LineReader reader;
     const std::string line = "N0 M110 N41";
     REQUIRE(read(reader, fmt::format("{}*{}\n", line, checksum(line)))[0].error.empty());

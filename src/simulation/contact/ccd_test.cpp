@@ -32,7 +32,7 @@ TEST_CASE("a point that falls on a triangle stops at the distance share it must 
     CHECK(largest_step(Features::point_triangle, touching, dx, 0.1, 1) == 0);
 }
 
-TEST_CASE("a common motion, however large, does not limit the step") {
+TEST_CASE("a common motion of both features, however large, does not limit the step") {
     const Stencil x{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0.1}, {0, 1, 0.1}}};
     const Vec3 far{10, -20, 30};
     CHECK(largest_step(Features::edge_edge, x, {far, far, far, far}, 0.1, 1) == 1);

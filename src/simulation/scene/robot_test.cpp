@@ -167,7 +167,7 @@ steps = 1
     CHECK(found == near(0.025 / 25e-6 / 1e6 * 0.04 * std::log(5.0) / 4, {.relative = 0.01}));
 }
 
-TEST_CASE("blends and exposures are read, and mistakes in them named") {
+TEST_CASE("blends and exposures are read, and mistakes in them are named") {
     const auto body = [](const std::string& lines) {
         return with("material = \"soft\"\n", "material = \"soft\"\n" + lines + "\n");
     };
