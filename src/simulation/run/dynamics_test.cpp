@@ -126,7 +126,7 @@ TEST_CASE("a free swing at large amplitude gains no energy, and damping brings i
     }
 }
 
-TEST_CASE("stiffness damping acts on deformation alone: a body that its support carries at constant speed feels none") {
+TEST_CASE("stiffness damping acts on deformation only, not on a body that its support moves at constant speed") {
     constexpr double way = 0.5, duration = 1;
     Description d = beam(2, 0);
     d.supports[0].move_m = {way, 0, way};
