@@ -137,7 +137,7 @@ std::vector<Problem> problems(double nu) {
 int main(int argc, char** argv) {
     const std::vector<std::string> wanted(argv + 1, argv + argc);
     fmt::print(
-        "| problem | nu | figure | thesis | blend, quadratic | linear | CalculiX C3D4 | quadratic | CalculiX C3D10 "
+        "| problem | nu | quantity | thesis | blend, quadratic | linear | CalculiX C3D4 | quadratic | CalculiX C3D10 "
         "|\n");
     fmt::print("|---|---|---|---|---|---|---|---|---|\n");
     for (std::size_t p = 0; p < problems(0.3).size(); ++p) {

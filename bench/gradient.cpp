@@ -1,6 +1,7 @@
-// The gradients' table of docs/performance.md, made again: how long a gradient by everything takes beside the solution
-// that it belongs to, both in one run, on one core. Every row is a process of its own.
-//   build/release/bench/pliant_gradient [TETS [ROBOT]]      sizes up to TETS (300000); only rows whose name has ROBOT
+// Prints the table of gradients in docs/performance.md: the time of a gradient by everything, and of the program that
+// it belongs to, measured in the same run on one core. Every row is a process of its own.
+//   build/release/bench/pliant_gradient [TETS [ROBOT]]      meshes of at most TETS tets (default 300000); only robots
+//                                                           whose name contains ROBOT
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -23,7 +24,7 @@ using namespace pliant::sim;
 
 namespace {
 
-/// Of the processor: other users of the machine do not count.
+/// Measures processor time, so that other users of the machine do not count.
 class Stopwatch {
 public:
     [[nodiscard]] double read_s() const { return now_s() - begin_s_; }
@@ -38,11 +39,12 @@ private:
 };
 
 struct Times {
-    double system_s = 0, adjoint_s = 0, numbers_s = 0, rest_s = 0;
-    [[nodiscard]] double all() const { return system_s + adjoint_s + numbers_s + rest_s; }
+    double tangent_s = 0, adjoint_s = 0, numbers_s = 0, rest_s = 0;
+    [[nodiscard]] double all() const { return tangent_s + adjoint_s + numbers_s + rest_s; }
 };
 
-/// Where the tip is, along z, by all inputs, all numbers of the robot, tet by tet, and all rest positions.
+/// Derivatives of the tip's z by all inputs, by all numbers of the robot, by the constants of each tet, and by all rest
+/// positions.
 Result<Times> gradient_times(const Stepper& stepper, const RobotState& robot) {
     Times times;
     Stopwatch watch;
@@ -56,7 +58,7 @@ Result<Times> gradient_times(const Stepper& stepper, const RobotState& robot) {
                                     gradient_residual);
     if (!at) return tl::unexpected(at.error());
     const Slope tip = slope(*at, {Measure::Kind::marker, 0, {0, 0, 1}});
-    times.system_s = lap();
+    times.tangent_s = lap();
     const auto adjoint = at->adjoint(tip.state);
     if (!adjoint) return tl::unexpected(adjoint.error());
     times.adjoint_s = lap();
@@ -73,7 +75,7 @@ double peak_MB() {
     return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-/// The quickest of a few runs of the solution, and of the gradient at its end.
+/// Prints the fastest of several runs of the program, and of the gradient at its end.
 void row(const std::string& name, const Description& description, const Program& program) {
     const tbb::global_control one_core(tbb::global_control::max_allowed_parallelism, 1);
     const auto model = Model::create(description);
@@ -97,7 +99,7 @@ void row(const std::string& name, const Description& description, const Program&
     const double step_s = forward_s / program.steps;
     fmt::print(
         "| {} | {} | {} | {:.0f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} % | {:.0f} % | {:.0f} |\n", name,
-        model->mesh().tet_count(), program.steps, 1e3 * forward_s, 1e3 * best.system_s, 1e3 * best.adjoint_s,
+        model->mesh().tet_count(), program.steps, 1e3 * forward_s, 1e3 * best.tangent_s, 1e3 * best.adjoint_s,
         1e3 * best.numbers_s, 1e3 * best.rest_s, 1e3 * best.all(), 100 * best.all() / forward_s,
         100 * best.all() / step_s, peak_MB());
 }
@@ -123,9 +125,13 @@ int main(int argc, char** argv) {
         if (name.find(wanted) != std::string::npos) in_a_process(name, describe, how);
     };
     fmt::print(
-        "| robot | tets | steps | solution, ms | system, ms | adjoint, ms | numbers, tet by tet, ms | rest positions, "
-        "ms "
-        "| gradient, ms | of the solution | of one step | MB |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+        "Processor time on one core, the fastest of several runs.\n"
+        "program: all its steps. tangent: its assembly. adjoint: the transposed solution with its factorisation.\n"
+        "numbers: derivatives by inputs, by numbers of the robot and by the constants of each tet.\n"
+        "gradient: tangent, adjoint, numbers and rest positions together.\n\n"
+        "| robot | tets | steps | program, ms | tangent, ms | adjoint, ms | numbers, ms | rest positions, ms | "
+        "gradient, ms | gradient / program | gradient / step | peak memory, MB |\n"
+        "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     const Program program{.steps = 20, .tolerance = 1e-4};
     apart(
         "bend", [] { return bench::two_material_bend(0.45, 1); }, program);

@@ -1,5 +1,5 @@
-// Inverse kinematics, one core: processor time of a waypoint from rest and of one from the waypoint before, beside the
-// equilibria that it takes and beside a gradient by central differences.
+// Inverse kinematics on one core: processor time of the first waypoint, from rest, and of the later ones, each from the
+// waypoint before; the equilibria that they need; and the time of a gradient by central differences.
 //   build/release/bench/pliant_inverse_bench [small|large|all]
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -27,14 +27,14 @@ constexpr double length = 0.1, side = 0.01;
 constexpr std::size_t waypoints = 20;
 constexpr double tolerance_m = 1e-4;
 
-/// Of the processor: other users of the machine do not count.
+/// Processor time, so that other users of the machine do not count.
 double now_ms() {
     timespec t{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
 }
 
-/// Notes when each waypoint begins.
+/// Records the time at which each waypoint begins.
 class Beginnings final : public Progress {
 public:
     void advance(std::string_view, double) override { ms_.push_back(now_ms()); }
@@ -74,7 +74,7 @@ InverseTask task_of(const Model& model) {
     return task;
 }
 
-/// The inputs of waypoint k of a path that can be followed: they swing one after the other.
+/// The inputs of waypoint k on a reachable path: sines with a phase for each input.
 Eigen::VectorXd path_inputs(std::size_t k, Eigen::Index size) {
     Eigen::VectorXd shares(size);
     for (Eigen::Index i = 0; i < size; ++i) {
@@ -86,7 +86,7 @@ Eigen::VectorXd path_inputs(std::size_t k, Eigen::Index size) {
 
 struct Path {
     std::vector<std::vector<Vec3>> places;
-    double forward_ms = 0;  ///< of a step from waypoint to waypoint under known inputs
+    double forward_ms = 0;  ///< mean time of a step from one waypoint to the next with known inputs
 };
 
 Path forward_path(const Model& model, const InverseTask& task, const StepperOptions& options) {
@@ -105,7 +105,7 @@ Path forward_path(const Model& model, const InverseTask& task, const StepperOpti
     return path;
 }
 
-/// Of a gradient by central differences at a state: two equilibria for each input.
+/// Time of a gradient by central differences: two equilibria for each input.
 double central_ms(const Model& model, const InverseTask& task, const StepperOptions& options) {
     Stepper stepper(model, options);
     const InputSpace space(stepper, task);
@@ -172,8 +172,14 @@ int main(int argc, char** argv) {
     const tbb::global_control one_core(tbb::global_control::max_allowed_parallelism, 1);
     const std::string what = argc > 1 ? argv[1] : "small";
     fmt::print(
-        "20 waypoints of a marker to 0.1 mm\n\n| robot | tets | first ms | warm ms | median | forward ms | ratio | "
-        "equilibria | linearised | solutions | central differences ms | reached | error mm |\n"
+        "A marker follows 20 waypoints within 0.1 mm. Processor time on one core.\n"
+        "first: the first waypoint, from rest, with setup. later: mean of the others. step: a step from one waypoint "
+        "to "
+        "the next with known inputs. ratio: later / step.\n"
+        "equilibria, linearisations, linear solutions: mean numbers for a later waypoint. differences: a gradient by "
+        "central differences.\n\n"
+        "| robot | tets | first, ms | later, ms | median, ms | step, ms | ratio | equilibria | linearisations | "
+        "linear solutions | differences, ms | reached | largest error, mm |\n"
         "|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
     if (what != "large") {
         for (const int cables : {1, 2, 3, 4, 8})

@@ -1,6 +1,8 @@
-// Inverse kinematics on five robots: targets to which known inputs lead must all be found, and of targets out of reach
-// the nearest place must be named, as dense sampling shows it.
-//   build/release/bench/pliant_inverse_battery [INSIDE [OUTSIDE]]      of all robots together; 1000 and 200
+// Inverse kinematics on five robots: all targets that known inputs reach must be found; for targets out of reach the
+// nearest place must be found, compared with dense sampling.
+//   build/release/bench/pliant_inverse_battery [INSIDE [OUTSIDE]]      numbers of targets within and out of reach, for
+//   all
+//                                                                      robots together (1000 and 200)
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -150,12 +152,13 @@ Tally inside(const Model& model, InverseTask task, int count) {
         if (result.reached)
             ++tally.right;
         else
-            fmt::print("  not found: target {}, {:.3f} mm off\n", n, 1e3 * result.waypoints[0].goals[0].error);
+            fmt::print("  reachable target {}: not reached, {:.3f} mm away\n", n,
+                       1e3 * result.waypoints[0].goals[0].error);
     }
     return tally;
 }
 
-/// Of targets that are not reached. Right: no sample comes nearer by more than the tolerance.
+/// Targets out of reach. A result is right if no sample comes nearer to the target by more than the tolerance.
 Tally outside(const Model& model, InverseTask task, int count) {
     Tally tally;
     Stepper stepper(model, stepping);
@@ -164,7 +167,7 @@ Tally outside(const Model& model, InverseTask task, int count) {
     std::vector<Vec3> samples;
     constexpr int sample_count = 1500;
     for (int n = 0; n < sample_count; ++n) {
-        // A third of them beyond the ranges, and so on their ends.
+        // Values beyond the ranges, a third of them, are moved to the ends of the ranges.
         const Eigen::VectorXd shares = (1.5 * (spread_point(n + 1, space.size()).array() - 0.5) + 0.5).max(0).min(1);
         if (const auto tip = tip_under(stepper, space, shares)) samples.push_back(*tip);
     }
@@ -174,16 +177,17 @@ Tally outside(const Model& model, InverseTask task, int count) {
         const Vec3 wanted = base + 0.05 * Vec3{way[0] - 0.2, way[1] - 0.5, way[2] - 0.5};
         double nearest = 1e300;
         for (const Vec3& sample : samples) nearest = std::min(nearest, norm(sample - wanted));
-        if (nearest < 3e-3) continue;  // it may be within reach
+        if (nearest < 3e-3) continue;  // the target may be within reach
         task.goals[0].wanted = {{wanted}};
         const InverseResult result = follow(stepper, task, {}, silent);
-        if (result.reached) continue;  // it was, between the samples
+        if (result.reached) continue;  // it was within reach, between the samples
         add(result, tally);
         const double error = result.waypoints.at(0).goals[0].error;
         if (error <= nearest + tolerance_m)
             ++tally.right;
         else
-            fmt::print("  outside {}: {:.3f} mm off, sampled {:.3f} mm\n", n, 1e3 * error, 1e3 * nearest);
+            fmt::print("  unreachable target {}: result {:.3f} mm away, nearest sample {:.3f} mm\n", n, 1e3 * error,
+                       1e3 * nearest);
     }
     return tally;
 }
@@ -199,7 +203,7 @@ void print(const std::string& name, const char* where, const Tally& t) {
 
 int main(int argc, char** argv) {
     const int inside_count = argc > 1 ? std::atoi(argv[1]) : 1000, outside_count = argc > 2 ? std::atoi(argv[2]) : 200;
-    fmt::print("| robot | targets | right | equilibria each | ms each |\n|---|---|---|---|---|\n");
+    fmt::print("| robot | targets | right | equilibria per target | time per target, ms |\n|---|---|---|---|---|\n");
     const std::vector<Robot> all = robots();
     int wrong = 0;
     for (const Robot& robot : all) {
@@ -210,9 +214,9 @@ int main(int argc, char** argv) {
         }
         const InverseTask task = task_of(robot, *model);
         const Tally in = inside(*model, task, inside_count / static_cast<int>(all.size()));
-        print(robot.name, "inside", in);
+        print(robot.name, "within reach", in);
         const Tally out = outside(*model, task, outside_count / static_cast<int>(all.size()));
-        print(robot.name, "outside", out);
+        print(robot.name, "out of reach", out);
         wrong += in.asked - in.right + out.asked - out.right;
     }
     return wrong == 0 ? 0 : 1;

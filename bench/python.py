@@ -26,17 +26,17 @@ from pliant.envs import Crawl, Grasp, RobotEnv  # noqa: E402
 
 
 def import_time() -> None:
-    """Of a process that does nothing else."""
+    """Time to import the module in a process that does nothing else."""
     code = "import time; t = time.perf_counter(); import pliant; print(time.perf_counter() - t)"
     times = [
         float(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout)
         for _ in range(15)
     ]
-    print(f"import pliant: {1e3 * min(times):.0f} ms at best, {1e3 * float(np.median(times)):.0f} ms mostly, numpy included")
+    print(f"import pliant: {1e3 * min(times):.0f} ms minimum, {1e3 * float(np.median(times)):.0f} ms median, with numpy")
 
 
 def call_time(build: Path) -> None:
-    """A step of six tetrahedra, in Python and in C++."""
+    """Time of a step of six tetrahedra, called from Python and from C++."""
     model = block()
     state = model.rest()
     lengths = [np.array([0.0095]), np.array([0.0096])]
@@ -49,7 +49,7 @@ def call_time(build: Path) -> None:
     ours = 1e6 * min(rounds)
     program = build / "bench" / "pliant_python_calls"
     if not program.exists():
-        print(f"a step of 6 tets: {ours:.1f} us in Python; {program} is not built")
+        print(f"a step of 6 tets: {ours:.1f} us in Python; not compared with C++: {program} is not built")
         return
     theirs = min(float(subprocess.run([program], check=True, capture_output=True, text=True).stdout) for _ in range(3))
     print(f"a step of 6 tets: {ours:.1f} us in Python, {theirs:.1f} us in C++: the call costs {ours - theirs:.1f} us")
@@ -81,16 +81,16 @@ def bar(size_mm: float, length_mm: float = 100) -> pliant.Model:
 
 
 class Rate(NamedTuple):
-    """What a batch does."""
+    """Speed of a batch."""
 
-    #: robot-steps a second
+    #: robot-steps per second
     wall: float
-    #: of all threads together, for a robot-step, s
+    #: processor time of all threads per robot-step, s
     processor_s: float
 
 
 def rate_of(model: pliant.Model, robots: int, threads: int, steps: int) -> tuple[Rate, list[pliant.State]]:
-    """Robots whose cables go on by 1 % of their length, there and back."""
+    """Robots whose cables shorten by 1 % of their length in each step, and lengthen again."""
     batch = pliant.Batch(model, robots, threads=threads)
     states = batch.rest()
     rest = states[0].inputs.values_SI[0]
@@ -115,28 +115,29 @@ def batch_times() -> None:
         rates[threads] = Rate(max(r.wall for r, _ in found), min(r.processor_s for r, _ in found))
         ends.append(found[-1][1])
     assert all(end == ends[0] for end in ends), "the bits depend on the number of threads"
-    print(f"64 robots of {model.tet_count} tets, a cable that goes on by 1 %:")
+    print(f"64 robots of {model.tet_count} tets, each step shortens the cable by 1 %:")
     for threads, rate in rates.items():
         print(
-            f"  {threads} threads: {rate.wall:.0f} robot-steps a second, {rate.wall / rates[1].wall:.2f} times one; "
-            f"{1e3 * rate.processor_s:.2f} ms of processor for each"
+            f"  {threads} threads: {rate.wall:.0f} robot-steps per second, "
+            f"{rate.wall / rates[1].wall:.2f} times one thread; "
+            f"{1e3 * rate.processor_s:.2f} ms of processor time per robot-step"
         )
     large = bar(2.19)
     rate, _ = rate_of(large, 2 * cores, 0, 4)
-    # What is published of SOFA's inverse: 50 ms for a time step with 7,400 tets, of one robot in one process.
+    # Published for SOFA's inverse: 50 ms for a time step of one robot with 7,400 tets, in one process.
     print(
-        f"{2 * cores} robots of {large.tet_count} tets: {rate.wall:.1f} robot-steps a second, {rate.wall / 20:.1f} times "
-        f"one in 50 ms; {1e3 * rate.processor_s:.1f} ms of processor for each, 50 ms over that is "
-        f"{0.05 / rate.processor_s:.1f}"
+        f"{2 * cores} robots of {large.tet_count} tets: {rate.wall:.1f} robot-steps per second, "
+        f"{rate.wall / 20:.1f} times the published 20; {1e3 * rate.processor_s:.1f} ms of processor time per robot-step, "
+        f"the published 50 ms over that is {0.05 / rate.processor_s:.1f}"
     )
 
 
-#: s, that SOFA has published for a time step of 7,400 tets
+#: published time of SOFA for a step of 7,400 tets, s
 PUBLISHED_STEP_S = 0.05
 
 
 def environment_rate(env: RobotEnv, steps: int) -> tuple[float, float, float]:
-    """Steps of 20 ms a second, by the clock and of processor time, and how far the middle or the cube has come (m)."""
+    """Steps of 20 ms per second of wall time and of processor time, and how far the middle or the cube has moved (m)."""
     env.reset(seed=1)
     begin, processor = time.perf_counter(), time.process_time()
     for k in range(steps):
@@ -151,13 +152,13 @@ def environment_rate(env: RobotEnv, steps: int) -> tuple[float, float, float]:
 
 
 def environment_times() -> None:
-    """A crawler and a gripper with a cube, as the environments have them, and a crawler of some 7,400 tets."""
+    """The environments' crawler and gripper with a cube, and a crawler of about 7,400 tets."""
     fine = Crawl.make_model(size_mm=2.35)
     for name, env, steps in (("Crawl", Crawl(), 90), ("Grasp", Grasp(), 55), ("Crawl, fine", Crawl(fine), 60)):
         wall, processor, way = environment_rate(env, steps)
         print(
-            f"{name}: {env.model.tet_count} tets, {wall:.1f} steps of 20 ms a second, {processor:.1f} a second of processor; "
-            f"50 ms over the latter is {PUBLISHED_STEP_S * processor:.2f}; {1e3 * way:.1f} mm"
+            f"{name}: {env.model.tet_count} tets, steps of 20 ms: {wall:.1f} per second, "
+            f"{processor:.1f} per second of processor time, {PUBLISHED_STEP_S * processor:.2f} times the published speed; moved by {1e3 * way:.1f} mm"
         )
 
 

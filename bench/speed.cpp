@@ -99,8 +99,9 @@ void frames_of(const std::string& name, Description description, Program program
 
 void frames() {
     fmt::print(
-        "| frames | tets | residual asked | ms a frame | iterations a frame | residual | error of tip | of force "
-        "| MB |\n|---|---|---|---|---|---|---|---|---|\n");
+        "Errors are relative to the same program at a tolerance of 1e-9.\n\n"
+        "| robot | tets | tolerance | ms per frame | iterations per frame | residual | tip error | force error "
+        "| peak memory, MB |\n|---|---|---|---|---|---|---|---|---|\n");
     const auto row = [](const std::string& name, const std::function<Description()>& describe, double tolerance) {
         apart([&] { frames_of(name, describe(), {.steps = 20, .tolerance = tolerance}); });
     };
@@ -152,8 +153,8 @@ void elements_of(const std::string& name, Description description, Solver solver
 
 void elements() {
     fmt::print(
-        "| thesis' model | tets | solver | residual asked | ms a frame | frames a second | iterations a frame | ");
-    fmt::print("error of tip |\n|---|---|---|---|---|---|---|---|\n");
+        "| thesis' model | tets | solver | tolerance | ms per frame | frames per second | iterations per frame | ");
+    fmt::print("tip error |\n|---|---|---|---|---|---|---|---|\n");
     const auto rows = [](const std::string& name, Description (*describe)()) {
         apart([&] { elements_of(name, describe(), Solver::local_global, 1e-2); });
         apart([&] { elements_of(name, describe(), Solver::anderson, 1e-2); });
@@ -164,7 +165,7 @@ void elements() {
     rows("air elements", bench::thesis_air_bar);
 }
 
-/// We go before and after CalculiX, which takes long enough for the machine to change its speed.
+/// Pliant runs before and after CalculiX, which takes so long that the machine may change its speed meanwhile.
 void cold_of(double nu) {
     const Description description = bench::two_material_bend(nu, 1);
     const auto model = Model::create(description);
@@ -184,7 +185,7 @@ void cold_of(double nu) {
 
 void cold() {
     fmt::print(
-        "| nu | ours, ms | iterations | residual | CalculiX, s | ratio | tips apart "
+        "| nu | Pliant, ms | iterations | residual | CalculiX, s | CalculiX / Pliant | tip difference "
         "|\n|---|---|---|---|---|---|---|\n");
     for (const double nu : {0.3, 0.45, 0.49}) apart([nu] { cold_of(nu); });
 }
@@ -200,7 +201,7 @@ void pull(const std::string& folder, int steps) {
                norm(tip(found) - tip(exact)) / moved, actuation(found));
 }
 
-/// From the file of a mesh to the first frame, 1 mm of pull: the quickest of several times.
+/// From the mesh file to the first frame, pulled by 1 mm: the fastest of several runs.
 void start(const std::string& folder) {
     using Clock = std::chrono::steady_clock;
     struct Times {
@@ -224,7 +225,7 @@ void start(const std::string& folder) {
                best.frame_ms, best.all());
 }
 
-/// CalculiX is given the tension that we find.
+/// CalculiX gets the tension that Pliant finds.
 void quadratic_finger(const std::string& folder) {
     const double ratio = 0.8;
     const auto model = Model::create(bench::notched_finger(folder, 2, {CableTarget::Kind::length_ratio, ratio}));
@@ -250,14 +251,20 @@ void quadratic_finger(const std::string& folder) {
 
 void fingers() {
     const char* folder = std::getenv("PLIANT_REFERENCE_DATA");
-    if (folder == nullptr) return fmt::print("fingers: PLIANT_REFERENCE_DATA does not say where their meshes are\n");
-    fmt::print("| read mesh, ms | model, ms | setup, ms | first frame, ms | together, ms |\n|---|---|---|---|---|\n");
+    if (folder == nullptr)
+        return fmt::print("fingers: skipped; set PLIANT_REFERENCE_DATA to the folder with their meshes\n");
+    fmt::print(
+        "| reading the mesh, ms | model, ms | setup, ms | first frame, ms | total, ms |\n|---|---|---|---|---|\n");
     apart([&] { start(folder); });
-    fmt::print("| 40 mm of pull, steps | setup, ms | ms | iterations | residual | error of tip | tension, N |\n");
+    fmt::print(
+        "| finger pulled by 40 mm, steps | setup, ms | solution, ms | iterations | residual | tip error | tension, N "
+        "|\n");
     fmt::print("|---|---|---|---|---|---|---|\n");
     for (const int steps : {1, 4, 40}) apart([&] { pull(folder, steps); });
-    fmt::print("| quadratic finger, steps | ours, s | iterations | residual | tension, N | CalculiX, s | ratio |");
-    fmt::print(" tips apart |\n|---|---|---|---|---|---|---|---|\n");
+    fmt::print(
+        "| quadratic finger, steps | Pliant, s | iterations | residual | tension, N | CalculiX, s | CalculiX / Pliant "
+        "|");
+    fmt::print(" tip difference |\n|---|---|---|---|---|---|---|---|\n");
     apart([&] { quadratic_finger(folder); });
 }
 
@@ -272,8 +279,8 @@ ContactRules default_contact(const Description& d) {
     return rules;
 }
 
-/// The same program without contact, with contact that waits until the robot meets itself, as it is by default, and
-/// with contact from the start, by turns: medians, and the medians of the ratios to the first.
+/// The same program without contact, with contact only after the robot has touched itself (the default), and with
+/// contact from the start, in turns: the median time of the first, and the median ratios of the others to it.
 void contact_of(const std::string& name, Description description, const Program& program) {
     const auto without = Model::create(description);
     description.contact = default_contact(description);
@@ -295,13 +302,15 @@ void contact_of(const std::string& name, Description description, const Program&
         return values[values.size() / 2];
     };
     fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {} |\n", name, without->mesh().tet_count(),
-               1e3 * median(off) / program.steps, median(waiting), median(on), same ? "the same" : "other");
+               1e3 * median(off) / program.steps, median(waiting), median(on), same ? "equal" : "different");
 }
 
-/// What contact costs where nothing touches.
+/// The cost of contact where nothing touches.
 void contact_price() {
     fmt::print(
-        "| frames | tets | without contact, ms | by default, ratio | from the start, ratio | bits by default |\n"
+        "ratio: time relative to that without contact.\n\n"
+        "| robot | tets | without contact, ms per frame | contact on demand (default), ratio | contact from the start, "
+        "ratio | tip without contact and by default |\n"
         "|---|---|---|---|---|---|\n");
     const auto row = [](const std::string& name, const std::function<Description()>& describe, double tolerance,
                         int steps = 20) {
@@ -352,16 +361,18 @@ std::optional<ColdStart> cold_start(const Cells& cells, double tolerance, int co
         if (!found.converged || write(ends[1], &result, sizeof(result)) != sizeof(result)) std::_Exit(1);
     });
     ColdStart result{};
-    const bool told = done && read(ends[0], &result, sizeof(result)) == sizeof(result);
+    const bool received = done && read(ends[0], &result, sizeof(result)) == sizeof(result);
     close(ends[0]);
     close(ends[1]);
-    return told ? std::optional(result) : std::nullopt;
+    return received ? std::optional(result) : std::nullopt;
 }
 
 /// Largest meshes up to `most` tets; a plot of those at 1e-4 where `picture` names a file.
 void sizes(double most, const std::string& picture) {
     fmt::print(
-        "| tets | residual asked | s on one core | s on two | us a tet, one core | iterations | tip z, mm | MB |\n"
+        "| tets | tolerance | one core, s | two cores, s | one core, us per tet | iterations | tip z, mm | peak "
+        "memory, "
+        "MB |\n"
         "|---|---|---|---|---|---|---|---|\n");
     report::Series one{"one core", {}, false}, two{"two cores", {}, false}, even{"in proportion to tets", {}, false};
     for (const Cells& c : {Cells{48, 5}, {72, 8}, {100, 10}, {128, 13}, {160, 16}, {200, 20}, {256, 26}}) {

@@ -70,9 +70,9 @@ try {
   await settled(page);
   const tets = await page.evaluate(() => window.pliant.scene.value.head.tets);
   console.log(`${tets} linear tets, tolerance 1e-4, ${seconds} s each`);
-  console.log('| what | frames/s | at target | solver ms | latency ms, median | 95 % | longest gap ms, 95 % |');
+  console.log('| measured | frames per second | frames at target | solver, ms | latency, median, ms | latency, 95 %, ms | longest gap, 95 %, ms |');
   console.log('|---|---|---|---|---|---|---|');
-  for (const [what, section] of [['to the page, nothing drawn', 'print'], ['drawn, in software', 'simulate']]) {
+  for (const [what, section] of [['received, not drawn', 'print'], ['drawn in software', 'simulate']]) {
     await page.evaluate((s) => (window.pliant.section.value = s), section);
     await page.waitForTimeout(500);
     await drag(page, 1);

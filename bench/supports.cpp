@@ -148,9 +148,8 @@ int main(int count, char** arguments) {
         return 2;
     }
     fmt::print(
-        "| part | islands bare | islands | tips | struts | supports, mm^3 | s | PrusaSlicer: islands | supports, mm^3 "
-        "| s "
-        "|\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+        "| part | islands without supports | islands left | tips | struts | supports, mm^3 | time, s | PrusaSlicer: "
+        "islands left | supports, mm^3 | time, s |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
     for (int i = 1; i < count; ++i) {
         if (const Status status = row(arguments[i]); !status)
             fmt::print("| {} | {} |\n", arguments[i], status.error().message);

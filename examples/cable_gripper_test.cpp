@@ -15,7 +15,7 @@ sim::Trajectory run(const std::vector<std::string>& assignments) {
 
 }  // namespace
 
-TEST_CASE("the gripper curls as it did") {
+TEST_CASE("the gripper bends with the expected tension and markers") {
     const sim::Trajectory result = run({"mesh.size=\"4 mm\"", "program.steps=15"});
     CHECK(result.warnings.empty());
     const sim::Step& last = result.steps.back();
@@ -30,7 +30,7 @@ TEST_CASE("the gripper curls as it did") {
     for (const sim::Step& step : result.steps) CHECK(step.min_J > 0.5);
 }
 
-TEST_CASE("all solvers agree on the gripper") {
+TEST_CASE("all solvers give the same tension of the gripper, within 0.2 %") {
     const std::vector<std::string> coarse = {"mesh.size=\"8 mm\"", "mesh.order=1", "program.steps=5",
                                              "cable.flexor.target.length_ratio=0.9"};
     std::vector<double> tension;
@@ -44,13 +44,13 @@ TEST_CASE("all solvers agree on the gripper") {
     CHECK(tension[3] == near(tension[0], {.relative = 2e-3}));
 }
 
-TEST_CASE("the number of gaps is one parameter") {
+TEST_CASE("a gripper with four gaps is built from one parameter, and solved") {
     const sim::Trajectory four = run({"parameters.gaps=4", "mesh.size=\"6 mm\"", "mesh.order=1", "program.steps=3",
                                       "cable.flexor.target.length_ratio=0.9"});
     CHECK(four.steps.back().cables[0].tension_N > 0);
 }
 
-TEST_CASE("pulled further than its gaps are wide, the gripper touches itself, or says that it may not") {
+TEST_CASE("pulled further than its gaps are wide, the gripper touches itself; without contact a warning says so") {
     const std::vector<std::string> far = {"mesh.size=\"8 mm\"", "mesh.order=1", "program.steps=50",
                                           "cable.flexor.target.length_ratio=0.6"};
     const sim::Trajectory touching = run(far);

@@ -32,7 +32,7 @@ double pull_N(const sim::Step& step) {
 
 }  // namespace
 
-TEST_CASE("the ball is held by friction, crosses nothing, and the arm carries what the ball pulls") {
+TEST_CASE("friction holds the ball, nothing crosses, and the arm carries the pull of the ball") {
     const Grip rough = run({}), smooth = run({"parameters.friction=0"});
     for (const sim::Step& step : rough.result.steps) {
         const auto x = sim::contact_nodes(rough.model, step.positions, step.time);

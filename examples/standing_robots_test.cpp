@@ -30,7 +30,7 @@ double along(const sim::Trajectory& t, double time_s, std::size_t first, std::si
 
 }  // namespace
 
-TEST_CASE("an inchworm gets on by as much in every cycle, by friction alone") {
+TEST_CASE("an inchworm moves by the same distance in every cycle, and not at all without friction") {
     const sim::Trajectory rough = run_file("examples/inchworm/robot.toml", {});
     const auto at = [&](double time_s) { return along(rough, time_s, 0, 2); };
     const std::array<double, 3> cycles = {at(0.6) - at(0), at(1.2) - at(0.6), at(1.8) - at(1.2)};
@@ -41,7 +41,7 @@ TEST_CASE("an inchworm gets on by as much in every cycle, by friction alone") {
     CHECK(std::abs(along(smooth, 1.8, 0, 2) - along(smooth, 0, 0, 2)) < 0.02 * (at(1.8) - at(0)));
 }
 
-TEST_CASE("a crawler goes forward by an arch that runs along it, and nowhere by a gait that is symmetric") {
+TEST_CASE("a crawler moves forward with a running arch, and not with a symmetric gait") {
     const auto gone = [](const std::string& gait, double seconds) {
         const sim::Trajectory t = run_file("examples/crawler/" + gait + ".toml", {});
         return along(t, seconds, 0, 1) - along(t, 0, 0, 1);
@@ -52,7 +52,7 @@ TEST_CASE("a crawler goes forward by an arch that runs along it, and nowhere by 
     CHECK(std::abs(nod) < 0.1 * forward);
 }
 
-TEST_CASE("a swimmer is taken forward by the water that its tail pushes back") {
+TEST_CASE("a swimmer moves by the drag of the water on its tail, and not in a vacuum") {
     const auto gone = [](const std::vector<std::string>& changes) {
         const sim::Trajectory t = run_file("examples/swimmer/robot.toml", changes);
         return along(t, 2, 0, 1) - along(t, 0, 0, 1);
@@ -63,7 +63,7 @@ TEST_CASE("a swimmer is taken forward by the water that its tail pushes back") {
     CHECK(std::abs(in_vacuum) < 0.05 * std::abs(in_water));
 }
 
-TEST_CASE("the motor of a crank does the work that bends the bar") {
+TEST_CASE("the work of the crank's motor equals the elastic energy of the bent bar") {
     const sim::Trajectory t = run_file("examples/crank_and_rod/robot.toml", {"program.steps=60"});
     double work_J = 0;
     for (std::size_t k = 1; k < t.steps.size(); ++k) {

@@ -15,7 +15,7 @@ sim::Trajectory run(const std::vector<std::string>& assignments) {
 
 }  // namespace
 
-TEST_CASE("the finger of the tutorial, linear and quadratic") {
+TEST_CASE("the tutorial's finger has the expected tension and tip, linear and quadratic") {
     const sim::Step linear = run({"mesh.order=1"}).steps.back();
     CHECK(linear.cables[0].tension_N == near(29.30, {.relative = 5e-3}));
     CHECK(linear.markers[0].position_m.x == near(55.40e-3, {.relative = 5e-3}));

@@ -92,7 +92,7 @@ struct Live {
 
 }  // namespace
 
-TEST_CASE("an emergency stop from another thread makes dark and reaches the machine") {
+TEST_CASE("an emergency stop from another thread turns the projector off and reaches the machine") {
     Live live;
     REQUIRE(live.control.connect());
     REQUIRE(live.reaches(host::State::idle));
@@ -115,7 +115,7 @@ TEST_CASE("an emergency stop from another thread makes dark and reaches the mach
     CHECK(live.twin.take_output().find("ok") == std::string::npos);  // no answer until it is reset
 }
 
-TEST_CASE("while the machine stands idle its switches are known, and follow the axes") {
+TEST_CASE("an idle machine reports its limit switches, and they change as the axes move") {
     Live live;
     REQUIRE(live.control.connect());
     const auto pressed = [&](const char* name) -> std::optional<bool> {
@@ -146,7 +146,7 @@ TEST_CASE("a second host on the same port is refused while the first has it") {
     CHECK(live.reaches([&] { return host::SerialWire::open(live.pty.device(), 115200).has_value(); }));
 }
 
-TEST_CASE("a print, looked at and paused from other threads, is quit, and the next host finds it parked") {
+TEST_CASE("other threads may read the state of a print and pause it; after quitting, the next host finds it parked") {
     Live live;
     host::PrintJob job;
     job.name = "halves";

@@ -14,7 +14,7 @@
 using namespace pliant;
 using namespace pliant::app;
 
-TEST_CASE("a print under control comes out as the plain one, and keeps a journal") {
+TEST_CASE("a print through the control gives the same part as a plain print, and keeps a journal") {
     ControlBench b;
     b.must_finish();
     CHECK(b.lights() == 10);
@@ -23,7 +23,7 @@ TEST_CASE("a print under control comes out as the plain one, and keeps a journal
 namespace {
 
 /// The host may be killed at each of its device operations; bench/kill_print.cpp tries all of them.
-const long every = std::getenv("PLIANT_EVERY_MOMENT") != nullptr ? 1 : 7;
+const long moment_stride = std::getenv("PLIANT_EVERY_MOMENT") != nullptr ? 1 : 7;
 
 /// The cured block, for comparison with an undisturbed print.
 std::string block_of(twin::Twin& twin) {
@@ -44,10 +44,10 @@ constexpr std::array both_releases = {machine::MarlinRelease::v2_1_1, machine::M
 
 /// Alternates between firmware releases along the moments of a print.
 machine::MarlinRelease release_at(long moment) {
-    return both_releases[static_cast<std::size_t>(moment / every % 2)];
+    return both_releases[static_cast<std::size_t>(moment / moment_stride % 2)];
 }
 
-twin::Options of(machine::MarlinRelease release) {
+twin::Options options_of(machine::MarlinRelease release) {
     twin::Options options;
     options.release = release;
     return options;
@@ -71,15 +71,15 @@ bool has_gone_on(ControlBench& b, const std::string& whole) {
 
 }  // namespace
 
-TEST_CASE("a host that is killed anywhere is followed by one that finishes the same part") {
+TEST_CASE("after a host is killed at any point, the next host finishes the same part") {
     ControlBench undisturbed;
     undisturbed.start();
     const std::string whole = block_of(*undisturbed.twin);
     const long deeds = undisturbed.life->deeds;
     MESSAGE(deeds << " deeds in a print");
     int resumed = 0;
-    for (long n = 1; n < deeds; n += every) {
-        ControlBench b(of(release_at(n)));
+    for (long n = 1; n < deeds; n += moment_stride) {
+        ControlBench b(options_of(release_at(n)));
         b.life->dies_at = n;
         CAPTURE(n);
         REQUIRE_FALSE(b.start());
@@ -95,17 +95,17 @@ TEST_CASE("a host that is killed anywhere is followed by one that finishes the s
         CHECK(block_of(*b.twin) == whole);
         b.must_be_whole();
     }
-    CHECK(resumed > deeds / every / 2);
+    CHECK(resumed > deeds / moment_stride / 2);
 }
 
-TEST_CASE("the controller restarts anywhere: the print stops dark, and goes on if no vat hung half on its hooks") {
+TEST_CASE("after a controller restart anywhere the light is off; the print resumes unless a vat is half hooked") {
     ControlBench undisturbed;
     undisturbed.start();
     const std::string whole = block_of(*undisturbed.twin);
     const long deeds = undisturbed.life->deeds;
     int resumed = 0, refused = 0, before = 0;
-    for (long n = 1; n < deeds; n += every) {
-        ControlBench b(of(release_at(n)));
+    for (long n = 1; n < deeds; n += moment_stride) {
+        ControlBench b(options_of(release_at(n)));
         b.life->at_deed = [&](long deed) {
             if (deed == n) b.twin->reset();
         };
@@ -124,18 +124,18 @@ TEST_CASE("the controller restarts anywhere: the print stops dark, and goes on i
         ++(has_gone_on(b, whole) ? resumed : refused);
     }
     MESSAGE(resumed << " resumed, " << refused << " refused, " << before << " not disturbed");
-    CHECK(resumed > deeds / every / 2);
-    CHECK(refused < deeds / every / 10);
+    CHECK(resumed > deeds / moment_stride / 2);
+    CHECK(refused < deeds / moment_stride / 10);
 }
 
-TEST_CASE("a power cut anywhere: a light that nobody saw the end of is asked about, all else goes on") {
+TEST_CASE("after a power cut anywhere the print resumes; only an exposure of unknown length is asked about") {
     ControlBench undisturbed;
     undisturbed.start();
     const std::string whole = block_of(*undisturbed.twin);
     const long deeds = undisturbed.life->deeds;
     int asked = 0, refused = 0, resumed = 0;
-    for (long n = 1; n < deeds; n += every) {
-        ControlBench b(of(release_at(n)));
+    for (long n = 1; n < deeds; n += moment_stride) {
+        ControlBench b(options_of(release_at(n)));
         b.guarded = false;
         b.new_host();
         double lit_since_s = 0, lit_s = 0;
@@ -161,7 +161,7 @@ TEST_CASE("a power cut anywhere: a light that nobody saw the end of is asked abo
         ++(has_gone_on(b, whole) ? resumed : refused);
     }
     MESSAGE(resumed << " resumed, " << asked << " asked about, " << refused << " refused");
-    CHECK(asked > 10 / every);
+    CHECK(asked > 10 / moment_stride);
 }
 
 namespace {
@@ -171,7 +171,7 @@ using host::Snapshot;
 using host::State;
 
 /// A person at the machine: acts once, at a given point of the print, and resumes every pause.
-struct Person {
+struct Operator {
     ControlBench& b;
     std::function<bool(const Snapshot&)> reached;
     std::function<void()> action;
@@ -181,7 +181,7 @@ struct Person {
     bool lit_while_paused = false;
     std::vector<std::string> prompts;
 
-    Person(ControlBench& bench, std::function<bool(const Snapshot&)> when, std::function<void()> what)
+    Operator(ControlBench& bench, std::function<bool(const Snapshot&)> when, std::function<void()> what)
         : b(bench), reached(std::move(when)), action(std::move(what)) {
         b.life->at_look = [this] { look(); };
     }
@@ -222,7 +222,7 @@ TEST_CASE("pausing, now or after the exposure, changes nothing in the part") {
         for (const double at : {0.05, 0.2, 0.31, 0.5, 0.77, 0.9}) {
             CAPTURE(at);
             ControlBench b;
-            Person person(b, completion_above(at), [&] { CHECK(b.control->pause(how)); });
+            Operator person(b, completion_above(at), [&] { CHECK(b.control->pause(how)); });
             b.start();
             INFO(b.last_error());
             CHECK(person.pauses == 1);
@@ -234,10 +234,10 @@ TEST_CASE("pausing, now or after the exposure, changes nothing in the part") {
     }
 }
 
-TEST_CASE("a pause in the light: at once and made up later, or after it and the layer peeled") {
+TEST_CASE("a pause during an exposure: at once, with the rest exposed later, or after the exposure and the peel") {
     for (const auto how : {PauseWhen::now, PauseWhen::after_exposure}) {
         ControlBench b;
-        Person person(b, lit_on_layer(3), [&] { CHECK(b.control->pause(how)); });
+        Operator person(b, lit_on_layer(3), [&] { CHECK(b.control->pause(how)); });
         b.start();
         CHECK(person.pauses == 1);
         CHECK_FALSE(person.lit_while_paused);
@@ -248,11 +248,11 @@ TEST_CASE("a pause in the light: at once and made up later, or after it and the 
     }
 }
 
-TEST_CASE("cancelling anywhere leaves the machine dark and parked, every vat in its slot") {
+TEST_CASE("after cancelling anywhere the light is off, the machine is parked and every vat is in its slot") {
     for (double at = 0.02; at < 1; at += 0.07) {
         CAPTURE(at);
         ControlBench b;
-        Person person(b, completion_above(at), [&] { CHECK(b.control->cancel()); });
+        Operator person(b, completion_above(at), [&] { CHECK(b.control->cancel()); });
         b.start();
         INFO(b.last_error());
         CHECK(b.snapshot().state == State::idle);
@@ -267,11 +267,11 @@ TEST_CASE("cancelling anywhere leaves the machine dark and parked, every vat in 
     }
 }
 
-TEST_CASE("a suspended print is parked, and goes on where it was") {
+TEST_CASE("a suspended print parks the machine, and resumes from the same place") {
     for (const double at : {0.1, 0.35, 0.6, 0.85}) {
         CAPTURE(at);
         ControlBench b;
-        Person person(b, completion_above(at), [&] { CHECK(b.control->suspend()); });
+        Operator person(b, completion_above(at), [&] { CHECK(b.control->suspend()); });
         b.start();
         CHECK_FALSE(b.twin->interlock().hooked_vat());
         REQUIRE(b.snapshot().can_resume);
@@ -280,7 +280,7 @@ TEST_CASE("a suspended print is parked, and goes on where it was") {
     }
 }
 
-TEST_CASE("an interrupted print can be put away for good") {
+TEST_CASE("an interrupted print can be cancelled for good") {
     ControlBench b;
     b.must_die(300);
     b.new_host();
@@ -294,10 +294,10 @@ TEST_CASE("an interrupted print can be put away for good") {
     CHECK(b.twin->log().violations.empty());
 }
 
-TEST_CASE("an emergency stop is dark and deaf at once; after a reset the print goes on") {
+TEST_CASE("an emergency stop turns the light off and halts the board at once; after a reset the print resumes") {
     ControlBench b;
     double stopped_s = 0, dark_s = 0;
-    Person person(b, lit_on_layer(2), [&] {
+    Operator person(b, lit_on_layer(2), [&] {
         stopped_s = b.twin->now();
         b.control->emergency_stop();
     });
@@ -337,12 +337,11 @@ public:
 
 }  // namespace
 
-TEST_CASE(
-    "an emergency stop in a move stops it where it is, and says what to do; so does a host that comes too early") {
+TEST_CASE("after an emergency stop in a move the axis stops there; resuming before a reset gives the remedy") {
     for (const auto release : both_releases) {
-        ControlBench b(of(release));
+        ControlBench b(options_of(release));
         int moving_um = 0;
-        Person person(b, completion_above(0.4), [&] {
+        Operator person(b, completion_above(0.4), [&] {
             b.twin->advance_to(b.twin->now() + 0.1);
             moving_um = b.twin->motors_position()[machine::Axis::platform];
             b.control->emergency_stop();
@@ -369,7 +368,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("homing to a dead switch is stopped within the time that its way takes, and the switch is named") {
+TEST_CASE("homing to a dead switch stops within the time of the axis' travel, and the error names the switch") {
     for (const int which : {1, 2, 3}) {
         CAPTURE(which);
         ControlBench b(faulty(twin::Fault::Kind::dead_switch, which));
@@ -397,7 +396,7 @@ TEST_CASE("homing to a dead switch is stopped within the time that its way takes
     CHECK(b.last_error().find("homing failed: the carriage did not reach its switch (x_min)") == 0);
 }
 
-TEST_CASE("a first try at the wrong port leaves nothing behind: the next one prints") {
+TEST_CASE("a failed start at the wrong port leaves no journal: the next start prints") {
     ControlBench b;
     b.life->unplugged = true;
     b.start();
@@ -413,10 +412,10 @@ TEST_CASE("a first try at the wrong port leaves nothing behind: the next one pri
     killed.must_finish();
 }
 
-TEST_CASE("a board that is fresh, resets whenever its port is opened, or loses a tenth of its oks, prints to the end") {
+TEST_CASE("a board just started, one that resets when its port opens, and one losing 10 % of its oks all print") {
     for (const auto release : both_releases) {
         CAPTURE(machine::name_of(release));
-        twin::Options options = of(release);
+        twin::Options options = options_of(release);
         options.boot_s = 1.5;
         options.homes_first = true;
         ControlBench fresh(options);
@@ -435,11 +434,11 @@ TEST_CASE("a board that is fresh, resets whenever its port is opened, or loses a
     }
 }
 
-TEST_CASE("an ok that a dead host has left behind does not count for the next one") {
+TEST_CASE("an ok that belongs to a killed host is not counted for the next host") {
     for (const auto release : both_releases) {
         for (long n = 200; n < 260; n += 7) {
             CAPTURE(n);
-            twin::Options options = of(release);
+            twin::Options options = options_of(release);
             options.advanced_ok = true;
             ControlBench b(options);
             b.must_die(n);
@@ -450,7 +449,7 @@ TEST_CASE("an ok that a dead host has left behind does not count for the next on
     }
 }
 
-TEST_CASE("progress moves while the axes are homed and a vat is brought, never back, never beyond what was sent") {
+TEST_CASE("the progress never stops for 10 s, never decreases and never passes what has been sent") {
     ControlBench b;
     double last = 0, longest_s = 0, moved_s = 0;
     b.life->at_look = [&] {
@@ -467,7 +466,7 @@ TEST_CASE("progress moves while the axes are homed and a vat is brought, never b
     CHECK(longest_s < 10);
 }
 
-TEST_CASE("by hand: a second key during a long move stops it where it is; then the axes must be homed") {
+TEST_CASE("by hand: a second command during a long move stops the move; then the axes must be homed again") {
     ControlBench b;
     const auto serve = [&](Status status) {
         REQUIRE(status);
@@ -501,7 +500,7 @@ TEST_CASE("by hand: a second key during a long move stops it where it is; then t
     CHECK(b.twin->log().violations.empty());
 }
 
-TEST_CASE("an emergency stop pulls the hardware's line before it says M112; connecting again releases it") {
+TEST_CASE("an emergency stop pulls the emergency line before it sends M112; connecting again releases the line") {
     CountingLine line;
     ControlBench b;
     b.emergency_line = &line;
@@ -511,7 +510,7 @@ TEST_CASE("an emergency stop pulls the hardware's line before it says M112; conn
         alive = !b.twin->log().power_cut;  // M112 would have switched off the board's own relay
         return {};
     };
-    Person person(b, lit_on_layer(1), [&] { b.control->emergency_stop(); });
+    Operator person(b, lit_on_layer(1), [&] { b.control->emergency_stop(); });
     b.start();
     CHECK(line.pulls == 1);
     CHECK(line.pulled);
@@ -526,7 +525,7 @@ TEST_CASE("an emergency stop pulls the hardware's line before it says M112; conn
     b.must_be_whole();
 }
 
-TEST_CASE("a line that is gone is told before anything moves") {
+TEST_CASE("an emergency line whose device is gone is reported before anything moves") {
     CountingLine line;
     line.works = false;
     ControlBench b;
@@ -544,13 +543,13 @@ void with_door(machine::Printer& printer) {
 }
 
 /// A person who constantly tries to resume, with a record of what happened.
-struct Impatient {
+struct OperatorAtOpenDoor {
     ControlBench& b;
     int refused = 0, paused = 0;
     bool lit_behind_door = false, moved = false;
     machine::Position at;
 
-    explicit Impatient(ControlBench& bench) : b(bench) {
+    explicit OperatorAtOpenDoor(ControlBench& bench) : b(bench) {
         b.life->at_look = [this] { look(); };
     }
     void look() {
@@ -566,11 +565,11 @@ struct Impatient {
 
 }  // namespace
 
-TEST_CASE("the door is opened in the light: dark within half a second, nothing moves, and it goes on once it is shut") {
+TEST_CASE("door opened during an exposure: dark within 0.5 s, no motion, and the print resumes when it is shut") {
     for (const int light : {1, 4, 7}) {
         CAPTURE(light);
         ControlBench b(faulty(twin::Fault::Kind::door_open, light, 40), "tower", 5, with_door);
-        Impatient person(b);
+        OperatorAtOpenDoor person(b);
         b.start();
         INFO(b.last_error());
         CHECK(b.snapshot().finished);
@@ -587,7 +586,7 @@ TEST_CASE("the door is opened in the light: dark within half a second, nothing m
     }
 }
 
-TEST_CASE("a host that dies while the door is open is followed by one that waits for the door") {
+TEST_CASE("if a host is killed while the door is open, the next host refuses to resume until the door is shut") {
     ControlBench b(faulty(twin::Fault::Kind::door_open, 5, 100), "tower", 5, with_door);
     b.life->at_deed = [&](long deed) {
         if (b.life->dies_at < 0 && b.snapshot().state == State::paused) b.life->dies_at = deed + 5;
@@ -601,7 +600,7 @@ TEST_CASE("a host that dies while the door is open is followed by one that waits
     b.must_finish({true, {}});
 }
 
-TEST_CASE("with an open door a suspended print stays where it is, a cancelled one parks once the door is shut") {
+TEST_CASE("with an open door a suspended print stays in place; a cancelled one parks when the door is shut") {
     for (const bool cancel : {true, false}) {
         ControlBench b(faulty(twin::Fault::Kind::door_open, 5, 60), "tower", 5, with_door);
         b.life->at_look = [&] {
@@ -621,7 +620,7 @@ TEST_CASE("with an open door a suspended print stays where it is, a cancelled on
     }
 }
 
-TEST_CASE("a print does not begin with an open door, nor does a test light, and no journal is left") {
+TEST_CASE("with an open door neither a print nor a test exposure starts, and no journal is left") {
     ControlBench b(faulty(twin::Fault::Kind::door_open, 1, 200), "tower", 5, with_door);
     b.twin->light_on(halves::image(0, 0).value());  // opens it
     b.twin->light_off();
@@ -639,7 +638,7 @@ TEST_CASE("a print does not begin with an open door, nor does a test light, and 
     CHECK(b.lights() == 1);
 }
 
-TEST_CASE("both switches of an axis pressed at once: not before it is looked at") {
+TEST_CASE("two limit switches of one axis pressed at once: the print is refused before any axis is homed") {
     ControlBench b(faulty(twin::Fault::Kind::stuck_switch, 4), "tower", 2, [](machine::Printer& printer) {
         printer.limit_switches.push_back({machine::Axis::carriage, true, false});
     });
@@ -648,7 +647,7 @@ TEST_CASE("both switches of an axis pressed at once: not before it is looked at"
     CHECK(b.twin->log().homings == 0);
 }
 
-TEST_CASE("a switch that is stuck is found before the axis that homed to it goes far") {
+TEST_CASE("a stuck limit switch is found right after its axis is homed, before any exposure") {
     for (const int which : {1, 2, 3}) {
         CAPTURE(which);
         ControlBench b(faulty(twin::Fault::Kind::stuck_switch, which));
@@ -661,7 +660,7 @@ TEST_CASE("a switch that is stuck is found before the axis that homed to it goes
     }
 }
 
-TEST_CASE("a controller that restarts between the fence and the light gets no light, though it says nothing yet") {
+TEST_CASE("a controller that restarts just before an exposure gets no light, even while it still boots") {
     twin::Options options;
     options.boot_s = 2;  // silent for longer than booting takes
     ControlBench b(options);
@@ -687,11 +686,11 @@ TEST_CASE("a controller that restarts between the fence and the light gets no li
     b.must_be_whole();
 }
 
-TEST_CASE("a firmware without emergency parser is known by its capabilities, and is reset to be stopped") {
+TEST_CASE("a firmware without emergency parser is found by its capabilities, and is stopped by a reset") {
     twin::Options options;
     options.emergency_parser = false;
     ControlBench b(options);
-    Person person(b, completion_above(0.3), [&] { b.control->emergency_stop(); });
+    Operator person(b, completion_above(0.3), [&] { b.control->emergency_stop(); });
     b.start();
     CHECK(has_event(b, "log", "no EMERGENCY_PARSER"));
     CHECK(b.life->resets == 1);
@@ -700,7 +699,7 @@ TEST_CASE("a firmware without emergency parser is known by its capabilities, and
 
 TEST_CASE("a changed exposure takes effect at the next layer and is kept across a restart of the host") {
     ControlBench b;
-    Person person(b, lit_on_layer(2), [&] {
+    Operator person(b, lit_on_layer(2), [&] {
         CHECK(b.control->set_exposure(0, 3.5));
         CHECK_FALSE(b.control->set_exposure(2, 3));
         CHECK_FALSE(b.control->set_exposure(0, 61));  // the machine's limit is 60 s
@@ -724,9 +723,9 @@ TEST_CASE("a changed exposure takes effect at the next layer and is kept across 
     }
 }
 
-TEST_CASE("every light that has ended is told, broken off or whole") {
+TEST_CASE("the host reports every exposure that ended, broken off or complete") {
     ControlBench b(faulty(twin::Fault::Kind::door_open, 4, 40), "tower", 5, with_door);
-    const Impatient person(b);
+    const OperatorAtOpenDoor person(b);
     b.start();
     REQUIRE(b.snapshot().finished);
     std::size_t whole = 0, broken = 0;
@@ -742,9 +741,9 @@ TEST_CASE("every light that has ended is told, broken off or whole") {
     }
 }
 
-TEST_CASE("a skipped layer gets no light") {
+TEST_CASE("a skipped layer is not exposed") {
     ControlBench b;
-    Person person(b, lit_on_layer(1), [&] {
+    Operator person(b, lit_on_layer(1), [&] {
         CHECK(b.control->skip_layer(3));
         CHECK_FALSE(b.control->skip_layer(1));
         CHECK_FALSE(b.control->skip_layer(5));
@@ -756,13 +755,13 @@ TEST_CASE("a skipped layer gets no light") {
     CHECK(b.report().missing_layers == 1);
 }
 
-TEST_CASE("resin is asked for before its layer, a picture is taken after every one") {
+TEST_CASE("resin is asked for before the layer that needs it, and a picture is taken after every layer") {
     ControlBench b;
     b.refills = {{3, 1, "refill the vat of slot 1 with x"}};
     std::vector<int> pictures;
     b.after_layer = [&](int layer) { pictures.push_back(layer); };
     b.new_host();
-    Person person(
+    Operator person(
         b, [](const Snapshot&) { return false; }, [] {});
     b.start();
     INFO(b.last_error());
@@ -773,7 +772,7 @@ TEST_CASE("resin is asked for before its layer, a picture is taken after every o
     b.must_be_whole();
 }
 
-TEST_CASE("by hand: home, bring and put away a vat, clean, jog, test light; what the interlocks forbid is refused") {
+TEST_CASE("manual control: home, bring and put away a vat, clean, jog, test exposure; interlocks still apply") {
     ControlBench b;
     const auto done = [&](Status status) {
         if (status) b.control->serve_until_idle();
@@ -804,14 +803,14 @@ TEST_CASE("by hand: home, bring and put away a vat, clean, jog, test light; what
     CHECK(b.twin->log().homings == 3);
 }
 
-TEST_CASE("what cannot be had now is refused") {
+TEST_CASE("commands that the current state does not allow are refused") {
     ControlBench b;
     CHECK_FALSE(b.control->pause(PauseWhen::now));
     CHECK_FALSE(b.control->resume());
     CHECK_FALSE(b.control->cancel());
     CHECK_FALSE(b.control->home({}));
     CHECK_FALSE(b.control->set_exposure(0, 2));
-    Person person(b, completion_above(0.3), [&] {
+    Operator person(b, completion_above(0.3), [&] {
         CHECK_FALSE(b.control->start({}));
         CHECK_FALSE(b.control->home({}));
         CHECK_FALSE(b.control->disconnect());
@@ -822,9 +821,9 @@ TEST_CASE("what cannot be had now is refused") {
     CHECK(b.snapshot().finished);
 }
 
-TEST_CASE("a second host on the same job is refused, and so is starting an interrupted job anew") {
+TEST_CASE("a second host on the same job is refused, and so is starting an interrupted job without --resume") {
     ControlBench b;
-    Person person(b, completion_above(0.3), [&] {
+    Operator person(b, completion_above(0.3), [&] {
         CHECK(host::Journal::open(b.journal(), false).error().message.find("another host") != std::string::npos);
     });
     b.must_die(400);
@@ -835,7 +834,7 @@ TEST_CASE("a second host on the same job is refused, and so is starting an inter
     CHECK(b.snapshot().state == State::offline);
 }
 
-TEST_CASE("another program that has spoken to the controller in between is noticed") {
+TEST_CASE("another program that used the controller after the interruption is found by its line number") {
     ControlBench b;
     b.must_die(400);
     b.twin->receive("M110 N500\n");
@@ -846,7 +845,7 @@ TEST_CASE("another program that has spoken to the controller in between is notic
     b.must_finish({true, {std::nullopt, true}});
 }
 
-TEST_CASE("another program whose line numbers are higher proves nothing") {
+TEST_CASE("another program that used higher line numbers is found too") {
     ControlBench b;
     b.must_die(400);
     b.twin->receive("M110 N90000000\n");
@@ -856,14 +855,14 @@ TEST_CASE("another program whose line numbers are higher proves nothing") {
     CHECK(b.last_error().find("another program has used") != std::string::npos);
 }
 
-TEST_CASE("a host that has connected before it goes on is as sure as one that goes on at once") {
+TEST_CASE("a host that connects first and resumes later finishes the same part as one that resumes at once") {
     ControlBench undisturbed;
     undisturbed.start();
     const std::string whole = block_of(*undisturbed.twin);
     const long deeds = undisturbed.life->deeds;
     int resumed = 0;
-    for (long n = 40; n < deeds; n += 6 * every) {
-        ControlBench b(of(release_at(n)));
+    for (long n = 40; n < deeds; n += 6 * moment_stride) {
+        ControlBench b(options_of(release_at(n)));
         b.life->dies_at = n;
         CAPTURE(n);
         REQUIRE_FALSE(b.start());
@@ -881,7 +880,7 @@ TEST_CASE("a host that has connected before it goes on is as sure as one that go
     CHECK(resumed > 5);
 }
 
-TEST_CASE("every fault of the wire is survived under control too") {
+TEST_CASE("a print under control survives every kind of fault on the wire") {
     using twin::Fault;
     for (const auto kind :
          {Fault::Kind::corrupt_byte, Fault::Kind::lose_line, Fault::Kind::lose_ok, Fault::Kind::lose_byte,
@@ -897,7 +896,7 @@ TEST_CASE("every fault of the wire is survived under control too") {
     }
 }
 
-TEST_CASE("every kind of machine is resumed after its host was killed") {
+TEST_CASE("on every kind of machine a print resumes after its host was killed") {
     for (const char* name : {"tower8", "two_towers", "carousel", "tower_magnet", "wall", "rotary", "linear"}) {
         CAPTURE(std::string(name));
         long deeds = 0;
@@ -946,13 +945,13 @@ struct FullDisk {
 
 }  // namespace
 
-TEST_CASE("a full disk stops the print dark and still, with the pump off; it goes on when there is room again") {
+TEST_CASE("a full disk stops the print with light, pump and axes off; it resumes when there is space again") {
     for (const double at : {0.2, 0.33, 0.45, 0.6, 0.75, 0.9}) {
         CAPTURE(at);
         ControlBench b;
         std::unique_ptr<FullDisk> full;
-        Person person(b, completion_above(at),
-                      [&] { full = std::make_unique<FullDisk>(std::filesystem::file_size(b.journal())); });
+        Operator person(b, completion_above(at),
+                        [&] { full = std::make_unique<FullDisk>(std::filesystem::file_size(b.journal())); });
         b.start();
         full.reset();
         CHECK(b.last_error().find("the journal cannot be written") != std::string::npos);
@@ -964,11 +963,11 @@ TEST_CASE("a full disk stops the print dark and still, with the pump off; it goe
     }
 }
 
-TEST_CASE("a disk that fills up in the light: the light is made dark, and somebody must say how long it was on") {
+TEST_CASE("disk full during an exposure: the light goes off, and resuming needs --assume-lit") {
     ControlBench b;
     std::unique_ptr<FullDisk> full;
-    Person person(b, lit_on_layer(2, 1),
-                  [&] { full = std::make_unique<FullDisk>(std::filesystem::file_size(b.journal())); });
+    Operator person(b, lit_on_layer(2, 1),
+                    [&] { full = std::make_unique<FullDisk>(std::filesystem::file_size(b.journal())); });
     b.start();
     full.reset();
     CHECK_FALSE(b.projector->lit);
@@ -982,11 +981,11 @@ TEST_CASE("a disk that fills up in the light: the light is made dark, and somebo
     b.must_be_whole();
 }
 
-TEST_CASE("a cable that is pulled stops the print dark; plugged in again it goes on") {
+TEST_CASE("an unplugged USB cable stops the print with the light off; plugged in again, the print resumes") {
     for (const double at : {0.15, 0.3, 0.55, 0.8}) {
         CAPTURE(at);
         ControlBench b;
-        Person person(b, completion_above(at), [&] { b.life->unplugged = true; });
+        Operator person(b, completion_above(at), [&] { b.life->unplugged = true; });
         b.start();
         CHECK(b.last_error().find("the device is gone") != std::string::npos);
         CHECK(b.snapshot().state == State::halted);

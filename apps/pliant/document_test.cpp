@@ -49,7 +49,7 @@ TEST_CASE("commands, blocks and comments of a document are found in order") {
     CHECK(!document_steps("<!-- run: not because -->\nThe end.\n"));
 }
 
-TEST_CASE("a reader's edits are made to the file") {
+TEST_CASE("the edits that a document shows are made to the file") {
     const auto steps = document_steps(page);
     REQUIRE(steps.has_value());
     std::string file;
@@ -58,7 +58,7 @@ TEST_CASE("a reader's edits are made to the file") {
     CHECK(!edited("nothing", (*steps)[1]));
 }
 
-TEST_CASE("what is printed must be what is shown, but for times, residuals and last digits") {
+TEST_CASE("printed output must equal the document, except for times, residuals and last digits") {
     const DocumentStep step =
         showing({"20 steps in 2.22 s, residual 4.5e-05, det F 0.858", "tip: (54.257, -0.0000) mm"});
     const auto with = [&](const char* first, const char* second) { return difference(step, {first, second}); };
@@ -75,7 +75,7 @@ TEST_CASE("what is printed must be what is shown, but for times, residuals and l
     CHECK(!difference(gap, {"a", "b 2", "last 40"}).empty());
 }
 
-TEST_CASE("a document takes over what was printed, but not where lines are left out") {
+TEST_CASE("updating a document writes the new output, but keeps lines that are left out (\"...\")") {
     const auto steps = document_steps(page);
     REQUIRE(steps.has_value());
     std::vector<std::vector<std::string>> printed(steps->size());

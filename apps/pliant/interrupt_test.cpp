@@ -122,7 +122,7 @@ nlohmann::json summary_in(const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("a simulation that is interrupted keeps the steps that converged, whole") {
+TEST_CASE("an interrupted simulation writes complete results of the steps that converged") {
     for (const auto& [signal, times] : std::vector<std::pair<int, int>>{{SIGINT, 1}, {SIGTERM, 1}, {SIGTERM, 2}}) {
         CAPTURE(signal);
         CAPTURE(times);  // as `timeout` does: at once
@@ -146,7 +146,7 @@ TEST_CASE("a simulation that is interrupted keeps the steps that converged, whol
     }
 }
 
-TEST_CASE("interrupted while it meshes, it writes nothing and says one line") {
+TEST_CASE("interrupted while meshing, a command writes nothing and prints one line") {
     for (const int signal : {SIGINT, SIGTERM}) {
         for (const std::string command : {"simulate", "mesh"}) {
             CAPTURE(signal);
@@ -162,7 +162,7 @@ TEST_CASE("interrupted while it meshes, it writes nothing and says one line") {
     }
 }
 
-TEST_CASE("interrupted while it draws, everything but the pictures is there") {
+TEST_CASE("interrupted while drawing, a simulation has written everything except the pictures") {
     const test::Folder folder("interrupt");
     const fs::path out = folder / "out";
     Program program({"simulate", finger, "-o", out, "--steps", "2", "--set", linear, "--pictures", "all",
@@ -179,7 +179,7 @@ TEST_CASE("interrupted while it draws, everything but the pictures is there") {
     CHECK_FALSE(fs::exists(folder / "out.partial"));
 }
 
-TEST_CASE("a second signal while files are written leaves nothing behind") {
+TEST_CASE("a second signal while files are written leaves no partial results") {
     const test::Folder folder("interrupt");
     const fs::path out = folder / "out";
     bool put_away = false;
@@ -199,7 +199,7 @@ TEST_CASE("a second signal while files are written leaves nothing behind") {
     CHECK(put_away);
 }
 
-TEST_CASE("slicing that is interrupted leaves no job and no half of one") {
+TEST_CASE("interrupted slicing leaves neither a job nor a partial file") {
     for (const int signal : {SIGINT, SIGTERM}) {
         CAPTURE(signal);
         const test::Folder folder("interrupt");

@@ -74,7 +74,7 @@ struct TwoPrints {
 };
 
 /// Removes timing; lines are counted from the start of their session.
-std::string timeless(const std::vector<host::JournalRecord>& records) {
+std::string without_times(const std::vector<host::JournalRecord>& records) {
     std::string text;
     long base = 0;
     for (const host::JournalRecord& record : records) {
@@ -119,7 +119,7 @@ const std::vector<Case> cases = {
 
 }  // namespace
 
-TEST_CASE("a print with --twin and one over the wire write the same journal, whatever goes wrong") {
+TEST_CASE("print --twin and a print over the wire write the same journal, with any fault") {
     std::vector<std::unique_ptr<Bench>> benches;
     std::vector<std::optional<TwoPrints>> prints(cases.size());
     for (const Case& c : cases) benches.push_back(std::make_unique<Bench>(c.printer));
@@ -133,7 +133,7 @@ TEST_CASE("a print with --twin and one over the wire write the same journal, wha
         CAPTURE(cases[i].fault);
         const TwoPrints& p = *prints[i];
         CAPTURE(p.said);
-        const std::string here = timeless(p.twin), there = timeless(p.port);
+        const std::string here = without_times(p.twin), there = without_times(p.port);
         CHECK(here == there);
         CHECK(here.find(cases[i].ends) != std::string::npos);
         // A port has no oracle: defects of the part only fail the virtual print.
@@ -147,7 +147,7 @@ TEST_CASE("a print with --twin and one over the wire write the same journal, wha
     CHECK(lit(prints[0]->twin)[0] == near(6, {.relative = 1e-9}));
 }
 
-TEST_CASE("the same job leaves the same bytes of journal, every time") {
+TEST_CASE("printing the same job twice gives the same bytes of journal") {
     const Bench b("tower");
     REQUIRE(b.shell("$PLIANT print halves.zip --twin --journal a && $PLIANT print halves.zip --twin --journal b",
                     "said") == 0);
@@ -156,7 +156,7 @@ TEST_CASE("the same job leaves the same bytes of journal, every time") {
     CHECK(test::holds(b.text("a"), "vats=slot%201:%20semi-flex"));
 }
 
-TEST_CASE("a print that asks for resin on the way is rehearsed to its end; the journal says what was asked") {
+TEST_CASE("a virtual print that asks for resin runs to its end, and the journal holds the request") {
     const Bench b("tower", [](std::string& text) {  // more than must stay in a vat: enough for one layer
         for (std::size_t at = 0; (at = text.find("\"700 ml\"")) != std::string::npos;)
             text.replace(at, 8, "\"60.00004 ml\"");
@@ -170,7 +170,7 @@ TEST_CASE("a print that asks for resin on the way is rehearsed to its end; the j
     CHECK(journal.find(" end\n") > journal.find(" resume\n"));
 }
 
-TEST_CASE("killed or cancelled in the middle, a virtual print leaves no file") {
+TEST_CASE("a virtual print that is killed or cancelled leaves no file") {
     const Bench b("tower");
     const auto names = [&] {
         std::set<std::string> all;

@@ -74,7 +74,7 @@ struct Print {
 
 }  // namespace
 
-TEST_CASE("three materials from three rows and three columns of a wall, and with a magnet, come out as drawn") {
+TEST_CASE("three materials from a wall of 3 x 3 vats, and from a tower with a magnet, print as drawn") {
     for (const std::string name : {"wall", "tower_magnet"}) {
         CAPTURE(name);
         Print p(name.c_str());
@@ -93,8 +93,7 @@ TEST_CASE("three materials from three rows and three columns of a wall, and with
     }
 }
 
-TEST_CASE(
-    "a magnet that does not hold, and a fork that stays in, leave their vat where it is: its layers are missing") {
+TEST_CASE("a magnet that does not hold, or a fork that stays in, leaves the vat behind: its layers are missing") {
     const auto failed = [](const char* name, const Fault& fault, const char* mishap) {
         Print p(name);
         p.run({.faults = {fault}});
@@ -107,8 +106,7 @@ TEST_CASE(
     failed("wall", {Fault::Kind::stuck_fork, 3}, "the retriever's fork stays in");
 }
 
-TEST_CASE(
-    "a magnet that is switched off on the way is refused by the check, by the host, and by the twin whoever sends it") {
+TEST_CASE("switching a magnet off while it carries a vat is refused by the check, by the host and by the twin") {
     Print p("tower_magnet");
     const std::size_t pull = p.gcode.find("G1 X0.000", p.gcode.find("M42 P11 S255"));
     p.gcode.insert(p.gcode.find('\n', pull) + 1, "M400\nM42 P11 S0\n");
@@ -126,7 +124,7 @@ TEST_CASE(
     CHECK(holds(machine.log().violations.front(), "switched off while it holds a vat outside its slot"));
 }
 
-TEST_CASE("without power a magnet on its way drops the vat, one that rests or needs no power does not") {
+TEST_CASE("a power loss drops a vat that a magnet carries, unless it stands in place or the magnet needs no power") {
     struct Case {
         double share;  ///< of the pull
         bool needs_power, falls;
@@ -152,7 +150,7 @@ TEST_CASE("without power a magnet on its way drops the vat, one that rests or ne
     }
 }
 
-TEST_CASE("plan and virtual printer agree about the film: what is brushed back, and what is washed off") {
+TEST_CASE("plan and virtual printer agree on the resin film: the volume brushed back and the volume washed off") {
     for (const std::string name : {"tower", "wall"}) {
         CAPTURE(name);
         Print p(name.c_str());

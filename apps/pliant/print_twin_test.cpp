@@ -94,7 +94,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("a two-material job of five layers comes out right") {
+TEST_CASE("a two-material job of five layers prints and passes the inspection") {
     Print p;
     REQUIRE(plan::check_gcode(p.gcode, p.printer));
     p.run();
@@ -114,7 +114,7 @@ TEST_CASE("a two-material job of five layers comes out right") {
     CHECK(p.report.resins[1].left_ml == near(700 - p.plan.vats[1].resin_ml, {.relative = 1e-5}));
 }
 
-TEST_CASE("no more lines are under way than the printer file allows") {
+TEST_CASE("the number of lines on the way never exceeds the printer file's window") {
     for (const int lines : {1, 2, 4}) {
         Print p;
         p.printer.controller.window_lines = lines;
@@ -129,7 +129,7 @@ TEST_CASE("no more lines are under way than the printer file allows") {
     }
 }
 
-TEST_CASE("the planned time is the machine's, but for where the axes stand when they are homed") {
+TEST_CASE("the planned time is the machine's time, except for the positions from which the axes are homed") {
     Print p;
     p.run();
     REQUIRE(p.status);
@@ -148,7 +148,7 @@ TEST_CASE("the planned time is the machine's, but for where the axes stand when 
           near(p.plan.seconds.total - homing_less + tried_s, {.relative = 0.002}));
 }
 
-TEST_CASE("the print survives a damaged, a lost, an unanswered and an unnumbered line wherever it happens") {
+TEST_CASE("the print survives a damaged, lost, unanswered or unnumbered line at any place") {
     constexpr int connecting = 4;  // M110, its synchronisation, and the queries for the last line
     for (const auto release : both_releases) {
         long resends = 0;
@@ -168,7 +168,7 @@ TEST_CASE("the print survives a damaged, a lost, an unanswered and an unnumbered
     }
 }
 
-TEST_CASE("a print on each release: a fresh board, one that has counted on, one with a tenth of its oks lost") {
+TEST_CASE("both releases print with a board that has just started, and with a tenth of the oks lost") {
     for (const auto release : both_releases) {
         CAPTURE(machine::name_of(release));
         Print fresh;
@@ -188,7 +188,7 @@ TEST_CASE("a print on each release: a fresh board, one that has counted on, one 
     }
 }
 
-TEST_CASE("a storm of faults is survived too, also where a Resend is lost") {
+TEST_CASE("the print survives many faults together, lost Resends included") {
     for (const auto release : both_releases) {
         Print p;
         twin::Options options;
@@ -203,7 +203,7 @@ TEST_CASE("a storm of faults is survived too, also where a Resend is lost") {
     }
 }
 
-TEST_CASE("a restart in the middle ends the print, and the report says what is missing") {
+TEST_CASE("a controller restart during a print ends it, and the inspection counts the missing layers") {
     Print p;
     p.run({.faults = {{Fault::Kind::reset, 150, 0}}});
     REQUIRE_FALSE(p.status);
@@ -222,7 +222,7 @@ TEST_CASE("a command that the machine does not know ends the print") {
     CHECK(holds(p.status.error().message, "M777"));
 }
 
-TEST_CASE("a wrong order of vats shows as foreign resin") {
+TEST_CASE("vats in the wrong order are found as foreign resin") {
     Print p;
     for (std::vector<int>& images : p.plan.vat_of_image) std::swap(images[0], images[1]);
     p.gcode = plan::write_gcode(p.plan, p.job, p.printer);
@@ -233,7 +233,7 @@ TEST_CASE("a wrong order of vats shows as foreign resin") {
     CHECK(p.report.materials[0].cured_mm3 < 0.2 * p.report.materials[0].wanted_mm3);
 }
 
-TEST_CASE("a missing exposure shows") {
+TEST_CASE("a missing exposure fails the inspection") {
     Print p;
     const std::string line = ";@expose layer=3 material=1 seconds=2.500 image=layers/00003_1.png\n";
     p.replace(line, "");
@@ -244,7 +244,7 @@ TEST_CASE("a missing exposure shows") {
     CHECK(p.report.materials[0].missing_mm3 == 0);
 }
 
-TEST_CASE("a wrong height shows; above the right one the part would be in the way of the next swap, which is refused") {
+TEST_CASE("a layer that is too low fails the inspection; one that is too high blocks the next swap and is refused") {
     Print low;
     low.replace("G1 Z0.150", "G1 Z0.140");
     low.run();
@@ -258,7 +258,7 @@ TEST_CASE("a wrong height shows; above the right one the part would be in the wa
     CHECK(holds(high.status.error().message, "the platform is down"));
 }
 
-TEST_CASE("an exposure that is too short, and one that comes twice, show") {
+TEST_CASE("too short an exposure and a repeated exposure fail the inspection") {
     Print shorter;
     shorter.replace("layer=4 material=0 seconds=2.500", "layer=4 material=0 seconds=1.500");
     shorter.run();
@@ -271,8 +271,7 @@ TEST_CASE("an exposure that is too short, and one that comes twice, show") {
     CHECK(twice.report.wrong_dose_pixels == 30);
 }
 
-TEST_CASE(
-    "a forbidden move is refused before anything moves; a host that sends it all the same is stopped by the machine") {
+TEST_CASE("a forbidden move is refused before it starts; if sent all the same, the machine stops it") {
     Print p;
     p.replace(";@expose layer=2", "G1 X100 F600\n;@expose layer=2");
     REQUIRE_FALSE(plan::check_gcode(p.gcode, p.printer));
@@ -300,7 +299,7 @@ TEST_CASE("a swap without spray is noticed") {
     CHECK(p.report.log.short_cleanings == 5);
 }
 
-TEST_CASE("a job in resins that the printer does not hold prints once the vats are filled as planned") {
+TEST_CASE("a job whose resins the printer does not hold prints when the vats are filled as planned") {
     Print p;
     p.job.materials[1].resin = "wax";
     p.job.any_vat = true;
@@ -311,7 +310,7 @@ TEST_CASE("a job in resins that the printer does not hold prints once the vats a
     p.must_pass();
 }
 
-TEST_CASE("printed = drawn on every machine that is shipped") {
+TEST_CASE("on every example printer the printed part equals the drawn part") {
     for (const char* name :
          {"tower", "tower8", "two_towers", "carousel", "tower_magnet", "wall", "rotary", "linear", "single"}) {
         INFO(std::string(name));
@@ -368,7 +367,7 @@ bool harmless_to_drop(const std::string& line) {
 
 }  // namespace
 
-TEST_CASE("mutation: drop any one line, and the oracle notices or the part is the same") {
+TEST_CASE("mutation: dropping any line is noticed, or the part is the same") {
     const std::vector<std::string> lines = lines_of(Print().gcode);
     int dropped = 0, seen = 0;
     std::vector<std::string> unseen;
@@ -395,7 +394,7 @@ TEST_CASE("mutation: drop any one line, and the oracle notices or the part is th
     MESSAGE(seen << " of " << dropped << " dropped lines noticed");
 }
 
-TEST_CASE("mutation: every exposure that is dropped, doubled, halved, swapped or moved in height is noticed") {
+TEST_CASE("mutation: an exposure dropped, doubled, shortened, swapped or moved in height is noticed") {
     const std::vector<std::string> lines = lines_of(Print().gcode);
     int mutated = 0;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -422,7 +421,7 @@ TEST_CASE("mutation: every exposure that is dropped, doubled, halved, swapped or
     CHECK(mutated == 50);
 }
 
-TEST_CASE("mutation: any one image that is shown with one pixel changed is noticed, and the layer is named") {
+TEST_CASE("mutation: one changed pixel in any image is noticed, and the layer is named") {
     const Print p;
     for (int layer = 0; layer < layers; ++layer) {
         for (int material = 0; material < 2; ++material) {
@@ -499,7 +498,7 @@ bool has(const twin::Report& report, twin::Finding::Kind kind) {
 
 }  // namespace
 
-TEST_CASE("property: random jobs pass; with one voxel, one time or two images changed they fail, and it is named") {
+TEST_CASE("property: random jobs pass; one voxel, one time or two images changed fail with the right finding") {
     using Kind = twin::Finding::Kind;
     std::mt19937 random(9);
     const auto pick = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(most + 1)); };
@@ -537,7 +536,7 @@ TEST_CASE("property: random jobs pass; with one voxel, one time or two images ch
     }
 }
 
-TEST_CASE("what breaks behind the wire shows in the part, by layer and step") {
+TEST_CASE("a fault of projector, hooks or vats makes the inspection fail, and layer and step are named") {
     const auto broken = [](Fault fault) {
         Print p;
         p.run({.faults = {fault}});
@@ -576,7 +575,7 @@ TEST_CASE("a stalled controller, a resend loop and lost bytes do not harm the pa
     }
 }
 
-TEST_CASE("contamination: what spray leaves goes from vat to vat, and is mapped") {
+TEST_CASE("contamination: resin left by the spray is carried from vat to vat, and the report maps it") {
     Print p;
     p.printer.cleaning.film_um = 100;
     p.run();

@@ -4,7 +4,7 @@
 
 using namespace pliant::app;
 
-TEST_CASE("a bar tells what is left once that is known") {
+TEST_CASE("a progress bar shows the remaining time as soon as it can be estimated") {
     CHECK(progress_line("mesh", 0.5, 1) == "     mesh [===============               ]  50 %");
     CHECK(progress_line("simulate", 0.25, 10) == " simulate [=======                       ]  25 %, about 30 s left");
     CHECK(progress_line("simulate", 0.01, 10) == " simulate [                              ]   1 %");

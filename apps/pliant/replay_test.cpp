@@ -117,11 +117,11 @@ void break_off_everywhere(const char* file, std::size_t every) {
 
 }  // namespace
 
-TEST_CASE("a print with a tower is gone on with from wherever it was broken off") {
+TEST_CASE("on the tower a print resumes from wherever it was broken off") {
     break_off_everywhere("examples/printers/tower.toml", 5);
 }
 
-TEST_CASE("and so is one on machines of other kinds, and one that was broken off twice") {
+TEST_CASE("on other kinds of machine, or broken off twice, a print resumes too") {
     for (const std::string name : {"linear", "single", "wall", "rotary", "tower_magnet"}) {
         CAPTURE(name);
         break_off_everywhere((("examples/printers/" + name + ".toml").c_str()), 4);
@@ -142,7 +142,7 @@ TEST_CASE("and so is one on machines of other kinds, and one that was broken off
     }
 }
 
-TEST_CASE("a journal of another job is refused, one of which nothing has begun changes nothing") {
+TEST_CASE("replay: a journal of another job is refused; one that ends before anything began moves nothing") {
     Bench b("examples/printers/tower.toml");
     const Printed whole(b.printer, b.job, b.ready, halves::image);
     const std::vector<host::JournalRecord> all = whole.print->records().value();

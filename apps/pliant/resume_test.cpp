@@ -85,7 +85,7 @@ std::string table(const fs::path& file) {
 
 }  // namespace
 
-TEST_CASE("a run that is killed at ten moments and resumed ends with the same results") {
+TEST_CASE("a run that is killed and resumed ten times ends with the same results") {
     const test::Folder folder;
     const fs::path robot = folder / "bar.toml", whole = folder / "whole", pieces = folder / "pieces";
     REQUIRE(write_file(robot, bar));
@@ -115,7 +115,7 @@ TEST_CASE("a run that is killed at ten moments and resumed ends with the same re
     CHECK(table(whole / "steps.csv").size() > 1000);
 }
 
-TEST_CASE("a checkpoint of another robot, or none at all, is refused before anything is solved") {
+TEST_CASE("resuming without a checkpoint, or from one of another robot, is refused before anything is solved") {
     const test::Folder folder;
     const fs::path robot = folder / "bar.toml", results = folder / "out";
     REQUIRE(write_file(robot, bar));

@@ -105,7 +105,7 @@ std::vector<double> column(const fs::path& file, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("a force is proportional to the modulus in every row, and the same on one core and on two") {
+TEST_CASE("a study gives forces proportional to the modulus in every row, and the same on one core and on two") {
     const Place place(head + "plan = \"sobol\"\nsamples = 12\n" + modulus + " }\n" + force);
     const Ended ended = place.run({"--jobs", "2"});
     REQUIRE_MESSAGE(ended.status == 0, ended.errors);
@@ -126,7 +126,7 @@ TEST_CASE("a force is proportional to the modulus in every row, and the same on 
     CHECK(fs::exists(place / "o/results.npz"));
 }
 
-TEST_CASE("Sobol indices of a simulation: all of it comes from the modulus, none from where the marker is") {
+TEST_CASE("Sobol indices of a simulated force: 1 for the modulus, 0 for the place of the marker") {
     const Place place(head + "plan = \"sensitivity\"\nsamples = 16\n" + modulus + " }\n" +
                       "key.mark = { set = \"marker.tip.point\", values = [\"[40, 5, 5]\", \"[40, 2, 2]\"] }\n" + force);
     const Ended ended = place.run({"--json"});
@@ -139,7 +139,7 @@ TEST_CASE("Sobol indices of a simulation: all of it comes from the modulus, none
     CHECK(keys["mark"]["total"]["value"].get<double>() == near(0, {.absolute = 1e-9}));
 }
 
-TEST_CASE("a row that cannot be run is kept with its reason, and the others are done") {
+TEST_CASE("a row that fails is kept with its reason, and the other rows are run") {
     const Place place(
         head + "plan = \"grid\"\nkey.poisson = { set = \"material.soft.poisson_ratio\", values = [0.3, 0.7, 0.4] }\n" +
         force);
@@ -153,7 +153,7 @@ TEST_CASE("a row that cannot be run is kept with its reason, and the others are 
     CHECK(summary["failures"][0]["row"] == 1);
 }
 
-TEST_CASE("killed at any moment, it goes on, and the results are those of a study that was never stopped") {
+TEST_CASE("a study killed at any time resumes to the results of a study that was never stopped") {
     const Place place(head + "plan = \"sobol\"\nsamples = 60\n" + modulus + " }\n" + force);
     int kills = 0;
     for (int turn = 0; turn < 8; ++turn) {
@@ -172,7 +172,7 @@ TEST_CASE("killed at any moment, it goes on, and the results are those of a stud
     CHECK(summary["damaged_records"] == 0);
 }
 
-TEST_CASE("Ctrl-C stops in good order and says how to go on") {
+TEST_CASE("Ctrl-C ends a study with status 1 and says how to continue") {
     const Place place(head + "plan = \"sobol\"\nsamples = 5000\n" + modulus + " }\n" + force);
     const pid_t process = place.start({(place / "s.toml").string(), "-o", (place / "o").string(), "--jobs", "2"});
     for (int look = 0; look < 6000 && !fs::exists(place / "o/records/00000.rows"); ++look) ::usleep(10000);
@@ -184,7 +184,7 @@ TEST_CASE("Ctrl-C stops in good order and says how to go on") {
     CHECK(ended.errors.find("--resume continues") != std::string::npos);
 }
 
-TEST_CASE("ranks that mpirun or srun would start share the rows") {
+TEST_CASE("the ranks that mpirun or srun would start share the rows") {
     const Place place(head + "plan = \"sobol\"\nsamples = 30\n" + modulus + " }\n" + force);
     std::vector<pid_t> ranks;
     for (int rank = 0; rank < 3; ++rank) {
@@ -204,7 +204,7 @@ TEST_CASE("ranks that mpirun or srun would start share the rows") {
     CHECK(alone.errors.find("neither mpirun nor srun started this") != std::string::npos);
 }
 
-TEST_CASE("chunks of a planned study are run one by one, by whatever scheduler") {
+TEST_CASE("any scheduler may run the chunks of a planned study one by one") {
     const Place place(head + "plan = \"sobol\"\nsamples = 4\nslurm.rows_per_task = 2\n" + modulus + " }\n" + force);
     const Ended planned = place.run({"--plan-only"});
     CHECK(planned.status == 0);
@@ -218,7 +218,7 @@ TEST_CASE("chunks of a planned study are run one by one, by whatever scheduler")
     CHECK(place.summary()["accounts"]["this_run"]["rows"] == 0);
 }
 
-TEST_CASE("every command with --json can be a row") {
+TEST_CASE("a study can run any command that has --json") {
     const Place place(
         "command = [\"mesh\", \"bar.toml\", \"-o\", \"{row}/bar.vtk\"]\nplan = \"grid\"\n"
         "key.size = { set = \"mesh.size\", values = [\"10 mm\", \"5 mm\"] }\nresult.tets = \"tets\"\n");
@@ -230,7 +230,7 @@ TEST_CASE("every command with --json can be a row") {
     CHECK(fs::exists(place / "o/rows/000001/bar.vtk"));
 }
 
-TEST_CASE("mistakes end before anything runs, in one line") {
+TEST_CASE("mistakes in a study end before anything runs, with one line") {
     const Place place(head + "plan = \"grid\"\n" + modulus +
                       ", levels = 2 }\nresult.force = \"supports.nd.force_N[0]\"\n");
     Ended ended = place.run();

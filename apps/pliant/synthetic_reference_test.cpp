@@ -79,7 +79,7 @@ void check_all_layers(const Outcome& outcome, std::size_t layers, const std::vec
 
 }  // namespace
 
-TEST_CASE("two halves: every pixel of 20 x 10 mm in exactly one image") {
+TEST_CASE("two halves: every pixel of 20 x 10 mm is in exactly one image") {
     const Outcome o = slice_file("two_halves.3mf");
     check_all_layers(o, 200, {40000, 40000});
     CHECK(o.summary.warnings.empty());
@@ -88,7 +88,7 @@ TEST_CASE("two halves: every pixel of 20 x 10 mm in exactly one image") {
     CHECK(plan::fewest_swaps(o.vats) == 200);
 }
 
-TEST_CASE("overlapping cubes: 500 mm^3 are reported and given to one material") {
+TEST_CASE("overlapping cubes: the overlap of 500 mm^3 is reported and given to one material") {
     const Outcome o = slice_file("overlap_cubes.3mf");
     check_all_layers(o, 200, {20000, 40000});
     CHECK(o.summary.overlap_mm3 == near(500, {.relative = 1e-12}));

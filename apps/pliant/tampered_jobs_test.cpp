@@ -235,7 +235,7 @@ TEST_CASE("50 untouched jobs pass") {
     CHECK(passed >= 50);
 }
 
-TEST_CASE("bytes that a disk or a wire has changed: refused, or nothing that matters is different") {
+TEST_CASE("a job with a flipped bit is refused, or nothing that matters has changed") {
     const test::Folder folder("flipped");
     const fs::path good = folder / "good.zip", bad = folder / "bad.zip";
     make_job(good, small_printer("tower"));
@@ -263,7 +263,7 @@ TEST_CASE("bytes that a disk or a wire has changed: refused, or nothing that mat
     }
 }
 
-TEST_CASE("a job of format 1 is read, proved as far as that goes, with a warning") {
+TEST_CASE("a job of format 1 is read and checked as far as possible, with a warning") {
     const test::Folder folder("old");
     const fs::path file = folder / "old.zip";
     make_job(file, small_printer("tower"));
@@ -283,7 +283,7 @@ TEST_CASE("a job of format 1 is read, proved as far as that goes, with a warning
     }
 }
 
-TEST_CASE("the program itself: check, print --twin and print --port refuse, each with the same line") {
+TEST_CASE("check, print --twin and print --port refuse a tampered job with the same line") {
     const test::Folder folder("cli");
     const fs::path good = folder / "good.zip", bad = folder / "bad.zip", said = folder / "said";
     make_job(good, small_printer("tower"));
@@ -313,7 +313,7 @@ TEST_CASE("the program itself: check, print --twin and print --port refuse, each
     }
 }
 
-TEST_CASE("on a terminal a print at a port asks for the vats first; --yes and -q do not wait for anybody") {
+TEST_CASE("on a terminal, print --port asks for the vats first; with --yes and -q it does not ask") {
     const test::Folder folder("asked");
     const fs::path good = folder / "good.zip", said = folder / "said";
     make_job(good, small_printer("tower"));

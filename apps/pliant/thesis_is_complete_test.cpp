@@ -112,7 +112,7 @@ TEST_CASE("every equation, figure, table and section of the thesis has an entry,
     }
 }
 
-TEST_CASE("every entry has a command that runs and shows what it prints") {
+TEST_CASE("every entry has a command that runs and an output that is shown") {
     const auto entries = entries_of(read_file("docs/thesis.md").value());
     CHECK(entries.size() > 60);
     const auto is_future = [](const Entry& entry) { return entry.heading.starts_with("Future work: "); };

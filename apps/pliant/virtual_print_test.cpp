@@ -79,7 +79,7 @@ struct CancelAfter final : Progress {
 
 }  // namespace
 
-TEST_CASE("a virtual print keeps the journal of a real one: a session, every go and light, the end") {
+TEST_CASE("a virtual print keeps the same journal as a real one: session, permissions, exposures, end") {
     Bench b;
     const Printed printed = b.run();
     REQUIRE(printed.status);
@@ -95,7 +95,7 @@ TEST_CASE("a virtual print keeps the journal of a real one: a session, every go 
     CHECK(first(records, "pause") == nullptr);
 }
 
-TEST_CASE("resin that is asked for on the way is filled in, and the journal says what was asked") {
+TEST_CASE("resin that is asked for during a virtual print is filled in, and the journal holds the request") {
     Bench b;
     const double layer_ml = halves::soft_mm2 * 0.05 / 1000;
     const Printed whole = b.run();
@@ -122,7 +122,7 @@ TEST_CASE("resin that is asked for on the way is filled in, and the journal says
     CHECK(filled.lights() == whole.lights());
 }
 
-TEST_CASE("all that is asked for before one layer is done at one pause, and once") {
+TEST_CASE("all requests before one layer are answered in one pause") {
     Bench b;
     const std::string text = "refill the vat of slot 1; refill the vat of slot 2";
     b.refills = {{2, 1, text}, {2, 2, text}, {4, 1, "refill the vat of slot 1"}};
@@ -135,7 +135,7 @@ TEST_CASE("all that is asked for before one layer is done at one pause, and once
         CHECK(printed.report.resins[resin].left_ml > plain.report.resins[resin].left_ml);
 }
 
-TEST_CASE("a pause in the light is dark, is resumed, and the rest of the light is given") {
+TEST_CASE("after a pause during an exposure the rest of the exposure is given") {
     Bench b;
     const Printed printed =
         b.run(when(in_the_light_of_layer_2, [](host::Control& c) { return c.pause(host::PauseWhen::now); }));
@@ -149,7 +149,7 @@ TEST_CASE("a pause in the light is dark, is resumed, and the rest of the light i
                       [](auto& r) { return r.kind == "dark" && *r.find("done") == "0"; }));
 }
 
-TEST_CASE("the door is opened in the light: dark, still until it is shut, then the rest of the light") {
+TEST_CASE("door opened during an exposure: dark, no motion until it is shut, then the rest of the exposure") {
     Bench b;
     b.printer.door.input = "y_max";
     rehearse::Options options;
@@ -163,7 +163,7 @@ TEST_CASE("the door is opened in the light: dark, still until it is shut, then t
     CHECK(holds(*first(printed.print->records().value(), "pause")->find("asked"), "the door is open"));
 }
 
-TEST_CASE("a switch that is stuck ends the virtual print as it ends a real one, and it says why") {
+TEST_CASE("a dead limit switch ends the virtual print with the reason") {
     Bench b;
     rehearse::Options options;
     options.printer.faults = {{twin::Fault::Kind::dead_switch, 2}};
@@ -175,7 +175,7 @@ TEST_CASE("a switch that is stuck ends the virtual print as it ends a real one, 
     CHECK(printed.lights() == 0);
 }
 
-TEST_CASE("cancelled, it parks as a real one does, wherever it was") {
+TEST_CASE("a virtual print cancelled anywhere parks: no vat on the hooks, pump off, no forbidden move") {
     for (const int looks : {0, 50, 400, 900, 1500}) {
         CAPTURE(looks);
         Bench b;
@@ -193,7 +193,7 @@ TEST_CASE("cancelled, it parks as a real one does, wherever it was") {
     }
 }
 
-TEST_CASE("the guard hears of every light, and knows how long one was on when its host died") {
+TEST_CASE("the guard is told of every exposure, and knows how long it lasted if the host died") {
     machine::Printer printer = machine::load_printer("examples/printers/tower.toml").value();
     twin::Twin twin(printer);
     rehearse::TwinGuard guard(twin);
@@ -209,7 +209,7 @@ TEST_CASE("the guard hears of every light, and knows how long one was on when it
     CHECK(guard.lit_s(9).value() == 0);
 }
 
-TEST_CASE("after every layer its hook is called, with the platform up") {
+TEST_CASE("the command after a layer is called once for every layer") {
     Bench b;
     std::vector<int> seen;
     rehearse::Options options;

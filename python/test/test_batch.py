@@ -18,7 +18,7 @@ def lengths(robots):
     return 0.06 - 1e-4 * np.arange(1, robots + 1)[:, None]
 
 
-def test_a_batch_has_the_bits_of_one_after_the_other(model):
+def test_a_batch_gives_the_same_bits_as_robots_solved_one_by_one(model):
     robots = 12
     one_by_one = []
     for controls in lengths(robots):
@@ -49,7 +49,7 @@ def test_robots_of_a_batch_may_differ(model):
     assert states[1].observe().cables["side"].length_ratio == pytest.approx(0.95, rel=1e-6)
 
 
-def test_mistakes_name_the_robot_and_leave_the_states(model):
+def test_mistakes_name_the_robot_and_do_not_change_the_states(model):
     batch = pliant.Batch(model, 3)
     states = batch.rest()
     mistakes = {
@@ -63,21 +63,21 @@ def test_mistakes_name_the_robot_and_leave_the_states(model):
         "the number of threads is negative": lambda: pliant.Batch(model, 2, threads=-1),
     }
     del mistakes["robot 2: cable \"flexor\": nan"]
-    for text, slip in mistakes.items():
+    for text, call in mistakes.items():
         with pytest.raises(pliant.InputError) as caught:
-            slip()
+            call()
         assert str(caught.value).startswith(text)
     with pytest.raises(pliant.InputError, match="^robot 1: .*not finite"):
         batch.step(states, np.array([[0.05], [np.nan], [0.05]]))
     assert states == batch.rest()
 
 
-def test_a_batch_of_none_does_nothing(model):
+def test_an_empty_batch_does_nothing(model):
     batch = pliant.Batch(model, 0)
     assert batch.step(batch.rest()) == []
 
 
-def test_progress_cancels_a_batch_and_cannot_use_it(model):
+def test_progress_can_cancel_a_batch_but_not_call_it(model):
     batch = pliant.Batch(model, 4)
     states = batch.rest()
     with pytest.raises(pliant.Cancelled):
@@ -87,7 +87,7 @@ def test_progress_cancels_a_batch_and_cannot_use_it(model):
     assert all(result.arrived for result in batch.step(states, lengths(4)))
 
 
-def test_threads_wait_for_a_batch(model):
+def test_threads_take_turns_with_one_batch(model):
     batch = pliant.Batch(model, 4)
     found = []
 

@@ -21,7 +21,7 @@ def tip(model, length):
     return model.solve([length]).markers()[0]
 
 
-def test_the_jacobian_is_how_markers_move(model, state):
+def test_the_jacobian_agrees_with_finite_differences(model, state):
     h = 1e-6
     measured = (tip(model, 0.058 + h) - tip(model, 0.058 - h)) / (2 * h)
     jacobian = model.jacobian(state)
@@ -51,7 +51,7 @@ def test_the_gradient_agrees_with_the_jacobian(model, state):
     assert tension < 0
 
 
-def test_a_gradient_by_a_modulus_is_a_difference(model, state):
+def test_the_gradient_by_a_modulus_agrees_with_finite_differences(model, state):
     names = [p.name for p in model.linearise(state).parameters]
     modulus = names.index('material "soft": youngs_modulus')
     gradient = model.grad(state, tensions=[1]).parameters[modulus]
@@ -64,7 +64,7 @@ def test_a_gradient_by_a_modulus_is_a_difference(model, state):
     assert gradient == pytest.approx((tension(1e6 + h) - tension(1e6 - h)) / (2 * h), rel=1e-5)
 
 
-def test_gradients_by_guide_points_are_differences():
+def test_gradients_by_guide_points_agree_with_finite_differences():
     places = [[1.3, 4.2, 8.1], [30.7, 5.4, 8.3], [58.2, 4.6, 8.4]]
     ends = [[31.7, 2.1, 1.4], [56.4, 3.7, 1.2]]
 
@@ -95,7 +95,7 @@ def test_gradients_by_guide_points_are_differences():
     assert judged(made(places, ends)).by_guide_points.shape == (0, 3)
 
 
-def test_products_and_solutions_belong_together(model, state):
+def test_solutions_invert_products_also_transposed(model, state):
     at = model.linearise(state)
     v = np.sin(np.arange(at.size))
     assert np.allclose(at.solve(at.multiply(v)), v, rtol=1e-6, atol=1e-8)
@@ -103,7 +103,7 @@ def test_products_and_solutions_belong_together(model, state):
     assert at.change(v).positions.shape == (model.node_count, 3)
 
 
-def test_scipy_works_on_plain_functions(model):
+def test_scipy_minimises_with_our_gradient(model):
     optimize = pytest.importorskip("scipy.optimize")
     wanted = tip(model, 0.0573)
 
@@ -116,7 +116,7 @@ def test_scipy_works_on_plain_functions(model):
     assert found.x[0] == pytest.approx(0.0573, abs=1e-6)
 
 
-def test_torch_goes_back_through_an_equilibrium(model):
+def test_torch_differentiates_through_an_equilibrium(model):
     torch = pytest.importorskip("torch")
     lengths = torch.tensor([0.058], dtype=torch.float64, requires_grad=True)
     markers = pliant.torch.markers(model, lengths)

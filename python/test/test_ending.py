@@ -68,7 +68,7 @@ def test_ctrl_c_ends_a_run_a_step_and_a_batch(fine):
     assert interrupted_after(0.3, many_batches) < 2
 
 
-def test_progress_is_told_and_cancels(fine):
+def test_progress_is_reported_and_can_cancel(fine):
     seen = []
     state = fine.rest()
     fine.step(state, {"flexor": {"shortening": "2 mm"}}, progress=lambda stage, share: seen.append((stage, share)))
@@ -80,7 +80,7 @@ def test_progress_is_told_and_cancels(fine):
     assert not result.converged and 1 <= len(result) < 41
 
 
-def test_what_a_callable_throws_comes_out(fine):
+def test_exceptions_of_callbacks_are_passed_on(fine):
     def fail(*_):
         raise ZeroDivisionError("of the caller")
 
@@ -94,7 +94,7 @@ def test_what_a_callable_throws_comes_out(fine):
             work()
 
 
-def test_the_interpreter_goes_on_while_robots_are_solved(fine):
+def test_other_threads_run_while_robots_are_solved(fine):
     ticks = []
     stop = threading.Event()
 
@@ -111,7 +111,7 @@ def test_the_interpreter_goes_on_while_robots_are_solved(fine):
     assert len(ticks) > 20 and longest < 0.5
 
 
-def test_memory_does_not_grow_with_models_that_are_dropped():
+def test_deleted_models_free_their_memory():
     def build(models):
         for _ in range(models):
             model = block()

@@ -53,7 +53,7 @@ def test_the_same_seed_gives_the_same_bits(env):
     assert not same(first, played(env, 8)) or isinstance(env, Crawl)  # which has nothing random
 
 
-def test_a_state_is_kept_and_set(env):
+def test_a_state_can_be_saved_and_restored(env):
     played(env, 4, 3)
     action = np.full(env.action_space.shape, 0.4)
     kept = env.get_state()
@@ -65,7 +65,7 @@ def test_a_state_is_kept_and_set(env):
         assert same(first, [other.step(action)[0] for _ in range(2)] + [other.reset()[0]])
 
 
-def test_many_at_once_have_the_numbers_of_each_alone(env):
+def test_vector_environments_equal_single_ones(env):
     task, count = type(env), 3
     many = Vector(task, count, model=env.model)
     random = np.random.default_rng(2)
@@ -82,7 +82,7 @@ def test_many_at_once_have_the_numbers_of_each_alone(env):
             assert not terminated[k] and not truncated[k]
 
 
-def test_an_episode_that_is_over_begins_anew():
+def test_a_finished_episode_is_reset():
     class Short(Reach):
         max_steps = 2
 
@@ -106,7 +106,7 @@ def test_the_goal_of_reach_ends_the_episode():
     assert np.abs(observation[3:6]).max() < 1e-3
 
 
-def test_a_cube_that_is_gripped_stays_and_one_that_is_not_falls():
+def test_a_gripped_cube_is_held_and_a_released_one_falls():
     env = Grasp()
     for pull in (0.3, -1.0):
         env.reset(seed=0, options={"pulled": [0, 0]})
@@ -139,7 +139,7 @@ def crawled(env, steps, action=wave):
     return gone.mean(axis=0)
 
 
-def test_a_worm_crawls_by_friction_alone():
+def test_a_worm_moves_only_with_friction():
     class Longer(Crawl):
         max_steps = 1000
 
@@ -155,7 +155,7 @@ def test_a_worm_crawls_by_friction_alone():
     assert abs(both[0]) < 0.1 * way[0]
 
 
-def test_what_is_wrong_is_told():
+def test_invalid_calls_are_refused():
     env = Reach(TASKS[0].make_model())
     with pytest.raises(pliant.InputError, match="call reset"):
         env.step([0, 0, 0])
@@ -169,14 +169,14 @@ def test_what_is_wrong_is_told():
         "render_mode is None": lambda: Reach(env.model, render_mode="human"),
         "count is 0": lambda: Vector(Reach, 0, model=env.model),
     }
-    for text, slip in wrong.items():
+    for text, call in wrong.items():
         with pytest.raises(pliant.InputError, match=text):
-            slip()
+            call()
     with pytest.raises(TypeError, match="a class of environments"):
         Vector(env, 3)
 
 
-def test_gymnasium_knows_them():
+def test_gymnasium_checks_our_environments():
     gymnasium = pytest.importorskip("gymnasium")
     from gymnasium.utils.env_checker import check_env
 
@@ -186,7 +186,7 @@ def test_gymnasium_knows_them():
         check_env(env.unwrapped, skip_render_check=True)
 
 
-def test_they_are_registered_where_gymnasium_is_installed(tmp_path):
+def test_environments_are_registered_if_gymnasium_is_installed(tmp_path):
     """On a stand-in with the names of Gymnasium 0.29 that the module uses."""
     package = tmp_path / "gymnasium"
     (package / "envs").mkdir(parents=True)

@@ -15,7 +15,7 @@ def load(name):
     return module
 
 
-def test_an_arm_learns_to_reach(tmp_path):
+def test_the_example_learn_to_reach_improves_and_repeats(tmp_path):
     example = load("learn_to_reach")
     curve, policy, model = example.learn(generations=5, population=12, goals_each=2, steps=8, seed=1)
     assert curve[-1][0] < 0.6 * curve[0][0], curve

@@ -24,7 +24,7 @@ def model():
     return pliant.Model(pliant.Robot(REACHING))
 
 
-def test_a_goal_is_met_as_on_the_command_line(model, tmp_path):
+def test_a_goal_is_reached_as_on_the_command_line(model, tmp_path):
     result = pliant.inverse(model)
     assert result.reached and len(result) == result.waypoints_wanted == 1 and not result.message
     (flexor,) = result.inputs
@@ -53,7 +53,7 @@ def untimed(value):
     return [untimed(v) for v in value] if isinstance(value, list) else value
 
 
-def test_what_cannot_be_reached_says_why():
+def test_an_unreachable_goal_names_its_limit():
     far = {**REACHING["goal"][0], "plane": {"point": [0, 0, 80], "normal": [0, 0, 1]}}
     result = pliant.inverse(pliant.Model(pliant.Robot({**REACHING, "goal": [far]})))
     assert not result.reached and not result[0].reached and "flexor" in result[0].limits[0]
@@ -87,7 +87,7 @@ def measured(model):
     return table
 
 
-def test_a_modulus_is_found_again(tmp_path):
+def test_a_modulus_is_identified_from_simulated_measurements(tmp_path):
     table = measured(bar())
     other = pliant.Robot(BAR).changed({"material.soft.youngs_modulus": "0.7 MPa"})
     found = pliant.identify(other, "material.soft.youngs_modulus", table, judge="every_second")
@@ -106,7 +106,7 @@ def test_a_modulus_is_found_again(tmp_path):
         pliant.identify(other, ["material.soft.youngs_modulus"], table, judge="some")
 
 
-def test_the_gradient_of_a_program_is_a_difference():
+def test_the_gradient_of_a_program_agrees_with_finite_differences():
     tip = pliant.Measure("marker", "tip", (0, 0, 1))
 
     def height(step, values):
@@ -150,7 +150,7 @@ def test_numbers_of_the_drawing_have_derivatives():
         of(0.95, numbers="ration")
 
 
-def test_a_measure_and_its_gradient_at_a_state():
+def test_a_measure_has_the_value_and_gradient_of_the_state():
     model = bar()
     state = model.solve({"flexor": {"shortening": "2 mm"}})
     at = model.linearise(state)
@@ -161,7 +161,7 @@ def test_a_measure_and_its_gradient_at_a_state():
         at.value(pliant.Measure("place", "tip"))
 
 
-def test_an_objective_that_is_wrong_is_told():
+def test_invalid_objectives_are_refused():
     model = bar()
     tip = pliant.Measure("marker", "tip", (0, 0, 1))
     wrong = {

@@ -20,7 +20,7 @@ def body(**changes):
     return {**BAR, "body": [{**BAR["body"][0], **changes}]}
 
 
-SLIPS = {
+MISTAKES = {
     "a unit is forgotten": (
         lambda m: pliant.Robot({**BAR, "material": {"soft": {"youngs_modulus": 12}}}),
         'material.soft.youngs_modulus: 12 has no unit; write a pressure such as "12 MPa"',
@@ -109,9 +109,9 @@ SLIPS = {
 }
 
 
-@pytest.mark.parametrize("slip", SLIPS, ids=lambda slip: slip.replace(" ", "_"))
-def test_a_slip_ends_in_one_sentence(model, slip):
-    act, text = SLIPS[slip]
+@pytest.mark.parametrize("mistake", MISTAKES, ids=lambda mistake: mistake.replace(" ", "_"))
+def test_a_mistake_gives_an_error_of_one_sentence(model, mistake):
+    act, text = MISTAKES[mistake]
     with pytest.raises((pliant.InputError, TypeError)) as caught:
         act(model)
     said = str(caught.value)
@@ -122,7 +122,7 @@ def test_a_slip_ends_in_one_sentence(model, slip):
         assert len(said) > 20
 
 
-def test_errors_have_their_place(tmp_path):
+def test_errors_have_file_line_and_key(tmp_path):
     file = tmp_path / "robot.toml"
     file.write_text(pliant.Robot(BAR).text.replace('"1 MPa"', "12"))
     with pytest.raises(pliant.InputError) as caught:
@@ -138,7 +138,7 @@ def test_errors_have_their_place(tmp_path):
         pliant.Robot.parse("name = 3")
 
 
-def test_a_step_that_does_not_arrive_is_told():
+def test_a_step_that_does_not_converge_is_reported():
     model = pliant.Model(bar().robot, iteration_limit=1)
     state = model.rest()
     result = model.step(state, {"flexor": {"shortening": "20 mm"}})

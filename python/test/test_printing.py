@@ -20,7 +20,7 @@ def job(tmp_path_factory):
     return file, plan
 
 
-def test_a_job_is_planned_as_on_the_command_line(job):
+def test_a_plan_equals_that_of_the_command_line(job):
     file, plan = job
     assert plan == pliant.plan(file) and plan.layers > 10 and plan.vats[0].resin_ml > 0
     run = [os.environ["PLIANT_PROGRAM"], "plan", str(file), "--json"]
@@ -30,7 +30,7 @@ def test_a_job_is_planned_as_on_the_command_line(job):
     assert isinstance(pliant.check(file), list)
 
 
-def test_the_cured_block_is_the_part(job):
+def test_the_cured_block_has_the_volume_of_the_part(job):
     file, plan = job
     seen = []
     print_ = pliant.print_virtually(file, block=True, progress=lambda stage, share: seen.append(share))

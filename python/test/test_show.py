@@ -42,7 +42,7 @@ def packet(text):
     return head["head"], arrays
 
 
-def test_a_page_holds_the_robot_and_loads_nothing(states, tmp_path):
+def test_a_page_shows_the_robot_and_loads_nothing_from_outside(states, tmp_path):
     viewer = pliant.show(states, field="von_mises")
     shown, ((scene, still), *frames) = packets(viewer.page)
     assert shown["field"] == "von_mises" and len(frames) == 3 and "flexor" in shown["labels"][2]
@@ -87,7 +87,7 @@ def test_pictures_show_the_robot(model, states):
     assert len(upper.lines) == len(lower.lines) == 1
 
 
-def test_values_of_a_picture_are_those_of_the_state(states):
+def test_values_in_a_picture_equal_those_of_the_state(states):
     values = pliant.plotting.field_values(states[2], "von_mises")
     assert np.array_equal(values, 1e-3 * states[2].fields().von_mises_Pa)
     moved = pliant.plotting.field_values(states[2], "displacement")

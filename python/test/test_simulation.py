@@ -27,7 +27,7 @@ def pulled(model, shortening="2 mm"):
     return state
 
 
-def test_a_robot_is_the_same_from_a_file_from_text_and_from_python(tmp_path):
+def test_a_robot_from_a_file_from_text_and_from_a_dict_is_the_same(tmp_path):
     robot = pliant.Robot(BAR)
     file = tmp_path / "bar.toml"
     file.write_text(robot.text)
@@ -58,7 +58,7 @@ def test_arrays_are_views_that_cannot_be_written(model):
     assert np.array_equal(before, kept) and not np.array_equal(before, state.positions)
 
 
-def test_arrays_outlive_what_they_belong_to():
+def test_arrays_outlive_their_model_and_state():
     array = block().rest_positions
     state = block().rest()
     positions = state.positions
@@ -66,12 +66,12 @@ def test_arrays_outlive_what_they_belong_to():
     assert array.sum() == positions.sum() == pytest.approx(0.12)
 
 
-def test_the_surface_is_closed_and_holds_the_volume(model):
+def test_the_surface_encloses_the_volume(model):
     a, b, c = (model.rest_positions[model.surface()[:, k]] for k in range(3))
     assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(6e-6, rel=1e-9)
 
 
-def test_controls_say_the_same_in_many_ways(model):
+def test_controls_may_be_given_in_many_equal_ways(model):
     rest = model.rest().inputs["flexor"].value
     same = [
         {"flexor": {"shortening": "2 mm"}},
@@ -93,7 +93,7 @@ def test_controls_say_the_same_in_many_ways(model):
     assert model.inputs(same[0], time=0.5).time == 0.5
 
 
-def test_chambers_are_driven_in_the_words_of_the_robot_file():
+def test_chambers_are_driven_by_the_keys_of_the_robot_file():
     table = {
         **BAR,
         "chamber": [{"name": "air", "geometry": {"box": [[10, 3, 3], [50, 7, 6]]}, "target": {"pressure": "5 kPa"}}],
@@ -118,7 +118,7 @@ def test_chambers_are_driven_in_the_words_of_the_robot_file():
     assert state.observe().cables["flexor"].length_ratio == pytest.approx(1, abs=1e-6)
 
 
-def test_a_step_changes_the_state_and_solve_leaves_it(model):
+def test_step_changes_the_state_and_solve_does_not(model):
     state = model.rest()
     rest = state.copy()
     found = model.solve({"flexor": {"shortening": "2 mm"}}, state=state)
@@ -166,21 +166,21 @@ def test_a_mesh_from_arrays_carries_a_load():
     assert state.observe().cables["side"].length_ratio == pytest.approx(0.9, rel=1e-6)
 
 
-def test_fields_have_a_number_for_each_tet(model):
+def test_fields_have_a_value_for_each_tet(model):
     fields = pulled(model).fields()
     assert fields.volume_ratio.shape == fields.von_mises_Pa.shape == (model.tet_count,)
     assert np.allclose(fields.volume_ratio, 1, atol=0.1) and fields.von_mises_Pa.max() > 1e3
     assert fields.max_stretch.max() > 1 and fields.energy_density_Pa.min() >= 0
 
 
-def test_paths_of_cables_go_along(model):
+def test_cable_paths_have_the_length_of_their_cables(model):
     state = pulled(model)
     path = model.cable_paths(state)["flexor"]
     length = np.linalg.norm(np.diff(path, axis=0), axis=1).sum()
     assert length == pytest.approx(state.observe().cables["flexor"].length_m, rel=1e-12)
 
 
-def test_a_motion_in_time_goes_on_with_time():
+def test_dynamics_advance_with_time_and_not_back():
     model = bar(program={"duration": "0.2 s", "time_step": "0.01 s", "gravity": [0, 0, -9.81]})
     state = model.rest()
     for k in range(1, 3):
@@ -192,7 +192,7 @@ def test_a_motion_in_time_goes_on_with_time():
         model.step(state, time=0.01)
 
 
-def test_what_runs_equals_the_command_line_to_the_last_bit(tmp_path):
+def test_a_run_gives_the_same_bits_as_the_command_line(tmp_path):
     program = os.environ["PLIANT_PROGRAM"]
     out = tmp_path / "out"
     subprocess.run(
@@ -214,7 +214,7 @@ def test_what_runs_equals_the_command_line_to_the_last_bit(tmp_path):
     assert result.markers["tip"].shape == (4, 3) and result.times.tolist() == pytest.approx([0, 1 / 3, 2 / 3, 1])
 
 
-def test_a_program_writes_its_results_and_tells_its_steps(tmp_path):
+def test_a_program_writes_its_results_and_reports_its_steps(tmp_path):
     seen = []
     result = bar().run(on_step=lambda step: seen.append(step.index))
     assert seen == [0, 1, 2, 3, 4]
@@ -226,7 +226,7 @@ def test_a_program_writes_its_results_and_tells_its_steps(tmp_path):
         result.write(tmp_path / "out", pictures="many")
 
 
-def test_a_program_goes_on_from_its_checkpoint(tmp_path):
+def test_a_program_resumes_from_its_checkpoint(tmp_path):
     model = bar()
     whole = model.run()
 
@@ -241,7 +241,7 @@ def test_a_program_goes_on_from_its_checkpoint(tmp_path):
     resumed.remove_checkpoint()
 
 
-def test_threads_share_a_model_and_have_the_same_bits(model):
+def test_threads_share_a_model_and_get_the_same_bits(model):
     alone = pulled(model)
     found = []
     threads = [threading.Thread(target=lambda: found.append(pulled(model))) for _ in range(4)]
@@ -252,7 +252,7 @@ def test_threads_share_a_model_and_have_the_same_bits(model):
     assert len(found) == 4 and all(state == alone for state in found)
 
 
-def test_joints_and_sensors_are_observed_by_their_names():
+def test_joints_and_sensors_are_observed_by_name():
     robot = pliant.Robot.load("examples/crank_and_rod/robot.toml")
     seen = []
     result = pliant.Model(robot).run(on_step=lambda step: seen.append(step.observed))

@@ -36,7 +36,7 @@ def place(tmp_path):
     return tmp_path
 
 
-def test_results_are_arrays_and_follow_the_closed_form(place):
+def test_study_results_are_arrays_and_agree_with_the_closed_form(place):
     found = pliant.study(plan(), place / "out", jobs=2)
     assert len(found) == 3 and found.done.all() and (found.reasons == "").all()
     assert found.units == {"modulus": "MPa"}
@@ -51,7 +51,7 @@ def test_results_are_arrays_and_follow_the_closed_form(place):
     assert np.array_equal(again.results["force"], force)
 
 
-def test_it_is_the_study_of_the_command_line(place):
+def test_a_study_equals_that_of_the_command_line(place):
     found = pliant.study(plan(), place / "here")
     run = [os.environ["PLIANT_PROGRAM"], "study", str(place / "here.toml"), "-o", str(place / "there"), "--json"]
     told = json.loads(subprocess.run(run, check=True, capture_output=True, text=True).stdout)
@@ -62,7 +62,7 @@ def test_it_is_the_study_of_the_command_line(place):
     assert len(pliant.study(place / "here.toml", place / "here", resume=True)) == 3
 
 
-def test_sensitivity_to_what_matters_alone(place):
+def test_sensitivity_is_one_for_the_modulus_and_zero_for_the_marker(place):
     # The force is proportional to the modulus; where the marker sits changes nothing.
     keys = {
         "modulus": {"set": "material.soft.youngs_modulus", "range": ["1 MPa", "3 MPa"]},
@@ -85,7 +85,7 @@ def test_rows_that_fail_are_kept(place):
     assert np.isnan(found.results["force"][1]) and "poisson_ratio" in found.reasons[1]
 
 
-def test_mistakes_are_told(place):
+def test_mistakes_are_reported(place):
     with pytest.raises(pliant.InputError, match="did you mean"):
         pliant.study(plan(plan="gird"), place / "a")
     with pytest.raises(pliant.InputError, match="there is clamp and end"):

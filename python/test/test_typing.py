@@ -17,11 +17,11 @@ def checked(file, tmp_path, *options):
     return subprocess.run(run, capture_output=True, text=True, env=environment).stdout
 
 
-def test_a_sample_passes(tmp_path):
+def test_correct_code_passes_the_type_checker(tmp_path):
     assert checked(HERE / "sample.py", tmp_path) == ""
 
 
-def test_mistakes_are_found(tmp_path):
+def test_the_type_checker_finds_mistakes(tmp_path):
     wrong = tmp_path / "wrong.py"
     wrong.write_text(
         "import pliant\n"
@@ -34,7 +34,7 @@ def test_mistakes_are_found(tmp_path):
     assert [line.split(":")[1] for line in said.splitlines() if ": error:" in line] == ["2", "3", "4", "5"], said
 
 
-def test_the_module_itself_passes(tmp_path):
+def test_the_module_itself_passes_the_type_checker(tmp_path):
     import pliant
 
     said = checked(Path(pliant.__file__).parent, tmp_path, "--ignore-missing-imports", "--exclude=torch.py")

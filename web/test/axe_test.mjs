@@ -103,7 +103,7 @@ async function* views(page) {
 }
 
 for (const theme of ['light', 'dark']) {
-  test(`axe finds nothing, ${theme}`, async (t) => {
+  test(`axe finds no problem in any view, ${theme}`, async (t) => {
     const { page } = await openPage(browser, studio.address, t, { colorScheme: theme, viewport: { width: 1440, height: 900 } });
     await settled(page);
     assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), theme);
@@ -197,7 +197,7 @@ async function understood(page, see) {
 }
 
 for (const theme of ['light', 'dark']) {
-  test(`axe finds nothing where robots are built and understood, at any width, ${theme}`, async (t) => {
+  test(`axe finds no problem in building and analysing robots, at any width, ${theme}`, async (t) => {
     const { page } = await openPage(browser, studio.address, t, { colorScheme: theme, viewport: { width: 1440, height: 900 } });
     await settled(page);
     // Coarse and linear: it is the page that is looked at.
@@ -279,7 +279,7 @@ async function* steps(page) {
 }
 
 for (const theme of ['light', 'dark']) {
-  test(`axe finds nothing in any state of preparing and printing, at any width, ${theme}`, async (t) => {
+  test(`axe finds no problem in any state of preparing and printing, at any width, ${theme}`, async (t) => {
     const { page } = await openPage(browser, studio.address, t, { colorScheme: theme, viewport: { width: 1440, height: 900 } });
     await settled(page);
     const wrong = [];
@@ -295,7 +295,7 @@ for (const theme of ['light', 'dark']) {
   });
 }
 
-test('the views of a job are tabs that the arrow keys walk through', async (t) => {
+test('the views of a job are tabs, and arrow keys switch between them', async (t) => {
   const { page } = await openPage(browser, `${studio.address}#make`, t);
   await page.getByTestId('make-layers').focus();
   await page.keyboard.press('ArrowRight');

@@ -57,7 +57,7 @@ async function drawn(page, id) {
   }, png);
 }
 
-test('the robot stands on the platform before it is sliced: it is turned, laid on a face, copied, and what it takes is told at once', async (t) => {
+test('before slicing, the robot is shown on the platform: rotated, laid on a face, copied, with an estimate at once', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('section-make').click();
@@ -84,7 +84,7 @@ test('the robot stands on the platform before it is sliced: it is turned, laid o
   assert.deepEqual(wrong.filter((w) => !w.includes('422')), []);
 });
 
-test('the job is seen in 3D within moments, and is cut open at any layer; layers count from 1', async (t) => {
+test('the job is shown in 3D quickly, and can be cut at any layer; layers count from 1', async (t) => {
   const { page, wrong } = await openPage(browser, `${studio.address}#make`, t);
   await page.getByTestId('estimate').waitFor();
   await page.getByTestId('option-layer').fill('400');
@@ -108,7 +108,7 @@ test('the job is seen in 3D within moments, and is cut open at any layer; layers
   assert.deepEqual(wrong, []);
 });
 
-test('the emergency stop is at one place of the window, in every section and over everything that opens', async (t) => {
+test('the emergency stop has one place in the window, in every section and above every dialog', async (t) => {
   const { page } = await openPage(browser, `${studio.address}#print`, t);
   await takeTwin(page, '300');
   await startPrint(page);
@@ -142,7 +142,7 @@ test('the emergency stop is at one place of the window, in every section and ove
   }
 });
 
-test('a print is told of in the tab, by a command, by its verdict with a picture; the camera is beside the machine', async (t) => {
+test('a print is reported in the tab\'s title, by a command, and by a verdict with a picture; the camera is shown', async (t) => {
   const { page, wrong } = await openPage(browser, `${studio.address}#print`, t);
   await page.getByTestId('resume').waitFor();
   assert.match(await page.title(), /^Paused, \d+ % finger · Pliant studio$/);
@@ -171,7 +171,7 @@ test('a print is told of in the tab, by a command, by its verdict with a picture
   assert.deepEqual(wrong.filter((w) => !w.includes('/snap.png')), []);
 });
 
-test('what slicing finds is marked in 3D, and a mark leads to its layer', async (t) => {
+test('findings of slicing are marked in 3D, and a mark leads to its layer', async (t) => {
   // A roof on one leg, and a ball that nothing holds.
   writeFileSync(join(folder, 'island.toml'), `name = "island"
 length_unit = "mm"

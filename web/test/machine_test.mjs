@@ -71,7 +71,7 @@ async function coloured(page) {
   }, png);
 }
 
-test('an open door pauses the print and says so; an empty vat asks for resin; the part grows, and the report judges it', async (t) => {
+test('an open door pauses the print with a message; an empty vat asks for resin; the part grows, and the report inspects it', async (t) => {
   const { page, wrong } = await openPage(browser, `${studio.address}#print`, t);
   await takeTwin(page, '10');
   // Before the start: what is listed is known, and an open door is no beginning.
@@ -131,7 +131,7 @@ test('an open door pauses the print and says so; an empty vat asks for resin; th
   assert.deepEqual(wrong.filter((w) => !w.includes('409')), []);
 });
 
-test('a second print on the same machine begins with an empty platform; the part is looked at alone', async (t) => {
+test('a second print on the same machine begins with an empty platform; the part can be viewed alone', async (t) => {
   const { page, wrong } = await openPage(browser, `${studio.address}#print`, t);
   await page.waitForSelector('[data-testid=print-state]');
   await page.waitForSelector('[data-testid=part]');

@@ -44,7 +44,7 @@ function simulated(ratio) {
 
 const near = (a, b, within, what) => a.forEach((x, k) => assert.ok(Math.abs(x - b[k]) < within, `${what}: ${a} is not ${b}`));
 
-test('a dragged slider brings the tip where pliant simulate has it', async (t) => {
+test('a dragged slider moves the tip to where pliant simulate puts it', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   assert.match(await page.getByTestId('hint').textContent(), /1 of 3/);
@@ -68,7 +68,7 @@ test('a dragged slider brings the tip where pliant simulate has it', async (t) =
   assert.deepEqual(wrong, []);
 });
 
-test('the program plays to its end, and a body can be pulled', async (t) => {
+test('the program plays to its end, and a body can be pulled with the pointer', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('rest').click();
@@ -105,7 +105,7 @@ async function ledThere(page, before) {
   for (let last = -1; last !== (await sequence()); await page.waitForTimeout(1500)) last = await sequence();
 }
 
-test('a marker that is dragged takes its cable along, stays where it is let go, and says what stops it', async (t) => {
+test('a dragged marker moves its cable, stays where it is released, and shows its limits', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('rest').click();
@@ -138,7 +138,7 @@ test('a marker that is dragged takes its cable along, stays where it is let go, 
   assert.deepEqual(wrong, []);
 });
 
-test('a goal is found without editing the file: reached or the nearest point, gone to, and used as a program', async (t) => {
+test('a goal is solved without editing the file: reached, or the nearest point; moved to, and saved as a program', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('rest').click();
@@ -179,7 +179,7 @@ test('a goal is found without editing the file: reached or the nearest point, go
   assert.deepEqual(wrong.filter((w) => !/422/.test(w)), []);
 });
 
-test('numbers are found from a table of measurements and put into the file', async (t) => {
+test('unknown numbers are identified from a table of measurements and written into the file', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   const rows = [0.85, 0.9, 0.95].map((ratio) => {
@@ -207,7 +207,7 @@ test('numbers are found from a table of measurements and put into the file', asy
   assert.deepEqual(wrong.filter((w) => !/422/.test(w)), []);
 });
 
-test('a mistake in the robot file shows at its line', async (t) => {
+test('a mistake in the robot file is shown at its line', async (t) => {
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('tab-file').click();
@@ -233,7 +233,7 @@ test('a mistake in the robot file shows at its line', async (t) => {
   assert.equal(readFileSync(join(folder, 'finger.toml'), 'utf8'), good, 'nothing is written before it is saved');
 });
 
-test('a robot is built by pointing, by sliders and from the library; text stays as it was written, and all of it is undone', async (t) => {
+test('a robot is built by clicks, sliders and the library; the rest of the text stays, and every change can be undone', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('rest').click();
@@ -277,7 +277,7 @@ test('a robot is built by pointing, by sliders and from the library; text stays 
   assert.deepEqual(wrong, []);
 });
 
-test('keys are completed, and what is typed is checked before it is applied', async (t) => {
+test('keys are completed, and text is checked before it is applied', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('tab-file').click();
@@ -300,7 +300,7 @@ test('keys are completed, and what is typed is checked before it is applied', as
   assert.deepEqual(wrong, []);
 });
 
-test('a link brings back the state and the view; a film and a picture for print are taken home', async (t) => {
+test('a link restores state and view; a film and a picture for print can be saved', async (t) => {
   const { page, context, wrong } = await openPage(browser, studio.address, t, { permissions: ['clipboard-read', 'clipboard-write'] });
   await settled(page);
   const started = await tag(page);
@@ -364,7 +364,7 @@ test('a link brings back the state and the view; a film and a picture for print 
   assert.deepEqual(wrong, []);
 });
 
-test('every template is a robot, in no file yet', async (t) => {
+test('every template opens as a robot that has no file yet', async (t) => {
   const own = await startStudio(['finger.toml'], folder);
   t.after(() => own.stop());
   const { page, wrong } = await openPage(browser, own.address, t);
@@ -385,7 +385,7 @@ test('every template is a robot, in no file yet', async (t) => {
   assert.deepEqual(wrong, []);
 });
 
-test('several look, one steers, and the helm is handed over', async (t) => {
+test('several pages watch, one is in control, and control can be handed over', async (t) => {
   const first = await openPage(browser, studio.address, t);
   await settled(first.page);
   const second = await openPage(browser, studio.address, t);
@@ -408,7 +408,7 @@ test('several look, one steers, and the helm is handed over', async (t) => {
   assert.deepEqual([...first.wrong, ...second.wrong], []);
 });
 
-test('mesh, rest shape, section, parts pulled apart, fields and pins are drawn; everything is taken home', async (t) => {
+test('mesh, rest shape, section, exploded parts, fields and pins are drawn, and every result can be saved', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   const picture = () =>
@@ -477,7 +477,7 @@ test('mesh, rest shape, section, parts pulled apart, fields and pins are drawn; 
   assert.deepEqual(wrong, []);
 });
 
-test('the view turns to its sides, is measured, cut by hand, and coloured over a range that is set', async (t) => {
+test('the view has standard sides, a ruler, a movable section, and a colour range that can be set', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.evaluate(() => localStorage.setItem('pliant_hints', '9'));
@@ -567,7 +567,7 @@ test('the view turns to its sides, is measured, cut by hand, and coloured over a
   assert.deepEqual(wrong, []);
 });
 
-test('a graded body has the colours of both its materials, and says which', async (t) => {
+test('a graded body is drawn in the colours of both its materials, and the legend names them', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   assert.equal(await page.evaluate(() => window.pliant.scene.value.has('share')), false);
@@ -592,7 +592,7 @@ test('a graded body has the colours of both its materials, and says which', asyn
   assert.deepEqual(wrong, []);
 });
 
-test('a lost connection comes back, still at the helm', async (t) => {
+test('a lost connection is restored, with the page still in control', async (t) => {
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.waitForSelector('[data-testid=helm][data-state=steering]', { state: 'attached' });
@@ -614,7 +614,7 @@ test('a lost connection comes back, still at the helm', async (t) => {
   assert.ok(Math.abs((await marker(page, 'tip'))[2] - before[2]) > 0.1);
 });
 
-test('the robot is sliced, and its layers and plan are seen', async (t) => {
+test('the robot is sliced, and its layers and plan are shown', async (t) => {
   const { page, wrong } = await openPage(browser, `${studio.address}#make`, t);
   await page.waitForFunction(() => window.pliant.scene.value !== null);
   await page.getByTestId('slice').click();
@@ -636,7 +636,7 @@ test('the robot is sliced, and its layers and plan are seen', async (t) => {
   assert.deepEqual(wrong, []);
 });
 
-test('an option that cannot be is said at its field, and supports, bonds and light reach the job', async (t) => {
+test('an invalid option is reported at its field; supports, bonds and exposure reach the job', async (t) => {
   const { page, wrong } = await openPage(browser, `${studio.address}#make`, t);
   await page.waitForFunction(() => window.pliant.scene.value !== null);
   await page.getByTestId('option-layer').fill('500');
@@ -691,7 +691,7 @@ test('on a phone no button and no field is cut off', async (t) => {
   assert.deepEqual(wrong, []);
 });
 
-test('a print on the virtual printer is paused, goes on, and is cancelled', async (t) => {
+test('a print on the virtual printer is paused, resumed and cancelled', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await page.waitForFunction(() => window.pliant.job.value !== null);  // the job of the test before
   await page.getByTestId('section-print').click();

@@ -57,7 +57,7 @@ async function slice(page) {
 }
 const jobFile = (page) => page.evaluate(async () => Array.from(new Uint8Array(await (await fetch('/api/job/file')).arrayBuffer()))).then((b) => Buffer.from(b));
 
-test('supports are painted on the part, blocked and rubbed out, and the job keeps them', async (t) => {
+test('painted supports can be enforced, blocked and erased, and the job keeps them', async (t) => {
   const { page, wrong } = await withTable(t);
   await page.getByTestId('option-layer').fill('500');
   await page.getByTestId('paint').click();
@@ -106,7 +106,7 @@ test('supports are painted on the part, blocked and rubbed out, and the job keep
   assert.deepEqual(wrong, []);
 });
 
-test('the part is moved, scaled and copied on the platform, and the slicer does the same', async (t) => {
+test('the slicer moves, scales and copies the part as the platform view shows it', async (t) => {
   const { page, wrong } = await withTable(t);
   await page.getByTestId('make-bed').click();
   await page.getByTestId('option-layer').fill('500');
@@ -147,7 +147,7 @@ test('the part is moved, scaled and copied on the platform, and the slicer does 
   assert.deepEqual(wrong, []);
 });
 
-test('the first layers of a large job are seen while it is being sliced', async (t) => {
+test('the first layers of a large job are shown while it is being sliced', async (t) => {
   const { page, wrong } = await withTable(t);
   await page.getByTestId('option-layer').fill('2');
   await page.getByTestId('slice').click();

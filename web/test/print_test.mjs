@@ -53,7 +53,7 @@ async function shown(page, check, given) {
 }
 const layer = (page) => page.getByTestId('print-layer').textContent().then(Number);
 
-test('what is no serial port, and a job that is in no folder, are refused', async (t) => {
+test('a file that is not a serial port, and a job that is not saved, are refused', async (t) => {
   const { page } = await openPage(browser, `${studio.address}#print`, t);
   await page.getByTestId('device').fill('/etc/passwd');
   await page.getByTestId('projector').fill('light');
@@ -68,7 +68,7 @@ test('what is no serial port, and a job that is in no folder, are refused', asyn
   assert.match(outside[1], /leads elsewhere/);
 });
 
-test('a print at a port survives the end of the studio and is gone on with from the page', async (t) => {
+test('a print at a port survives the end of the studio, and is resumed from the page', async (t) => {
   const first = await openPage(browser, `${studio.address}#print`, t);
   await connect(first.page, 'Operational');
   assert.match(await first.page.getByTestId('known').textContent(), /responds: Pliant twin/);

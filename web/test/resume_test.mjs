@@ -30,7 +30,7 @@ const shown = (page, check, given) =>
 const stateIs = (page, text) => shown(page, (s) => document.querySelector('[data-testid=print-state]')?.textContent === s, text);
 const layer = (page) => page.getByTestId('print-layer').textContent().then(Number);
 
-test('a virtual print is gone on with after the studio was killed, and comes out as drawn', async (t) => {
+test('a virtual print is resumed after the studio was killed, and passes the inspection', async (t) => {
   const first = await openPage(browser, `${studio.address}#print`, t);
   await takeTwin(first.page, '60');
   await startPrint(first.page);
@@ -68,7 +68,7 @@ test('a virtual print is gone on with after the studio was killed, and comes out
   assert.equal(new Set(lights).size, await page.evaluate(() => window.pliant.job.value.manifest.layers.length));
 });
 
-test('jobs wait in a queue that outlives the studio, and the next one is a click behind the print before', async (t) => {
+test('jobs wait in a queue that is kept when the studio ends, and the next one starts with one click', async (t) => {
   const { page, wrong } = await openPage(browser, `${studio.address}#print`, t);
   // The machine of the print before may still be connected.
   await page.waitForSelector('[data-testid=leave], [data-testid=queue-add]');

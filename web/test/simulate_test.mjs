@@ -79,7 +79,7 @@ async function discard(page) {
   if (await asked.isVisible()) await asked.click();
 }
 
-test('an STL that is dropped onto the page becomes a robot, and a cable is pulled through it', async (t) => {
+test('an STL dropped onto the page becomes a robot, and gets a cable that bends it', async (t) => {
   const own = await startStudio(['block.toml'], folder);
   t.after(() => own.stop());
   const { page, wrong } = await openPage(browser, own.address, t);
@@ -128,7 +128,7 @@ test('an STL that is dropped onto the page becomes a robot, and a cable is pulle
   assert.deepEqual(wrong, []);
 });
 
-test('files that no reader takes, that are there already, or that have a strange name are told in one line', async (t) => {
+test('unreadable files, existing files and invalid names are refused in one line', async (t) => {
   const own = await startStudio(['block.toml'], folder);
   t.after(() => own.stop());
   const { page, wrong } = await openPage(browser, own.address, t);
@@ -169,7 +169,7 @@ test('files that no reader takes, that are there already, or that have a strange
   assert.deepEqual(wrong.filter((w) => !/422|409/.test(w)), []);
 });
 
-test('chambers: a box that is drawn, and a cavity that is pointed at, and both are undone', async (t) => {
+test('a chamber is made from a drawn box or from a cavity clicked on, and both can be undone', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   const before = await readRobot(page);
@@ -207,7 +207,7 @@ test('chambers: a box that is drawn, and a cavity that is pointed at, and both a
   assert.deepEqual(wrong, []);
 });
 
-test('the gallery shows what can be opened as pictures that the program has drawn', async (t) => {
+test('the gallery shows the robots that can be opened, with pictures', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('open').click();
@@ -227,7 +227,7 @@ test('the gallery shows what can be opened as pictures that the program has draw
 /// Of the page's choice of results.
 const choose = (page, key) => page.getByTestId('sweep-result').selectOption(key);
 
-test('a sweep of one number gives a curve, of two a map; its values are used, and it can be given up', async (t) => {
+test('a sweep of one number gives a curve, of two a map; its values can be used, and it can be cancelled', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('tab-sweep').click();
@@ -275,7 +275,7 @@ test('a sweep of one number gives a curve, of two a map; its values are used, an
   assert.deepEqual(wrong, []);
 });
 
-test('a workspace is found within ranges, and drawn', async (t) => {
+test('a workspace is computed within ranges, and drawn', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('tab-workspace').click();
@@ -291,7 +291,7 @@ test('a workspace is found within ranges, and drawn', async (t) => {
   assert.deepEqual(wrong, []);
 });
 
-test('the whole program is run beside, and played, paused and scrubbed', async (t) => {
+test('the whole program runs in the background, and can be played, paused and moved through', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('motion-run').click();
@@ -310,7 +310,7 @@ test('the whole program is run beside, and played, paused and scrubbed', async (
   assert.deepEqual(wrong, []);
 });
 
-test('two robots stand side by side, and the same hand moves both', async (t) => {
+test('two robots are shown side by side, and the same inputs move both', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('rest').click();
@@ -341,7 +341,7 @@ test('two robots stand side by side, and the same hand moves both', async (t) =>
   assert.deepEqual(wrong, []);
 });
 
-test('a film is taken home as GIF', async (t) => {
+test('a film can be saved as GIF', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);
   for (const value of ['0.3', '0.6', '0.9']) {

@@ -36,7 +36,7 @@ async function told(page, text) {
     .catch(async () => assert.fail(`"${await page.getByTestId('notice').textContent({ timeout: 100 }).catch(() => '')}" is said, not ${text}`));
 }
 
-test('a printer file, a broken job and a file that is no robot are told apart, and the robot stays', async (t) => {
+test('opening a printer file, a broken job or another text gives the right message, and the robot stays', async (t) => {
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);
   await open(page, 'machine.toml');
@@ -53,7 +53,7 @@ test('a printer file, a broken job and a file that is no robot are told apart, a
   await settled(page);
 });
 
-test('without a job there is nothing to print, and the page says where one is made', async (t) => {
+test('without a job the page offers no print, and links to slicing', async (t) => {
   const { page, wrong } = await openPage(browser, `${studio.address}#print`, t);
   await page.getByText('There is no job yet').waitFor();
   assert.equal(await page.getByTestId('take-twin').count(), 0);
@@ -62,7 +62,7 @@ test('without a job there is nothing to print, and the page says where one is ma
   assert.deepEqual(wrong, []);
 });
 
-test('a port that is not there is named; one that does not answer too', async (t) => {
+test('a missing port is named, and so is one that does not answer', async (t) => {
   const { page } = await openPage(browser, `${studio.address}#make`, t);
   await page.waitForFunction(() => window.pliant.scene.value !== null);
   await page.getByTestId('option-layer').fill('1000');
@@ -85,7 +85,7 @@ test('a port that is not there is named; one that does not answer too', async (t
   await page.getByTestId('take-port').waitFor();
 });
 
-test('a studio that is gone is said to be gone, in the middle of a print too', async (t) => {
+test('a studio that has ended is reported as such, also during a print', async (t) => {
   const other = await startStudio(['finger.zip'], folder);
   const { page } = await openPage(browser, `${other.address}#print`, t);
   await page.getByTestId('take-speed').selectOption('60');
@@ -102,7 +102,7 @@ test('a studio that is gone is said to be gone, in the middle of a print too', a
   await told(page, /The studio does not respond/);
 });
 
-test('the page carries the licences of what it is made of', async (t) => {
+test('the page holds the licences of its libraries', async (t) => {
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('open').click();

@@ -163,7 +163,7 @@ const tasks = {
   },
 };
 
-test('the tasks of a newcomer, each with the clicks that the manual counts', async (t) => {
+test('the tasks of a new user take the number of clicks that the manual states', async (t) => {
   assert.deepEqual(rows.map((r) => r.task), Object.keys(tasks), 'the manual and this test list the same tasks');
   const { page } = await openPage(browser, studio.address, t, { viewport: { width: 1440, height: 900 } });
   await settled(page);

@@ -41,7 +41,7 @@ async function type(page, id, value) {
   await page.getByTestId(id).press('Enter');
 }
 
-test('a studio that dies in mid-print and comes back: the page says what it does not know, then what is so', async (t) => {
+test('a studio is killed during a print and started again: the page shows unknown values, then the true ones', async (t) => {
   const first = await startStudio(['finger.zip'], folder);
   const port = new URL(first.address).port;
   const { page } = await openPage(browser, `${first.address}#print`, t);
@@ -63,7 +63,7 @@ test('a studio that dies in mid-print and comes back: the page says what it does
   assert.match(await text(page, 'notice'), /has ended/);
 });
 
-test('a line that dies without a word is found dead by its silence', async (t) => {
+test('a connection that stops without closing is found lost by its silence', async (t) => {
   const other = await startStudio(['finger.zip'], folder);
   t.after(() => other.stop());
   const { page } = await openPage(browser, `${other.address}#print`, t);
@@ -77,7 +77,7 @@ test('a line that dies without a word is found dead by its silence', async (t) =
   assert.ok(Number(await text(page, 'print-layer')) >= 1);
 });
 
-test('the emergency stop never moves: at every width, whatever is asked and wherever one has scrolled', async (t) => {
+test('the emergency stop keeps its place at every width, with any dialog open, however far the page is scrolled', async (t) => {
   const other = await startStudio(['finger.zip'], folder);
   t.after(() => other.stop());
   const { page } = await openPage(browser, `${other.address}#print`, t, { viewport: { width: 1440, height: 900 } });
@@ -120,7 +120,7 @@ test('the emergency stop never moves: at every width, whatever is asked and wher
   assert.doesNotMatch(await page.locator('.steer .block').first().innerText(), /kill\(\)/);
 });
 
-test('log, header and layers count alike, on one clock; what was printed has a verdict', async (t) => {
+test('log, header and layers agree in layer numbers and time; a finished print has a verdict', async (t) => {
   const other = await startStudio(['finger.zip'], folder);
   t.after(() => other.stop());
   const { page, wrong } = await openPage(browser, `${other.address}#print`, t);
@@ -145,7 +145,7 @@ test('log, header and layers count alike, on one clock; what was printed has a v
   assert.deepEqual(wrong, []);
 });
 
-test('text that is not saved is asked about before it goes', async (t) => {
+test('the page asks before unsaved text is lost', async (t) => {
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('tab-file').click();
@@ -182,7 +182,7 @@ test('text that is not saved is asked about before it goes', async (t) => {
   await page.waitForFunction(() => /gripper/i.test(window.pliant.scene.value.head.robot), null, patience);
 });
 
-test('while a hand moves linear answers are marked and never green; as soon as it rests the quadratic one is there', async (t) => {
+test('during dragging linear answers are marked and never green; afterwards the quadratic answer comes', async (t) => {
   const other = await startStudio(['finger.toml'], folder);
   t.after(() => other.stop());
   const { page } = await openPage(browser, other.address, t);
@@ -240,7 +240,7 @@ test('while a hand moves linear answers are marked and never green; as soon as i
   assert.equal(await page.getByTestId('rough').count(), 0);
 });
 
-test('the program ends at its end, and a change of a material leaves the robot where the program has it', async (t) => {
+test('the program stops at its end, and a change of material keeps the robot at the program\'s time', async (t) => {
   const other = await startStudio(['finger.toml'], folder);
   t.after(() => other.stop());
   const { page } = await openPage(browser, other.address, t);
@@ -269,7 +269,7 @@ test('the program ends at its end, and a change of a material leaves the robot w
   await says(second.page.locator('.track', { has: second.page.getByTestId('program') }).locator('output'), '97 %');
 });
 
-test('a frame that is here before its scene is not lost', async (t) => {
+test('a frame that arrives before its scene is not lost', async (t) => {
   const other = await startStudio(['finger.toml'], folder);
   t.after(() => other.stop());
   const { page } = await openPage(browser, other.address, t);
@@ -288,7 +288,7 @@ test('a frame that is here before its scene is not lost', async (t) => {
   await page.waitForFunction(() => window.pliant.frame.value?.head.arrived, null, { timeout: 10_000 });
 });
 
-test('a number that cannot be is said to be out of range, and the last good one comes back', async (t) => {
+test('an impossible number is reported as out of range, and the last valid one returns', async (t) => {
   const other = await startStudio(['finger.toml'], folder);
   t.after(() => other.stop());
   const { page } = await openPage(browser, other.address, t);
@@ -312,7 +312,7 @@ test('a number that cannot be is said to be out of range, and the last good one 
   assert.notEqual(await poisson.inputValue(), '0.7');
 });
 
-test('a residual over many decades has lines that can be told apart', async (t) => {
+test('a residual over many decades has grid lines that do not merge', async (t) => {
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);
   await page.getByTestId('play').click();

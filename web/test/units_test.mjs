@@ -52,7 +52,7 @@ function packet(head, arrays) {
   return whole.buffer;
 }
 
-test('a packet is its head and its arrays; what is not in it is empty', () => {
+test('a packet gives its head and its arrays; a missing array is empty', () => {
   const read = page.readPacket(packet({ robot: 'bar' }, { x: new Float32Array([1, 2.5]), t: new Uint32Array([7, 8, 9]) }));
   assert.deepEqual(read.head, { robot: 'bar' });
   assert.deepEqual([...read.f32('x')], [1, 2.5]);
@@ -61,7 +61,7 @@ test('a packet is its head and its arrays; what is not in it is empty', () => {
   assert.ok(read.has('x') && !read.has('none'));
 });
 
-test('a packet of something else, or one that ends early, is refused', () => {
+test('data that are not a packet, or that end early, are refused', () => {
   assert.throws(() => page.readPacket(new TextEncoder().encode('<html></html>').buffer), /not a packet/);
   const whole = packet({}, { x: new Float32Array(4) });
   assert.throws(() => page.readPacket(whole.slice(0, 6)));
@@ -85,14 +85,14 @@ test('one number of a table changes, and nothing else', () => {
   assert.equal(page.setKey(robot, 'material.softer', 'youngs_modulus', '"2 MPa"'), robot.replace('"9 MPa"', '"2 MPa"'));
 });
 
-test('a key that the table has not is added to it, not to the next', () => {
+test('a missing key is added to its own table, not to the next one', () => {
   const changed = page.setKey(robot, 'material.soft', 'density', '"1 g/cm^3"');
   assert.equal(changed, robot.replace('# the finger\n', '# the finger\ndensity = "1 g/cm^3"\n'));
   assert.equal(page.setKey(robot, 'material.hard', 'density', '1'), null);
   assert.equal(page.setKey(robot, 'material.sof.', 'density', '1'), null); // no pattern
 });
 
-test('tables in one line, and names in quotes', () => {
+test('inline tables and quoted names are edited too', () => {
   const line = 'material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.45 } # x';
   assert.equal(page.setKey(line, 'material.soft', 'poisson_ratio', '0.3'), line.replace('0.45', '0.3'));
   assert.equal(page.setKey(line, 'material.soft', 'youngs_modulus', '"3 MPa"'), line.replace('"1 MPa"', '"3 MPa"'));
@@ -100,7 +100,7 @@ test('tables in one line, and names in quotes', () => {
   assert.equal(page.setKey('[material."soft"]\na = 1', 'material.soft', 'a', '2'), '[material."soft"]\na = 2');
 });
 
-test('a number is set by the path that --set has, in tables and in entries of lists by their name', () => {
+test('a number is set by the path that --set takes, in tables and in named list entries', () => {
   const file = '[material.soft]\nyoungs_modulus = "1 MPa"\n\n[[cable]]\nname = "left"\nfriction = 0.1\n\n[[cable]]\nname = "right" # the other\nfriction = 0.2\n[contact]\nfriction = 0.3\n';
   assert.equal(page.assign(file, 'material.soft.youngs_modulus', '"2 MPa"'), file.replace('1 MPa', '2 MPa'));
   assert.equal(page.assign(file, 'cable.right.friction', '0.5'), file.replace('0.2', '0.5'));
@@ -110,7 +110,7 @@ test('a number is set by the path that --set has, in tables and in entries of li
   assert.equal(page.assign(file, 'chamber.left.friction', '0'), null);
 });
 
-test('the colours of a field are those of the pictures, and stop at the ends', () => {
+test('the colours of a field are those of the pictures, and are clamped at both ends', () => {
   assert.deepEqual(page.fieldColour(0), [0.267, 0.004, 0.329]);
   assert.deepEqual(page.fieldColour(1), [0.992, 0.906, 0.145]);
   assert.deepEqual(page.fieldColour(-3), page.fieldColour(0));
@@ -120,7 +120,7 @@ test('the colours of a field are those of the pictures, and stop at the ends', (
   assert.match(page.gradientCss(), /^linear-gradient\(to top, rgb\(68 1 84\) 0%, .*100%\)$/);
 });
 
-test('times, steps of time, and ranges in words', () => {
+test('times, time steps and ranges are formatted', () => {
   assert.deepEqual([0, 59.6, 3599.5, 360000].map(page.clock), ['0:00:00', '0:01:00', '1:00:00', '100:00:00']);
   for (const [span, most, step] of [[10, 10, 1], [11, 10, 2], [3600, 6, 600], [86400 * 30, 10, 259200]]) assert.equal(page.timeStep(span, most), step);
   assert.equal(page.rangeText({ from: 0, to: 1 }, 'mm'), 'must be from 0 to 1 mm');
@@ -141,13 +141,13 @@ function program(values) {
   return [...page.asProgram().matchAll(/time = "([\d.]+) s"\nflexor = "([-\d.]+) N"/g)].map((m) => [Number(m[1]), Number(m[2])]);
 }
 
-test('a recording in a straight line is its end; a corner stays', () => {
+test('a straight recording keeps its end only; a corner is kept', () => {
   assert.deepEqual(program([0, 1, 2, 3, 4]), [[0.8, 4]]);
   assert.deepEqual(program([0, 1, 2, 2, 2]), [[0.4, 2], [0.8, 2]]);
   assert.deepEqual(program([1]), []);
 });
 
-test('a recording that bends slowly keeps its way to a thousandth', () => {
+test('a slowly curving recording keeps its path within 0.2 %', () => {
   const values = Array.from({ length: 101 }, (_, i) => (0.2 * i) ** 2);
   const kept = [[0, 0], ...program(values)];
   assert.ok(kept.length < 60, `${kept.length} keys of 101`);
@@ -160,14 +160,14 @@ test('a recording that bends slowly keeps its way to a thousandth', () => {
   });
 });
 
-test('what was driven by another measure before does not become a key', () => {
+test('values driven by another quantity earlier do not become keys', () => {
   page.scene.value = { head: { actuators, markers: [] } };
   const key = (time, kind, value) => ({ time, values: { flexor: { kind, value }, 'air "1"': { kind: 'volume_ratio', value: 1.5 } } });
   page.recorded.value = [key(0, 'length_ratio', 1), key(0.2, 'tension_N', 3), key(0.4, 'tension_N', 4.000001)];
   assert.equal(page.asProgram(), '[[program.key]]\ntime = "0.20 s"\nflexor = "3 N"\n"air \\"1\\"" = 1.5\n\n[[program.key]]\ntime = "0.40 s"\nflexor = "4 N"\n"air \\"1\\"" = 1.5');
 });
 
-test('what the plots show, as a table: names in quotes where they need it, linear states named, no time while nothing moves', () => {
+test('the plots\' data as a table: quoted names, linear states marked, no time column in statics', () => {
   const marker = { name: 'tip', rest: [0, 0, 0] };
   page.scene.value = { head: { order: 2, actuators, markers: [marker], supports: ['clamp'], obstacles: [] } };
   const frame = (sequence, x, order) => ({ head: { revision: 77, sequence, order, time: 0, energy_mJ: 1, cables: [{ tension_N: x, ratio: 1, length_mm: 80 }], chambers: [{ pressure_kPa: 2 * x, ratio: 1, volume_mm3: 5 }], markers: [[x, 4, 0]], supports: [[0, 3, 4]], residual: 0 } });
@@ -192,7 +192,7 @@ test('what the plots show, as a table: names in quotes where they need it, linea
   assert.deepEqual(page.valuesOf('tip_x_mm'), [5]);
 });
 
-test('a table of measurements is read, or its mistake is said with its line', () => {
+test('a table of measurements is read, or refused with its line', () => {
   const read = page.readTable('m.csv', '"tip, x",flexor_tension_N\r\n1,2\r\n\r\n3,\r\n');
   assert.deepEqual(read.columns['tip, x'], [1, 3]);
   assert.equal(read.columns.flexor_tension_N[0], 2);
@@ -205,7 +205,7 @@ test('a table of measurements is read, or its mistake is said with its line', ()
   assert.match(page.readTable('m.csv', 'a,b\n'), /no rows/);
 });
 
-test('a stop is told by what happened: asked for, the firmware\'s own, or none', () => {
+test('a stop is reported by its cause: requested, by the firmware, or none', () => {
   const now = (message, error = true, canResume = false) => ({ state: { text: '', message, flags: { error } }, job: { canResume }, progress: {}, events: [] });
   page.info.value = { twin: true };
   page.events.value = [];
@@ -224,7 +224,7 @@ test('a stop is told by what happened: asked for, the firmware\'s own, or none',
   assert.match(page.stopOf().text, /reset its board/);
 });
 
-test('keys turn a view; other keys are left to the page', () => {
+test('arrow keys turn a view; other keys are left to the page', () => {
   const turns = [];
   let home = 0;
   let kept = 0;
@@ -235,7 +235,7 @@ test('keys turn a view; other keys are left to the page', () => {
   assert.equal(kept, 4);
 });
 
-test('a camera that fits sees every point, and one a little nearer does not, whatever the shape', () => {
+test('a fitted camera sees every point, and one slightly nearer does not, for any shape', () => {
   let seed = 1;
   const random = () => (seed = (seed * 48271) % 2147483647) / 2147483647 - 0.5;
   const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
@@ -264,7 +264,7 @@ test('a scale bar is 1, 2 or 5 times a power of ten', () => {
   assert.deepEqual([137, 50, 49.9, 20, 19, 10, 9.99, 0.7, 0.013].map((v) => +page.niceBelow(v).toPrecision(12)), [100, 50, 20, 20, 10, 10, 5, 0.5, 0.01]);
 });
 
-test('colour maps go from end to end, in bands where they are asked for, and do without what is no number', () => {
+test('colour maps reach both ends, may have bands, and treat NaN as the lower end', () => {
   for (const map of Object.keys(page.maps)) {
     const at = (t, bands) => page.fieldColour(t, map, bands);
     assert.deepEqual(at(0), [...page.maps[map].stops[0]]);
@@ -277,7 +277,7 @@ test('colour maps go from end to end, in bands where they are asked for, and do 
   assert.deepEqual(page.fieldColour(0.3, 'no such map'), page.fieldColour(0.3));
 });
 
-test('a face is laid down, whatever the part was turned by before; angles are those of the slicer', () => {
+test('a face can be laid on the platform from any rotation; angles are those of the slicer', () => {
   // The normals of a tilted roof, through every kind of turn.
   for (const turn of [[0, 0, 0], [90, 0, 0], [30, -40, 70], [0, 90, 0], [180, 0, 45]]) {
     const rotation = page.rotationOf(turn);
@@ -293,7 +293,7 @@ test('a face is laid down, whatever the part was turned by before; angles are th
   assert.ok(Math.hypot(z.x - 1, z.y, z.z) < 1e-9, `${z.x}, ${z.y}, ${z.z}`);
 });
 
-test('copies stand in rows as wide as the image, and what does not fit is told', () => {
+test('copies are arranged in rows within the image, and too many do not fit', () => {
   const bar = new Float32Array([0, 0, 0, 40, 10, 5]);
   const one = page.placed(bar, [0, 0, 0], 1, 2, [100, 60], 50);
   assert.deepEqual(one.size, [40, 10, 5]);
@@ -306,7 +306,7 @@ test('copies stand in rows as wide as the image, and what does not fit is told',
   assert.ok(page.placed(bar, [0, 90, 0], 1, 2, [100, 60], 40).fits);
 });
 
-test('the tab tells how far a print is, and only what is known', () => {
+test('the tab\'s title shows a print\'s progress, or a question mark if it is unknown', () => {
   const is = { machine: true, known: true, busy: true, paused: false, error: false, finished: false, completion: 43.9, job: 'finger' };
   assert.equal(page.tellingOf({ ...is, machine: false }, 'Pliant').title, 'Pliant');
   assert.equal(page.tellingOf(is, 'Pliant').title, '43 % finger · Pliant');
@@ -332,7 +332,7 @@ test('every key that the reference names in its tables can be completed', () => 
   assert.ok(checked > 60, `${checked}`);
 });
 
-test('the table that a text ends in, and the numbers that formulas are made of', () => {
+test('the table at the end of a text, and the parameters of formulas, are found', () => {
   assert.equal(page.tableAt('name = "x"\n'), '');
   assert.equal(page.tableAt('[material.soft]\na = 1\n'), 'material');
   assert.equal(page.tableAt('[a]\n[[cable]]\npoints = [[0, 0, 0],\n[1, 1, 1]]\n'), 'cable');
@@ -397,7 +397,7 @@ function readGif(bytes) {
   return { width, height, frames };
 }
 
-test('a GIF holds the pictures that were put in, in colours near enough, also where its words run out', () => {
+test('a GIF holds its pictures in nearly their colours, also when its code table is full', () => {
   const [w, h] = [160, 120];
   let seed = 7;
   const random = () => (seed = (seed * 1103515245 + 12345) % 2147483648) / 2147483648;
@@ -428,7 +428,7 @@ test('a GIF holds the pictures that were put in, in colours near enough, also wh
   assert.deepEqual(one.frames[0].colours, Array(4).fill([200, 200, 200]));
 });
 
-test('values of a sweep are even, its ticks round, its table has a column for each', () => {
+test('a sweep has even values, round ticks, and a table column for each result', () => {
   assert.deepEqual(page.evenly(1, 2, 3), [1, 1.5, 2]);
   assert.deepEqual(page.evenly(0.1, 0.3, 3), [0.1, 0.2, 0.3]);
   assert.deepEqual(page.evenly(5, 9, 1), [5]);
@@ -449,7 +449,7 @@ test('values of a sweep are even, its ticks round, its table has a column for ea
   assert.equal(page.sweepCsv(found), 'material.soft.youngs_modulus_MPa,flexor_tension_N,"my tip_x_mm"\r\n1,3,4\r\n2,,\r\n');
 });
 
-test('a file of geometry becomes a robot: its unit, its bodies, held at the end of its longest side', () => {
+test('a geometry file becomes a robot: with its unit and bodies, fixed at one end of its longest side', () => {
   const surface = { name: 'my finger.stl', kind: 'surface', unit_mm: 0, low: [0, 0, 0], high: [60, 12, 10], text: '', parts: [], notes: [] };
   assert.equal(page.usualSide(surface), '-x');
   const text = page.robotOf(surface, 'mm', 'dragon-skin-30', '-x');
@@ -471,7 +471,7 @@ test('a file of geometry becomes a robot: its unit, its bodies, held at the end 
   assert.deepEqual(page.bodiesOf(surface, '../x.stl', 'm', [], 25.4)[0].place, { scale: 25.4 });
 });
 
-test('a motion shows the last state that is not later; a workspace says how much it will solve', () => {
+test('a motion shows the last state up to its time; a workspace states its number of samples', () => {
   const times = [0, 0.1, 0.2, 0.4];
   assert.deepEqual([0, 0.05, 0.1, 0.39, 0.4, 9].map((t) => page.indexAt(times, t)), [0, 0, 1, 2, 3, 3]);
   assert.deepEqual([page.samplesOf(1, 9, 50), page.samplesOf(2, 9, 50), page.samplesOf(3, 5, 10), page.samplesOf(6, 9, 50)], [9, 131, 160, 50]);

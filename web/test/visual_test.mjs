@@ -113,7 +113,7 @@ const states = [
 ];
 
 for (const [theme, width] of states) {
-  test(`preparing and printing look as approved, ${theme}, ${width} px`, async (t) => {
+  test(`preparing and printing look like the approved pictures, ${theme}, ${width} px`, async (t) => {
     const { page } = await openPage(browser, studio.address, t, { colorScheme: theme, viewport: { width, height: 800 } });
     await settled(page);
     const wrong = [];
@@ -152,7 +152,7 @@ for (const [theme, width] of states) {
   });
 }
 
-test('a change that somebody would notice is more than the tolerance: a button that is gone, a colour, a label', async (t) => {
+test('a visible change exceeds the tolerance: a missing button, a colour, a label', async (t) => {
   const { page } = await openPage(browser, `${studio.address}#make`, t, { colorScheme: 'light', viewport: { width: 1440, height: 800 } });
   await page.getByTestId('make-plan').click();
   await page.getByTestId('gantt').waitFor();

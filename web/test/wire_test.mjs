@@ -53,7 +53,7 @@ function handshake(headers, path = '/live', address = origin) {
   });
 }
 
-test('the page comes packed, under a megabyte, and lets nothing in from elsewhere', async () => {
+test('the page is compressed, under a megabyte, and allows no other origin', async () => {
   const page = await ask('/');
   assert.equal(page.status, 200);
   assert.match(page.headers['content-security-policy'], /default-src 'self'/);
@@ -81,7 +81,7 @@ function rawBody(path) {
   });
 }
 
-test('other names and other pages are refused', async () => {
+test('requests with another Host or Origin are refused', async () => {
   assert.equal((await ask('/api/project')).status, 200);
   assert.equal((await ask('/api/project', { headers: { Host: 'evil.example' } })).status, 403);
   assert.equal((await ask('/api/project', { headers: { Host: `evil.example:${new URL(origin).port}` } })).status, 403);
@@ -90,7 +90,7 @@ test('other names and other pages are refused', async () => {
     assert.equal((await ask('/api/robot', { method: 'PUT', headers: { Origin: foreign }, body: 'name = "x"' })).status, 403, foreign);
 });
 
-test('a WebSocket of another page is refused', async () => {
+test('a WebSocket from another page is refused', async () => {
   assert.match(await handshake({ Origin: origin }), /101/);
   assert.doesNotMatch(await handshake({ Origin: 'http://evil.example' }), /101/);
   assert.doesNotMatch(await handshake({}), /101/);
@@ -114,13 +114,13 @@ test('no path leads out of the project folder', async () => {
   assert.equal((await ask('/api/robot', { method: 'PUT', body: outside })).status, 422);
 });
 
-test('uploads are limited, and what is no request ends the line', async () => {
+test('uploads over the limit are refused, and the studio answers the next request', async () => {
   const answer = await ask('/api/robot', { method: 'PUT', body: Buffer.alloc(5 << 20, 'x') }).catch(() => ({ status: 413 }));
   assert.equal(answer.status, 413);
   assert.equal((await ask('/api/project')).status, 200);
 });
 
-test('bound to other addresses the studio asks for its token', async () => {
+test('bound to other addresses the studio needs its token', async () => {
   const open = await startStudio(['--bind', '0.0.0.0']);
   try {
     const url = new URL(open.address);

@@ -42,7 +42,7 @@ async function open(t, name) {
   return opened;
 }
 
-test('set up a machine: from the list, over the port, axes and vats; comments stay', async (t) => {
+test('setting up a machine from the list, over its port, with axes and vats keeps the file\'s comments', async (t) => {
   const { page, wrong } = await open(t, 'machine');
   await page.getByTestId('from-tower').check();
   await page.getByTestId('printer-file-name').fill('mine.toml');
@@ -74,7 +74,7 @@ test('set up a machine: from the list, over the port, axes and vats; comments st
   assert.deepEqual(wrong, []);
 });
 
-test('a value that makes no printer is refused at its step, and nothing is written', async (t) => {
+test('an invalid value is refused at its step, and nothing is written', async (t) => {
   const { page } = await open(t, 'machine');
   await page.getByTestId('from-mine.toml').check();
   await next(page, 1);
@@ -87,7 +87,7 @@ test('a value that makes no printer is refused at its step, and nothing is writt
   assert.equal(file(), before);
 });
 
-test('focus and size of the projector: a pattern is shown when asked for, and what is measured is written', async (t) => {
+test('projector focus and size: a pattern is shown only on request, and the measured size is written', async (t) => {
   const { page, wrong } = await open(t, 'projector');
   await page.getByTestId('wizard-file').selectOption('mine.toml');
   await page.getByTestId('wizard-projector').fill('light');
@@ -112,7 +112,7 @@ test('focus and size of the projector: a pattern is shown when asked for, and wh
   assert.deepEqual(wrong, []);
 });
 
-test('exposure finder: one job with a ramp of exposures, and the piece that is picked is written', async (t) => {
+test('exposure finder: one job has a ramp of exposures, and the chosen one is written', async (t) => {
   const { page, wrong } = await open(t, 'exposure');
   await page.getByTestId('wizard-file').selectOption('mine.toml');
   await page.getByTestId('finder-resin').selectOption('semi-flex');
@@ -139,7 +139,7 @@ test('exposure finder: one job with a ramp of exposures, and the piece that is p
   assert.deepEqual(wrong, []);
 });
 
-test('axes and swap on the virtual printer: home, jog, a swap; the emergency stop stays in place', async (t) => {
+test('axes on the virtual printer: home, jog and swap; the emergency stop stays in place', async (t) => {
   const { page, wrong } = await open(t, 'axes');
   await page.getByTestId('wizard-file').selectOption('mine.toml');
   await page.getByTestId('axes-twin').click();

@@ -8,7 +8,7 @@
 
 using namespace pliant;
 
-TEST_CASE("boxes that touch meet, and share no space") {
+TEST_CASE("boxes that touch intersect, and share no volume") {
     const Box3 box{{0, 0, 0}, {1, 1, 1}};
     for (std::size_t k = 0; k < 3; ++k) {
         Box3 beside = box;

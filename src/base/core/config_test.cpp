@@ -67,7 +67,7 @@ TEST_CASE("an unread key is an error that names the line and the nearest key") {
     CHECK(message(problems) == "test.toml:3: geometri: unknown key; did you mean \"geometry\"?");
 }
 
-TEST_CASE("wrong types and missing keys give one line each and no crash") {
+TEST_CASE("wrong types and missing keys give one line each") {
     const Document document = document_of("size = 3\npoint = [1, 2]\ncount = 2.5\n[table]\nlaw = \"neohookean\"\n");
     Problems problems("test.toml");
     Reader root(document.root, problems);
@@ -88,7 +88,7 @@ TEST_CASE("wrong types and missing keys give one line each and no crash") {
     CHECK(text.find("\"name\" is missing") != std::string::npos);
 }
 
-TEST_CASE("bad TOML names its line") {
+TEST_CASE("invalid TOML is reported with its line") {
     const auto result = parse("a = 1\nb = = 2\n", "robot.toml");
     REQUIRE_FALSE(result);
     CHECK(result.error().message.find("robot.toml:2:") == 0);
@@ -96,7 +96,7 @@ TEST_CASE("bad TOML names its line") {
     CHECK_FALSE(parse("a = " + std::string(10000, '[') + std::string(10000, ']'), "deep.toml"));
 }
 
-TEST_CASE("--set changes a value anywhere, and explains what it cannot find") {
+TEST_CASE("--set changes any value, and an unknown key gives the nearest one") {
     Document document =
         document_of("[program]\nsteps = 30\n[[cable]]\nname = \"flexor\"\ntarget = { length_ratio = 0.7 }\n");
     REQUIRE(set(document, "program.steps=5"));
@@ -115,7 +115,7 @@ TEST_CASE("--set changes a value anywhere, and explains what it cannot find") {
     CHECK_FALSE(set(document, "program..steps=1"));
 }
 
-TEST_CASE("parameters and formulas") {
+TEST_CASE("parameters may be used in formulas") {
     Document document =
         document_of("[parameters]\ngaps = 6\npitch = \"= 84 / gaps\"\n[a]\nx = [\"= pitch * 2\", 1]\nn = \"= gaps\"\n");
     REQUIRE(set(document, "parameters.gaps=4"));
@@ -132,7 +132,7 @@ TEST_CASE("parameters and formulas") {
     CHECK(resolve_parameters(bad).error().message.find("test.toml:2:") == 0);
 }
 
-TEST_CASE("a missing table is one problem, not one for each of its keys, and long lists are cut") {
+TEST_CASE("a missing table is one error, not one per key, and long lists of errors are cut") {
     const Document document =
         document_of("a = 1\nb = 1\nc = 1\nd = 1\ne = 1\nf = 1\ng = 1\nh = 1\ni = 1\nj = 1\nk = 1\nl = 1\nm = 1\n");
     Problems problems("test.toml");

@@ -35,7 +35,7 @@ bool same(const Value& a, const Value& b) {
 
 }  // namespace
 
-TEST_CASE("a document reads back as it was") {
+TEST_CASE("a document written as text is read back the same") {
     const auto document = parse(R"(
         name = "a \"robot\" \\ with\nlines, µ and \u0001"
         length_unit = "mm"

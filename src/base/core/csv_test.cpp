@@ -33,7 +33,7 @@ TEST_CASE("separators, quotes, comments and the lines that messages name") {
     CHECK(parse_csv("a\tb,c\n1\t2", "a.csv", "")->columns.size() == 2);
 }
 
-TEST_CASE("what is wrong is said with the line") {
+TEST_CASE("errors in a table name file and line") {
     CHECK(error_of("") == "a.csv: is empty; the first line names the columns: x,y");
     CHECK(error_of("x,y\n# none\n") == "a.csv: has no rows below the names of the columns");
     CHECK(error_of("x,y\n1,2\n3\n") == "a.csv:3: 1 columns, the first line names more");

@@ -4,7 +4,7 @@
 
 using namespace pliant;
 
-TEST_CASE("sets are known by their smallest numbers, in whatever order they are joined") {
+TEST_CASE("sets are named by their smallest element, in whatever order they are joined") {
     DisjointSets sets(6);
     sets.join(5, 3);
     sets.join(4, 1);

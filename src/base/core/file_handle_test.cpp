@@ -22,7 +22,7 @@ bool is_open(int number) {
 
 }  // namespace
 
-TEST_CASE("a file is closed with its owner, and once") {
+TEST_CASE("a file is closed once, with its owner") {
     const int number = opened();
     {
         FileHandle file(number);

@@ -20,7 +20,7 @@ TEST_CASE("a file is written whole and read back") {
     CHECK_FALSE(write_file(scratch / "no" / "folder", bytes));
 }
 
-TEST_CASE("a folder appears whole or not at all, and foreign folders are left alone") {
+TEST_CASE("a folder is written whole or not at all, and folders with other files are not changed") {
     const test::Folder scratch("files");
     const fs::path folder = scratch / "out";
     const auto good = [](const fs::path& aside) { return write_file(aside / "summary.json", "{}"); };

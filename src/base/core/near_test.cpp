@@ -15,7 +15,7 @@ TEST_CASE("a small number is not near another one because both are small") {
     CHECK(1.69e-5 == near(1.7e-5, {.relative = 1e-2}));
 }
 
-TEST_CASE("the larger tolerance counts, and its edge is inside") {
+TEST_CASE("the larger tolerance counts, and its limit is included") {
     CHECK(1.5 == near(1, {.relative = 0.5}));
     CHECK(0.5 == near(1, {.absolute = 0.5}));
     CHECK_FALSE(1.500001 == near(1, {.relative = 0.5}));
@@ -32,7 +32,7 @@ TEST_CASE("without a tolerance numbers must be equal, and there is no default") 
     CHECK_FALSE(std::is_convertible_v<double, Near>);
 }
 
-TEST_CASE("NaN is near nothing, an infinity only itself") {
+TEST_CASE("NaN is near nothing, and infinity only near itself") {
     const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
     CHECK_FALSE(nan == near(1, {.relative = 1, .absolute = 1e300}));
     CHECK_FALSE(nan == near(nan, {.absolute = infinite}));
@@ -44,7 +44,7 @@ TEST_CASE("NaN is near nothing, an infinity only itself") {
     CHECK(nan != near(nan, {.relative = 1}));
 }
 
-TEST_CASE("whole numbers are measured as well") {
+TEST_CASE("integers are compared with tolerances too") {
     const std::size_t count = 99;
     CHECK(count == near(100, {.relative = 0.01}));
     CHECK(count != near(100, {.relative = 0.001}));

@@ -10,7 +10,7 @@
 using namespace pliant;
 
 #ifndef PLIANT_PLAIN_THREADS
-TEST_CASE("loops of work on its own core stay on its thread") {
+TEST_CASE("loops started on their own core stay on their thread") {
     const std::thread::id here = std::this_thread::get_id();
     std::atomic<int> pieces = 0, elsewhere = 0;
     on_own_core([&] {

@@ -68,7 +68,7 @@ TEST_CASE("a process reads its input, or nothing if there is none") {
     CHECK(run("cat").said.empty());
 }
 
-TEST_CASE("a process leads a session of its own and blocks no signal") {
+TEST_CASE("a process leads its own session and blocks no signal") {
     sigset_t all, before;
     sigfillset(&all);
     REQUIRE(::sigprocmask(SIG_SETMASK, &all, &before) == 0);

@@ -18,7 +18,7 @@ void check_near(const Vec3& found, const Vec3& expected) {
 
 }  // namespace
 
-TEST_CASE("turned right-handed: x goes to y about z, y to z about x, z to x about y") {
+TEST_CASE("rotations are right-handed: about z, x turns to y; about x, y to z; about y, z to x") {
     check_near(turned({1, 0, 0}, {0, 0, 1}, right_angle), {0, 1, 0});
     check_near(turned({0, 1, 0}, {1, 0, 0}, right_angle), {0, 0, 1});
     check_near(turned({0, 0, 1}, {0, 1, 0}, right_angle), {1, 0, 0});
@@ -31,7 +31,7 @@ TEST_CASE("a third of a turn about the diagonal permutes the axes") {
     check_near(turned(diagonal, diagonal, 1.234), diagonal);
 }
 
-TEST_CASE("a turn keeps lengths, and is added to where it starts") {
+TEST_CASE("a rotation keeps lengths, and adds to the vector it is given") {
     const Vec3 axis = unit({1, -2, 0.5});
     const Vec3 arm{0.3, -4, 7};
     CHECK(norm(turned(arm, axis, 0.7)) == near(norm(arm), {.relative = 1e-14}));

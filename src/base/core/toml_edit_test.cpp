@@ -75,7 +75,7 @@ TEST_CASE("a missing value is added to its table, and the table if missing") {
     CHECK(with_value(first, "b", "3").value() == replaced(first, "b = 2", "b = 3"));
 }
 
-TEST_CASE("an entry comes after the last of its list, as the list is written") {
+TEST_CASE("a new entry is added after the last of its list, in the list's style") {
     const config::EntryText entry = {{"name", "\"tip\""}, {"point", "[1, 2, 3]"}};
     CHECK(
         with_entry(robot, "cable", entry).value() ==

@@ -79,7 +79,7 @@ double fill(const Graph& graph, const std::vector<int>& position) {
 
 }  // namespace
 
-TEST_CASE("every node of every graph gets a position of its own, with points and without") {
+TEST_CASE("every node of any graph gets a unique position, with and without coordinates") {
     const auto check = [](const Graph& graph, const Points& points) {
         CHECK(is_permutation(dissect(graph, points)));
         CHECK(is_permutation(dissect(graph)));

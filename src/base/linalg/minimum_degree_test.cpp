@@ -8,7 +8,7 @@
 
 using namespace pliant::linalg;
 
-TEST_CASE("each node has the fewest remaining neighbours, outside ones counted") {
+TEST_CASE("each node in turn has the fewest remaining neighbours, those outside included") {
     std::mt19937 random(9);
     for (const int nodes : {1, 2, 17, 64, 65, 150}) {
         const int outside = nodes / 2;

@@ -147,7 +147,7 @@ TEST_CASE("a rotated body reuses its coarse level, a different one gets a new on
     CHECK(levels.iterations() <= fresh.iterations() + 12);
 }
 
-TEST_CASE("an indefinite matrix is detected, at once or while solving") {
+TEST_CASE("an indefinite matrix is found on setting it or while solving") {
     for (const double shift : {-0.05, -3.0, -1e3}) {
         Problem p = beam(24, 3);
         for (int n = 0; n < p.pattern.nodes; ++n)
@@ -182,8 +182,7 @@ TEST_CASE("bodies of very few nodes, isolated ones included") {
     }
 }
 
-TEST_CASE(
-    "several right-hand sides, of any size, and one that is zero; where there is no time what was reached stays") {
+TEST_CASE("several right-hand sides of any size, zero included; after a time-out the best solution is kept") {
     const Problem p = beam(24, 3);
     TwoLevel levels(p.pattern);
     REQUIRE(levels.set(p.values, p.positions));

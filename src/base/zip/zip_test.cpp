@@ -28,7 +28,7 @@ std::string number(std::uint64_t value, int bytes) {
 }
 
 /// A hand-made archive of one stored entry, in which each field can be falsified.
-struct ByHand {
+struct HandMadeArchive {
     std::string name = "a";
     std::string data = "hello";
     std::uint64_t size = 5, packed = 5, offset = 0;
@@ -170,7 +170,7 @@ TEST_CASE("duplicate or overlong names and oversized entries are refused") {
     CHECK(read->read(longest, 9).value() == "3");
 }
 
-TEST_CASE("nothing is left without close(), or when the disk is full") {
+TEST_CASE("nothing is left without close(), or on a full disk") {
     const File file;
     { CHECK(ZipWriter::create(file.path)->add("a", "1", Method::store).has_value()); }
     CHECK_FALSE(fs::exists(file.path));
@@ -191,7 +191,7 @@ TEST_CASE("nothing is left without close(), or when the disk is full") {
     CHECK(holds(ZipWriter::create(file.folder / "none/a.zip").error().message, "cannot be written: "));
 }
 
-TEST_CASE("what is not a file or not an archive is refused") {
+TEST_CASE("missing files, folders, pipes and files that are no archive are refused") {
     const File file;
     CHECK(ZipReader::open(file.path).error().message == file.path.string() + ": no such file");
     CHECK(holds(ZipReader::open(file.folder.path()).error().message, ": is not a regular file"));
@@ -204,41 +204,41 @@ TEST_CASE("what is not a file or not an archive is refused") {
 
 TEST_CASE("an archive that ends early anywhere is refused") {
     const File file;
-    const std::string whole = ByHand{}.zip();
+    const std::string whole = HandMadeArchive{}.zip();
     REQUIRE(file.open(whole)->read("a", 5).value() == "hello");
     for (std::size_t length = 0; length < whole.size(); ++length) file.refused(whole.substr(0, length));
 }
 
 TEST_CASE("impossible sizes are refused before memory is allocated") {
     const File file;
-    CHECK(holds(file.refused(ByHand{.size = 6}.zip()), "a: claims 6 bytes, more than the archive can hold"));
-    CHECK(holds(file.refused(ByHand{.size = 0xFFFFFFF0}.zip()), "claims 4294967280 bytes"));
-    CHECK(holds(file.refused(ByHand{.size = 5 * 1032 + 1, .method = 8}.zip()), "claims 5161 bytes"));
-    file.refused(ByHand{.size = 5, .packed = 0xFFFFFFF0}.zip());
-    CHECK(holds(file.refused(ByHand{.size = 4, .packed = 4}.zip()), "a: "));  // the checksum is for five bytes
-    file.refused(ByHand{.offset = 40}.zip());
-    file.refused(ByHand{.offset = 0xFFFFFFF0}.zip());
-    file.refused(ByHand{.count = 2}.zip());
-    file.refused(ByHand{.count = 0xFFFE}.zip());
+    CHECK(holds(file.refused(HandMadeArchive{.size = 6}.zip()), "a: claims 6 bytes, more than the archive can hold"));
+    CHECK(holds(file.refused(HandMadeArchive{.size = 0xFFFFFFF0}.zip()), "claims 4294967280 bytes"));
+    CHECK(holds(file.refused(HandMadeArchive{.size = 5 * 1032 + 1, .method = 8}.zip()), "claims 5161 bytes"));
+    file.refused(HandMadeArchive{.size = 5, .packed = 0xFFFFFFF0}.zip());
+    CHECK(holds(file.refused(HandMadeArchive{.size = 4, .packed = 4}.zip()), "a: "));  // the checksum is for five bytes
+    file.refused(HandMadeArchive{.offset = 40}.zip());
+    file.refused(HandMadeArchive{.offset = 0xFFFFFFF0}.zip());
+    file.refused(HandMadeArchive{.count = 2}.zip());
+    file.refused(HandMadeArchive{.count = 0xFFFE}.zip());
 }
 
 TEST_CASE("a wrong checksum, encryption and unknown methods are refused") {
     const File file;
-    file.refused(ByHand{.checksum = 1}.zip());
-    CHECK(holds(file.refused(ByHand{.flags = 1}.zip()), "a: must be stored or deflated, and not encrypted"));
-    CHECK(holds(file.refused(ByHand{.method = 12}.zip()), "a: must be stored or deflated, and not encrypted"));
-    file.refused(ByHand{.method = 8}.zip());  // "hello" is not a deflate stream
+    file.refused(HandMadeArchive{.checksum = 1}.zip());
+    CHECK(holds(file.refused(HandMadeArchive{.flags = 1}.zip()), "a: must be stored or deflated, and not encrypted"));
+    CHECK(holds(file.refused(HandMadeArchive{.method = 12}.zip()), "a: must be stored or deflated, and not encrypted"));
+    file.refused(HandMadeArchive{.method = 8}.zip());  // "hello" is not a deflate stream
 }
 
 TEST_CASE("64-bit sizes are read and checked like 32-bit ones") {
     const File file;
     const auto with_sizes = [](std::uint64_t size, std::uint64_t packed) {
         const std::string extra = number(1, 2) + number(16, 2) + number(size, 8) + number(packed, 8);
-        ByHand hand;
+        HandMadeArchive hand;
         const std::string local = hand.local();
         hand.size = hand.packed = 0xFFFFFFFF;
         hand.extra = extra;
-        return ByHand::finish(local, hand.directory(), 1, true);
+        return HandMadeArchive::finish(local, hand.directory(), 1, true);
     };
     const auto zip = file.open(with_sizes(5, 5));
     REQUIRE(zip.has_value());
@@ -249,11 +249,11 @@ TEST_CASE("64-bit sizes are read and checked like 32-bit ones") {
         file.refused(with_sizes(lie, lie));
     }
     for (const std::uint64_t lie : {std::uint64_t{2}, std::uint64_t{1} << 40, any_size}) {
-        file.refused(ByHand{.count = lie, .zip64_end = true}.zip());
+        file.refused(HandMadeArchive{.count = lie, .zip64_end = true}.zip());
     }
 }
 
-TEST_CASE("more entries than two bytes can count") {
+TEST_CASE("an archive with more than 65,535 entries is written and read") {
     const File file;
     constexpr int count = 70000;
     {
@@ -270,12 +270,12 @@ TEST_CASE("more entries than two bytes can count") {
 
 TEST_CASE("of two entries with one name the first is read") {
     const File file;
-    ByHand first, second;
+    HandMadeArchive first, second;
     second.data = "HELLO";
     second.checksum = 0xC1446436;
     second.offset = first.local().size();
     const auto zip =
-        file.open(ByHand::finish(first.local() + second.local(), first.directory() + second.directory(), 2));
+        file.open(HandMadeArchive::finish(first.local() + second.local(), first.directory() + second.directory(), 2));
     REQUIRE(zip.has_value());
     CHECK(zip->entry_count() == 2);
     CHECK(zip->name(1) == "a");
@@ -285,7 +285,7 @@ TEST_CASE("of two entries with one name the first is read") {
 TEST_CASE("names that look like other paths are ordinary entries") {
     const File file;
     for (const std::string name : {"../evil", "/tmp/pliant_evil", "..", "a\\..\\b", "c:evil"}) {
-        ByHand hand;
+        HandMadeArchive hand;
         hand.name = name;
         const auto zip = file.open(hand.zip());
         REQUIRE(zip.has_value());
@@ -300,7 +300,7 @@ TEST_CASE("names that look like other paths are ordinary entries") {
 
 TEST_CASE("an archive with any changed byte is refused or read, without harm") {
     const File file;
-    const std::string whole = ByHand{}.zip();
+    const std::string whole = HandMadeArchive{}.zip();
     for (std::size_t i = 0; i < whole.size(); ++i) {
         for (const int flip : {0x01, 0x80, 0xFF}) {
             std::string changed = whole;

@@ -83,7 +83,7 @@ TEST_CASE("broken STL files: read, read with a warning, or refused with a reason
     }
 }
 
-TEST_CASE("broken STL files are meshed from their winding number, or refused with a reason") {
+TEST_CASE("broken STL files are meshed by their winding number, or refused with a reason") {
     struct Row {
         const char* file;
         double volume;     ///< 0: refused

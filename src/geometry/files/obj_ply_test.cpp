@@ -85,7 +85,7 @@ std::string binary_ply(bool big_endian) {
 
 }  // namespace
 
-TEST_CASE("OBJ: polygons, all kinds of corners, and everything else passed over") {
+TEST_CASE("OBJ: polygons and all kinds of corners are read, and everything else is ignored") {
     const Result<SurfaceFile> file = parse_surface(obj, "a.obj");
     REQUIRE_MESSAGE(file, (file ? "" : file.error().message));
     CHECK(file->mesh.points.size() == 8);

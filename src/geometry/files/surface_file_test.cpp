@@ -41,7 +41,7 @@ endsolid
 
 }  // namespace
 
-TEST_CASE("a binary file comes back as it was written, its points welded") {
+TEST_CASE("a binary file is read back as written, with equal points joined") {
     const Result<SurfaceFile> file = parse_stl(binary_stl(tetrahedron()), "a.stl");
     REQUIRE(file);
     CHECK(file->warnings.empty());
@@ -51,7 +51,7 @@ TEST_CASE("a binary file comes back as it was written, its points welded") {
     CHECK(check_closed(file->mesh));
 }
 
-TEST_CASE("odd binary files are read with a warning, or refused with a reason") {
+TEST_CASE("binary files with small faults are read with a warning; others are refused with a reason") {
     std::string bytes = binary_stl(tetrahedron());
     std::string wrong_count = bytes;
     wrong_count[80] = 20;
@@ -74,7 +74,7 @@ TEST_CASE("odd binary files are read with a warning, or refused with a reason") 
     CHECK(problem(std::string(5000, 'h')).find("not an STL") != std::string::npos);
 }
 
-TEST_CASE("text files are read whatever their case and line ends, and wrong ones name the line") {
+TEST_CASE("text STL is read in any case and with any line ends; errors name the line") {
     REQUIRE(parse_stl(ascii, "a.stl"));
     CHECK(parse_stl(ascii, "a.stl")->mesh.triangles.size() == 1);
     std::string shouting;
@@ -93,7 +93,7 @@ TEST_CASE("text files are read whatever their case and line ends, and wrong ones
     CHECK(problem(ascii.substr(0, 60)).find("a.stl:") == 0);
 }
 
-TEST_CASE("text with other line ends, in one line, or with words after endfacet is read") {
+TEST_CASE("text STL with other line ends, on one line, or with words after endfacet is read") {
     const auto with_ends = [](const std::string& text, const char* end) {
         std::string result;
         for (const char c : text) result += c == '\n' ? std::string(end) : std::string(1, c);
@@ -121,7 +121,7 @@ TEST_CASE("text with other line ends, in one line, or with words after endfacet 
     CHECK(problem(stray) == "a.stl:9: \"attributes\" has no place here; this is not a complete STL file");
 }
 
-TEST_CASE("surfaces that enclose nothing are reported as such") {
+TEST_CASE("open, inverted, doubled and empty surfaces are refused with the reason") {
     TriMesh open = tetrahedron();
     open.triangles.pop_back();
     CHECK(check_closed(open).error().message.find("3 edges have no neighbour") != std::string::npos);

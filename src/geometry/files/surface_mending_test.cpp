@@ -126,7 +126,7 @@ std::vector<Shape> shapes() {
 
 }  // namespace
 
-TEST_CASE("mending: corners off by some float steps are one again, and volume and corners stay") {
+TEST_CASE("mending: corners some float steps apart are joined; volume and corners stay") {
     unsigned seed = 1;
     for (const Shape& shape : shapes()) {
         const TriMesh exact = in_floats(shape.mesh);
@@ -148,7 +148,7 @@ TEST_CASE("mending: corners off by some float steps are one again, and volume an
     }
 }
 
-TEST_CASE("mending: text is as precise as its digits") {
+TEST_CASE("mending: the tolerance follows from the number of digits in a text file") {
     const TriMesh exact = torus(20, 5, 60, 24);
     std::mt19937 random(7);
     const auto off_by_one = [&](double value, double step) {
@@ -169,7 +169,7 @@ TEST_CASE("mending: text is as precise as its digits") {
     CHECK(read(text_stl(jittered(exact, 0, 1, 1), round)).warnings.empty());
 }
 
-TEST_CASE("mending: round numbers are no imprecision, and a hole stays a hole") {
+TEST_CASE("mending: round coordinates do not widen the tolerance, and a hole stays a hole") {
     TriMesh holed = cube({0, 0, 0}, 1);
     holed.triangles.pop_back();
     const auto whole = [](double v) { return fmt::format("{:.0f}", v); };
@@ -183,7 +183,7 @@ TEST_CASE("mending: round numbers are no imprecision, and a hole stays a hole") 
     CHECK_FALSE(check_closed(read(binary_stl(slit)).mesh));
 }
 
-TEST_CASE("mending: chains of points are not drawn together") {
+TEST_CASE("mending: a chain of close points does not collapse into one point") {
     // An open strip with border points closer together than the reach.
     TriMesh strip;
     constexpr int count = 200;
@@ -200,7 +200,7 @@ TEST_CASE("mending: chains of points are not drawn together") {
     CHECK(bounds(file.mesh).size().x > 0.39 - 2 * 0.0079);
 }
 
-TEST_CASE("mending: an inverted solid, and a cavity that looks outwards, are turned with a note") {
+TEST_CASE("mending: an inverted solid, and a cavity whose faces look outwards, are turned over with a note") {
     TriMesh outwards = joined(cube({0, 0, 0}, 10), cube({2, 2, 2}, 6));
     const SurfaceFile hollow = read(binary_stl(outwards));
     CHECK(signed_volume(hollow.mesh) == near(784, {.relative = 1e-12}));
@@ -213,7 +213,7 @@ TEST_CASE("mending: an inverted solid, and a cavity that looks outwards, are tur
     CHECK(holds(turned.warnings[0], "1 shell(s) inside out were turned outwards"));
 }
 
-TEST_CASE("printed digits: all to so many decimals, or to so many that count") {
+TEST_CASE("the step of printed numbers: fixed decimals, or significant digits") {
     const auto step = [](std::initializer_list<const char*> numbers, double size) {
         PrintedDigits digits;
         for (const char* number : numbers) digits.see(number);

@@ -60,7 +60,7 @@ TEST_CASE("names of regions are read back, whatever their characters and length"
     }
 }
 
-TEST_CASE("binary files, other cells, loose points and inside-out tets") {
+TEST_CASE("binary files, other cells, unused points and inverted tets are read") {
     std::string bytes = "# vtk DataFile Version 2.0\ntitle\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 double\n";
     for (const Vec3& p : {Vec3{9, 9, 9}, Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{8, 8, 8}}) {
         for (const double c : {p.x, p.y, p.z}) put(bytes, c);
@@ -80,7 +80,7 @@ TEST_CASE("binary files, other cells, loose points and inside-out tets") {
     CHECK(mesh->notes == std::vector<std::string>{"1 of 1 tets were inside out and were turned"});
 }
 
-TEST_CASE("version 5 files keep offsets and connectivity apart") {
+TEST_CASE("version 5 files store offsets and connectivity separately") {
     const std::string text =
         "# vtk DataFile Version 5.1\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n"
         "METADATA\nINFORMATION 0\n\nCELLS 2 4\nOFFSETS vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n0 1 2 "

@@ -78,7 +78,7 @@ anything
 
 }  // namespace
 
-TEST_CASE("every format gives back what was written into it, linear and quadratic, text and binary") {
+TEST_CASE("every format is read back as written: linear and quadratic, text and binary") {
     for (const TetMesh& mesh : {two_tets(), curved_tets()}) {
         for (const Encoding encoding : {Encoding::binary, Encoding::text}) {
             check_same(parse_tet_mesh(vtk_bytes(mesh, encoding), "a"), mesh);
@@ -116,7 +116,7 @@ TEST_CASE("a file of tets of 4 and 10 nodes becomes one quadratic mesh that shar
     CHECK(boundary_faces(*mesh).size() == 6);
 }
 
-TEST_CASE("files are written by their extension and read by their content") {
+TEST_CASE("a file's extension decides how it is written, its content how it is read") {
     const pliant::test::Folder folder("formats");
     for (const char* name : {"a.vtk", "a.vtu", "a.msh", "a.mesh", "a.inp"}) {
         REQUIRE(write_tet_mesh(folder / name, curved_tets()));
@@ -213,7 +213,7 @@ TEST_CASE("Medit: unknown keywords are ignored; P2 and references are read") {
     CHECK(problem("MeshVersionFormatted 1\nDimension 3\n").find("holds no tetrahedra") != std::string::npos);
 }
 
-TEST_CASE("GiD: several blocks, materials and names of blocks") {
+TEST_CASE("GiD: several blocks, materials and block names are read") {
     const std::string text =
         "MESH \"left part\" dimension 3 ElemType Tetrahedra Nnode 4\nCoordinates\n 1 0 0 0\n 2 1 0 0\n 3 0 1 0\n"
         " 4 0 0 1\n 5 1 1 1\nEnd Coordinates\nElements\n1 1 2 3 4\nEnd Elements\n"
@@ -229,7 +229,7 @@ TEST_CASE("GiD: several blocks, materials and names of blocks") {
     CHECK(problem(text.substr(0, text.find("End Coordinates"))).find("file ends") != std::string::npos);
 }
 
-TEST_CASE("binary .msh: either byte order, lying counts and cut files") {
+TEST_CASE("binary .msh: both byte orders are read; wrong counts and cut files are refused") {
     const std::string bytes = msh_bytes(curved_tets(), Encoding::binary);
     for (std::size_t cut = 20; cut < bytes.size() - 14; cut += 7) CHECK_FALSE(parse_msh(bytes.substr(0, cut), "a"));
     std::string lying = bytes;

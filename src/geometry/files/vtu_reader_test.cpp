@@ -78,7 +78,7 @@ const std::string text_file =
 
 }  // namespace
 
-TEST_CASE("compressed files come back as they were written, with the names of their regions") {
+TEST_CASE("compressed files are read back as written, with region names") {
     for (const TetMesh& mesh : {two_tets(), to_quadratic(two_tets())}) {
         VtuData data;
         data.cells.push_back({"region", 1, std::vector<std::int32_t>(mesh.region.begin(), mesh.region.end())});
@@ -95,7 +95,7 @@ TEST_CASE("compressed files come back as they were written, with the names of th
     }
 }
 
-TEST_CASE("arrays in the file and appended, base64 and raw, of both byte orders") {
+TEST_CASE("arrays in the file and appended, base64 and raw, of both byte orders are read") {
     for (const bool big_endian : {false, true}) {
         std::string raw;
         std::string encoded;
@@ -129,7 +129,7 @@ TEST_CASE("arrays in the file and appended, base64 and raw, of both byte orders"
     }
 }
 
-TEST_CASE("text arrays, and pieces that follow each other") {
+TEST_CASE("text arrays and several pieces are read") {
     const Result<TetMesh> one = parse_vtu(text_file, "a.vtu");
     REQUIRE_MESSAGE(one, (one ? "" : one.error().message));
     CHECK(one->region_names == std::vector<std::string>{"-3"});

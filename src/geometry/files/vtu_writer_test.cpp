@@ -60,7 +60,7 @@ std::vector<T> values_of(const std::string& file, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("a VTK file gives back its points, cells and data") {
+TEST_CASE("a VTK file holds the given points, cells and data") {
     const std::vector<Vec3> moved = {{0, 0, 0}, {10.5, 0, 0}, {0, 11, 0}, {0, 0, 12.25}};
     VtuData data;
     data.points.push_back({"displacement", 3, std::vector<float>{0, 0, 0, 1, 2, 3, 0, 0, 0, 0, 0, 4}});

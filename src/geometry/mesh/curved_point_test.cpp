@@ -106,7 +106,7 @@ TEST_CASE("degenerate and folded tets end with a point, not nearer than any othe
     }
 }
 
-TEST_CASE("the Bezier box holds a curved tet") {
+TEST_CASE("the Bezier box contains its curved tet") {
     std::mt19937 random(7);
     for (int trial = 0; trial < 50; ++trial) {
         const TetNodes nodes = bent_tet(random, 0.3);

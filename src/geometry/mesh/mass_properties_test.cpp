@@ -31,7 +31,7 @@ TEST_CASE("volume, centre and second moments of a box, wherever it is") {
     }
 }
 
-TEST_CASE("four points with a quarter of the mass each move as the body does") {
+TEST_CASE("four points with a quarter of the mass each have the body's centre and second moments") {
     const MassProperties body = mass_properties(box({5, -1, 2}, {2, 3, 4}));
     Vec3 mean;
     Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();

@@ -12,7 +12,7 @@
 using namespace pliant;
 using namespace pliant::mesh;
 
-TEST_CASE("items near in space become near in order, whatever the initial order") {
+TEST_CASE("items close in space are close in the order, whatever their initial order") {
     std::mt19937 random(2);
     std::uniform_real_distribution<double> in_box(0, 1);
     for (const std::size_t count : {0U, 1U, 64U, 65U, 30000U}) {

@@ -35,7 +35,7 @@ TEST_CASE("a point is scaled, mirrored, rotated and moved, in this order") {
     CHECK(same_point(place({1, 2, 3}, placement), {1 - 4, -1, 6 + 5}));
 }
 
-TEST_CASE("a surface that is mirrored keeps its outside, and its copies are copies") {
+TEST_CASE("a mirrored surface keeps its outside, and its copies are repeated") {
     Placement placement;
     placement.scale = 0.5;
     placement.mirror_normal = {1, 1, 0};
@@ -48,7 +48,7 @@ TEST_CASE("a surface that is mirrored keeps its outside, and its copies are copi
     CHECK(same_point(bounds(cubes).high, {0, 0, 45}));
 }
 
-TEST_CASE("tets that are mirrored are positive, linear and quadratic ones, and keep their regions") {
+TEST_CASE("mirrored tets stay positive and keep their regions, linear and quadratic") {
     Placement placement;
     placement.mirror_normal = {0, 0, 1};
     placement.count = 4;

@@ -38,7 +38,7 @@ Result<TetMesh> mesh_cube(double size, Progress& progress) {
 }
 
 /// Cancels the work after a while.
-class Impatient : public Progress {
+class CancelledAfter300ms : public Progress {
 public:
     [[nodiscard]] bool cancelled() const override { return std::chrono::steady_clock::now() > until_; }
 
@@ -48,7 +48,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("one process serves request after request, and a killed one is replaced") {
+TEST_CASE("one process serves all requests, and a killed one is replaced") {
     kill_all();
     Progress silent;
     const Result<TetMesh> first = mesh_cube(5, silent);
@@ -68,7 +68,7 @@ TEST_CASE("one process serves request after request, and a killed one is replace
     CHECK(meshers() != before);
 }
 
-TEST_CASE("requests at one time have processes of their own and the same answers") {
+TEST_CASE("simultaneous requests have separate processes and get the same answers") {
     Progress silent;
     const Result<TetMesh> expected = mesh_cube(2, silent);
     REQUIRE(expected);
@@ -87,7 +87,7 @@ TEST_CASE("requests at one time have processes of their own and the same answers
     }
 }
 
-TEST_CASE("a mesher that dies at work is one error, and the next request is served") {
+TEST_CASE("a mesher that is killed at work gives one error, and the next request is served") {
     std::thread killer([] {
         std::this_thread::sleep_for(std::chrono::milliseconds(500));
         kill_all();
@@ -103,7 +103,7 @@ TEST_CASE("a mesher that dies at work is one error, and the next request is serv
 }
 
 TEST_CASE("cancelling ends the mesher at once") {
-    Impatient impatient;
+    CancelledAfter300ms impatient;
     const auto begin = std::chrono::steady_clock::now();
     const Result<TetMesh> mesh = mesh_cube(0.1, impatient);
     REQUIRE_FALSE(mesh);
@@ -134,7 +134,7 @@ TEST_CASE("time and memory limits are reported") {
 #endif
 }
 
-TEST_CASE("a missing or wrong mesher is reported by name") {
+TEST_CASE("a missing or invalid mesher is reported by name") {
     kill_all();
     Progress silent;
     {
@@ -164,7 +164,7 @@ TEST_CASE("a mesher is found with an installation that PATH names") {
     CHECK(mesher_on((folder / "empty/bin").string()).empty());
 }
 
-TEST_CASE("cached answers need no mesher, are identical, and are dropped when the cache is full") {
+TEST_CASE("cached answers need no mesher, are identical, and are removed when the cache is full") {
     Progress silent;
     const Result<TetMesh> first = mesh_cube(5, silent);
     REQUIRE(first);

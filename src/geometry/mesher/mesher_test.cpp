@@ -68,7 +68,7 @@ TEST_CASE("bodies that touch share the nodes of their common face") {
     CHECK(area == near(2 * 100 + 4 * 200, {.relative = 1e-12}));  // the common face is not part of the outside
 }
 
-TEST_CASE("round bodies approach their volume, faster with curved quadratic tets") {
+TEST_CASE("round bodies converge to their volume, faster with curved quadratic tets") {
     const Solid ball = solid(SphereSolid{{1, 2, 3}, 5});
     const double exact = 4.0 / 3 * std::numbers::pi * 125;
     CHECK(*solid_volume(ball) == near(exact, {.relative = 1e-12}));
@@ -85,7 +85,7 @@ TEST_CASE("round bodies approach their volume, faster with curved quadratic tets
     CHECK(farthest < 1e-6);  // mid-edge nodes lie on the sphere too
 }
 
-TEST_CASE("rotation, translation and union by the kernel agree with membership") {
+TEST_CASE("rotated, translated and united solids agree with membership") {
     const Solid arm = solid(RotatedSolid{box({0, -1, -1}, {10, 1, 1}), {0, 0, 0}, {0, 0, 1}, std::numbers::pi / 2});
     const Solid cross = solid(CombinedSolid{CombinedSolid::Operation::unite, {box({0, -1, -1}, {10, 1, 1}), arm}});
     CHECK(*solid_volume(cross) == near(40 + 40 - 2, {.relative = 1e-12}));
@@ -119,7 +119,7 @@ TEST_CASE("surfaces for the slicer are closed and exact where they are flat") {
     CHECK(signed_volume(*ball) == near(4.0 / 3 * std::numbers::pi * 125, {.relative = 5e-3}));
 }
 
-TEST_CASE("round cavities look inwards, and every chord keeps to the tolerance") {
+TEST_CASE("cavities look inwards, and every chord of a curve keeps to the tolerance") {
     const double pi = std::numbers::pi;
     const Solid ball = solid(SphereSolid{{0, 0, 0}, 5});
     const Solid rod = solid(CylinderSolid{{0, 0, -9}, {0, 0, 9}, 2});
@@ -139,7 +139,7 @@ TEST_CASE("round cavities look inwards, and every chord keeps to the tolerance")
     CHECK(farthest < 0.01);
 }
 
-TEST_CASE("a wall thinner than the chords of its curve is followed more closely") {
+TEST_CASE("a thin curved wall is meshed finer than its element size asks for") {
     const Solid tube =
         without(solid(CylinderSolid{{0, 0, 0}, {0, 0, 10}, 5}), solid(CylinderSolid{{0, 0, -1}, {0, 0, 11}, 4.8}));
     const double exact = std::numbers::pi * (25 - 4.8 * 4.8) * 10;
@@ -155,7 +155,7 @@ TEST_CASE("a surface body is meshed anew to the wanted size") {
     CHECK(report_on(mesh).worst_quality > 0.02);
 }
 
-TEST_CASE("the mesh size is judged by the material, not by the box around it") {
+TEST_CASE("the mesh size is checked against the material's volume, not against the bounding box") {
     const Solid rod = box({0, 0, 0}, {500, 2, 2});
     const Solid turned = solid(RotatedSolid{rod, {0, 0, 0}, {0, 0, 1}, 0.7});
     const Solid tilted = solid(RotatedSolid{turned, {0, 0, 0}, {0, 1, 0}, 0.7});
@@ -212,7 +212,7 @@ TEST_CASE("the same bodies give the same mesh, byte for byte") {
     CHECK(first.nodes == second.nodes);
 }
 
-TEST_CASE("where bodies overlap the later one wins, and a note tells the volume") {
+TEST_CASE("where bodies overlap the later one keeps the volume, and a note says how much") {
     const Solid left = box({0, 0, 0}, {10, 10, 10});
     const Solid right = box({8, 0, 0}, {20, 10, 10});
     const TetMesh mesh = mesh_of({{"left", left}, {"right", right}}, 4, 1);
@@ -225,7 +225,7 @@ TEST_CASE("where bodies overlap the later one wins, and a note tells the volume"
     CHECK(volume(other, 0) == near(1000, {.relative = 1e-12}));
 }
 
-TEST_CASE("enclosed space is a region of its own, with a cap where it has a mouth") {
+TEST_CASE("enclosed space is a region of its own; an open mouth is closed with a cap") {
     const auto enclosed = [](const Vec3& at, std::vector<Solid> walls) {
         return std::make_shared<const SolidNode>(SolidNode{EnclosedSolid{at, std::move(walls)}});
     };
@@ -242,7 +242,7 @@ TEST_CASE("enclosed space is a region of its own, with a cap where it has a mout
     CHECK(volume(capped, 1) == near(7 * 16, {.relative = 1e-12}));
 }
 
-TEST_CASE("a narrow gap between bodies is closed and reported, a wider one stays") {
+TEST_CASE("a narrow gap between bodies is closed with a note, a wider one is kept") {
     const std::vector<BodyGeometry> bars = {{"left", box({0, 0, 0}, {10, 10, 10})},
                                             {"right", box({10.004, 2, 2}, {20, 8, 8})}};
     const Solid hole = solid(CylinderSolid{{5, 5, 0}, {5, 5, 4}, 2});

@@ -36,7 +36,7 @@ const std::vector<Vec3> path = {{-5, 10, 13}, {40, 10, 13}};
 
 }  // namespace
 
-TEST_CASE("a notch is filled to its mouth and its ends: V, box, half round, skewed") {
+TEST_CASE("a V, box, half-round or skewed notch is filled up to its mouth and ends") {
     const Solid v = solid(PrismSolid{{{20, 5}, {25, 15}, {15, 15}}, {0, 2, 1}, 0, 20});
     const Solid u = box({18, -1, 5}, {22, 21, 16});
     const Solid round = solid(CylinderSolid{{20, -1, 15}, {20, 21, 15}, 6});
@@ -52,7 +52,7 @@ TEST_CASE("a notch is filled to its mouth and its ends: V, box, half round, skew
     CHECK(only(volumes(without(bar, skewed), path)) == near(0.5 * (2 + top) * 10 * 20, {.relative = 1e-12}));
 }
 
-TEST_CASE("a bore for the cable through the flanks stays empty; every notch counts once, open ends do not") {
+TEST_CASE("a bore for the cable through the notches' flanks stays empty, and every notch is found once") {
     const Solid notch = solid(PrismSolid{{{10, 5}, {12, 15.1}, {8, 15.1}}, {0, 2, 1}, -1, 21});
     const Solid notches = solid(RepeatedSolid{notch, 3, {10, 0, 0}});
     const Solid bore = solid(CylinderSolid{{-1, 10, 13}, {41, 10, 13}, 0.5});
@@ -67,7 +67,7 @@ TEST_CASE("a bore for the cable through the flanks stays empty; every notch coun
     CHECK(bored[1] == near(plain[1], {.relative = 1e-12}));
 }
 
-TEST_CASE("between a wide plate and a small block the block's outline is filled") {
+TEST_CASE("between a wide plate and a small block only the block's outline is filled") {
     const Solid plate = box({0, 0, 0}, {5, 100, 100});
     const Solid block = box({8, 40, 45}, {20, 50, 55});
     const Solid bridge = box({5, 40, 45}, {8, 50, 47});

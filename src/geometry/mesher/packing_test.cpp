@@ -46,7 +46,7 @@ Solid every_kind() {
 
 }  // namespace
 
-TEST_CASE("what goes to the mesher arrives bit by bit") {
+TEST_CASE("what is sent to the mesher arrives bit for bit") {
     CHECK(bytes_after(every_kind()) == bytes_of(every_kind()));
     CHECK(bytes_of(every_kind()).size() > 500);
     CHECK(bytes_after(BodyGeometry{"tip", every_kind(), true, 0.1}) ==
@@ -59,7 +59,7 @@ TEST_CASE("what goes to the mesher arrives bit by bit") {
     CHECK(bytes_after(settings) == bytes_of(settings));
 }
 
-TEST_CASE("what comes from the mesher arrives bit by bit") {
+TEST_CASE("what the mesher sends back arrives bit for bit") {
     const TetMesh mesh{1, tetrahedron().points, {0, 1, 2, 3}, {0}, {"body"}, {"a note"}};
     CHECK(bytes_after(mesh) == bytes_of(mesh));
     const StepContent content{{"lid"}, {tetrahedron()}};
@@ -70,7 +70,7 @@ TEST_CASE("what comes from the mesher arrives bit by bit") {
     CHECK(bytes_after(notches) == bytes_of(notches));
 }
 
-TEST_CASE("bytes that end early, claim too much or point nowhere are refused") {
+TEST_CASE("bytes that end early, have wrong counts or wrong indices are refused") {
     const auto readable = [](const std::string& bytes) {
         Unpacker in(bytes);
         BodyGeometry body;
@@ -90,7 +90,7 @@ TEST_CASE("bytes that end early, claim too much or point nowhere are refused") {
     CHECK_FALSE(readable(huge.take()));
 }
 
-TEST_CASE("solids nest to a limit") {
+TEST_CASE("solids nested too deep are refused") {
     Solid deep = box({0, 0, 0}, {1, 1, 1});
     for (int k = 0; k < 1000; ++k) deep = solid(TranslatedSolid{deep, {1, 0, 0}});
     const std::string bytes = bytes_of(deep);

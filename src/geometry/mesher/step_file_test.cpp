@@ -69,7 +69,7 @@ TEST_CASE("solids of a STEP file: exact volumes, in the caller's unit, one or al
     CHECK(volume_of(*first) == near(2000, {.relative = 1e-9}));
 }
 
-TEST_CASE("a STEP file is joined to what it touches, and its curved faces stay curved") {
+TEST_CASE("a STEP body is joined to bodies it touches, and its curved faces stay curved") {
     const pliant::test::Folder folder("step");
     const fs::path path = written(folder);
     const Result<Solid> drawn = read_step(path, "", 1);
@@ -86,7 +86,7 @@ TEST_CASE("a STEP file is joined to what it touches, and its curved faces stay c
     CHECK(signed_volume(*surface) == near(2000 + 4.0 / 3 * std::numbers::pi * 27, {.relative = 1e-3}));
 }
 
-TEST_CASE("a STEP file that is cut off, of another kind, or without a solid is refused with its name") {
+TEST_CASE("a STEP file that is cut off, of another kind, or without a solid is refused by name") {
     const pliant::test::Folder folder("step");
     const fs::path path = written(folder);
     const Result<std::string> whole = read_file(path);
@@ -107,7 +107,7 @@ TEST_CASE("a STEP file that is cut off, of another kind, or without a solid is r
     (void)refused("ISO-10303-21;\n\x01\xff\nEND-ISO-10303-21;\n");
 }
 
-TEST_CASE("a STEP file of a surface alone is refused with its name, once") {
+TEST_CASE("a STEP file of a surface alone is refused once, with its name") {
     const pliant::test::Folder folder("step");
     const fs::path path = folder / "sheet.step";
     gmsh::initialize(0, nullptr, false);

@@ -40,7 +40,7 @@ double edge_near(const TetMesh& mesh, const Vec3& p, double reach) {
 
 }  // namespace
 
-TEST_CASE("walls: a plate is as thick as it is, a wedge of 50 degrees has none at its edge") {
+TEST_CASE("wall thickness: a plate has its own; a wedge of 50 degrees has none at its edge") {
     const TriMesh plate = *tessellate(box({0, 0, 0}, {20, 20, 0.8}), 0.1);
     int thin = 0;
     for (const WallSample& wall : wall_samples(plate)) {
@@ -54,7 +54,7 @@ TEST_CASE("walls: a plate is as thick as it is, a wedge of 50 degrees has none a
         CHECK(wall.thickness > 2);
 }
 
-TEST_CASE("a body has its own size, and neighbours adapt") {
+TEST_CASE("a body may have its own mesh size, and its neighbour adapts") {
     const TetMesh mesh =
         mesh_of({{"coarse", box({0, 0, 0}, {20, 10, 10})}, {"fine", box({20, 0, 0}, {30, 10, 10}), false, 1}},
                 {.size = 4, .order = 1});
@@ -63,14 +63,14 @@ TEST_CASE("a body has its own size, and neighbours adapt") {
     CHECK(volume(mesh) == near(3000, {.relative = 1e-12}));
 }
 
-TEST_CASE("near a cable edges are short") {
+TEST_CASE("the mesh is finer near a cable") {
     const TetMesh mesh = mesh_of({{"bar", box({0, 0, 0}, {40, 20, 20})}},
                                  {.size = 5, .order = 1, .size_near_cables = 1, .cables = {{{0, 3, 3}, {40, 3, 3}}}});
     CHECK(edge_near(mesh, {20, 3, 3}, 1) < 1.5);
     CHECK(edge_near(mesh, {20, 17, 17}, 6) > 2.5);
 }
 
-TEST_CASE("three elements through a wall when asked for; a note where there are fewer") {
+TEST_CASE("three elements through a wall on request; a note where a wall has fewer") {
     const std::vector<BodyGeometry> plate = {{"plate", box({0, 0, 0}, {12, 12, 1.5})}};
     const TetMesh plain = mesh_of(plate, {.size = 2, .order = 1, .judge_walls = true});
     REQUIRE(plain.notes.size() == 1);

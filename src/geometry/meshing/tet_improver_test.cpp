@@ -64,7 +64,7 @@ TetMesh shaken_block(double by) {
 
 }  // namespace
 
-TEST_CASE("slivers of a shaken block vanish, its volume and faces stay") {
+TEST_CASE("slivers of a distorted block are removed; its volume and faces stay") {
     const TetMesh shaken = shaken_block(0.3);
     REQUIRE(smallest_dihedral_deg(shaken) < 5);
     REQUIRE(smallest_dihedral_deg(shaken) > 0);
@@ -86,7 +86,7 @@ TEST_CASE("slivers of a shaken block vanish, its volume and faces stay") {
     }
 }
 
-TEST_CASE("the border between two regions stays a plane") {
+TEST_CASE("an interface between two regions stays flat") {
     TetMesh mesh = shaken_block(0.33);
     // With an interface at x = 2, whose nodes must stay there.
     for (Vec3& p : mesh.points) {
@@ -106,7 +106,7 @@ TEST_CASE("the border between two regions stays a plane") {
     CHECK(volume(mesh, 1) == near(32, {.relative = 1e-9}));
 }
 
-TEST_CASE("a flat tet on a flat face is taken away") {
+TEST_CASE("a flat tet on a flat face is removed") {
     // A tall tet over a square, its base split so that a sliver lies below one half.
     TetMesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0.8}}, {{0, 1, 2, 4}, {0, 2, 3, 4}});
     const TetMesh good = mesh;
@@ -122,7 +122,7 @@ TEST_CASE("a flat tet on a flat face is taken away") {
     CHECK(volume(mesh) == near(0.8 / 3, {.relative = 1e-6}));
 }
 
-TEST_CASE("a good mesh is not changed, and results are deterministic") {
+TEST_CASE("a good mesh is not changed, and the result is deterministic") {
     const TetMesh good = shaken_block(0);
     TetMesh mesh = good;
     improve_tets(mesh, {});

@@ -46,7 +46,7 @@ double outer_area(const TetMesh& mesh) {
 
 }  // namespace
 
-TEST_CASE("a ball in the hole that was drawn for it, other triangles on either side, is one mesh with its block") {
+TEST_CASE("a ball in a matching hole, triangulated differently, gives one mesh with its block") {
     const Solid ball = solid(SphereSolid{{10, 10, 10}, 6});
     const Solid block = without(box({0, 0, 0}, {20, 20, 20}), ball);
     const TetMesh mesh = mesh_of({{"block", fine(block, 0.03)}, {"ball", fine(ball, 0.01), false, 1.5}}, 3);
@@ -63,7 +63,7 @@ TEST_CASE("a ball in the hole that was drawn for it, other triangles on either s
     CHECK(tets(mesh) > 3 * tets(coarse));
 }
 
-TEST_CASE("where a drawn solid and a surface overlap the later one has it; what stands apart stays apart") {
+TEST_CASE("an overlap of a drawn solid and a surface goes to the later one; separate bodies stay separate") {
     const TriMesh ball = fine(solid(SphereSolid{{7, 5, 5}, 4}), 0.005);
     const double cap = pi * (12 - 1) / 3;
     const BodyGeometry drawn{"drawn", box({10, 0, 0}, {20, 10, 10})};
@@ -82,7 +82,7 @@ TEST_CASE("where a drawn solid and a surface overlap the later one has it; what 
     CHECK(outer_area(apart) == near(whole, {.relative = 0.02}));
 }
 
-TEST_CASE("a group holds all connected bodies, and nothing else") {
+TEST_CASE("a group holds all bodies that touch, and no other") {
     const TriMesh ball = fine(solid(SphereSolid{{5, 5, 14}, 4}), 0.005);  // standing on the first box
     const std::vector<BodyGeometry> bodies{{"alone", box({50, 0, 0}, {60, 10, 10})},
                                            {"foot", box({0, 0, 0}, {10, 10, 10.02})},
@@ -96,7 +96,7 @@ TEST_CASE("a group holds all connected bodies, and nothing else") {
     CHECK(touching_groups(std::span(bodies).first(3), 2)->empty());
 }
 
-TEST_CASE("a surface that encloses nothing is named") {
+TEST_CASE("a surface that encloses nothing is refused by name") {
     TriMesh sheet;
     constexpr int side = 24;
     for (int i = 0; i <= side; ++i) {

@@ -73,7 +73,7 @@ constexpr double rounding = 1e-9;
 
 }  // namespace
 
-TEST_CASE("winding grid: whole numbers") {
+TEST_CASE("winding grid: values are whole numbers for closed surfaces") {
     CHECK(largest_error(cube(), 20000) < rounding);
     CHECK(largest_error(joined(cube(), cube({5, 0, 0})), 20000) < rounding);
     CHECK(largest_error(joined(cube(), turned_inside_out(cube({2, 2, 2}, 5))), 20000) < rounding);
@@ -87,7 +87,7 @@ TEST_CASE("winding grid: whole numbers") {
     CHECK(twice.winding_number({16, 5, 5}) == 0);
 }
 
-TEST_CASE("winding grid: close to faces, edges and corners, on both sides") {
+TEST_CASE("winding grid: correct close to faces, edges and corners, on both sides") {
     const WindingGrid grid(joined(cube(), cube({20, 0, 0})));
     for (const double depth : {1e-3, 1e-6, 1e-9}) {
         for (const Vec3& out : {Vec3{1, 0, 0}, Vec3{1, 1, 0}, Vec3{1, 1, 1}, Vec3{0, 0, 1}}) {
@@ -98,7 +98,7 @@ TEST_CASE("winding grid: close to faces, edges and corners, on both sides") {
     }
 }
 
-TEST_CASE("winding grid: a surface with a border winds by halves and quarters") {
+TEST_CASE("winding grid: a surface with a border gives halves and quarters") {
     TriMesh lidless = cube();
     std::erase_if(lidless.triangles, [&](const auto& t) {
         return std::all_of(t.begin(), t.end(),
@@ -112,7 +112,7 @@ TEST_CASE("winding grid: a surface with a border winds by halves and quarters") 
     CHECK(WindingGrid(TriMesh{}).winding_number({0, 0, 0}) == 0);
 }
 
-TEST_CASE("winding grid: holes, doubled and turned triangles, and nothing but borders") {
+TEST_CASE("winding grid: holes, repeated and flipped triangles, and a surface of borders only") {
     const auto without = [](TriMesh mesh, std::size_t every) {
         std::size_t i = 0;
         std::erase_if(mesh.triangles, [&](const auto&) { return ++i % every == 0; });
@@ -135,7 +135,7 @@ TEST_CASE("winding grid: holes, doubled and turned triangles, and nothing but bo
     CHECK(largest_error(soup, 1000) < dipoles);
 }
 
-TEST_CASE("winding grid: much detail in a corner, and a surface without volume") {
+TEST_CASE("winding grid: fine detail in one corner, and a surface without volume") {
     TriMesh fine = torus(200, 100, 1);
     for (Vec3& p : fine.points) p = 1e-3 * p;
     CHECK(largest_error(joined(cube({50, 50, 50}), fine), 1000) < dipoles);

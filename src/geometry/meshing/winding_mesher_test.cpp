@@ -56,7 +56,7 @@ double meshed_volume(const TriMesh& surface, double size) {
 
 }  // namespace
 
-TEST_CASE("winding number: 1 inside, 0 outside, the solid angle of a single triangle, and twice where it overlaps") {
+TEST_CASE("winding number: 1 inside, 0 outside, 2 in an overlap, and the solid angle of one triangle") {
     const TriangleTree tree(cube());
     CHECK(tree.winding_number({5, 5, 5}) == near(1, {.relative = 1e-12}));
     CHECK(tree.winding_number({1e-3, 9, 1}) == near(1, {.relative = 1e-12}));
@@ -68,7 +68,7 @@ TEST_CASE("winding number: 1 inside, 0 outside, the solid angle of a single tria
     CHECK(TriangleTree(octant).winding_number({0, 0, 0}) == near(1.0 / 8, {.relative = 1e-12}));
 }
 
-TEST_CASE("rays meet the nearest triangle") {
+TEST_CASE("a ray hits the nearest triangle") {
     const TriangleTree tree(joined(cube(), cube({20, 0, 0})));
     const auto hit = tree.first_hit({-3, 5, 4}, {1, 0, 0}, 0);
     REQUIRE(hit);
@@ -77,7 +77,7 @@ TEST_CASE("rays meet the nearest triangle") {
     CHECK_FALSE(tree.first_hit({-3, 5, 40}, {1, 0, 0}, 0));
 }
 
-TEST_CASE("orientation: single triangles, everything, repeated and flat ones") {
+TEST_CASE("orientation: flipped triangles are turned; repeated and flat ones are removed") {
     TriMesh flipped = cube();
     std::swap(flipped.triangles[3][0], flipped.triangles[3][1]);
     flipped.triangles.push_back(flipped.triangles[5]);
@@ -94,7 +94,7 @@ TEST_CASE("orientation: single triangles, everything, repeated and flat ones") {
     CHECK(signed_volume(inwards) == near(1000, {.relative = 1e-12}));
 }
 
-TEST_CASE("holes, flipped facets, overlaps and crowded edges are meshed with their volume, sharp edges kept") {
+TEST_CASE("holes, flipped facets, overlaps and close edges are meshed with their volume and sharp edges") {
     TriMesh hole = cube();
     hole.triangles.pop_back();
     CHECK(meshed_volume(hole, 2) == near(1000, {.relative = 0.02}));
@@ -144,7 +144,7 @@ TEST_CASE("sharp edges that cross or nearly touch are left out, so that the mesh
     CHECK(clean.chains.size() == 12);
 }
 
-TEST_CASE("edges that the mesh size cannot tell apart become one, and those that part at a small angle are left out") {
+TEST_CASE("edges closer than the mesh size are merged; edges that part at a small angle are left out") {
     constexpr double size = 2;
     const TriMesh step = extruded({{0, 0}, {10, 0}, {10, 10}, {5, 10}, {5, 10.002}, {0, 10.002}}, 10);
     const SharpEdges edges = sharp_edges(LabelledSpace({step}), size, 30);
@@ -165,7 +165,7 @@ TEST_CASE("edges that the mesh size cannot tell apart become one, and those that
     CHECK(sharp_edges(LabelledSpace({roof}), size, 30).dropped == 0);
 }
 
-TEST_CASE("a size too coarse for the surface is reduced, with a note") {
+TEST_CASE("a mesh size too coarse for the surface is reduced, with a note") {
     TriMesh frame = cube({0, 0, 0}, 20);
     TriMesh room = cube({2, 2, -5}, 16);
     for (auto& t : room.triangles) std::swap(t[0], t[1]);
@@ -178,7 +178,7 @@ TEST_CASE("a size too coarse for the surface is reduced, with a note") {
     CHECK(mesh->notes.back().find("cannot follow its shape") != std::string::npos);
 }
 
-TEST_CASE("meshing from the winding number can be stopped") {
+TEST_CASE("meshing from the winding number can be cancelled") {
     class Stop : public Progress {
     public:
         [[nodiscard]] bool cancelled() const override { return ++asked_ > 1000; }

@@ -44,7 +44,7 @@ TEST_CASE("a regular tet has quality 1 and dihedral angles of acos(1/3)") {
     CHECK(report.regions.front().volume == near(8.0 / 3, {.relative = 1e-12}));
 }
 
-TEST_CASE("a corner of a cube has angles of 90 and acos(1/sqrt 3), and longest edge sqrt 2") {
+TEST_CASE("a corner of a cube has angles of 90 degrees and acos(1/sqrt 3), and a longest edge of sqrt 2") {
     const MeshReport report = report_on(one_tet({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
     CHECK(report.worst_quality == near(0.5, {.relative = 1e-12}));  // 6 sqrt 2 (1/6) / (2 sqrt 2)
     CHECK(report.min_dihedral_deg == near(54.7356, {.relative = 1e-5}));
@@ -57,7 +57,7 @@ TEST_CASE("the text names size, regions and quality; an empty mesh has a report 
     CHECK(report_on({}).tets == 0);
 }
 
-TEST_CASE("a file is described by what it holds, with what was odd about it") {
+TEST_CASE("a file is described by its content, with notes on what was wrong") {
     const TetMesh inside_out = one_tet({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}});
     const std::string tets = described(vtk_bytes(inside_out, Encoding::text));
     CHECK(tets.find("4 nodes, 1 linear tet, 1 x 1 x 1") == 0);

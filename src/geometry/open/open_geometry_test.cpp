@@ -50,7 +50,7 @@ TEST_CASE("a file is recognised by its content, not by its name") {
     CHECK(geometry_kind_of(folder.path() / "nowhere") == GeometryKind::unknown);
 }
 
-TEST_CASE("a solid's file is known by its head, and read by its reader alone") {
+TEST_CASE("a STEP file is recognised by its first bytes, and read by the STEP reader only") {
     const pliant::test::Folder folder("open_geometry");
     const auto step = write(folder, "huge.step", "ISO-10303-21;\nHEADER;\n");
     std::filesystem::resize_file(step, std::uintmax_t{5} << 30);  // a sparse file, larger than read_file() accepts
@@ -59,7 +59,7 @@ TEST_CASE("a solid's file is known by its head, and read by its reader alone") {
     CHECK(std::holds_alternative<StepPath>(*solids));
 }
 
-TEST_CASE("long comments before the first keyword hide no format") {
+TEST_CASE("long comments before the first keyword do not hide the format") {
     const pliant::test::Folder folder("open_geometry");
     std::string comments;
     while (comments.size() < 20000) comments += "# exported by a program that says much about itself\n";
@@ -68,7 +68,7 @@ TEST_CASE("long comments before the first keyword hide no format") {
     CHECK(open_geometry(obj));
 }
 
-TEST_CASE("a pipe is refused at once, and not read") {
+TEST_CASE("a pipe is refused at once, without reading it") {
     const pliant::test::Folder folder("open_geometry");
     const auto pipe = folder.path() / "pipe.stl";
     REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);

@@ -40,7 +40,7 @@ double enclosed(const TetMesh& mesh, const std::vector<Face>& faces) {
 
 }  // namespace
 
-TEST_CASE("the room around the point is found, through every body that walls it") {
+TEST_CASE("the cavity around a point is found, with walls of several bodies") {
     const TetMesh mesh = house(false);
     const auto big = cavity_faces(mesh, {2, 5, 5});
     REQUIRE_MESSAGE(big, (big ? "" : big.error().message));
@@ -50,7 +50,7 @@ TEST_CASE("the room around the point is found, through every body that walls it"
     CHECK(enclosed(mesh, *small) == near(2 * 36, {.relative = 1e-12}));
 }
 
-TEST_CASE("points in the material, outside, and in an open room are refused") {
+TEST_CASE("a point in material, outside, or in an open space is refused") {
     CHECK(cavity_faces(house(false), {0.5, 5, 5}).error().message.find("in the material") != std::string::npos);
     CHECK(cavity_faces(house(false), {50, 5, 5}).error().message.find("no closed cavity") != std::string::npos);
     const TetMesh open = house(true);

@@ -11,7 +11,7 @@ using namespace pliant;
 using namespace pliant::mesh;
 using namespace pliant::mesh::test;
 
-TEST_CASE("surfaces that cut through themselves, lie upon themselves or touch; and those that do not") {
+TEST_CASE("self-intersecting, coincident and touching surfaces are found; others are not") {
     const TriMesh one = cube({0, 0, 0}, 10);
     CHECK_FALSE(cuts_itself(one));
     CHECK_FALSE(cuts_itself(joined(one, cube({10.01, 0, 0}, 10))));
@@ -30,7 +30,7 @@ TEST_CASE("surfaces that cut through themselves, lie upon themselves or touch; a
     CHECK(cuts_itself(folded));
 }
 
-TEST_CASE("the finest detail is the smallest height over the size") {
+TEST_CASE("the finest detail is the smallest triangle height over the size of the body") {
     CHECK(finest_detail(cube({1, 2, 3}, 10)) == near(1 / std::sqrt(2.0) / std::sqrt(3.0), {.relative = 1e-12}));
     TriMesh thin{{{0, 0, 0}, {4, 0, 0}, {2, 1e-3, 3}, {2, 1e-3, 0}}, {{0, 1, 2}, {0, 1, 3}}};
     CHECK(finest_detail(thin) == near(1e-3 / 5, {.relative = 1e-3}));

@@ -24,7 +24,7 @@ const TriMesh core = cube({4, 4, 4}, 2);
 
 }  // namespace
 
-TEST_CASE("nesting: whichever way the shells look, depth decides") {
+TEST_CASE("nesting: the depth of a shell decides its orientation, whichever way its faces look") {
     for (unsigned way = 0; way < 8; ++way) {
         CAPTURE(way);
         TriMesh mesh;
@@ -41,7 +41,7 @@ TEST_CASE("nesting: whichever way the shells look, depth decides") {
     }
 }
 
-TEST_CASE("nesting: solids beside, in and across each other stay solids") {
+TEST_CASE("nesting: solids beside, touching and overlapping each other stay solids") {
     const TriMesh beside = joined(outer, cube({20, 0, 0}, 5));
     const TriMesh overlapping = joined(outer, cube({5, 5, 5}, 10));
     const TriMesh touching = joined(outer, cube({10, 0, 0}, 5));
@@ -58,7 +58,7 @@ TEST_CASE("nesting: solids beside, in and across each other stay solids") {
     CHECK(orient_by_nesting(crossing).cavities == 0);
 }
 
-TEST_CASE("nesting: a shell pierced without a corner inside does not count as nested") {
+TEST_CASE("nesting: a shell that another pierces is not nested in it") {
     // A plate with its corners inside a larger box, pierced by a needle from the box's floor.
     TriMesh box = cube({0, 0, 0}, 10);
     const int n = static_cast<int>(box.points.size());
@@ -72,7 +72,7 @@ TEST_CASE("nesting: a shell pierced without a corner inside does not count as ne
     CHECK(orient_by_nesting(mesh).cavities == 0);
 }
 
-TEST_CASE("nesting: triangles against their neighbours agree, and open shells are left alone") {
+TEST_CASE("nesting: flipped triangles are turned to agree with their neighbours; open shells are not changed") {
     TriMesh flipped = inverted(outer);
     std::swap(flipped.triangles[3][0], flipped.triangles[3][1]);
     std::swap(flipped.triangles[8][0], flipped.triangles[8][1]);
@@ -90,7 +90,7 @@ TEST_CASE("nesting: triangles against their neighbours agree, and open shells ar
     CHECK(orient_by_nesting(empty).inside_out == 0);
 }
 
-TEST_CASE("nesting: a Moebius band has no inside to look for") {
+TEST_CASE("nesting: a Moebius band is not changed") {
     TriMesh band;
     constexpr int steps = 12;
     for (int i = 0; i < steps; ++i) {

@@ -28,7 +28,7 @@ std::string problem(const TriMesh& mesh) {
 
 }  // namespace
 
-TEST_CASE("the winding number is 1 inside, 0 outside, -1 in a cavity of its own") {
+TEST_CASE("the winding number is 1 inside, 0 outside, -1 in a lone cavity") {
     TriMesh mesh;
     add(mesh, {0, 0, 0}, 6);
     CHECK(winding_number(mesh, {1, 1, 1}) == near(1, {.relative = 1e-12}));
@@ -38,7 +38,7 @@ TEST_CASE("the winding number is 1 inside, 0 outside, -1 in a cavity of its own"
     CHECK(winding_number(cavity, {1, 1, 1}) == near(-1, {.relative = 1e-12}));
 }
 
-TEST_CASE("cavities go with the shell around them, and islands in cavities are pieces of their own") {
+TEST_CASE("cavities belong to the shell around them; islands in cavities are pieces of their own") {
     TriMesh mesh;
     add(mesh, {1, 1, 1}, 20, false);  // cavity of the first piece
     add(mesh, {0, 0, 0}, 60);

@@ -47,7 +47,7 @@ TriMesh with_needles() {
 
 }  // namespace
 
-TEST_CASE("flat triangles go and the shape stays") {
+TEST_CASE("flat triangles are removed and the shape stays") {
     for (const int points : {1, 2, 7}) {
         CAPTURE(points);
         TriMesh mesh = cube({0, 0, 0}, 10);
@@ -71,7 +71,7 @@ TEST_CASE("triangles with two equal corners go") {
     CHECK(mesh.triangles.size() == 12);
 }
 
-TEST_CASE("a needle between two points close together is left and counted, and the body is meshed") {
+TEST_CASE("a needle between two close points is kept and counted, and the body is meshed") {
     TriMesh mesh = with_needles();
     REQUIRE(check_closed(mesh));
     const SliverCount count = remove_slivers(mesh);
@@ -89,7 +89,7 @@ TEST_CASE("a needle between two points close together is left and counted, and t
     CHECK(smallest_dihedral_deg(*tets) > 5);
 }
 
-TEST_CASE("a body with flat triangles is meshed anew, and a note tells") {
+TEST_CASE("a body with flat triangles is remeshed, with a note") {
     TriMesh mesh = cube({0, 0, 0}, 10);
     split_edge(mesh, 3, 1);
     Progress silent;

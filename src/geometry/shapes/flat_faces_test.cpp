@@ -76,7 +76,7 @@ using Operation = CombinedSolid::Operation;
 
 }  // namespace
 
-TEST_CASE("triangles become the faces that were drawn: holes, cavities and coordinates of 32 bits too") {
+TEST_CASE("triangles are merged into the drawn faces: also with holes, cavities and 32-bit coordinates") {
     const Solid frame = combined(Operation::subtract, {box({0, 0, 0}, {9, 8, 7}), box({2, 2, -1}, {5, 5, 8})});
     const Solid hollow = combined(Operation::subtract, {box({0, 0, 0}, {9, 8, 7}), box({2, 2, 2}, {5, 5, 5})});
     struct Row {
@@ -122,7 +122,7 @@ TEST_CASE("surfaces that touch each other or a drawn body share the nodes of the
     CHECK(shared_area(mixed, 0, 1) == near(49, {.relative = 1e-12}));
 }
 
-TEST_CASE("an overlap of surfaces belongs to the later one") {
+TEST_CASE("an overlap of surfaces goes to the later one") {
     const TriMesh plate = triangles(box({0, 0, 0}, {20, 20, 5}));
     const TriMesh pin = rounded(triangles(askew(box({0, 0, 0}, {4, 4, 10}))));
     const TetMesh mesh = mesh_of({{"pin", pin}, {"plate", plate}}, 3);
@@ -131,7 +131,7 @@ TEST_CASE("an overlap of surfaces belongs to the later one") {
     CHECK(mesh.notes[0].find("overlap") != std::string::npos);
 }
 
-TEST_CASE("a prism of many corners is round, one of few is not") {
+TEST_CASE("a prism of 48 corners counts as round, one of 12 does not") {
     for (const int corners : {12, 48}) {
         TriMesh prism{{{0, 0, 0}, {0, 0, 10}}, {}};
         for (int i = 0; i < corners; ++i) {
@@ -148,7 +148,7 @@ TEST_CASE("a prism of many corners is round, one of few is not") {
     }
 }
 
-TEST_CASE("a cylinder of chords is no polyhedron; with a plate it becomes one mesh, and what they share is told") {
+TEST_CASE("a faceted cylinder is not a polyhedron; with a plate it gives one mesh and a note on the overlap") {
     const TriMesh plate = triangles(box({0, 0, 0}, {20, 20, 5}));
     const TriMesh pin = triangles(solid(CylinderSolid{{10, 10, 2}, {10, 10, 15}, 3}), 0.3);
     CHECK_FALSE(polyhedron(pin));

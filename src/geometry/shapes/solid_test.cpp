@@ -31,7 +31,7 @@ bool inside(const std::string& text, const Vec3& p, const std::string& shapes = 
 
 }  // namespace
 
-TEST_CASE("membership of every shape") {
+TEST_CASE("every shape tells whether a point is inside") {
     CHECK(inside("{ box = [[0,0,0],[1,2,3]] }", {0.5, 1.9, 2.9}));
     CHECK_FALSE(inside("{ box = [[0,0,0],[1,2,3]] }", {0.5, 2.1, 2.9}));
     CHECK(inside("{ sphere = { center = [1,1,1], radius = 2 } }", {1, 1, 2.9}));
@@ -52,7 +52,7 @@ TEST_CASE("membership of every shape") {
     CHECK(inside("{ use = \"cube\" }", {0.5, 0.5, 0.5}, "[shape.cube]\nbox = [[0,0,0],[1,1,1]]\n"));
 }
 
-TEST_CASE("bounds hold the solid") {
+TEST_CASE("bounds contain the solid") {
     Solid solid;
     REQUIRE(read("{ repeat = 3, step = [5,0,0], of = { rotate = 90, axis = [0,0,1], of = { cylinder = { from = "
                  "[0,0,0], to = [3,0,0], radius = 1 } } } }",
@@ -64,7 +64,7 @@ TEST_CASE("bounds hold the solid") {
     CHECK(box.high.y >= 3);
 }
 
-TEST_CASE("a shape that uses itself, or that doubles at every level, ends in a message") {
+TEST_CASE("a shape that uses itself, or doubles at every level, is refused") {
     Solid solid;
     CHECK(
         read("{ use = \"a\" }", solid, "[shape.a]\nunion = [{ use = \"a\" }, { use = \"a\" }]\n").find("uses itself") !=
@@ -78,7 +78,7 @@ TEST_CASE("a shape that uses itself, or that doubles at every level, ends in a m
     CHECK(read("{ use = \"s15\" }", solid, shapes).find("too many shapes") != std::string::npos);
 }
 
-TEST_CASE("a shape that makes no sense is a problem with its line and key") {
+TEST_CASE("an invalid shape is reported with line and key") {
     struct Row {
         const char *text, *problem;
     };
@@ -126,14 +126,14 @@ TEST_CASE("a name that is missing suggests the nearest") {
           std::string::npos);
 }
 
-TEST_CASE("outlines that only look odd are fine") {
+TEST_CASE("unusual but valid outlines are read") {
     Solid solid;
     CHECK(read("{ prism = [[0,0],[1,0],[2,0],[2,1],[0,1]], from = 0, to = 1 }", solid).empty());  // corner on an edge
     CHECK(read("{ prism = [[0,0],[0,1],[1,1],[1,0]], from = 0, to = 1 }", solid).empty());        // clockwise
     CHECK(read("{ prism = [[0,0],[4,0],[4,4],[2,1],[0,4]], from = 0, to = 1 }", solid).empty());  // not convex
 }
 
-TEST_CASE("copies of copies of copies are counted before they are made") {
+TEST_CASE("copies of copies of copies are refused before they are made, if there are too many") {
     Solid solid;
     const std::string thousand = "{ repeat = 1000, step = [2,0,0], of = ";
     CHECK(read(thousand + "{ box = [[0,0,0],[1,1,1]] } }", solid).empty());

@@ -27,7 +27,7 @@ int count_at(const Solid& of, const Vec3& p) {
 
 }  // namespace
 
-TEST_CASE("a box has six faces, of which edges and corners have two and three") {
+TEST_CASE("a box has six faces; two meet at an edge, three at a corner") {
     const Solid box = solid(BoxSolid{{0, 0, 0}, {4, 3, 2}});
     CHECK(surface_pieces(box).size() == 6);
     CHECK(count_at(box, {1, 1, 2}) == 1);
@@ -38,7 +38,7 @@ TEST_CASE("a box has six faces, of which edges and corners have two and three") 
     for (const SurfacePiece& piece : surface_pieces(box)) CHECK(norm(piece.direction) == near(1, {.relative = 1e-14}));
 }
 
-TEST_CASE("round surfaces have distance and normal of their own, and ends") {
+TEST_CASE("round surfaces know their distance and normal, and end at their caps") {
     const Solid can = solid(CylinderSolid{{0, 0, 0}, {0, 0, 5}, 2});
     CHECK(count_at(can, {2, 0, 1}) == 1);
     CHECK(count_at(can, {0, 2, 5}) == 2);
@@ -54,7 +54,7 @@ TEST_CASE("round surfaces have distance and normal of their own, and ends") {
     CHECK(norm(surface_pieces(ball)[0].normal({1, 9, 3}) - Vec3{0, 1, 0}) < 1e-14);
 }
 
-TEST_CASE("a prism that is not convex ends where its outline does") {
+TEST_CASE("faces of a non-convex prism end at its outline") {
     const Solid ell = solid(PrismSolid{{{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 3}, {0, 3}}, {0, 2, 1}, 0, 2});
     CHECK(surface_pieces(ell).size() == 8);
     CHECK(count_at(ell, {0.5, 0, 2}) == 1);

@@ -77,7 +77,7 @@ TEST_CASE("units, transforms and components place a body; a mirrored one keeps i
     CHECK(norm(file.bodies[0].mesh_mm.points[0] - Vec3{0, 100, 30}) < 1e-9);
 }
 
-TEST_CASE("shells of one property are bodies, a shell of several is one body with a warning") {
+TEST_CASE("shells of one property are separate bodies; a shell of several properties is one, with a warning") {
     const ThreeMf file = read(model(materials + object(7, "pid=\"1\" pindex=\"0\" name=\"pair\"", "pid=\"2\" p1=\"0\""),
                                     "<item objectid=\"7\"/>"));
     REQUIRE(file.bodies.size() == 2);
@@ -96,7 +96,7 @@ TEST_CASE("shells of one property are bodies, a shell of several is one body wit
           "\"soft\"");
 }
 
-TEST_CASE("a slice stack defines the body") {
+TEST_CASE("a body may be given by a slice stack") {
     const std::string stack =
         "<s:slicestack id=\"3\" zbottom=\"1\"><s:slice ztop=\"2\"><s:vertices><s:vertex x=\"0\" y=\"0\"/><s:vertex "
         "x=\"1\" "
@@ -165,7 +165,7 @@ TEST_CASE("violations that affect no body are warnings with their section") {
     CHECK(warnings(crowd, plain, item).size() == 50);
 }
 
-TEST_CASE("a relationship to a missing part is a warning where no body needs it") {
+TEST_CASE("a missing related part is a warning where no body needs it") {
     const pliant::test::Folder folder("3mf");
     const auto relationship = [](const std::string& id, const std::string& target, const std::string& type) {
         return fmt::format("<Relationship Id=\"{}\" Target=\"{}\" Type=\"http://schemas.{}\"/>", id, target, type);
@@ -233,7 +233,7 @@ TEST_CASE("errors name the line, what is wrong and what would be right") {
     CHECK(refused(vertex).find("there is no vertex 4, only 4") != std::string::npos);
 }
 
-TEST_CASE("objects nested to multiply without end are refused soon") {
+TEST_CASE("objects nested so that copies multiply without end are refused soon") {
     std::string resources = object(1, "");
     for (int id = 2; id < 60; ++id)
         resources += fmt::format(

@@ -60,7 +60,7 @@ double stack_volume(const Body& body) {
 
 }  // namespace
 
-TEST_CASE("synthetic: bodies, materials, volumes") {
+TEST_CASE("synthetic files have their bodies, materials and volumes") {
     struct Expected {
         const char* file;
         std::size_t bodies, materials;
@@ -85,7 +85,7 @@ TEST_CASE("synthetic: bodies, materials, volumes") {
     }
 }
 
-TEST_CASE("consortium: core, units, colours, production") {
+TEST_CASE("consortium files: core, units, colours and production have their volumes") {
     CHECK(volume(read("consortium/core_box.3mf")) == near(6000, {.relative = 1e-12}));
     CHECK(volume(read("consortium/core_sphere.3mf")) == near(4172.803, {.relative = 1e-6}));
     const ThreeMf cylinders = read("consortium/core_multiple_cylinders.3mf");
@@ -108,7 +108,7 @@ TEST_CASE("consortium: core, units, colours, production") {
     CHECK(volume(production) == near(112366.3, {.relative = 1e-6}));
 }
 
-TEST_CASE("consortium: slice stacks have the area times height of the bodies they were made of") {
+TEST_CASE("consortium: slice stacks have the volume of the bodies they were made from") {
     const ThreeMf box = read("consortium/slices_box_sliced.3mf"), sphere = read("consortium/slices_sphere_sliced.3mf");
     REQUIRE(box.bodies.size() == 1);
     CHECK(stack_volume(box.bodies[0]) == near(6173.54, {.relative = 1e-5}));
@@ -144,7 +144,7 @@ TEST_CASE("conformance: every file that must pass opens, every file that must fa
     CHECK(refusals == 18);
 }
 
-TEST_CASE("files of other programs") {
+TEST_CASE("files of other programs are read") {
     const ThreeMf pyramids = read("mit_models/pyramids.3mf");
     CHECK(pyramids.bodies.size() >= 9);
     const ThreeMf two = read("mit_models/cube_and_sphere_same_name.3mf");

@@ -29,7 +29,7 @@ std::vector<twin::CuredLayer> layers() {
 
 }  // namespace
 
-TEST_CASE("a cured block has layers from below, rows from the least y, and the resin that a voxel has most of") {
+TEST_CASE("a cured block has layers from below, rows from the lowest y, and each voxel's main resin") {
     const CuredBlock block = library::cured_block(layers(), printer());
     CHECK(block.size == std::array<std::size_t, 3>{5, 3, 2});  // columns 5 to 9, rows 3 to 5
     CHECK(block.resins == std::vector<std::string>{"firm", "soft"});
@@ -49,7 +49,7 @@ TEST_CASE("a cured block has layers from below, rows from the least y, and the r
     CHECK(at(1, 1, 4) == std::array{1, 255});
 }
 
-TEST_CASE("a mirrored projector shows the same part") {
+TEST_CASE("a mirrored projector gives the same cured block") {
     machine::Printer mirrored = printer();
     mirrored.projector.mirror_x = mirrored.projector.mirror_y = true;
     const CuredBlock plain = library::cured_block(layers(), printer()),
@@ -60,7 +60,7 @@ TEST_CASE("a mirrored projector shows the same part") {
         for (std::size_t x = 0; x < 5; ++x) CHECK(turned.resin[y * 5 + x] == plain.resin[(2 - y) * 5 + 4 - x]);
 }
 
-TEST_CASE("where nothing has cured there is no block") {
+TEST_CASE("without cured resin the block is empty") {
     const CuredBlock block = library::cured_block({}, printer());
     CHECK(block.resin.empty());
     CHECK(block.size == std::array<std::size_t, 3>{0, 0, 0});

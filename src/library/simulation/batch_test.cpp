@@ -26,7 +26,7 @@ std::vector<Inputs> pulled(const std::vector<State>& states, double shortening_m
 
 }  // namespace
 
-TEST_CASE("a batch has the bits of its robots one after the other, on any number of threads") {
+TEST_CASE("a batch gives the bits of its robots solved one after another, on any number of threads") {
     const Model one(bar()), other(bar("program.gravity = [0, 0, -9.81]\n"));
     const std::vector<Model> models = {one, other, one, one, other};
     std::vector<std::vector<State>> ends;
@@ -51,7 +51,7 @@ TEST_CASE("a batch has the bits of its robots one after the other, on any number
     }
 }
 
-TEST_CASE("a batch names the robot that cannot be stepped, and leaves all states") {
+TEST_CASE("a batch names the robot that cannot be stepped, and changes no state") {
     const Model model(bar());
     Batch batch({model, model, model}, {}, 2);
     std::vector<State> states = batch.rest();
@@ -67,7 +67,7 @@ TEST_CASE("a batch names the robot that cannot be stepped, and leaves all states
     CHECK_THROWS_WITH_AS((void)batch.stepper(3), "there is no robot 3; there are 3", Failure);
 }
 
-TEST_CASE("a batch is asked to end on the thread that calls, and ends") {
+TEST_CASE("a batch calls its watch on the calling thread only, and can be cancelled") {
     const Model model(bar());
     Batch batch({model, model, model, model}, {}, 3);
     std::vector<State> states = batch.rest();
@@ -91,7 +91,7 @@ TEST_CASE("a batch is asked to end on the thread that calls, and ends") {
                     std::runtime_error);
 }
 
-TEST_CASE("work on each core tells what was thrown for the lowest number") {
+TEST_CASE("work on each core passes on the exception of the lowest index") {
     std::atomic<int> done = 0;
     on_each_core(
         100, [&](std::size_t) { ++done; }, 3);

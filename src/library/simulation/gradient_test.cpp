@@ -42,7 +42,7 @@ double value_with(const std::string& change) {
 
 }  // namespace
 
-TEST_CASE("the gradient of a program is that of programs with a little of everything changed") {
+TEST_CASE("the gradient of a program agrees with finite differences") {
     const ProgramGradient of = gradient(Model(bar(short_program)), at_end(), {.rest_positions = true, .tets = true});
     REQUIRE(of.values.size() == 4);
     CHECK(of.value == near(value_with(""), {.relative = 1e-12}));
@@ -65,7 +65,7 @@ TEST_CASE("the gradient of a program is that of programs with a little of everyt
     CHECK(of.by_rest_positions.size() == Model(bar(short_program)).node_count());
 }
 
-TEST_CASE("a measure at a state has the value that is observed and the gradient of its own") {
+TEST_CASE("a measure at a state has the observed value, and a gradient that agrees with finite differences") {
     const Model model(bar(short_program));
     Stepper stepper(model, {.tolerance = 1e-11});
     State state = stepper.rest();
@@ -123,7 +123,7 @@ Model guided(const Places& at) {
 
 }  // namespace
 
-TEST_CASE("guide points of cables and springs have the derivatives that programs with one of them moved show") {
+TEST_CASE("derivatives by guide points of cables and springs agree with finite differences") {
     Objective objective = at_end();
     objective.measures.push_back({Measure::Of::spring_force, "free", {}});
     objective.measures.push_back({Measure::Of::length, "flexor", {}});
@@ -154,7 +154,7 @@ TEST_CASE("guide points of cables and springs have the derivatives that programs
     CHECK(gradient(guided(guide_places), objective).by_guide_points.empty());
 }
 
-TEST_CASE("at a state, too, with lengths as they are in m or as a share of those at rest") {
+TEST_CASE("guide points at a state: cable length held in m, or as a share of its rest length") {
     const auto state_of = [](const Model& model, double length) {
         Stepper stepper(model, {.tolerance = 1e-11});
         State state = stepper.rest();
@@ -184,7 +184,7 @@ TEST_CASE("at a state, too, with lengths as they are in m or as a share of those
     }
 }
 
-TEST_CASE("what an objective throws is passed on, and slopes that do not fit are refused") {
+TEST_CASE("an exception of the objective is passed on, and gradients of the wrong size are refused") {
     const Model model(bar(short_program));
     Objective objective = at_end();
     objective.judge = [](int, std::span<const double>) -> Judgement { throw std::out_of_range("mine"); };
@@ -215,7 +215,7 @@ const char* const drawn = R"(
 
 }  // namespace
 
-TEST_CASE("numbers of the drawing have derivatives, whatever follows from them") {
+TEST_CASE("parameters of the drawing have derivatives through everything that follows from them") {
     const std::string text = drawn;
     const auto with = [&](const std::string& name, double value) {
         return Model(Robot::parse(text, {}, {"parameters." + name + "=" + std::to_string(value)}));
@@ -237,7 +237,7 @@ TEST_CASE("numbers of the drawing have derivatives, whatever follows from them")
                          "the robot file has no [parameters] that are numbers", Failure);
 }
 
-TEST_CASE("what the height of a bar does to its cable is what bars of other heights show") {
+TEST_CASE("the derivative of the tension by a bar's height agrees with bars of other heights") {
     Objective tension;
     tension.measures = {{Measure::Of::tension, "flexor", {}}};
     tension.judge = [](int step, std::span<const double> at) { return step < 4 ? Judgement{} : Judgement{at[0], {1}}; };

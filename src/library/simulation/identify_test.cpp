@@ -33,7 +33,7 @@ Measurements measured() {
 
 }  // namespace
 
-TEST_CASE("a modulus is found again from what a robot with it shows") {
+TEST_CASE("a modulus is identified from the simulated motion of a robot") {
     const Robot other = Robot::parse(test::bar_text(program), {}, {"material.soft.youngs_modulus=0.7MPa"});
     const Identification found = identify(other, {"material.soft.youngs_modulus"}, measured(), JudgeOn::every_second);
     CHECK(found.converged());
@@ -58,7 +58,7 @@ TEST_CASE("a modulus is found again from what a robot with it shows") {
     CHECK(Robot::load(folder / "out/identified.toml").steps() == 4);
 }
 
-TEST_CASE("a robot file on top of another one is written whole with what was found") {
+TEST_CASE("a robot file that builds on another one is written whole, with the identified value") {
     const test::Folder folder;
     test::write(folder / "bar.toml", test::bar_text(program));
     test::write(folder / "again.toml",
@@ -71,7 +71,7 @@ TEST_CASE("a robot file on top of another one is written whole with what was fou
     CHECK(Robot::load(folder / "out/identified.toml").name() == "bar");
 }
 
-TEST_CASE("what cannot be found is refused in one line") {
+TEST_CASE("identification refuses an unknown key and unusable measurements") {
     CHECK_THROWS_AS((void)identify(bar(program), {"material.soft.youngs_module"}, measured()), Failure);
     CHECK_THROWS_AS((void)identify(bar(program), {"material.soft.youngs_modulus"}, {"step,nothing\n1,2\n"}), Failure);
     CHECK_THROWS_AS((void)Measurements::load("/nowhere.csv"), Failure);

@@ -29,7 +29,7 @@ const char* const too_high = "plane = { point = [0, 0, 80], normal = [0, 0, 1] }
 
 }  // namespace
 
-TEST_CASE("a goal is met, and a step to the inputs that were found leads there") {
+TEST_CASE("a goal is reached, and a step with the inputs that were found leads there") {
     const Model model(with_goal(reachable));
     const InverseResult result = inverse(model);
     REQUIRE(result.reached());
@@ -58,7 +58,7 @@ TEST_CASE("a goal is met, and a step to the inputs that were found leads there")
     CHECK_THROWS_WITH_AS((void)result.waypoint(1), "there is no waypoint 1; there are 1", Failure);
 }
 
-TEST_CASE("what cannot be reached ends as near as it gets and says what stops it") {
+TEST_CASE("an unreachable goal ends at the nearest point and names the limit") {
     const InverseResult result = inverse(Model(with_goal(too_high)));
     CHECK_FALSE(result.reached());
     REQUIRE(result.waypoint_count() == 1);
@@ -71,14 +71,14 @@ TEST_CASE("what cannot be reached ends as near as it gets and says what stops it
     CHECK(result.json().find("\"reached\": false") != std::string::npos);
 }
 
-TEST_CASE("robots that cannot be asked for a motion are refused in one line") {
+TEST_CASE("a robot without a goal, a negative number of starts and a cancelled search throw") {
     CHECK_THROWS_AS((void)inverse(Model(bar())), Failure);
     CHECK_THROWS_AS((void)inverse(Model(with_goal(reachable)), {.starts = -1}), Failure);
     const Model model(with_goal(reachable));
     CHECK_THROWS_AS((void)inverse(model, {}, [](std::string_view, double) { return false; }), Failure);
 }
 
-TEST_CASE("the folder of a robot that was given as text holds what its program stands on") {
+TEST_CASE("the results of a robot given as text include its robot file, and the program runs again") {
     const test::Folder folder;
     const InverseResult result = inverse(Model(with_goal(reachable)));
     CHECK(result.write(folder / "out").empty());
@@ -91,7 +91,7 @@ TEST_CASE("the folder of a robot that was given as text holds what its program s
     CHECK_FALSE(fs::exists(folder / "none"));
 }
 
-TEST_CASE("a workspace that was cancelled goes on from its checkpoint to the same samples") {
+TEST_CASE("a cancelled workspace search resumes from its checkpoint to the same samples") {
     const test::Folder folder;
     const Model model(with_goal(reachable));
     const WorkspaceOptions small{.side = 4, .between = 0};
@@ -118,7 +118,7 @@ TEST_CASE("a workspace that was cancelled goes on from its checkpoint to the sam
     CHECK_THROWS_AS((void)whole.sheets(1), Failure);
 }
 
-TEST_CASE("a checkpoint never takes the place of a foreign folder") {
+TEST_CASE("a checkpoint does not overwrite a folder with other files") {
     const test::Folder folder;
     fs::create_directories(folder / "kept");
     REQUIRE(write_file(folder / "kept/mine", "mine"));

@@ -50,7 +50,7 @@ Robot soft_bar(const std::string& modulus) {
 
 }  // namespace
 
-TEST_CASE("products, solutions and their transposes fit together") {
+TEST_CASE("products and solutions agree with their transposes and with each other") {
     const Pulled bent{bar()};
     Linearisation at(bent.state);
     std::vector<double> v(at.size()), w(at.size());
@@ -71,7 +71,7 @@ TEST_CASE("products, solutions and their transposes fit together") {
                          Failure);
 }
 
-TEST_CASE("a gradient tells what a cable, a modulus and the rest shape do to a tip") {
+TEST_CASE("the gradient of a tip by cable length, modulus and rest shape agrees with finite differences") {
     const Pulled bent{bar()};
     Linearisation at(bent.state);
     const Linearisation::Gradient gradient = at.gradient(at.marker_coordinate(0, {0, 0, 1}));
@@ -98,7 +98,7 @@ TEST_CASE("a gradient tells what a cable, a modulus and the rest shape do to a t
     CHECK(moved == near(1, {.relative = 1e-8}));
 }
 
-TEST_CASE("what is asked wrongly is told") {
+TEST_CASE("wrong requests are refused with the reason") {
     const Pulled bent{bar()};
     Linearisation at(bent.state);
     CHECK_THROWS_WITH_AS((void)at.response_to_input(99), doctest::Contains("there is no input 99"), Failure);
@@ -108,7 +108,7 @@ TEST_CASE("what is asked wrongly is told") {
     CHECK_THROWS_WITH_AS((void)at.gradient(wrong), "by_pressures has 2 entries; it takes 0", Failure);
 }
 
-TEST_CASE("forces on the nodes that touch add up to that of the obstacle") {
+TEST_CASE("contact forces on the nodes add up to the force of the obstacle") {
     const Model model(
         bar("contact = { stiffness = \"0.2 MPa\", distance = \"0.5 mm\" }\n"
             "obstacle = [{ name = \"ceiling\", plane = { point = [60, 5, 16], normal = [0, 0, -1] } }]\n"));

@@ -26,7 +26,7 @@ Watch until(int step, const int& reached) {
 
 }  // namespace
 
-TEST_CASE("the steps of a program can be asked for when it is over") {
+TEST_CASE("the steps of a program can be read after its end") {
     const ProgramResult result = run(Model(bar(short_program)));
     CHECK(result.converged());
     CHECK(result.message().empty());
@@ -39,7 +39,7 @@ TEST_CASE("the steps of a program can be asked for when it is over") {
     CHECK_THROWS_WITH_AS((void)result.step(7), "there is no step 7; the last is 6", Failure);
 }
 
-TEST_CASE("a run that was cancelled goes on from its checkpoint to the same steps") {
+TEST_CASE("a cancelled run resumes from its checkpoint to the same steps") {
     const test::Folder folder;
     const Model model(bar(short_program));
     const ProgramResult whole = run(model);
@@ -65,7 +65,7 @@ TEST_CASE("a run that was cancelled goes on from its checkpoint to the same step
                          Failure);
 }
 
-TEST_CASE("results are written whole, without pictures where they are not wanted, or not at all") {
+TEST_CASE("results are written whole, without pictures if they are not wanted, or not at all") {
     const test::Folder folder;
     ProgramResult result = run(Model(bar(short_program)));
     CHECK(result.write(folder / "all", {.picture_size_px = {200, 120}}));

@@ -28,7 +28,7 @@ double tip_mm(const Stepper& stepper, const State& state) {
 
 }  // namespace
 
-TEST_CASE("a model tells what it is made of") {
+TEST_CASE("a model reports its nodes, tets, names and surface") {
     const Model model(bar());
     CHECK(model.order() == 1);
     CHECK(model.tets().size() == 4 * model.tet_count());
@@ -49,7 +49,7 @@ TEST_CASE("a model tells what it is made of") {
     CHECK(volume == near(6e-6, {.relative = 1e-9}));
 }
 
-TEST_CASE("coordinates are the positions without a copy, and last as long as a copy of their owner") {
+TEST_CASE("coordinates() is the positions without a copy, valid as long as any copy of the state") {
     std::optional<Model> model(bar());
     Stepper stepper(*model);
     State state = stepper.rest();
@@ -69,7 +69,7 @@ TEST_CASE("coordinates are the positions without a copy, and last as long as a c
     CHECK(at_rest[0] == copy.rest_positions()[0][0]);
 }
 
-TEST_CASE("the path of a cable is as long as the cable") {
+TEST_CASE("the path of a cable has the cable's length") {
     const Model model(bar());
     Stepper stepper(model);
     State state = stepper.rest();
@@ -84,7 +84,7 @@ TEST_CASE("the path of a cable is as long as the cable") {
     CHECK(length == near(stepper.observe(state).cables[0].length_m, {.relative = 1e-12}));
 }
 
-TEST_CASE("sensors are read in SI units, with the names of their readings") {
+TEST_CASE("sensor readings are in SI units, with their names") {
     const Model model(bar(R"(
         [[sensor]]
         name = "pull"
@@ -109,7 +109,7 @@ TEST_CASE("sensors are read in SI units, with the names of their readings") {
           near(0.05 * (1 + seen.sensors[1].readings[0].value), {.relative = 1e-9}));
 }
 
-TEST_CASE("a quantity has a unit that fits") {
+TEST_CASE("a quantity needs a unit that fits") {
     CHECK(quantity("4 mm", "m") == near(0.004, {.relative = 1e-15}));
     CHECK(quantity("20 kPa", "Pa") == near(2e4, {.relative = 1e-15}));
     CHECK(quantity("2 ml", "m^3") == near(2e-6, {.relative = 1e-15}));
@@ -118,7 +118,7 @@ TEST_CASE("a quantity has a unit that fits") {
                          "there is no unit \"J\" here; write m, s, N, Pa, m^3, kg/m^3 or N/m", Failure);
 }
 
-TEST_CASE("a mesh that a program has made takes the place of a file") {
+TEST_CASE("a mesh made by a program takes the place of a file") {
     const Robot robot = Robot::parse(R"(
         name = "block"
         length_unit = "mm"
@@ -166,7 +166,7 @@ TEST_CASE("a mesh that a program has made takes the place of a file") {
     CHECK_THROWS_WITH_AS((void)Model(bar(), cube), doctest::Contains("the bodies are drawn"), Failure);
 }
 
-TEST_CASE("steps to the program's end and the program itself come to the same state") {
+TEST_CASE("single steps to the program's end and run() reach the same state") {
     const Model model(bar());
     Stepper stepper(model, {.tolerance = 1e-8});
     State state = stepper.rest();
@@ -183,7 +183,7 @@ TEST_CASE("steps to the program's end and the program itself come to the same st
     CHECK(seen.supports.size() == 1);
 }
 
-TEST_CASE("a state is a value: copies, bytes and other steppers lead on with the same bits") {
+TEST_CASE("a state is a value: copies, bytes and other steppers continue with the same bits") {
     const Model model(bar());
     Stepper stepper(model);
     State state = stepper.rest();
@@ -208,7 +208,7 @@ TEST_CASE("a state is a value: copies, bytes and other steppers lead on with the
     CHECK(other.load(folder / "bar.state") == kept);
 }
 
-TEST_CASE("back and forth, and from length to tension and back, leads to where it began") {
+TEST_CASE("a cable pulled and released, by length or by tension, returns to the same state") {
     const Model model(bar());
     Stepper stepper(model, {.tolerance = 1e-9});
     State state = stepper.rest();
@@ -229,7 +229,7 @@ TEST_CASE("back and forth, and from length to tension and back, leads to where i
     CHECK(tip_mm(stepper, state) == near(flat, {.relative = 1e-6}));
 }
 
-TEST_CASE("in time a bar that is let go swings, and time only leads on") {
+TEST_CASE("in dynamics a released bar swings, and a step back in time is refused") {
     const Model model(bar("program = { duration = \"0.2 s\", time_step = \"10 ms\", gravity = [0, 0, -9.81] }\n"));
     Stepper stepper(model);
     State state = stepper.rest();
@@ -245,7 +245,7 @@ TEST_CASE("in time a bar that is let go swings, and time only leads on") {
     CHECK_THROWS_AS(stepper.step(state, inputs), Failure);
 }
 
-TEST_CASE("errors are thrown with their kind and place") {
+TEST_CASE("errors are thrown with their kind, line and key") {
     try {
         (void)bar("materail.soft = {}\n");
         FAIL("a misspelt key passed");
@@ -279,7 +279,7 @@ TEST_CASE("errors are thrown with their kind and place") {
     CHECK_THROWS_AS(Stepper(model, {.tolerance = 0.0}), Failure);
 }
 
-TEST_CASE("a watch ends the work, and what it throws comes through") {
+TEST_CASE("a watch can cancel the work, and its exceptions are passed on") {
     const Model model(bar());
     Stepper stepper(model);
     State state = stepper.rest();

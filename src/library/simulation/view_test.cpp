@@ -27,7 +27,7 @@ bool has(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("a viewer gets what does not move once, and a packet for each state") {
+TEST_CASE("a viewer gets the constant data once, and a packet for each state") {
     const Model model(bar());
     const View view(model);
     const std::string scene = head_of(view.scene());

@@ -23,7 +23,7 @@ TEST_CASE("a Latin hypercube has one point in each layer of each dimension") {
     CHECK(points != latin_hypercube(count, dimensions, 4));
 }
 
-TEST_CASE("rows of Saltelli's plan are A, B, and A with one number of B") {
+TEST_CASE("Saltelli's plan: row A, row B, and for each dimension A with that number of B") {
     constexpr int count = 8, dimensions = 3, rows = dimensions + 2;
     const auto points = saltelli_points(count, dimensions, 1);
     REQUIRE(points.size() == count * rows * dimensions);

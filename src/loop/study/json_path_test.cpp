@@ -35,7 +35,7 @@ std::string mistake(std::string_view path) {
 
 }  // namespace
 
-TEST_CASE("keys, places, and places from the end") {
+TEST_CASE("keys, indices, and indices from the end") {
     CHECK(number("nodes") == 12);
     CHECK(number("steps[0].cables.flexor.tension_N") == 1.5);
     CHECK(number("steps[-1].cables.flexor.tension_N") == 2.5);
@@ -43,17 +43,17 @@ TEST_CASE("keys, places, and places from the end") {
     CHECK(number("steps[1].cables[\"left one\"].tension_N") == 4);
 }
 
-TEST_CASE("a path that does not begin at the top is looked for in the last step") {
+TEST_CASE("a path that is not found at the top is looked up in the last step") {
     CHECK(number("markers.tip[2]") == 6);
     CHECK(number("cables.flexor.tension_N") == 2.5);
 }
 
-TEST_CASE("true is 1, null is no number") {
+TEST_CASE("true is 1, null is not a number") {
     CHECK(number("converged") == 1);
     CHECK(std::isnan(number("energy")));
 }
 
-TEST_CASE("a missing path is answered with what exists") {
+TEST_CASE("a missing path is reported with the keys that exist") {
     CHECK(mistake("cables.flexr.tension_N") ==
           "steps[-1].cables has no \"flexr\"; did you mean \"flexor\"?: there is flexor and left one");
     CHECK(mistake("steps[2].markers") == "steps has no [2]: it is a list of 2, [0] to [1]");

@@ -40,7 +40,7 @@ Collected collected() {
 
 }  // namespace
 
-TEST_CASE("results.csv has keys with units, results of rows that are done, and reasons") {
+TEST_CASE("results.csv has keys with units, results of finished rows, and reasons of failures") {
     CHECK(results_csv(three_rows(), collected()) ==
           "row,modulus (MPa),law,tension,\"tip, up\",status,reason\n"
           "0,5,yeoh,1.5,0.1,done,\n"
@@ -48,7 +48,7 @@ TEST_CASE("results.csv has keys with units, results of rows that are done, and r
           "2,20,yeoh,2.5,,done,\n");
 }
 
-TEST_CASE("the summary counts, and adds up time by machine") {
+TEST_CASE("the summary counts rows, and adds up the time of each machine") {
     const Plan plan = three_rows();
     const auto json = nlohmann::json::parse(summary_json(plan, collected(), figures_of(plan, collected()), nullptr));
     CHECK(json["rows"] == 3);
@@ -63,7 +63,7 @@ TEST_CASE("the summary counts, and adds up time by machine") {
     CHECK(json["accounts"]["rows_cpu_s"] == 2.0);
 }
 
-TEST_CASE("arrays are as numpy writes them") {
+TEST_CASE("arrays have the bytes that numpy writes") {
     // numpy.save of array([1.0, -0.5]): 128 bytes of header, then little-endian doubles.
     const std::string numbers = npy_numbers(std::vector{1.0, -0.5});
     CHECK(numbers.size() == 128 + 16);

@@ -39,7 +39,7 @@ Result<ChunkRecords> parsed(const Plan& plan, std::string_view text) {
 
 }  // namespace
 
-TEST_CASE("records are read back to the last bit") {
+TEST_CASE("records are read back bit for bit") {
     const Plan plan = ten_rows();
     RowRecord failed{5, false, true, "no convergence: \"x\"\n at step 3", {NAN, -0.0}, 1, 2};
     const TaskRecord task{"node1 job 7_3", 3, 2.5, 2.25};
@@ -57,7 +57,7 @@ TEST_CASE("records are read back to the last bit") {
     CHECK(found->doubled == 0);
 }
 
-TEST_CASE("a file that was cut off anywhere gives its whole lines and no others") {
+TEST_CASE("of a file that is cut off anywhere, the complete lines are read and nothing else") {
     const Plan plan = ten_rows();
     const std::string text = chunk_text(plan);
     for (std::size_t size = 0; size <= text.size(); ++size) {
@@ -95,7 +95,7 @@ TEST_CASE("records of another study are refused") {
     CHECK(found.error().message == "00001.rows: holds records of another study");
 }
 
-TEST_CASE("rows of other chunks and second records do not count") {
+TEST_CASE("rows of other chunks and repeated records are not counted") {
     const Plan plan = ten_rows();
     const auto found = parsed(plan, chunk_text(plan) + record_line(record(9)) + record_line(record(4)));
     REQUIRE(found);
@@ -104,7 +104,7 @@ TEST_CASE("rows of other chunks and second records do not count") {
     CHECK(found->doubled == 1);
 }
 
-TEST_CASE("a row that was begun and has no end is reported, unless it was given up properly") {
+TEST_CASE("a row that was begun and did not end is reported, unless it was given up properly") {
     const Plan plan = ten_rows();
     const auto found =
         parsed(plan, chunk_text(plan) + begun_line(5) + begun_line(5) + begun_line(7) + given_up_line(7));
@@ -112,7 +112,7 @@ TEST_CASE("a row that was begun and has no end is reported, unless it was given 
     CHECK(found->begun == std::vector<std::size_t>{5, 5});
 }
 
-TEST_CASE("a chunk has one writer at a time, and the next one goes on behind the last whole line") {
+TEST_CASE("a chunk has one writer at a time; the next one continues after the last complete line") {
     const test::Folder folder("records");
     fs::create_directory(folder / "records");
     const Plan plan = ten_rows();

@@ -85,7 +85,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("rows run in parallel, each once, many in a process") {
+TEST_CASE("rows run in parallel, each once, several in one process") {
     const test::Folder folder("study");
     const Plan plan = squares("plain", 40);
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
@@ -114,7 +114,7 @@ TEST_CASE("a row that takes too long is ended") {
     CHECK(reason_of_row_3(plan) == "took longer than 0.5 s");
 }
 
-TEST_CASE("a result that is not there stops a study at its first row, and says what is") {
+TEST_CASE("a missing result stops a study at its first row, with the nearest name") {
     const test::Folder folder("study");
     Plan plan = squares("plain");
     plan.results[0].path = "sqare";
@@ -128,7 +128,7 @@ TEST_CASE("a result that is not there stops a study at its first row, and says w
     CHECK(collected(plan, folder / "s").recorded() == 0);
 }
 
-TEST_CASE("a program that does not serve is an error, not a wait") {
+TEST_CASE("a program that cannot serve rows is an error at once") {
     const test::Folder folder("study");
     const Plan plan = squares("plain");
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
@@ -139,7 +139,7 @@ TEST_CASE("a program that does not serve is an error, not a wait") {
     CHECK(account.error().message == "/bin/false: ends before it runs a row (exit status 1)");
 }
 
-TEST_CASE("cancelled in the middle, it goes on where it was, and no processes are left") {
+TEST_CASE("a cancelled study resumes where it was, and leaves no processes") {
     const test::Folder folder("study");
     const Plan plan = squares("slow", 60);
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
@@ -159,7 +159,7 @@ TEST_CASE("cancelled in the middle, it goes on where it was, and no processes ar
     check_squares(plan, collected(plan, folder / "s"));
 }
 
-TEST_CASE("killed at any moment, again and again, no row is lost or doubled") {
+TEST_CASE("killed again and again at any time, a study loses and repeats no row") {
     const test::Folder folder("study");
     const Plan plan = squares("slow", 120);
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
@@ -183,7 +183,7 @@ TEST_CASE("killed at any moment, again and again, no row is lost or doubled") {
     check_squares(plan, collected(plan, folder / "s"));
 }
 
-TEST_CASE("several processes share the chunks of one folder") {
+TEST_CASE("several processes share the chunks of one folder; others take over those of a killed one") {
     const test::Folder folder("study");
     const Plan plan = squares("slow", 60);
     std::vector<pid_t> ranks;
@@ -208,7 +208,7 @@ TEST_CASE("several processes share the chunks of one folder") {
     check_squares(plan, collected(plan, folder / "s"));
 }
 
-TEST_CASE("a row that ends its whole task several times is kept as failed") {
+TEST_CASE("a row that ends its whole task several times is recorded as failed") {
     const test::Folder folder("study");
     const Plan plan = squares("plain");
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
@@ -226,7 +226,7 @@ TEST_CASE("a row that ends its whole task several times is kept as failed") {
     CHECK(found.rows[3]->reason == "4 tasks ended while it ran; was there too little memory or time?");
 }
 
-TEST_CASE("a folder with another study, or with something else, is left alone") {
+TEST_CASE("a folder with another study or other files is not changed") {
     const test::Folder folder("study");
     Plan plan = squares("plain");
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));

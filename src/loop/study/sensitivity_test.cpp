@@ -59,7 +59,7 @@ TEST_CASE("the Ishigami function's indices are those of its closed form") {
     }
 }
 
-TEST_CASE("intervals become narrower as the root of the number of samples, and do not lie") {
+TEST_CASE("intervals narrow with the square root of the number of samples, and hold the true value") {
     int held = 0, asked = 0;
     double width_few = 0, width_many = 0;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -75,7 +75,7 @@ TEST_CASE("intervals become narrower as the root of the number of samples, and d
     CHECK(width_few / width_many == near(4, {.relative = 0.3}));
 }
 
-TEST_CASE("a sum has first and total indices alike, by its variances") {
+TEST_CASE("for a sum, first and total indices are equal, and are the shares of its variance") {
     const auto points = saltelli_points(1024, 2, 3);
     std::vector<double> values;
     for (std::size_t i = 0; i < points.size(); i += 2) values.push_back(1000 + 3 * points[i] + points[i + 1]);
@@ -86,7 +86,7 @@ TEST_CASE("a sum has first and total indices alike, by its variances") {
     CHECK(found.keys[1].total.value == near(0.1, {.absolute = 0.005}));
 }
 
-TEST_CASE("base points with a failed row are left out; what does not vary has no indices") {
+TEST_CASE("samples with a failed row are left out; a constant result has no indices") {
     auto values = ishigami_values(512, 2);
     values[7] = std::nan("");
     values[5 * 100] = std::nan("");

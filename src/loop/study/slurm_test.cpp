@@ -4,13 +4,13 @@
 
 using namespace pliant::study;
 
-TEST_CASE("chunks as an array") {
+TEST_CASE("chunks are written as a Slurm array") {
     CHECK(array_text(std::vector<std::size_t>{0}) == "0");
     CHECK(array_text(std::vector<std::size_t>{0, 1, 2, 3}) == "0-3");
     CHECK(array_text(std::vector<std::size_t>{0, 2, 3, 7, 9, 10, 11}) == "0,2-3,7,9-11");
 }
 
-TEST_CASE("the arguments of sbatch") {
+TEST_CASE("sbatch gets the right arguments") {
     Plan plan;
     plan.fingerprint = "0123456789abcdef";
     plan.slurm = {"short", "soft", "00:10:00", "2G", 4, {"--qos=low"}};
@@ -32,7 +32,7 @@ TEST_CASE("the arguments of sbatch") {
     CHECK(words == expected);
 }
 
-TEST_CASE("a study in another folder, and another study, have jobs of another name") {
+TEST_CASE("studies in different folders, and different studies, have different job names") {
     Plan plan, other;
     plan.fingerprint = "0123456789abcdef";
     other.fingerprint = "fedcba9876543210";
@@ -41,12 +41,12 @@ TEST_CASE("a study in another folder, and another study, have jobs of another na
     CHECK(job_name(plan, "/a") != job_name(other, "/a"));
 }
 
-TEST_CASE("the script of a task takes folders with blanks and quotes") {
+TEST_CASE("the task script quotes folders with blanks and quotes") {
     CHECK(task_script("/opt/pliant", "/scratch/it's here")
               .find("exec '/opt/pliant' study '/scratch/it'\\''s here' --chunk") != std::string::npos);
 }
 
-TEST_CASE("an absent controller is waited for, a refusal is not") {
+TEST_CASE("an unreachable Slurm controller is tried again, a refusal is not") {
     CHECK(passes_later(
         "sbatch: error: Batch job submission failed: Unable to contact slurm controller (connect failure)"));
     CHECK(passes_later("sbatch: error: Batch job submission failed: Socket timed out on send/recv operation"));

@@ -6,7 +6,7 @@
 
 using namespace pliant::study;
 
-TEST_CASE("the first points of the sequence are those that are published") {
+TEST_CASE("the first Sobol points are the published ones") {
     // Bratley and Fox, and every table since: the first eight points of three dimensions.
     const std::vector<double> expected = {0,     0,     0,     0.5,   0.5,   0.5,   0.75,  0.25,
                                           0.25,  0.25,  0.75,  0.75,  0.375, 0.375, 0.625, 0.875,
@@ -36,12 +36,12 @@ TEST_CASE("the first two dimensions are a (0, 10, 2)-net: one point in every box
     }
 }
 
-TEST_CASE("seeds give other points, the same seed the same") {
+TEST_CASE("different seeds give different points, the same seed the same") {
     CHECK(sobol_points(64, 5, 3) == sobol_points(64, 5, 3));
     CHECK(sobol_points(64, 5, 3) != sobol_points(64, 5, 4));
 }
 
-TEST_CASE("a point does not depend on how many there are, or on how many dimensions") {
+TEST_CASE("a point does not depend on the number of points or dimensions") {
     const auto few = sobol_points(10, 2, 5), many = sobol_points(100, 4, 5);
     for (int i = 0; i < 10; ++i) {
         CHECK(few[2 * i] == many[4 * i]);

@@ -37,7 +37,7 @@ const std::string tension = "result.tension = \"cables.flexor.tension_N\"\n";
 
 }  // namespace
 
-TEST_CASE("a grid has every combination, the last key fastest, and says so to the command") {
+TEST_CASE("a grid has every combination, the last key fastest, and sets the keys on the command line") {
     const Plan plan = plan_of(head + "plan = \"grid\"\n" + modulus + pull + tension);
     CHECK(plan.study == "s");
     CHECK(plan.rows.size() == 8);
@@ -49,7 +49,7 @@ TEST_CASE("a grid has every combination, the last key fastest, and says so to th
                                                                "cable.flexor.target.length_ratio=0.95", "--json"});
 }
 
-TEST_CASE("options and words of the command take values too") {
+TEST_CASE("keys may also be options and words of the command") {
     const Plan plan = plan_of(
         "command = [\"slice\", \"{part}\", \"--printer\", \"tower\", \"-o\", \"{row}/job.zip\"]\nplan = \"grid\"\n"
         "key.layer = { option = \"--layer\", values = [\"50 um\", \"100 um\"] }\n"
@@ -59,7 +59,7 @@ TEST_CASE("options and words of the command take values too") {
                                                                  "/o/1/job.zip", "--layer=50 um", "--json"});
 }
 
-TEST_CASE("samples fill the ranges; a sensitivity has n (k + 2) rows") {
+TEST_CASE("samples cover the ranges; a sensitivity plan has n (k + 2) rows") {
     const std::string keys = modulus + "key.pull = { set = \"p\", range = [0.8, 0.9] }\n" + tension;
     for (const std::string design : {"sobol", "latin-hypercube", "sensitivity"}) {
         const Plan plan = plan_of(head + "plan = \"" + design + "\"\nsamples = 16\nseed = 3\n" + keys);
@@ -74,7 +74,7 @@ TEST_CASE("samples fill the ranges; a sensitivity has n (k + 2) rows") {
     }
 }
 
-TEST_CASE("a plan comes back from its JSON as it was") {
+TEST_CASE("a plan is read back from its JSON unchanged") {
     const Plan plan =
         plan_of(head + "plan = \"sensitivity\"\nsamples = 4\nrow_limit = \"10 min\"\n" + modulus + tension +
                 "[slurm]\npartition = \"short\"\ntime = \"00:10:00\"\noptions = [\"--qos=low\"]\nrows_per_task = 2\n");
@@ -89,7 +89,7 @@ TEST_CASE("a plan comes back from its JSON as it was") {
     CHECK_FALSE(parse_plan(plan_json(plan).substr(0, 300), "plan.json"));
 }
 
-TEST_CASE("chunks: hundreds of rows each, and no more than one array of a cluster") {
+TEST_CASE("rows per chunk: at most 1000 chunks for an array, hundreds of rows each in large studies") {
     CHECK(usual_rows_per_chunk(1) == 1);
     CHECK(usual_rows_per_chunk(64) == 1);
     CHECK(usual_rows_per_chunk(10000) == 157);
@@ -97,7 +97,7 @@ TEST_CASE("chunks: hundreds of rows each, and no more than one array of a cluste
     CHECK(usual_rows_per_chunk(1000000) == 1000);
 }
 
-TEST_CASE("a table of rows: columns are keys of the robot file, or of the study by name") {
+TEST_CASE("a table of rows: its columns are keys of the robot file, or keys of the study by name") {
     const test::Folder folder("study");
     const auto file = folder / "s.toml";
     const std::string text = head + "plan = \"table\"\ntable = \"designs.csv\"\n" + tension;
@@ -120,7 +120,7 @@ TEST_CASE("a table of rows: columns are keys of the robot file, or of the study 
     CHECK(word.error().message.ends_with("designs.csv:2: \"soft\" is not a number, but the column \"a\" has a unit"));
 }
 
-TEST_CASE("mistakes are one line that says where and what would be right") {
+TEST_CASE("a mistake in a study file gives one line: where, and what would be right") {
     const std::string rest = "plan = \"grid\"\n" + modulus + tension;
     CHECK(mistake("comand = [\"simulate\"]\n" + head + rest) ==
           "s.toml:1: comand: unknown key; did you mean \"command\"?");
@@ -140,7 +140,7 @@ TEST_CASE("mistakes are one line that says where and what would be right") {
               .find("a key is expected at letter 8") != std::string::npos);
 }
 
-TEST_CASE("a grid that is too big is refused before it is made") {
+TEST_CASE("a grid that is too big is refused before it is built") {
     std::string text = head + "plan = \"grid\"\n" + tension;
     for (int k = 0; k < 10; ++k)
         text += "key.k" + std::to_string(k) + " = { set = \"a\", range = [0, 1], levels = 100 }\n";
@@ -148,7 +148,7 @@ TEST_CASE("a grid that is too big is refused before it is made") {
           "s.toml:2: plan: the grid has over 1000000 rows; take fewer levels, or plan = \"sobol\" with samples");
 }
 
-TEST_CASE("another text, table, robot file or version is another study") {
+TEST_CASE("a change of text, table, robot file or version gives another fingerprint") {
     const test::Folder folder("study");
     const auto file = folder / "s.toml";
     const std::string text = head + "plan = \"grid\"\n" + modulus + tension;

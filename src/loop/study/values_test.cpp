@@ -34,7 +34,7 @@ using Texts = std::vector<std::string>;
 
 }  // namespace
 
-TEST_CASE("numbers with units") {
+TEST_CASE("numbers with units are read") {
     const auto measure = [](std::string_view text) {
         const auto found = read_measure(text);
         REQUIRE(found);
@@ -50,7 +50,7 @@ TEST_CASE("numbers with units") {
     }
 }
 
-TEST_CASE("levels go from end to end, by equal steps or equal ratios") {
+TEST_CASE("levels include both ends, with equal steps or equal ratios") {
     CHECK(levels("range = [0, 1]\nlevels = 5") == Texts{"0", "0.25", "0.5", "0.75", "1"});
     CHECK(levels("range = [\"1 MPa\", \"100 MPa\"]\nscale = \"log\"\nlevels = 3") == Texts{"1", "10", "100"});
     CHECK(levels("range = [2, 5]\nwhole = true") == Texts{"2", "3", "4", "5"});
@@ -59,7 +59,7 @@ TEST_CASE("levels go from end to end, by equal steps or equal ratios") {
     CHECK(levels("range = [0, 1]").empty());
 }
 
-TEST_CASE("listed numbers of one unit are numbers with a unit; others are words") {
+TEST_CASE("listed numbers of one unit are numeric; others are words") {
     const Read one = read("values = [\"5 MPa\", \"12 MPa\"]");
     CHECK(one.choice.unit == "MPa");
     CHECK(one.choice.numeric);
@@ -69,7 +69,7 @@ TEST_CASE("listed numbers of one unit are numbers with a unit; others are words"
     CHECK(mixed.choice.values == Texts{"5 MPa", "12 kPa", "true"});
 }
 
-TEST_CASE("all listed values and all whole numbers are equally likely") {
+TEST_CASE("listed values and whole numbers are all equally likely") {
     const Choice words = read("values = [\"a\", \"b\", \"c\"]").choice;
     CHECK(value_at(words, 0) == "a");
     CHECK(value_at(words, 0.34) == "b");
@@ -80,7 +80,7 @@ TEST_CASE("all listed values and all whole numbers are equally likely") {
     CHECK(value_at(whole, 0.999999) == "4");
 }
 
-TEST_CASE("mistakes in a range") {
+TEST_CASE("mistakes in a range are reported") {
     CHECK(read("range = [2, 1]").problems == "s.toml:2: key.range: is empty: 2 is not below 1");
     CHECK(read("range = [\"1 MPa\", \"2 kPa\"]").problems ==
           "s.toml:2: key.range: its ends have the units \"MPa\" and \"kPa\"; write both in one unit");

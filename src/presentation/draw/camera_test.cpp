@@ -32,7 +32,7 @@ Camera view_of_motion(const Vec3& motion) {
 
 }  // namespace
 
-TEST_CASE("the view looks along the axis that moves least") {
+TEST_CASE("the camera looks along the axis of least motion") {
     CHECK(view_of_motion({1, 0, 1}).forward.y > 0.8);
     CHECK(view_of_motion({0, 1, 1}).forward.x < -0.8);
     CHECK(view_of_motion({1, 1, 0}).forward.z < -0.8);
@@ -50,7 +50,7 @@ TEST_CASE("the axes of a view are orthonormal and right-handed") {
     }
 }
 
-TEST_CASE("a view may be asked for") {
+TEST_CASE("the direction of view can be given") {
     const Camera front = view_from({0, -2, 0});
     CHECK(norm(front.forward - Vec3{0, 1, 0}) < 1e-12);
     CHECK(norm(front.up - Vec3{0, 0, 1}) < 1e-12);
@@ -60,7 +60,7 @@ TEST_CASE("a view may be asked for") {
     CHECK(norm(view_from({1, -1, 1}).forward - unit(Vec3{-1, 1, -1})) < 1e-12);
 }
 
-TEST_CASE("a fitted camera holds every point and wastes nothing") {
+TEST_CASE("a fitted camera shows every point and fills the picture up to its margins") {
     const auto points = box_corners({0.1, 0.02, 0.3});
     for (const double aspect : {0.5, 1.0, 1.6, 4.0}) {
         const std::array<double, 4> margins = {0.05, 0.10, 0.15, 0.20};
@@ -93,7 +93,7 @@ TEST_CASE("projection and ray agree") {
     CHECK(depth == near(7, {.relative = 1e-12}));
 }
 
-TEST_CASE("stages show rest, the end and even steps between") {
+TEST_CASE("stages are rest, end and evenly spaced steps between") {
     const auto points = box_corners({0.1, 0.02, 0.06});
     const StageLayout layout = lay_out_stages(view_of_motion({1, 0, 1}), points, 31, 1600, 880);
     CHECK(layout.columns == 2);

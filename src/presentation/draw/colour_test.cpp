@@ -25,7 +25,7 @@ TEST_CASE("hexadecimal colours round to the nearest byte") {
     CHECK(hex({0.002, 0.0019, -3}) == "#010000");
 }
 
-TEST_CASE("the field map is evenly light and inside sRGB") {
+TEST_CASE("the field colour map has linear lightness and lies inside sRGB") {
     for (int i = 0; i <= 20; ++i) {
         const double t = i / 20.0;
         CHECK(lightness(field_colour(t)) == near(0.27 + 0.65 * t, {.relative = 0.01}));

@@ -39,7 +39,7 @@ int read_bytes(GifFileType* file, GifByteType* to, int count) {
 
 }  // namespace
 
-TEST_CASE("a film shows each frame as it was, for its time, and runs for ever") {
+TEST_CASE("a GIF shows each frame unchanged for its time, and repeats for ever") {
     const std::vector<Image> frames = {square_at(2), square_at(12), square_at(22), square_at(22)};
     const Result<std::string> gif = animated_gif(frames, 40, 900);
     REQUIRE(gif);

@@ -11,7 +11,7 @@
 using namespace pliant;
 using namespace pliant::report;
 
-TEST_CASE("a disc lies on its plane, faces along the normal and has a disc's area") {
+TEST_CASE("a disc lies on its plane, faces along its normal, and has a disc's area") {
     const Vec3 center{0.1, -0.2, 0.3}, normal = Vec3{1, 2, -2} / 3.0;
     const mesh::TriMesh mesh = disc(center, normal, 0.05);
     double area = 0;
@@ -25,7 +25,7 @@ TEST_CASE("a disc lies on its plane, faces along the normal and has a disc's are
     CHECK(area == near(std::numbers::pi * 0.05 * 0.05, {.relative = 2e-3}));
 }
 
-TEST_CASE("an obstacle must have a place at every step and points for its triangles") {
+TEST_CASE("an obstacle needs a position at every step, and a point for every triangle corner") {
     const test::Robot robot = test::bent_bar(4, 1);
     Simulation s = robot.simulation();
     s.obstacles = {{"floor", disc({}, {0, 0, 1}, 0.1), true, std::vector<Vec3>(4)}};

@@ -6,7 +6,7 @@
 
 using namespace pliant::report;
 
-TEST_CASE("ticks are round, cover the range, and are neither few nor many") {
+TEST_CASE("ticks are round numbers, cover the range, and number 4 to 11") {
     CHECK(ticks(0, 6) == std::vector<double>{0, 1, 2, 3, 4, 5, 6});
     for (const auto& [low, high] :
          {std::pair(0.013, 0.94), std::pair(-3e6, 8e7), std::pair(5.0, 5.0), std::pair(0.0, 0.0)}) {
@@ -19,7 +19,7 @@ TEST_CASE("ticks are round, cover the range, and are neither few nor many") {
     CHECK(ticks(NAN, 1).size() == 2);
 }
 
-TEST_CASE("ticks by powers of ten cover the range") {
+TEST_CASE("logarithmic ticks cover the range") {
     CHECK(log_ticks(1, 1000) == std::vector<double>{1, 10, 100, 1000});
     CHECK(log_ticks(0.02, 0.03).size() == 2);
     const auto many = log_ticks(3e-17, 4e9);
@@ -29,7 +29,7 @@ TEST_CASE("ticks by powers of ten cover the range") {
     CHECK(log_ticks(0, 1).size() == 2);
 }
 
-TEST_CASE("on axes by powers of ten what is not above zero is left out") {
+TEST_CASE("a logarithmic axis leaves out values that are not above zero") {
     Plot plot{"title", "x", "y", {{"line", {{1, 1}, {10, 1e-3}, {1000, 1e-6}}, false}}, true, true};
     const auto png = plot_png(plot);
     REQUIRE(png);
@@ -40,7 +40,7 @@ TEST_CASE("on axes by powers of ten what is not above zero is left out") {
     CHECK(*plot_png(plot) != *png);
 }
 
-TEST_CASE("a plot is a PNG of its size, and shows its lines") {
+TEST_CASE("a plot is a PNG of the given size that shows its lines") {
     const Plot plot{"title", "x", "y", {{"line", {{0, 0}, {1, 2}}, false}, {"points", {{0.5, 1.5}, {NAN, 1}}, true}}};
     const auto png = plot_png(plot);
     REQUIRE(png);

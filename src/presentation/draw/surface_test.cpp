@@ -27,7 +27,7 @@ double area(const Surface& surface, const Pose& pose, int material) {
 
 }  // namespace
 
-TEST_CASE("the skin of the bar has its areas, whatever the order of the tets") {
+TEST_CASE("the outer surface of the bar has the right area per material, whatever the order of the tets") {
     for (const int order : {1, 2}) {
         const auto robot = test::bent_bar(1, order);
         const std::vector<int> materials = {0, 1};
@@ -38,7 +38,7 @@ TEST_CASE("the skin of the bar has its areas, whatever the order of the tets") {
     }
 }
 
-TEST_CASE("a face towards a void belongs to the skin and the void has none") {
+TEST_CASE("a face next to a void belongs to the material's surface; the void has none") {
     const auto robot = test::bent_bar(1, 1);
     const std::vector<int> materials = {0, -1};
     const Surface surface = outer_surface(robot.mesh, materials);
@@ -48,7 +48,7 @@ TEST_CASE("a face towards a void belongs to the skin and the void has none") {
                       [&](int t) { return robot.mesh.region[static_cast<std::size_t>(t)] == 0; }));
 }
 
-TEST_CASE("normals of a box are those of its faces, and stay so when it is turned") {
+TEST_CASE("normals of a box are those of its faces, also after a rotation") {
     const auto robot = test::bent_bar(1, 2);
     const std::vector<int> materials = {0, 0};
     const Surface surface = outer_surface(robot.mesh, materials);
@@ -63,7 +63,7 @@ TEST_CASE("normals of a box are those of its faces, and stay so when it is turne
     CHECK(surface.vertex_node.size() == 2 * (41 * 9 + 41 * 7 + 9 * 7));
 }
 
-TEST_CASE("values of tets reach the vertices of their own material only") {
+TEST_CASE("values of tets are averaged at vertices within their own material only") {
     const auto robot = test::bent_bar(1, 1);
     const std::vector<int> materials = {0, 1};
     const Surface surface = outer_surface(robot.mesh, materials);
@@ -77,7 +77,7 @@ TEST_CASE("values of tets reach the vertices of their own material only") {
     }
 }
 
-TEST_CASE("a tube is closed and as thick as asked") {
+TEST_CASE("a tube around a line is closed and has the given radius") {
     const std::vector<Vec3> line = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 0}};
     const Tube tube = tube_around(line, 0.1);
     mesh::TriMesh surface{tube.positions, tube.triangles};
@@ -89,7 +89,7 @@ TEST_CASE("a tube is closed and as thick as asked") {
     CHECK(mesh::signed_volume({straight.positions, straight.triangles}) == near(2 * decagon, {.relative = 1e-12}));
 }
 
-TEST_CASE("a rigid box has flat faces: its corners are split in three") {
+TEST_CASE("a rigid box has flat faces: each corner vertex is split in three") {
     mesh::TriMesh box;
     for (int i = 0; i < 8; ++i) box.points.push_back({1.0 * (i & 1), 1.0 * (i >> 1 & 1), 1.0 * (i >> 2)});
     box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},

@@ -78,7 +78,7 @@ double volume_mm3(const twin::CoarsePart& part, int material) {
 
 }  // namespace
 
-TEST_CASE("a block that is as drawn differs nowhere, and its section says so") {
+TEST_CASE("a block printed as drawn has no deviation, and its section says so") {
     const CuredBlock block = printed({0.05, 0.1}, square_job());
     CHECK_MESSAGE(block.report.passed, twin::report_text(block.report));
     CHECK(volume_mm3(block.asked, 0) == near(2.5, {.relative = 1e-12}));
@@ -93,7 +93,7 @@ TEST_CASE("a block that is as drawn differs nowhere, and its section says so") {
     CHECK_FALSE(holds(page, "First deviation"));
 }
 
-TEST_CASE("a layer without light is missing in the picture and named in words") {
+TEST_CASE("a layer without exposure is missing in the picture, and the text names it") {
     const CuredBlock block = printed({0.05}, square_job());
     CHECK_FALSE(block.report.passed);
     CHECK(volume_mm3(block.cured, 0) == near(1.25, {.relative = 1e-12}));
@@ -104,7 +104,7 @@ TEST_CASE("a layer without light is missing in the picture and named in words") 
     CHECK(holds(page, "<b>off</b>"));
 }
 
-TEST_CASE("what cured in another resin is drawn as that, not as missing") {
+TEST_CASE("material cured in the wrong resin is drawn as such, not as missing") {
     job::Manifest job = square_job();
     job.materials[0].resin = small_tower().vats[1].resin;  // the vat that printed holds another resin
     REQUIRE(job.materials[0].resin != small_tower().vats[0].resin);

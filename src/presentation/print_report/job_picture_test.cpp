@@ -49,7 +49,7 @@ cairo_status_t read(void* closure, unsigned char* data, unsigned int length) {
 
 }  // namespace
 
-TEST_CASE("the front shows which material is where") {
+TEST_CASE("the front view shows where each material is") {
     const auto png = picture(false);
     REQUIRE_MESSAGE(png.has_value(), (png ? "" : png.error().message));
     Source source{*png};
@@ -72,6 +72,6 @@ TEST_CASE("the front shows which material is where") {
     cairo_surface_destroy(surface);
 }
 
-TEST_CASE("a job without light has no picture") {
+TEST_CASE("a job without any exposure has no picture") {
     CHECK(picture(true).error().message == "two: no layer is lit");
 }

@@ -32,14 +32,14 @@ plan::SwapTimeline small_swap() {
 
 }  // namespace
 
-TEST_CASE("layers of one vat that follow each other are one run") {
+TEST_CASE("consecutive layers of one vat form one run") {
     const plan::Plan plan = small_plan();
     CHECK(layer_runs(plan, 0) == std::vector<LayerRun>{{0, 4}});
     CHECK(layer_runs(plan, 3) == std::vector<LayerRun>{{2, 3}, {8, 9}});
     CHECK(layer_runs(plan, 1).empty());
 }
 
-TEST_CASE("bars stand where their times and layers are") {
+TEST_CASE("the bars lie at their times and layers") {
     const Result<std::string> png = plan_picture(small_plan(), small_swap());
     REQUIRE(png);
     const Pixels p = decode(*png);

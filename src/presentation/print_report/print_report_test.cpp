@@ -41,7 +41,7 @@ void dark(Records& records, long number, double on_s, bool done, const std::stri
 
 /// Layer 0 as planned; during the exposure of layer 1 the host dies after 1 s; another gives the rest after a restart
 /// of the computer, whose clock starts anew.
-Records survived() {
+Records interrupted_and_resumed() {
     Records records;
     add(records, "begin", {{"job", "<b>two</b>"}, {"digest", "d"}, {"printer", "tower"}, {"format", "1"}});
     add(records, "session", {{"base", "1"}, {"before", "-1"}, {"boot", "a"}, {"state", "s"}});
@@ -57,8 +57,8 @@ Records survived() {
 
 }  // namespace
 
-TEST_CASE("a journal is told: light in pieces adds up, the clock counts on, faults are survived") {
-    const PrintStory story = story_of(survived()).value();
+TEST_CASE("a print's story: parts of an exposure add up, the time continues, faults were survived") {
+    const PrintStory story = story_of(interrupted_and_resumed()).value();
     CHECK(story.end == PrintEnd::complete);
     CHECK(story.sessions == 2);
     REQUIRE(story.lights.size() == 3);
@@ -75,8 +75,8 @@ TEST_CASE("a journal is told: light in pieces adds up, the clock counts on, faul
     CHECK(story.happenings[1].text == "the computer has been started anew, and the controller has lost its position");
 }
 
-TEST_CASE("a print that was broken off and left says so; one that is damaged names the record") {
-    Records records = survived();
+TEST_CASE("a print left unfinished is called interrupted; a damaged journal names the record") {
+    Records records = interrupted_and_resumed();
     records.resize(5);  // the exposure of layer 1 is on
     const PrintStory story = story_of(records).value();
     CHECK(story.end == PrintEnd::interrupted);
@@ -88,8 +88,8 @@ TEST_CASE("a print that was broken off and left says so; one that is damaged nam
     CHECK(story_of({}).value().end == PrintEnd::not_begun);
 }
 
-TEST_CASE("a pause tells what somebody was asked to do") {
-    Records records = survived();
+TEST_CASE("a pause says what somebody was asked to do") {
+    Records records = interrupted_and_resumed();
     records.resize(4);  // begin, session, light and dark of layer 0
     add(records, "pause", {{"asked", "refill the vat of slot 2 with rigid-flex"}});
     add(records, "resume", {});
@@ -102,7 +102,7 @@ TEST_CASE("a pause tells what somebody was asked to do") {
     CHECK(story.faults == 0);
 }
 
-TEST_CASE("a plot over the layers has a line for every series, and rounds its scale") {
+TEST_CASE("a plot over the layers has a line for every series, and a rounded scale") {
     const std::string svg = layer_plot("Light", "s", {{"soft <i>", "red", {{0, 0}, {9, 3}}, false}}, 10);
     CHECK(svg.find("points=\"54.0,222.0 590.0,8.0 \"") != std::string::npos);
     CHECK(svg.find(">2.5</text>") == std::string::npos);
@@ -110,7 +110,7 @@ TEST_CASE("a plot over the layers has a line for every series, and rounds its sc
     CHECK(svg.find("soft &lt;i&gt;") != std::string::npos);
 }
 
-TEST_CASE("the report of a print is one page: pictures, lights, faults, resin; another job's journal is refused") {
+TEST_CASE("a print report is one page with pictures, exposures, faults and resin; another job's journal is refused") {
     const pliant::test::Folder folder("report");
     const fs::path file = folder / "job.zip", journal = folder / "job.zip.journal";
     machine::Printer printer = plan::test::tower();
@@ -131,7 +131,8 @@ TEST_CASE("the report of a print is one page: pictures, lights, faults, resin; a
     REQUIRE(writer->finish(m));
     const auto archive = job::Archive::open(file);
     REQUIRE(archive);
-    const auto page = print_report(*archive, printer, survived(), {"virtual printer", "Marlin", 1234, 5, nullptr});
+    const auto page =
+        print_report(*archive, printer, interrupted_and_resumed(), {"virtual printer", "Marlin", 1234, 5, nullptr});
     REQUIRE_MESSAGE(page, (page ? "" : page.error().message));
     for (const std::string text :
          {"&lt;b&gt;two", "3 of 3", "2</b><span>faults", "1234", "5 resent", "survived: the light went on in layer 1",

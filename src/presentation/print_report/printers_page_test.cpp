@@ -20,7 +20,7 @@ std::vector<machine::Printer> shipped() {
 
 }  // namespace
 
-TEST_CASE("the page holds every machine and needs nothing from anywhere") {
+TEST_CASE("the page holds every printer and loads nothing from outside") {
     std::vector<machine::Printer> printers = shipped();
     printers[0].name = "<b>tower</b>";
     const auto page = report::printers_page(printers);
@@ -38,12 +38,12 @@ TEST_CASE("the page holds every machine and needs nothing from anywhere") {
     CHECK(page->find("<td>305 mm</td><td>109.2 s</td>") != std::string::npos);
 }
 
-TEST_CASE("one machine alone, even with a single vat, is a page too") {
+TEST_CASE("a page for one printer, or none, is made too") {
     CHECK(report::printers_page({shipped().back()}));
     CHECK(report::printers_page({}));
 }
 
-TEST_CASE("the figures for programs") {
+TEST_CASE("the printers' data as JSON") {
     const auto json = nlohmann::json::parse(report::printers_json(shipped()));
     CHECK(json.size() == 7);
     CHECK(json[0]["area_in2"].get<double>() == near(72, {.relative = 1e-12}));

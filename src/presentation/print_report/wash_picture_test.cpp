@@ -32,7 +32,7 @@ Reddest count(std::string_view png, bool right) {
 
 }  // namespace
 
-TEST_CASE("what stays wet is red where it is: the platform's side of a plate on a stem, not the side of the jets") {
+TEST_CASE("wet faces are drawn red: the top of a plate on a stem, not the side towards the jets") {
     const wash::PartCells part = wash::test::cells_of(
         30, 20, 1, [](double x, double y, double d) { return d > 16 || (std::abs(x) < 4 && std::abs(y) < 4); });
     const std::vector<wash::Face> faces = wash::wet_faces(part);

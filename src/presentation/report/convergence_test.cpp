@@ -43,7 +43,7 @@ std::size_t lines_in(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("solvers are compared with Newton at the last step that they share") {
+TEST_CASE("solvers are compared with Newton at the last step that all reached") {
     std::vector<SolverRun> runs = {run_of(sim::Solver::local_global, 1, 7, 0.125),
                                    run_of(sim::Solver::newton, 2, 3, 0)};
     runs[0].result.converged = false;
@@ -74,7 +74,7 @@ TEST_CASE("solvers are compared with Newton at the last step that they share") {
     CHECK(json[1]["iterations"] == 6);
 }
 
-TEST_CASE("convergence.csv has every iteration of every run, the picture those of the first step") {
+TEST_CASE("convergence.csv has every iteration of every run; the picture shows those of the first step") {
     const std::vector<SolverRun> runs = {run_of(sim::Solver::anderson, 2, 5, 0), run_of(sim::Solver::newton, 2, 3, 0)};
     const std::string csv = convergence_csv(runs);
     CHECK(lines_in(csv) == 1 + 2 * 6 + 2 * 4);
@@ -94,7 +94,7 @@ TEST_CASE("convergence.csv has every iteration of every run, the picture those o
     CHECK(*convergence_png(first) != *picture);
 }
 
-TEST_CASE("the page gets few enough points, and the last of every attempt among them") {
+TEST_CASE("the page gets a limited number of iterations, including the last of every attempt") {
     const auto few = nlohmann::json::parse(iterations_json(run_of(sim::Solver::newton, 2, 3, 0).result));
     CHECK(few["solvers"] == nlohmann::json::array({"newton"}));
     CHECK(few["rows"].size() == 8);

@@ -22,7 +22,7 @@ std::string between(const std::string& text, const std::string& begin, const std
 
 }  // namespace
 
-TEST_CASE("every step is a frame in millimetres and the collection gives its time") {
+TEST_CASE("every step is a frame in millimetres, and the collection gives its time") {
     const auto robot = report::test::bent_bar(3, 2);
     const pliant::test::Folder folder("frames");
     Progress progress;
@@ -48,7 +48,7 @@ TEST_CASE("every step is a frame in millimetres and the collection gives its tim
           std::string::npos);
 }
 
-TEST_CASE("contact pressure is written at the points where there is any") {
+TEST_CASE("contact pressure is written as point data when there is contact") {
     const auto robot = report::test::bent_bar(1, 1);
     Simulation s = robot.simulation();
     s.contact_pressure_Pa = [&](const sim::Step& step) {
@@ -62,7 +62,7 @@ TEST_CASE("contact pressure is written at the points where there is any") {
     CHECK(between(*frame, "<PointData>", "</PointData>").find("Name=\"contact_pressure_kPa\"") != std::string::npos);
 }
 
-TEST_CASE("cancelling stops the frames") {
+TEST_CASE("writing frames can be cancelled") {
     struct Stop : Progress {
         [[nodiscard]] bool cancelled() const override { return true; }
     } stop;

@@ -52,7 +52,7 @@ Glb glb_of(const test::Robot& robot, std::size_t targets) {
 
 }  // namespace
 
-TEST_CASE("views are aligned and inside the buffer, and every accessor with bounds keeps them") {
+TEST_CASE("buffer views are aligned and inside the buffer, and accessors keep their bounds") {
     const Glb glb = glb_of(test::bent_bar(10, 2), 40);
     CHECK(glb.document["buffers"][0]["byteLength"] == glb.binary.size());
     for (const json& view : glb.document["bufferViews"]) {
@@ -72,7 +72,7 @@ TEST_CASE("views are aligned and inside the buffer, and every accessor with boun
     }
 }
 
-TEST_CASE("there is a mesh per material, in its colour, and a tube for the cable") {
+TEST_CASE("there is a mesh per material in its colour, and a tube for the cable") {
     const Glb glb = glb_of(test::bent_bar(4, 1), 40);
     const json& meshes = glb.document["meshes"];
     REQUIRE(meshes.size() == 3);
@@ -93,7 +93,7 @@ TEST_CASE("there is a mesh per material, in its colour, and a tube for the cable
           near(linear.r, {.relative = 1e-5}));
 }
 
-TEST_CASE("rest plus the last target is the last step, Y up") {
+TEST_CASE("rest plus the last morph target equals the last step, with Y up") {
     const auto robot = test::bent_bar(4, 1);
     const Glb glb = glb_of(robot, 40);
     const json& primitive = glb.document["meshes"][1]["primitives"][0];
@@ -109,7 +109,7 @@ TEST_CASE("rest plus the last target is the last step, Y up") {
     CHECK(deepest == near(-0.02, {.relative = 1e-5}));                            // Pliant's y runs into the picture
 }
 
-TEST_CASE("the animation runs through one target after the other in three seconds") {
+TEST_CASE("the animation shows the morph targets in order, in three seconds") {
     const Glb glb = glb_of(test::bent_bar(30, 1), 4);
     const json& animation = glb.document["animations"][0];
     CHECK(animation["channels"].size() == 3);
@@ -142,7 +142,7 @@ TEST_CASE("an obstacle is a mesh of its own, and its node moves") {
     CHECK(std::vector<float>(places.end() - 3, places.end()) == std::vector<float>{0.004F, 0.012F, -0.008F});
 }
 
-TEST_CASE("a robot that never moved is a still") {
+TEST_CASE("a robot with a rest state only has no animation") {
     auto robot = test::bent_bar(1, 1);
     robot.result.steps.pop_back();
     const Glb glb = glb_of(robot, 40);
@@ -150,7 +150,7 @@ TEST_CASE("a robot that never moved is a still") {
     CHECK_FALSE(glb.document["meshes"][0]["primitives"][0].contains("targets"));
 }
 
-TEST_CASE("steps are thinned evenly and keep the last") {
+TEST_CASE("steps are thinned evenly, and the last one is kept") {
     CHECK(thinned_steps(11, 40) == std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
     CHECK(thinned_steps(101, 4) == std::vector<std::size_t>{25, 50, 75, 100});
     CHECK(thinned_steps(8, 3) == std::vector<std::size_t>{2, 5, 7});

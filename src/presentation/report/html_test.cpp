@@ -23,7 +23,7 @@ std::string page(const Simulation& s) {
 
 }  // namespace
 
-TEST_CASE("the page needs nothing but itself") {
+TEST_CASE("the page loads nothing from outside") {
     const auto robot = test::bent_bar(10, 1);
     const std::string html = report_html(robot.simulation(), {{"final.png", "At the end", "PNG bytes"}});
     const std::regex foreign(R"((src|href|action|data)\s*=\s*["']?\s*(https?:|//))", std::regex::icase);
@@ -38,7 +38,7 @@ TEST_CASE("the page needs nothing but itself") {
     CHECK(html.find("MIT") != std::string::npos);
 }
 
-TEST_CASE("contact has a table with the largest force of all steps") {
+TEST_CASE("contact has a table with the largest force over all steps") {
     auto robot = test::bent_bar(2, 1);
     CHECK(page(robot.simulation()).find("<h2>Contact</h2>") == std::string::npos);
     for (auto& step : robot.result.steps) step.contacts = {{"a <ball>", {0, 0, step.index == 1 ? -7.0 : -2.5}}};
@@ -48,7 +48,7 @@ TEST_CASE("contact has a table with the largest force of all steps") {
     CHECK(html.find("as near as 0.04 mm") != std::string::npos);
 }
 
-TEST_CASE("iterations are in the page where there are any") {
+TEST_CASE("iterations are in the page if there are any") {
     auto robot = test::bent_bar(2, 1);
     robot.result.iterations.clear();
     CHECK(page(robot.simulation()).find("id=\"iterations\"") == std::string::npos);
@@ -58,7 +58,7 @@ TEST_CASE("iterations are in the page where there are any") {
         std::string::npos);
 }
 
-TEST_CASE("names from a robot file are text, whatever they hold") {
+TEST_CASE("names from a robot file are escaped in the page") {
     const std::string evil = "</script><script>alert(1)</script>\"'&";
     auto robot = test::bent_bar(2, 1);
     for (auto& step : robot.result.steps) {
@@ -81,7 +81,7 @@ TEST_CASE("names from a robot file are text, whatever they hold") {
     CHECK(scripts == 3);  // the data, the iterations and the page's own code; the library was taken out
 }
 
-TEST_CASE("the data in the page are the summary") {
+TEST_CASE("the data in the page are those of summary.json") {
     const auto robot = test::bent_bar(10, 1);
     const std::string html = page(robot.simulation());
     const std::string open = "<script type=\"application/json\" id=\"data\">";
@@ -91,7 +91,7 @@ TEST_CASE("the data in the page are the summary") {
     CHECK(j["steps"][9]["cables"]["flexor"]["tension_N"] == 71);
 }
 
-TEST_CASE("tables hold volumes, masses and actuators") {
+TEST_CASE("tables show volumes, masses and actuators") {
     const auto robot = test::bent_bar(10, 1);
     const std::string html = page(robot.simulation());
     CHECK(html.find("<td>18 cm³</td><td>18.72 g</td>") != std::string::npos);
@@ -100,7 +100,7 @@ TEST_CASE("tables hold volumes, masses and actuators") {
     CHECK(html.find("1,440 linear tets") != std::string::npos);
 }
 
-TEST_CASE("escaping") {
+TEST_CASE("HTML and JSON in scripts are escaped") {
     CHECK(html_escaped("a<b>&\"'\n") == "a&lt;b&gt;&amp;&quot;&#39; ");
     CHECK(html_escaped("\xc3\xa4\xff") == "\xc3\xa4\xef\xbf\xbd");
     CHECK(script_safe_json("\"</a>&\xe2\x80\xa8\"") == "\"\\u003c/a\\u003e\\u0026\\u2028\"");

@@ -31,7 +31,7 @@ sim::identify::Identification found(const std::vector<sim::identify::Channel>& c
 
 }  // namespace
 
-TEST_CASE("few columns over time, in its order, a plot for each unit") {
+TEST_CASE("few columns are plotted over time, in their order, one plot per unit") {
     const auto plots = identified_plots(found({channel("tip_x_mm", "mm"), channel("a_tension_N", "N")}));
     REQUIRE(plots.size() == 2);
     CHECK(plots[0].file == "measured_mm.png");
@@ -49,7 +49,7 @@ TEST_CASE("few columns over time, in its order, a plot for each unit") {
     CHECK(plot_png(plot));
 }
 
-TEST_CASE("many columns over what was measured, beside the diagonal") {
+TEST_CASE("many columns are plotted simulated against measured, beside the diagonal") {
     const std::vector<sim::identify::Channel> ratios(5, channel("c_length_ratio", ""));
     const auto plots = identified_plots(found(ratios));
     REQUIRE(plots.size() == 1);

@@ -37,7 +37,7 @@ void check_problem(const std::string& text, const std::string& wanted) {
 
 }  // namespace
 
-TEST_CASE("markers.csv of a run lies on that run's own way") {
+TEST_CASE("the markers.csv of a run has no deviation from that run") {
     const test::Robot robot = test::bent_bar(4, 1);
     const auto paths = parse_measured(markers_csv(robot.result), "markers.csv", robot.result.steps.front());
     REQUIRE_MESSAGE(paths, (paths ? "" : paths.error().message));
@@ -49,7 +49,7 @@ TEST_CASE("markers.csv of a run lies on that run's own way") {
     }
 }
 
-TEST_CASE("distances are those to the way between the steps, and past its ends to them") {
+TEST_CASE("deviations are distances to the path between the steps, or to its ends") {
     const auto paths = read("tip_x_mm,tip_y_mm,tip_z_mm\n100,0,5\n102,0,15\n100,0,34\n");
     const auto list = deviations(paths, straight());
     REQUIRE(list.size() == 1);
@@ -63,7 +63,7 @@ TEST_CASE("distances are those to the way between the steps, and past its ends t
           "marker middle: 1 measured point, 1 mm from the simulated way on average, 1 mm at most");
 }
 
-TEST_CASE("a video has two coordinates, and does not see every marker in every frame") {
+TEST_CASE("measured markers may have two coordinates, and missing values") {
     const auto paths = read("time;middle_x_mm;middle_z_mm;tip_z_mm\n0;50;0;0\n1;49;;10\n2;;;20\n");
     REQUIRE(paths.size() == 2);
     CHECK(paths[0].marker == "middle");
@@ -85,7 +85,7 @@ TEST_CASE("the plot looks along the axis of least motion, with a line and dots f
     CHECK(above.y_label == "y (mm)");
 }
 
-TEST_CASE("what is wrong is said with file and line") {
+TEST_CASE("errors in a measured file name file and line") {
     check_problem("", "m.csv: is empty; the first line names the columns: tip_x_mm");
     check_problem("x,y\n1,2\n",
                   "m.csv:1: no column is named as in \"tip_x_mm\"; markers of the robot: \"tip\" and \"middle\"");

@@ -61,7 +61,7 @@ int brightness(const Image& image, std::size_t at) {
 
 }  // namespace
 
-TEST_CASE("the body is seen in its colour before a light backdrop") {
+TEST_CASE("the body is drawn in its colour on a light background") {
     const Stage stage;
     const Image image = stage.image();
     REQUIRE(image.rgb.size() == 3 * width * height);
@@ -72,14 +72,14 @@ TEST_CASE("the body is seen in its colour before a light backdrop") {
     CHECK(image.rgb[middle] > 2 * image.rgb[middle + 2]);
 }
 
-TEST_CASE("the same bytes on one thread and on many") {
+TEST_CASE("a picture has the same bytes on one thread and on many") {
     const Stage stage;
     const Image many = stage.image();
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     CHECK(stage.image().rgb == many.rgb);
 }
 
-TEST_CASE("the body shades the floor under it") {
+TEST_CASE("the body darkens the floor under it") {
     Stage stage;
     stage.scene.floor_z_m = 0;
     const Vec3 contact{0.02, -0.001, 0}, aside{0.05, -0.05, 0};
@@ -88,7 +88,7 @@ TEST_CASE("the body shades the floor under it") {
     CHECK(brightness(image, stage.pixel(contact)) < brightness(image, stage.pixel(aside)) - 20);
 }
 
-TEST_CASE("a cable shines through the body and a ghost lies over the backdrop") {
+TEST_CASE("a cable is visible through the body, and a ghost over the background") {
     Stage stage;
     stage.scene.vertex_colours.assign(stage.surface.vertex_node.size(), Colour{0.1, 0.1, 0.9});
     const Pose rest = pose(stage.surface, stage.robot.mesh.points);
@@ -106,7 +106,7 @@ TEST_CASE("a cable shines through the body and a ghost lies over the backdrop") 
     CHECK(brightness(full, on_ghost) > 3 * 120);
 }
 
-TEST_CASE("an obstacle hides the body, is grey and throws a shadow; a plane is seen from its front only") {
+TEST_CASE("an obstacle hides the body, is grey and throws a shadow; a plane is visible from its front only") {
     Stage stage;
     const Vec3 eye = stage.camera.eye, aim = stage.robot.result.steps.back().markers[1].position_m;
     const Vec3 towards = (eye - aim) / norm(eye - aim);
@@ -163,7 +163,7 @@ int count_of(const std::vector<std::uint32_t>& pixels, const Colour& colour) {
 
 }  // namespace
 
-TEST_CASE("the pictures are PNG files that hold something, each time the same") {
+TEST_CASE("the pictures are PNG files, not empty, and the same each time") {
     const auto robot = test::bent_bar(4, 1);
     const Simulation s = robot.simulation();
     const Surface surface = outer_surface(s.mesh, s.region_material);
@@ -184,8 +184,7 @@ TEST_CASE("the pictures are PNG files that hold something, each time the same") 
     }
 }
 
-TEST_CASE(
-    "elements of empty space are drawn as faces with edges, measured points as rings, and the markers have a plot") {
+TEST_CASE("elements of voids are drawn as faces with edges, measured points as rings; the markers have a plot") {
     const auto robot = test::bent_bar(4, 1);
     Simulation s = robot.simulation();
     const auto drawn = [&] {
@@ -210,7 +209,7 @@ TEST_CASE(
     CHECK(count_of(pixels_of(pictures[0].png), measured_colour) > 20);
 }
 
-TEST_CASE("elements are in every stage, where the body stands there") {
+TEST_CASE("elements of voids are drawn in every stage, at the body's position") {
     const auto robot = test::bent_bar(4, 1);
     Simulation s = robot.simulation();
     const auto stages = [&] {
@@ -239,7 +238,7 @@ TEST_CASE("elements are in every stage, where the body stands there") {
     }
 }
 
-TEST_CASE("a picture may be seen from where it is wanted") {
+TEST_CASE("the direction of view of a picture can be chosen") {
     const auto robot = test::bent_bar(4, 1);
     const Simulation s = robot.simulation();
     const Surface surface = outer_surface(s.mesh, s.region_material);
@@ -252,7 +251,7 @@ TEST_CASE("a picture may be seen from where it is wanted") {
     CHECK(above->front().png != chosen->front().png);
 }
 
-TEST_CASE("cancelling stops a picture") {
+TEST_CASE("drawing a picture can be cancelled") {
     struct Stop : Progress {
         [[nodiscard]] bool cancelled() const override { return true; }
     };
@@ -262,7 +261,7 @@ TEST_CASE("cancelling stops a picture") {
     CHECK(image.error().cause == Cause::cancelled);
 }
 
-TEST_CASE("captions and round numbers") {
+TEST_CASE("captions, and rounding up to nice numbers") {
     const auto robot = test::bent_bar(10, 1);
     CHECK(step_line(robot.simulation(), 5) == "step 5 of 10 · flexor 96.7 %, 35.5 N");
     auto rounded = test::bent_bar(10, 1);
@@ -276,7 +275,7 @@ TEST_CASE("captions and round numbers") {
     CHECK(nice_ceiling(-4) == 1);
 }
 
-TEST_CASE("text is made printable") {
+TEST_CASE("invalid UTF-8 and control characters are replaced") {
     CHECK(printable("ok \xc3\xa9\n") == "ok \xc3\xa9 ");
     CHECK(printable("\xc0\xaf") == "\xef\xbf\xbd\xef\xbf\xbd");                  // overlong
     CHECK(printable("\xed\xa0\x80") == "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd");  // a surrogate

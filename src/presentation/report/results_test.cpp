@@ -56,7 +56,7 @@ TEST_CASE("the folder holds every file that the design names") {
     }
 }
 
-TEST_CASE("none, few or all pictures; the page has those that there are") {
+TEST_CASE("no, few or all pictures are drawn, and the page shows those that exist") {
     const auto robot = report::test::bent_bar(2, 1);
     Progress progress;
     const std::vector<std::pair<PictureSet, std::vector<std::string>>> sets = {
@@ -80,7 +80,7 @@ TEST_CASE("none, few or all pictures; the page has those that there are") {
     CHECK(PictureChoice{}.size.width_px == 800);
 }
 
-TEST_CASE("a film is there where it is asked for, and is left out where drawing it is cancelled") {
+TEST_CASE("a film is written on request, and is left out if its drawing is cancelled") {
     const auto robot = report::test::bent_bar(3, 1);
     Progress progress;
     const PictureChoice choice{.set = PictureSet::few, .size = {240, 150}, .film = true};
@@ -100,7 +100,7 @@ TEST_CASE("a film is there where it is asked for, and is left out where drawing 
     CHECK(pictures_in(other.path()) == std::vector<std::string>{"final.png"});
 }
 
-TEST_CASE("summary.json tells how long files and pictures took, of the whole") {
+TEST_CASE("summary.json holds the time for files and pictures, as part of the whole") {
     const auto robot = report::test::bent_bar(2, 1);
     Simulation s = robot.simulation();
     s.timing = {1.5, 0.5, 0, 0};
@@ -119,7 +119,7 @@ TEST_CASE("summary.json tells how long files and pictures took, of the whole") {
     CHECK(timing["files_ms"].get<double>() + timing["pictures_ms"].get<double>() < whole_ms);
 }
 
-TEST_CASE("cancelled while it draws, only the pictures are missing; cancelled while it writes, it is an error") {
+TEST_CASE("cancelled while drawing, only the pictures are missing; cancelled while writing, it is an error") {
     const auto robot = report::test::bent_bar(2, 1);
     Progress progress;
     for (const char* stage : {"", "pictures"}) {
@@ -141,7 +141,7 @@ TEST_CASE("cancelled while it draws, only the pictures are missing; cancelled wh
     }
 }
 
-TEST_CASE("a rest state alone, and robots without cables or markers, are reported too") {
+TEST_CASE("a rest state alone, and a robot without cables or markers, are reported") {
     auto robot = report::test::bent_bar(1, 1);
     robot.result.steps.pop_back();
     robot.result.steps[0].cables.clear();
@@ -158,7 +158,7 @@ TEST_CASE("a rest state alone, and robots without cables or markers, are reporte
     CHECK(html->find("step 1: did not converge") != std::string::npos);
 }
 
-TEST_CASE("input that does not fit together is refused with the reason") {
+TEST_CASE("inconsistent input is refused with the reason") {
     const auto refused = [](const report::test::Robot& robot, auto change) {
         Simulation s = robot.simulation();
         change(s);

@@ -65,7 +65,7 @@ TEST_CASE("contacts are listed at every step, or at none") {
     CHECK(j["steps"][1]["smallest_distance_mm"] == near(0.02, {.relative = 1e-12}));
 }
 
-TEST_CASE("what is no number becomes null and what is no text is replaced") {
+TEST_CASE("NaN becomes null, and invalid UTF-8 is replaced") {
     auto robot = test::bent_bar(1, 1);
     robot.result.steps[1].residual = std::nan("");
     robot.result.message = "stopped \xff here";
@@ -74,7 +74,7 @@ TEST_CASE("what is no number becomes null and what is no text is replaced") {
     CHECK(j["message"] == "stopped \xef\xbf\xbd here");
 }
 
-TEST_CASE("measured markers have their distances") {
+TEST_CASE("measured markers have their deviations in the summary") {
     auto robot = test::bent_bar(2, 1);
     Simulation s = robot.simulation();
     s.measured = {{"tip", {robot.result.steps.back().markers.front().position_m + Vec3{0, 0.003, 0}}}};

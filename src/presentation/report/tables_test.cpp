@@ -23,7 +23,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("steps.csv has a row per step, with rest, in the units its header names") {
+TEST_CASE("steps.csv has a row per step, the rest state included, in the units of its header") {
     const auto robot = test::bent_bar(10, 1);
     const auto lines = lines_of(steps_csv(robot.result));
     REQUIRE(lines.size() == 12);
@@ -56,7 +56,7 @@ TEST_CASE("iterations.csv has a row per iteration") {
     CHECK(lines[2] == "1,0.05,quasi-newton,1,0.25,0,-0.75,0.5,0.875");
 }
 
-TEST_CASE("forces of obstacles and of the robot on itself have columns where anything could touch") {
+TEST_CASE("contact forces of obstacles and self-contact have columns where there is contact") {
     auto robot = test::bent_bar(2, 1);
     for (auto& step : robot.result.steps) step.contacts = {{"ball", {0.5, 0, -2.0 * step.index}}};
     robot.result.steps[2].self_contact_N = 3.5;
@@ -69,7 +69,7 @@ TEST_CASE("forces of obstacles and of the robot on itself have columns where any
     CHECK(lines[3].ends_with(",0.5,0.5,0,-4,3.5,0.02"));
 }
 
-TEST_CASE("readings of sensors have columns that name their unit, and keys in the summary") {
+TEST_CASE("sensor readings have columns with their unit, and keys in the summary") {
     auto robot = test::bent_bar(2, 1);
     for (auto& step : robot.result.steps)
         step.sensors = {
@@ -92,7 +92,7 @@ TEST_CASE("fields are quoted as RFC 4180 says, and never start a formula") {
     CHECK(csv_field("") == "");
 }
 
-TEST_CASE("decimal points do not depend on the locale") {
+TEST_CASE("the decimal point does not depend on the locale") {
     const auto robot = test::bent_bar(2, 1);
     const std::string plain = steps_csv(robot.result);
     const std::string before = std::setlocale(LC_ALL, nullptr);

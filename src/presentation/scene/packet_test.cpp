@@ -7,7 +7,7 @@
 
 using namespace pliant::view;
 
-TEST_CASE("a packet holds its head and its arrays, every one on a multiple of four bytes") {
+TEST_CASE("a packet holds its head and its arrays, each aligned to four bytes") {
     for (const char* head : {"{}", R"({"a":1})", R"({"a":12})", R"({"a":123})", R"({"a":1234})"}) {
         Packet packet;
         packet.add("positions", std::vector<float>{1.5F, -2, 3});

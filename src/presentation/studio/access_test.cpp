@@ -19,7 +19,7 @@ Credentials from(std::string_view host, std::string_view origin = "", bool webso
 
 }  // namespace
 
-TEST_CASE("the page may show pictures of one address more, and of nothing that is no address") {
+TEST_CASE("the page may load pictures from one other address; invalid addresses are refused") {
     CHECK(origin_of("http://camera:8080/stream?fps=5") == "http://camera:8080");
     CHECK(origin_of("https://192.168.0.7") == "https://192.168.0.7");
     CHECK(origin_of("http://[::1]:81/a.jpg") == "http://[::1]:81");
@@ -28,7 +28,7 @@ TEST_CASE("the page may show pictures of one address more, and of nothing that i
         CHECK(origin_of(wrong) == "");
 }
 
-TEST_CASE("loopback lets its own page in, under each of its names") {
+TEST_CASE("on loopback the studio's own page is let in, under each name of this computer") {
     const AccessRules rules{7117, ""};
     for (const char* host : {"localhost:7117", "127.0.0.1:7117", "[::1]:7117"}) {
         CHECK(check_access(rules, from(host)) == Access::granted);
@@ -37,7 +37,7 @@ TEST_CASE("loopback lets its own page in, under each of its names") {
     }
 }
 
-TEST_CASE("a name that was made to point here is refused") {
+TEST_CASE("a request with a foreign Host header is refused") {
     const AccessRules rules{7117, ""};
     for (const char* host : {"", "evil.example", "evil.example:7117", "localhost", "localhost:80", "127.0.0.1:71170",
                              "localhost:7117.evil.example"})
@@ -45,7 +45,7 @@ TEST_CASE("a name that was made to point here is refused") {
     CHECK(check_access({80, ""}, from("localhost")) == Access::granted);
 }
 
-TEST_CASE("pages of others are refused, and a WebSocket must say where it comes from") {
+TEST_CASE("requests from other sites' pages are refused, and a WebSocket needs an Origin") {
     const AccessRules rules{7117, ""};
     for (const char* origin : {"http://evil.example", "https://localhost:7117", "http://localhost:7118", "null",
                                "http://localhost:7117.evil.example", "http://127.0.0.1:7117"})
@@ -53,7 +53,7 @@ TEST_CASE("pages of others are refused, and a WebSocket must say where it comes 
     CHECK(check_access(rules, from("localhost:7117", "", true)) == Access::wrong_origin);
 }
 
-TEST_CASE("bound elsewhere the token decides, however it comes") {
+TEST_CASE("bound to another address, access needs the right token, however it is sent") {
     const AccessRules rules{7117, "abcDEF123"};
     Credentials c = from("printer.lan:7117", "http://printer.lan:7117");
     CHECK(check_access(rules, c) == Access::no_token);
@@ -76,7 +76,7 @@ TEST_CASE("bound elsewhere the token decides, however it comes") {
     CHECK(check_access(rules, c) == Access::wrong_origin);
 }
 
-TEST_CASE("keys are long and never the same") {
+TEST_CASE("page keys are long and all different") {
     std::set<std::string> keys;
     for (int i = 0; i < 50; ++i) keys.insert(random_key());
     CHECK(keys.size() == 50);

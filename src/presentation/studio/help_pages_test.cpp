@@ -31,7 +31,7 @@ struct Installation {
 
 }  // namespace
 
-TEST_CASE("the pages are found from the program's folder and served with their types") {
+TEST_CASE("the help pages are found from the program's folder, and served with their types") {
     const Installation there;
     const auto folder = find_help_pages(there.root / "bin");
     REQUIRE(!folder.empty());
@@ -46,7 +46,7 @@ TEST_CASE("the pages are found from the program's folder and served with their t
     CHECK(help_page(folder, "/help").location == "/help/");
 }
 
-TEST_CASE("nothing outside of the pages is served") {
+TEST_CASE("nothing outside the help folder is served") {
     const Installation there;
     const auto folder = find_help_pages(there.root / "bin");
     for (const char* path : {"/help/../secret.html", "/help/reference/../../secret.html", "/help//etc/passwd",
@@ -58,7 +58,7 @@ TEST_CASE("nothing outside of the pages is served") {
     CHECK(help_page(folder, std::string_view("/help/index\0.html", 17)).status == 404);
 }
 
-TEST_CASE("without pages a sentence says where they are") {
+TEST_CASE("without help pages the answer names the package to install") {
     const Response response = help_page({}, "/help/");
     CHECK(response.status == 404);
     CHECK(response.body.find("pliant-doc") != std::string::npos);

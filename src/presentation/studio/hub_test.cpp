@@ -27,7 +27,7 @@ bool says(const std::string& json, const char* part) {
 
 }  // namespace
 
-TEST_CASE("the first page steers, others ask, the helm is handed over") {
+TEST_CASE("the first page is in control; another page can ask for control, and gets it when it is given") {
     Hub hub;
     const auto a = hub.join(), b = hub.join();
     hub.hello(a, "page_aaaa");
@@ -48,7 +48,7 @@ TEST_CASE("the first page steers, others ask, the helm is handed over") {
     CHECK(hub.may_steer("page_aaaa"));
 }
 
-TEST_CASE("a lost page keeps the helm for ten seconds") {
+TEST_CASE("a page that disconnects keeps control for ten seconds") {
     Hub::Clock::time_point now{};
     Hub hub([&] { return now; });
     const auto a = hub.join(), b = hub.join();
@@ -72,7 +72,7 @@ TEST_CASE("a lost page keeps the helm for ten seconds") {
     CHECK_FALSE(hub.may_steer("page_bbbb"));
 }
 
-TEST_CASE("a slow page sees the latest frame, and every text in order") {
+TEST_CASE("a slow page gets the latest frame only, but every text in order") {
     Hub hub;
     const auto page = hub.join();
     hub.send_text("one");
@@ -88,14 +88,14 @@ TEST_CASE("a slow page sees the latest frame, and every text in order") {
     CHECK_FALSE(page->next());
 }
 
-TEST_CASE("a page that takes nothing any more is cut off") {
+TEST_CASE("a page that no longer reads is disconnected") {
     Hub hub;
     const auto page = hub.join();
     for (int i = 0; i < 2000; ++i) hub.send_text("text");
     CHECK_FALSE(page->next());
 }
 
-TEST_CASE("fields are those that somebody wants") {
+TEST_CASE("frames carry the fields that any page has asked for") {
     Hub hub;
     const auto a = hub.join(), b = hub.join();
     hub.want_fields(a, {"J"});
@@ -105,7 +105,7 @@ TEST_CASE("fields are those that somebody wants") {
     CHECK(hub.fields() == std::set<std::string>{"J"});
 }
 
-TEST_CASE("two robots have a place each for their latest frame, and neither waits for the other") {
+TEST_CASE("two robots have separate latest frames, and neither waits for the other") {
     Hub hub;
     const auto page = hub.join();
     const auto bytes = [](const char* text) { return std::make_shared<const std::string>(text); };

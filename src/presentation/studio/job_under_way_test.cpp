@@ -28,7 +28,7 @@ void add(JobUnderWay& job, int layers, int count) {
 
 }  // namespace
 
-TEST_CASE("the first layers are seen before the last one is made") {
+TEST_CASE("the first layers can be viewed before slicing ends") {
     JobUnderWay job;
     CHECK(job.json() == "null");
     CHECK(job.layers() == 0);
@@ -47,7 +47,7 @@ TEST_CASE("the first layers are seen before the last one is made") {
     CHECK_FALSE(job.image(1, 1).has_value());
 }
 
-TEST_CASE("of a large job every so many layers are kept") {
+TEST_CASE("of a large job, evenly spaced layers are kept for viewing") {
     JobUnderWay job;
     constexpr int count = 1000;
     for (int n = 1; n <= count; ++n) add(job, n, count);

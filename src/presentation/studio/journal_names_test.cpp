@@ -8,7 +8,7 @@
 using namespace pliant;
 using namespace pliant::studio;
 
-TEST_CASE("a journal names its job and its kind of machine") {
+TEST_CASE("a journal's name gives its job, and tells virtual from real machines") {
     CHECK(virtual_journal("a/finger.zip") == "a/finger.zip.virtual.journal");
     for (const char* name :
          {"a/finger.zip.journal", "a/finger.zip.virtual.journal", "a/finger.zip.2026-03-01_124503.journal",
@@ -20,7 +20,7 @@ TEST_CASE("a journal names its job and its kind of machine") {
     CHECK_FALSE(is_virtual_journal("finger.zip.2026-03-01_124503.journal"));
 }
 
-TEST_CASE("the journal of a print that is over is kept under the time of its end") {
+TEST_CASE("the journal of a finished print is kept, with the time of its end in its name") {
     const pliant::test::Folder folder;
     const std::filesystem::path journal = folder / "finger.zip.journal";
     keep_journal(journal);  // there is none

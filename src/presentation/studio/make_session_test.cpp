@@ -17,7 +17,7 @@ using studio::test::Json;
 using studio::test::slice_order;
 namespace fs = std::filesystem;
 
-TEST_CASE("a robot becomes a job with the colours of its materials, in a file that goes with the session") {
+TEST_CASE("a robot becomes a job with its materials' colours; its file is deleted with the session") {
     Events events;
     fs::path scratch;
     {
@@ -39,7 +39,7 @@ TEST_CASE("a robot becomes a job with the colours of its materials, in a file th
     CHECK_FALSE(fs::exists(scratch));
 }
 
-TEST_CASE("a job is saved under a new name only, and goes on as that file") {
+TEST_CASE("a job is saved under a new name only, and the session continues with that file") {
     const pliant::test::Folder folder;
     Events events;
     MakeSession session([&](const std::string& json) { events.add(json); }, "test");
@@ -61,7 +61,7 @@ TEST_CASE("a job is saved under a new name only, and goes on as that file") {
     CHECK(other.job()->archive.manifest().layers.size() == 40);
 }
 
-TEST_CASE("what is no job is refused and the one at hand stays") {
+TEST_CASE("an invalid job is refused, and the current job stays") {
     const pliant::test::Folder folder;
     Events events;
     MakeSession session([&](const std::string& json) { events.add(json); }, "test");
@@ -81,7 +81,7 @@ TEST_CASE("what is no job is refused and the one at hand stays") {
     CHECK(events.count("job") == 0);
 }
 
-TEST_CASE("one job is sliced at a time; one that is cancelled ends without an error and without a job") {
+TEST_CASE("one job is sliced at a time; a cancelled one ends without error and without a job") {
     Events events;
     std::promise<void> go;
     std::shared_future<void> may_go(go.get_future());

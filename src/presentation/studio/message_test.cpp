@@ -31,7 +31,7 @@ TEST_CASE("every kind of message is read") {
     CHECK(std::holds_alternative<Ping>(*parse_message(R"({"type":"ping"})")));
 }
 
-TEST_CASE("everything else is refused, with the key") {
+TEST_CASE("every other message is refused, and the key is named") {
     const std::pair<const char*, const char*> cases[] = {
         {"", "object"},
         {"[]", "object"},
@@ -60,7 +60,7 @@ TEST_CASE("everything else is refused, with the key") {
     }
 }
 
-TEST_CASE("long and deep messages are refused before they are parsed") {
+TEST_CASE("overlong and deeply nested messages are refused before they are parsed") {
     CHECK_FALSE(parse_message(std::string(longest_message + 1, ' ')));
     CHECK_FALSE(parse_message(R"({"type":"ping","x":)" + std::string(30000, '[') + std::string(30000, ']') + "}"));
     std::string many = R"({"type":"fields","names":["J")";

@@ -23,7 +23,7 @@ robot::Scene scene_of(const std::vector<std::string>& assignments) {
 
 }  // namespace
 
-TEST_CASE("a preview has the corners of the tets, and a motion that is linear everywhere is lifted as it is") {
+TEST_CASE("a preview has the linear tets of the mesh, and a linear motion is transferred exactly") {
     const robot::Scene fine = scene_of({});
     const auto preview = Preview::of(fine.robot, fine.model);
     REQUIRE(preview != nullptr);
@@ -41,7 +41,7 @@ TEST_CASE("a preview has the corners of the tets, and a motion that is linear ev
     CHECK(worst < 1e-15);
 }
 
-TEST_CASE("linear tets have no preview: they are one") {
+TEST_CASE("linear tets have no preview") {
     const robot::Scene linear = scene_of({"mesh.order=1"});
     CHECK(Preview::of(linear.robot, linear.model) == nullptr);
 }

@@ -24,7 +24,7 @@ host::Snapshot printing() {
 
 }  // namespace
 
-TEST_CASE("what somebody far from the machine is told: the end, a stop, that it waits for them; once each") {
+TEST_CASE("news are sent when a print ends, stops or waits for somebody, once each") {
     const host::Snapshot before = printing();
     CHECK_FALSE(news_between(before, before));
     host::Snapshot later = before;
@@ -63,7 +63,7 @@ TEST_CASE("what somebody far from the machine is told: the end, a stop, that it 
     CHECK_FALSE(news_between(paused, paused));
 }
 
-TEST_CASE("a command hears of it in its environment") {
+TEST_CASE("a news command gets event, text and job in its environment") {
     const pliant::test::Folder folder;
     const auto file = folder / "heard";
     const std::string command = "printf '%s|%s|%s' \"$PLIANT_EVENT\" \"$PLIANT_TEXT\" \"$PLIANT_JOB\" > " +

@@ -13,7 +13,7 @@ using pliant::test::holds;
 using studio::test::Events;
 using studio::test::Json;
 
-TEST_CASE("a queue outlives the studio, and a print that begins leaves it") {
+TEST_CASE("a queue is kept when the studio ends, and a print that begins is removed from it") {
     const pliant::test::Folder folder;
     const ProjectFolder project = ProjectFolder::open(folder.path()).value();
     Progress silent;
@@ -42,7 +42,7 @@ TEST_CASE("a queue outlives the studio, and a print that begins leaves it") {
     CHECK(queue.jobs().size() == 2);
 }
 
-TEST_CASE("what cannot wait is refused, and a file that is none of ours is an empty queue") {
+TEST_CASE("invalid jobs are not queued, and a damaged queue file is an empty queue") {
     const pliant::test::Folder folder;
     const ProjectFolder project = ProjectFolder::open(folder.path()).value();
     REQUIRE(write_file(folder / PrintQueue::file_name, "[1, 2").has_value());

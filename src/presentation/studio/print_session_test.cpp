@@ -60,7 +60,7 @@ void wait_until_ready(const PrintSession& session) {
 
 }  // namespace
 
-TEST_CASE("without a machine there is nothing to ask, to see or to steer") {
+TEST_CASE("without a machine there is nothing to ask, to show or to control") {
     Events events;
     PrintSession session([&](const std::string& json) { events.add(json); });
     CHECK(session.describe() == R"({"machine":null})");
@@ -75,7 +75,7 @@ TEST_CASE("without a machine there is nothing to ask, to see or to steer") {
     CHECK(events.count("machine") == 0);
 }
 
-TEST_CASE("what cannot be taken is refused with its reason, and the machine at hand stays") {
+TEST_CASE("invalid requests for a machine are refused with the reason, and the current machine stays") {
     Bench b;
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double speed : {0.0, -1.0, 1e9, nan})
@@ -100,7 +100,7 @@ TEST_CASE("what cannot be taken is refused with its reason, and the machine at h
     CHECK(b.about()["speed"] == 50);
 }
 
-TEST_CASE("a job is printed on the virtual printer and judged; then the machine is given back") {
+TEST_CASE("a job is printed on the virtual printer and inspected; then the machine is released") {
     Bench b;
     REQUIRE(b.session.take_twin(b.order, 10000).has_value());
     CHECK(b.about()["job"] == "bar");
@@ -122,7 +122,7 @@ TEST_CASE("a job is printed on the virtual printer and judged; then the machine 
     CHECK(b.command("start").status == 404);
 }
 
-TEST_CASE("nobody takes the machine away from a print that is under way") {
+TEST_CASE("a machine cannot be released or replaced during a print") {
     Bench b;
     REQUIRE(b.session.take_twin(b.order, 1).has_value());
     b.wait_for_state("Operational");
@@ -137,7 +137,7 @@ TEST_CASE("nobody takes the machine away from a print that is under way") {
     CHECK(b.about()["taken"] == 2);
 }
 
-TEST_CASE("a virtual print with a journal beside its job is gone on with by the next studio, or discarded") {
+TEST_CASE("an interrupted virtual print with a journal is resumed by the next studio, or discarded") {
     Bench b;
     b.order.journal = b.folder / "bar.zip.virtual.journal";
     const auto layer_of = [](const Json& about) { return about["now"]["progress"]["layer"]; };

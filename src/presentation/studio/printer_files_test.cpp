@@ -30,7 +30,7 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("a printer file begins as a built-in one, and only as a new file") {
+TEST_CASE("a new printer file is a copy of a built-in one, and overwrites nothing") {
     const Bench b;
     REQUIRE(new_printer(b.folder, "tower", "mine.toml").has_value());
     CHECK(b.text("mine.toml") == find_file(example_printers(), "tower")->text);
@@ -42,7 +42,7 @@ TEST_CASE("a printer file begins as a built-in one, and only as a new file") {
     REQUIRE(new_printer(b.folder, "mine.toml", "second.toml").has_value());
 }
 
-TEST_CASE("values change where they stand, and all else stays as a person wrote it") {
+TEST_CASE("values of a printer file change in place, and everything else stays as written") {
     const Bench b;
     REQUIRE(new_printer(b.folder, "tower", "mine.toml").has_value());
     const std::string before = b.text("mine.toml");
@@ -64,7 +64,7 @@ TEST_CASE("values change where they stand, and all else stays as a person wrote 
     CHECK(printer->printer.controller.baud_rate == 250000);
 }
 
-TEST_CASE("a change that would make no printer is refused, and nothing is written") {
+TEST_CASE("an invalid change of a printer file is refused, and nothing is written") {
     const Bench b;
     REQUIRE(new_printer(b.folder, "tower", "mine.toml").has_value());
     const std::string before = b.text("mine.toml");
@@ -78,7 +78,7 @@ TEST_CASE("a change that would make no printer is refused, and nothing is writte
     CHECK(b.text("mine.toml") == before);
 }
 
-TEST_CASE("what a page sets up, and what a board answers") {
+TEST_CASE("the page gets a printer's settings, and a board's answers compared with them") {
     const Bench b;
     const auto file = read_printer(b.folder, "tower");
     REQUIRE(file.has_value());

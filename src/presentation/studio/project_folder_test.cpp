@@ -49,7 +49,7 @@ TEST_CASE("paths within the folder are found, all others refused") {
     CHECK_FALSE(folder->resolve(std::string(5000, 'a')));
 }
 
-TEST_CASE("a folder holds what lies in it, not what merely begins like it") {
+TEST_CASE("a folder holds the files in it, not those in a folder whose name begins alike") {
     const Place place;
     const auto folder = ProjectFolder::open(place.project);
     REQUIRE(folder);
@@ -60,18 +60,18 @@ TEST_CASE("a folder holds what lies in it, not what merely begins like it") {
     CHECK_FALSE(folder->holds(place.project / ".." / "project_secret" / "s.toml"));
 }
 
-TEST_CASE("the list has robots and jobs, two levels deep, and follows no links") {
+TEST_CASE("robots and jobs are listed two levels deep, and links are not followed") {
     const Place place;
     const auto folder = ProjectFolder::open(place.project);
     REQUIRE(folder);
     CHECK(folder->files() == std::vector<std::string>{"a.toml", "parts/c.zip", "parts/deep/d.toml"});
 }
 
-TEST_CASE("no such folder") {
+TEST_CASE("a folder that does not exist is refused") {
     CHECK_FALSE(ProjectFolder::open("/no/such/folder"));
 }
 
-TEST_CASE("texts of a document that lead outside are found, whatever key they stand under") {
+TEST_CASE("texts of a document that lead outside the folder are found under any key") {
     const Place place;
     const auto folder = ProjectFolder::open(place.project);
     REQUIRE(folder);

@@ -63,7 +63,7 @@ std::string refused(const Result<ReceivedGeometry>& received) {
 
 }  // namespace
 
-TEST_CASE("a surface is received whole, measured, and never written over without being asked") {
+TEST_CASE("a surface file is received whole and measured, and replaces another file only on request") {
     Bench b;
     for (const bool known : {true, false}) {
         const auto received = b.send(known ? "a.stl" : "b.STL", tetra(10), false, known);
@@ -85,7 +85,7 @@ TEST_CASE("a surface is received whole, measured, and never written over without
     CHECK(b.files() == 3);
 }
 
-TEST_CASE("names that lead elsewhere, hide or say nothing of a format are refused, and nothing is written") {
+TEST_CASE("paths, hidden names and unknown extensions are refused, and nothing is written") {
     Bench b;
     for (const char* name : {"", ".stl", ".hidden.stl", "../up.stl", "/etc/x.stl", "sub/x.stl", "a\\b.stl", "a\nb.stl",
                              "c:x.stl", "quote\".stl"}) {
@@ -98,7 +98,7 @@ TEST_CASE("names that lead elsewhere, hide or say nothing of a format are refuse
     CHECK(b.files() == 0);
 }
 
-TEST_CASE("a link out of the folder is not written through") {
+TEST_CASE("a link that leads out of the folder is not written through") {
     Bench b;
     const pliant::test::Folder elsewhere("received_elsewhere");
     std::ofstream(elsewhere.path() / "precious.stl") << "mine";
@@ -107,7 +107,7 @@ TEST_CASE("a link out of the folder is not written through") {
     CHECK(read_file(elsewhere.path() / "precious.stl").value() == "mine");
 }
 
-TEST_CASE("what no reader takes, what is too large and what breaks off leaves nothing behind") {
+TEST_CASE("unreadable, oversized and broken-off files are refused and leave nothing") {
     Bench b;
     const std::string cut = tetra(10).substr(0, 120);
     const std::string why = refused(b.send("cut.stl", cut));
@@ -124,7 +124,7 @@ TEST_CASE("what no reader takes, what is too large and what breaks off leaves no
     CHECK(b.files() == 0);
 }
 
-TEST_CASE("regions of a tet mesh become its parts") {
+TEST_CASE("regions of a tet mesh are listed as parts") {
     Bench b;
     const auto received = b.send("two.mesh",
                                  "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 "

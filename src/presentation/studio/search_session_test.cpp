@@ -52,7 +52,7 @@ std::string problem(const Built& built, const GoalOrder& order) {
 
 }  // namespace
 
-TEST_CASE("a page's goal becomes a task, in the units of its sliders") {
+TEST_CASE("a goal from the page becomes a task, in the units of its sliders") {
     const auto built = built_from(bar);
     const Json inputs = Json::parse(goal_inputs_json(*built));
     REQUIRE(inputs.size() == 1);
@@ -67,7 +67,7 @@ TEST_CASE("a page's goal becomes a task, in the units of its sliders") {
     CHECK(task->goals[0].tolerance == near(1e-3, {.relative = 1e-12}));
 }
 
-TEST_CASE("goals that no robot can have are refused in one line") {
+TEST_CASE("impossible goals are refused in one line") {
     const auto built = built_from(bar);
     GoalOrder order = goal_at(1.5);
     order.marker = "top";
@@ -86,7 +86,7 @@ TEST_CASE("goals that no robot can have are refused in one line") {
         "time_step"));
 }
 
-TEST_CASE("a search tells of its end, and its result stays until the next one") {
+TEST_CASE("a search reports its end, and its result is kept until the next search") {
     const auto built = built_from(bar);
     Bench b;
     CHECK(b.session.result() == nullptr);
@@ -104,7 +104,7 @@ TEST_CASE("a search tells of its end, and its result stays until the next one") 
     CHECK(Json::parse(b.session.result()->json) == result);
 }
 
-TEST_CASE("a modulus is found from a table, with its plots") {
+TEST_CASE("a modulus is identified from a table, with plots") {
     const auto built = built_from(bar);
     Bench b;
     REQUIRE(b.session.identify(built,
@@ -117,7 +117,7 @@ TEST_CASE("a modulus is found from a table, with its plots") {
     CHECK(b.session.result()->plots[0].png.starts_with("\x89PNG"));
 }
 
-TEST_CASE("a workspace holds what the actuators reach, marker by marker") {
+TEST_CASE("a workspace holds what each marker can reach") {
     const auto built = built_from(bar);
     const WorkspaceOrder order{{{"flexor", 0, 0.2}}, 5, 0};
     const auto task = workspace_task(*built, order);
@@ -151,7 +151,7 @@ TEST_CASE("a workspace holds what the actuators reach, marker by marker") {
     CHECK(holds(workspace_task(*built_from(blind), order).error().message, "has no [[marker]]"));
 }
 
-TEST_CASE("a sweep and a whole program are run beside, and the program's states can be played") {
+TEST_CASE("a sweep and a whole program run in the background, and the program's states can be played") {
     const auto built = built_from(bar);
     Bench b;
     REQUIRE(b.session.sweep(built, {{{"cable.flexor.target.shortening", "mm", {0.1, 0.2}}}}));
@@ -178,7 +178,7 @@ TEST_CASE("a sweep and a whole program are run beside, and the program's states 
     CHECK(head(0)["revision"] == built->revision);
 }
 
-TEST_CASE("one search at a time, and one that is cancelled leaves nothing") {
+TEST_CASE("one search runs at a time, and a cancelled one leaves no result") {
     const auto built = built_from(bar);
     Bench b;
     GoalOrder long_one = goal_at(1.5);
@@ -192,7 +192,7 @@ TEST_CASE("one search at a time, and one that is cancelled leaves nothing") {
     CHECK(b.session.result() == nullptr);
 }
 
-TEST_CASE("orders are read, and refused with the key") {
+TEST_CASE("search orders are read, and refused with the key") {
     const auto goal = parse_goal_order(
         R"({"marker":"tip","path":[[1,2,3],[4,5,6]],"tolerance":0.1,"inputs":[{"name":"flexor","low":0.5,"high":1}]})");
     REQUIRE(goal);

@@ -57,7 +57,7 @@ std::string renamed(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("before a robot has been opened there is nothing, and input to nobody is no harm") {
+TEST_CASE("before a robot is opened there is no state, and input does no harm") {
     Bench b;
     CHECK(b.session.built() == nullptr);
     CHECK(b.session.scene() == nullptr);
@@ -73,7 +73,7 @@ TEST_CASE("before a robot has been opened there is nothing, and input to nobody 
     b.session.show_again();
 }
 
-TEST_CASE("a robot is bent, its states are remembered, and rest forgets them") {
+TEST_CASE("a robot is bent and its states are kept; returning to rest clears them") {
     Bench b;
     b.open(bar);
     REQUIRE(b.session.wait_until_built());
@@ -91,7 +91,7 @@ TEST_CASE("a robot is bent, its states are remembered, and rest forgets them") {
     CHECK(b.session.history().steps.size() <= 1);
 }
 
-TEST_CASE("a marker that is led takes the cable along, and stays where it is let go") {
+TEST_CASE("a dragged marker moves the cable, and stays where it is released") {
     Bench b;
     b.open(bar);
     REQUIRE(b.session.wait_until_built());
@@ -130,7 +130,7 @@ TEST_CASE("a marker that is led takes the cable along, and stays where it is let
     CHECK_FALSE(b.arrived(5).contains("lead"));
 }
 
-TEST_CASE("by itself the answer is that of quadratic tets, and linear ones are named as such") {
+TEST_CASE("by default answers come from quadratic tets, and answers from linear tets say so") {
     // Coarse and nearly incompressible: linear tets lock, and their tension is three times as large.
     const auto tension = [](const Json& f) { return f["cables"][0]["tension_N"].get<double>(); };
     Bench fine, linear, automatic;
@@ -157,7 +157,7 @@ TEST_CASE("by itself the answer is that of quadratic tets, and linear ones are n
     CHECK(automatic.session.history().steps.back().cables[0].tension_N == near(tension(right), {.relative = 1e-3}));
 }
 
-TEST_CASE("a hand that moves again has an answer to where it is last, and to where the program and a pull have it") {
+TEST_CASE("after dragging on, the final answer agrees with quadratic tets, also with program and pull") {
     Bench fine, automatic;
     fine.open(bar, Accuracy::fine);
     automatic.open(bar, Accuracy::automatic);
@@ -183,7 +183,7 @@ TEST_CASE("a hand that moves again has an answer to where it is last, and to whe
     same(33);
 }
 
-TEST_CASE("what cannot be is not wanted: strange actuators, kinds and values") {
+TEST_CASE("input with unknown actuators, kinds or impossible values is ignored") {
     Bench b;
     b.open(bar);
     REQUIRE(b.session.wait_until_built());
@@ -202,7 +202,7 @@ TEST_CASE("what cannot be is not wanted: strange actuators, kinds and values") {
     }
 }
 
-TEST_CASE("the last input counts, whatever came before it") {
+TEST_CASE("only the last input counts") {
     Bench b;
     b.open(bar);
     REQUIRE(b.session.wait_until_built());
@@ -211,7 +211,7 @@ TEST_CASE("the last input counts, whatever came before it") {
     CHECK(b.frames.count("frame") < 50);
 }
 
-TEST_CASE("a mistake is told with its line, the robot before stays, and a good text takes the mistake away") {
+TEST_CASE("an error is reported with its line and the previous robot stays; a correct text clears the error") {
     Bench b;
     b.open(renamed("first"));
     REQUIRE(b.session.wait_until_built());
@@ -230,7 +230,7 @@ TEST_CASE("a mistake is told with its line, the robot before stays, and a good t
     CHECK(b.session.built()->revision == 2);  // the invalid one has none
 }
 
-TEST_CASE("a first robot that is wrong leaves none") {
+TEST_CASE("a first robot with an error leaves no robot") {
     Bench b;
     b.open("name = 1");
     CHECK_FALSE(b.session.wait_until_built());
@@ -238,7 +238,7 @@ TEST_CASE("a first robot that is wrong leaves none") {
     CHECK(b.problem().is_array());
 }
 
-TEST_CASE("a robot that is replaced while it is built is given up, and who waits waits for the last") {
+TEST_CASE("a robot replaced during its build is dropped, and a waiting caller gets the last one") {
     std::promise<void> go;
     std::shared_future<void> may_go(go.get_future());
     bool first = true;

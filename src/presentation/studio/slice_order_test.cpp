@@ -14,7 +14,7 @@ std::string refused(const char* json) {
 
 }  // namespace
 
-TEST_CASE("an order of the page is that of the command line") {
+TEST_CASE("a slice order of the page equals that of the command line") {
     const auto order = read_slice_order(R"({"printer": "tower", "layer": "100 um", "copies": 3, "turn": [90, 0, 0],
         "exposure": ["soft=2 s"], "overlap": ["soft+firm=4,2"], "support": "firm", "support-tip": "0.5 mm",
         "hollow": "2 mm", "drain": "3 mm", "no-anti-alias": true, "any-vat": true, "threshold": 0.4})");
@@ -46,7 +46,7 @@ TEST_CASE("an order of the page is that of the command line") {
     CHECK(printer_name_of(R"({"printer": "my/p.toml"})").value() == "my/p.toml");
 }
 
-TEST_CASE("what is wrong in an order names the option whose field it is") {
+TEST_CASE("an error in a slice order names its option") {
     CHECK(refused("[]") == "a JSON object is needed");
     CHECK(refused(R"({"layer": 100})").starts_with("--layer: "));
     CHECK(refused(R"({"copies": 0})").starts_with("--copies: "));

@@ -150,7 +150,7 @@ TEST_CASE("a robot is opened, bent, edited, undone and saved") {
         CHECK_MESSAGE(ask(studio, "GET", std::string("/api/export/") + name).status == 200, name);
 }
 
-TEST_CASE("a robot that was changed goes where the one before was wanted; another one starts from rest") {
+TEST_CASE("a changed robot goes to the state that was wanted before; another robot starts from rest") {
     const Project project;
     const auto owner = built(project);
     Studio& studio = *owner;
@@ -193,7 +193,7 @@ TEST_CASE("a robot that was changed goes where the one before was wanted; anothe
     CHECK(arrived(studio, page, 3)["wanted"]["actuators"].empty());
 }
 
-TEST_CASE("expanding elements are steered by volume, and know no pressure") {
+TEST_CASE("air elements are driven by volume and have no pressure") {
     const Project project;
     std::ofstream(project.base / "project" / "bar.toml", std::ios::app)
         << "[[chamber]]\nname = \"air\"\nmodel = \"elements\"\ntarget = { volume_ratio = 1.2 }\n"
@@ -211,7 +211,7 @@ TEST_CASE("expanding elements are steered by volume, and know no pressure") {
     CHECK(still["wanted"]["actuators"] == Json{{{"name", "air"}, {"kind", "volume_ratio"}, {"value", 1.15}}});
 }
 
-TEST_CASE("a page that comes back hears that there is neither job nor machine") {
+TEST_CASE("a page that reconnects is told that there is no job and no machine") {
     const Project project;
     const auto owner = opened(project);
     Studio& studio = *owner;
@@ -220,7 +220,7 @@ TEST_CASE("a page that comes back hears that there is neither job nor machine") 
     CHECK(ask(studio, "GET", "/api/print/verdict").body == "null");
 }
 
-TEST_CASE("what the command line warns of, the page hears with every frame") {
+TEST_CASE("warnings of the simulation reach the page with every frame") {
     const Project project;
     std::ofstream(project.base / "project" / "gripper.toml")
         << std::ifstream("examples/cable_gripper/gripper.toml").rdbuf() << "\n[contact]\nself = false\n";
@@ -249,7 +249,7 @@ TEST_CASE("what the command line warns of, the page hears with every frame") {
     }
 }
 
-TEST_CASE("a mistake in the file is told with its line, and the robot before stays") {
+TEST_CASE("an error in the file is reported with its line, and the previous robot stays") {
     const Project project;
     const auto owner = built(project);
     Studio& studio = *owner;
@@ -268,7 +268,7 @@ TEST_CASE("a mistake in the file is told with its line, and the robot before sta
     CHECK(head_of(ask(studio, "GET", "/api/scene").body)["robot"] == "bar");
 }
 
-TEST_CASE("a text from the page reads no file outside of the folder") {
+TEST_CASE("a robot text from the page cannot read files outside the folder") {
     const Project project;
     const auto owner = opened(project);
     Studio& studio = *owner;
@@ -285,7 +285,7 @@ TEST_CASE("a text from the page reads no file outside of the folder") {
     CHECK(ask(studio, "POST", "/api/open", R"({"name":"/etc/passwd"})").status == 422);
 }
 
-TEST_CASE("who does not steer changes nothing") {
+TEST_CASE("a page that is not in control cannot change anything") {
     const auto owner = opened();
     Studio& studio = *owner;
     const auto first = joined(studio, "first_page"), second = joined(studio, "second_page");
@@ -300,7 +300,7 @@ TEST_CASE("who does not steer changes nothing") {
     CHECK(answer->bytes->find("another page has control") != std::string::npos);
 }
 
-TEST_CASE("a robot is sliced, its layers and plan are there, and slicing can be given up") {
+TEST_CASE("a robot is sliced, its layers and plan can be read, and slicing can be cancelled") {
     const Project project;
     const auto owner = opened(project);
     Studio& studio = *owner;
@@ -350,7 +350,7 @@ TEST_CASE("a robot is sliced, its layers and plan are there, and slicing can be 
         CHECK_MESSAGE(ask(studio, "POST", "/api/job/slice", wrong).status == 422, wrong);
 }
 
-TEST_CASE("what is not there, and what the description says") {
+TEST_CASE("unknown paths are refused, and the API description and manual list every route") {
     const auto owner = opened();
     Studio& studio = *owner;
     CHECK(ask(studio, "GET", "/api/nothing").status == 404);
@@ -398,7 +398,7 @@ Response put_file(Studio& studio, const std::string& name, const std::string& by
 
 }  // namespace
 
-TEST_CASE("a file that a page sends becomes a body of a robot, and is not written over unasked") {
+TEST_CASE("a file from the page becomes a body of a robot, and replaces another file only on request") {
     const Project project;
     const auto owner = opened(project);
     Studio& studio = *owner;
@@ -428,7 +428,7 @@ TEST_CASE("a file that a page sends becomes a body of a robot, and is not writte
     CHECK(head_of(ask(studio, "GET", "/api/scene").body)["robot"] == "part");
 }
 
-TEST_CASE("robots that can be opened have small pictures, and what cannot be drawn has none") {
+TEST_CASE("robots have thumbnails; invalid files have none") {
     const Project project;
     std::ofstream(project.base / "project" / "wrong.toml") << "name = 3\n";
     std::string outside = bar;
@@ -452,7 +452,7 @@ TEST_CASE("robots that can be opened have small pictures, and what cannot be dra
         CHECK_MESSAGE(thumbnail("file", name).status >= 400, name);
 }
 
-TEST_CASE("a second robot stands beside the first one, and follows the same hands") {
+TEST_CASE("a second robot is shown beside the first, and follows the same inputs") {
     const Project project;
     const auto owner = built(project);
     Studio& studio = *owner;
@@ -487,12 +487,12 @@ TEST_CASE("a second robot stands beside the first one, and follows the same hand
     CHECK(ask(studio, "GET", "/api/compare/frame").body.empty());
 }
 
-TEST_CASE("what is neither a robot nor a job is refused") {
+TEST_CASE("a file that is neither a robot nor a job is refused") {
     CHECK_FALSE(Studio::open({"no/such/robot.toml", "test"}));
     CHECK_FALSE(Studio::open({"no/such/job.zip", "test"}));
 }
 
-TEST_CASE("values and entries of the robot file are changed by request, and a text is checked without being built") {
+TEST_CASE("values and entries of the robot file change by request, and a text can be checked without building it") {
     const Project project;
     const auto studio = built(project);
     const auto page = joined(*studio, "somebody");

@@ -43,7 +43,7 @@ double simulated_tension(const std::vector<std::string>& assignments) {
 
 }  // namespace
 
-TEST_CASE("each run of a sweep is the program with --set, and stiffness scales the tension") {
+TEST_CASE("each run of a sweep is the program with --set, and the tension is proportional to the modulus") {
     const SweepOrder order{{{"material.soft.youngs_modulus", "MPa", {1, 2, 4}}}};
     const auto sweep = run_sweep(source(), order, silent);
     REQUIRE(sweep);
@@ -61,7 +61,7 @@ TEST_CASE("each run of a sweep is the program with --set, and stiffness scales t
     CHECK(sweep->runs[1].results[column(*sweep, "flexor_shortening_mm")] == near(0.2, {.relative = 1e-5}));
 }
 
-TEST_CASE("two numbers give every combination, the second one first, and a mesh that changes is made anew") {
+TEST_CASE("two keys give every combination, the second one fastest; if the mesh changes it is built again") {
     const SweepOrder order{{{"cable.flexor.target.shortening", "mm", {0.1, 0.2}}, {"mesh.size", "mm", {1.5, 1}}}};
     const auto sweep = run_sweep(source(), order, silent);
     REQUIRE(sweep);
@@ -79,7 +79,7 @@ TEST_CASE("two numbers give every combination, the second one first, and a mesh 
     CHECK(json["runs"][3]["inputs"][1] == 1);
 }
 
-TEST_CASE("keys that say nothing of shapes keep the mesh") {
+TEST_CASE("keys that do not change shapes keep the mesh") {
     for (const char* key : {"material.soft.youngs_modulus", "program.gravity", "cable.flexor.target.shortening",
                             "cable.flexor.friction", "chamber.air.target.pressure", "load.push.force"})
         CHECK_MESSAGE(!changes_mesh(key), key);
@@ -87,7 +87,7 @@ TEST_CASE("keys that say nothing of shapes keep the mesh") {
         CHECK_MESSAGE(changes_mesh(key), key);
 }
 
-TEST_CASE("values that cannot be say why, and only where none can be is it an error") {
+TEST_CASE("an impossible value gives its reason; only a sweep without any valid value is an error") {
     const SweepOrder order{{{"material.soft.poisson_ratio", "", {0.45, 0.6}}}};
     const auto sweep = run_sweep(source(), order, silent);
     REQUIRE(sweep);

@@ -11,7 +11,7 @@ using namespace pliant;
 using studio::read_or_make_token;
 namespace fs = std::filesystem;
 
-TEST_CASE("a token is made once, for its owner alone, and stays") {
+TEST_CASE("a token is made once, readable by its owner only, and then kept") {
     const test::Folder folder("token");
     const Result<std::string> first = read_or_make_token(folder / "token");
     REQUIRE(first);
@@ -21,7 +21,7 @@ TEST_CASE("a token is made once, for its owner alone, and stays") {
     CHECK(read_or_make_token(folder / "other").value() != *first);
 }
 
-TEST_CASE("a token of one's own is taken, one that is weak or open to everybody is not") {
+TEST_CASE("the user's own token is accepted unless it is weak or readable by everybody") {
     const test::Folder folder("token");
     const auto read = [&](const std::string& text, fs::perms permissions) {
         REQUIRE(write_file(folder / "token", text));

@@ -62,7 +62,7 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("paths, methods and bodies that are wrong are told apart") {
+TEST_CASE("wrong paths, methods and bodies have different statuses") {
     Bench b;
     CHECK(handle_api(b.control, "GET", "/api/none", "").status == 404);
     CHECK(handle_api(b.control, "DELETE", "/api/job", "").status == 405);
@@ -77,7 +77,7 @@ TEST_CASE("paths, methods and bodies that are wrong are told apart") {
     CHECK(b.post("/api/job/skip", {{"layer", 2.5}}).status == 400);
 }
 
-TEST_CASE("a way that no whole micrometres of an int can hold is refused, not taken for a short one") {
+TEST_CASE("a jog distance beyond the range of int micrometres is refused, not wrapped") {
     Bench b;
     REQUIRE(b.post("/api/connection", {{"command", "connect"}}).status == 204);
     b.control.serve_until_idle();
@@ -88,7 +88,7 @@ TEST_CASE("a way that no whole micrometres of an int can hold is refused, not ta
     }
 }
 
-TEST_CASE("what the state forbids is a conflict, with the reason") {
+TEST_CASE("a command that the state does not allow is a conflict (409), with the reason") {
     Bench b;
     for (const char* command : {"start", "pause", "cancel", "resume", "suspend"}) {
         const ApiAnswer answer = b.post("/api/job", {{"command", command}});
@@ -98,7 +98,7 @@ TEST_CASE("what the state forbids is a conflict, with the reason") {
     CHECK(b.post("/api/printer/axes", {{"command", "home"}}).status == 409);
 }
 
-TEST_CASE("connect, look, start: as OctoPrint's users know it") {
+TEST_CASE("connect, look, start: the answers follow OctoPrint's API") {
     Bench b;
     CHECK(b.get("/api/connection")["current"]["state"] == "Offline");
     CHECK(b.post("/api/connection", {{"command", "connect"}}).status == 204);
@@ -123,7 +123,7 @@ TEST_CASE("connect, look, start: as OctoPrint's users know it") {
     CHECK(b.get("/api/printer")["machine"]["axes"]["platform"]["position"] == 300);
 }
 
-TEST_CASE("the feed: history, then what is new, each event once") {
+TEST_CASE("the feed gives the history, then what is new, each event once") {
     Bench b;
     long seen = 0;
     json message = json::parse(history_message(b.control, seen));
@@ -143,7 +143,7 @@ TEST_CASE("the feed: history, then what is new, each event once") {
     CHECK(other == seen);
 }
 
-TEST_CASE("a job that is loaded leaves the state as it is, whatever it was when it was asked") {
+TEST_CASE("loading a job does not change the state") {
     Bench b;
     b.load();
     for (const Event& event : b.control.events_since(0)) CHECK(event.kind != "state");
@@ -156,7 +156,7 @@ TEST_CASE("a job that is loaded leaves the state as it is, whatever it was when 
     CHECK(b.control.snapshot().state == State::idle);
 }
 
-TEST_CASE("the emergency stop is one request and writes M112 at once") {
+TEST_CASE("the emergency stop is one request, and writes M112 at once") {
     Bench b;
     REQUIRE(b.control.connect());
     b.control.serve_until_idle();

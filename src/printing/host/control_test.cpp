@@ -79,7 +79,7 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("commands go to the wire, light comes behind a fence for its time") {
+TEST_CASE("commands go to the wire; an exposure begins behind a fence and lasts its time") {
     Bench b(good_answer);
     const Status status = b.print(job_text);
     REQUIRE_MESSAGE(status, (status ? "" : status.error().message));
@@ -111,7 +111,7 @@ TEST_CASE("an invalid or forbidden job is refused before the wire is opened") {
     }
 }
 
-TEST_CASE("any failure leaves the projector black, stops motion and switches off") {
+TEST_CASE("on any failure the projector goes black, motion stops and the outputs are switched off") {
     Bench b([](const std::string& line) {
         return line.find("Z5") != std::string::npos ? std::string("Error:interlock: no\n") : good_answer(line);
     });
@@ -122,7 +122,7 @@ TEST_CASE("any failure leaves the projector black, stops motion and switches off
     CHECK(b.lights.size() == 1);
 }
 
-TEST_CASE("an unavailable image stops the print in the dark") {
+TEST_CASE("a missing image stops the print with the light off") {
     Bench b(good_answer);
     const Status status = b.print(job_text, [](int, int) -> Result<job::Image> { return input_error("gone"); });
     REQUIRE_FALSE(status);
@@ -131,7 +131,7 @@ TEST_CASE("an unavailable image stops the print in the dark") {
     CHECK(b.index_of("M410") > 0);
 }
 
-TEST_CASE("after a restart nothing more is sent") {
+TEST_CASE("after a controller restart nothing more is sent") {
     Bench b([](const std::string& line) {
         return line.find("Z5") != std::string::npos ? std::string("start\n") : good_answer(line);
     });

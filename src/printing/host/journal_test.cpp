@@ -26,7 +26,7 @@ std::string three_records() {
 
 }  // namespace
 
-TEST_CASE("a record is a checksum, a number, a kind and values; any bytes survive") {
+TEST_CASE("a record has a checksum, a number, a kind and values, which may hold any bytes") {
     // CRC-32 of "1 end", by zlib.
     CHECK(write_record(1, "end", {}) == "05ec23b6 1 end\n");
     const JournalText text = parse_journal(three_records(), "x").value();
@@ -38,7 +38,7 @@ TEST_CASE("a record is a checksum, a number, a kind and values; any bytes surviv
     CHECK_FALSE(text.records[1].text("none"));
 }
 
-TEST_CASE("a damaged end is ignored wherever it begins; damage in the middle is not") {
+TEST_CASE("a damaged end is ignored wherever it begins; damage in the middle is an error") {
     const std::string all = three_records();
     const std::size_t second = all.find('\n') + 1, third = all.find('\n', second) + 1;
     for (std::size_t bytes = 0; bytes <= all.size(); ++bytes) {
@@ -61,7 +61,7 @@ TEST_CASE("a damaged end is ignored wherever it begins; damage in the middle is 
     }
 }
 
-TEST_CASE("a journal is kept, locked, torn ends are cut off, and records go on behind them") {
+TEST_CASE("a journal is kept and locked; a damaged end is cut off, and new records follow it") {
     const pliant::test::Folder folder;
     const auto path = folder.path() / "journal";
     {
@@ -92,7 +92,7 @@ TEST_CASE("a file that is not a journal is not changed") {
     CHECK_FALSE(Journal::open(folder.path() / "no" / "folder", true));
 }
 
-TEST_CASE("a full disk is an error, and leaves no half record behind") {
+TEST_CASE("a full disk is an error, and leaves no partial record") {
     const pliant::test::Folder folder;
     const auto path = folder.path() / "journal";
     Journal journal = Journal::open(path, false).value();
@@ -111,7 +111,7 @@ TEST_CASE("a full disk is an error, and leaves no half record behind") {
     CHECK(journal.append("stop", {}).value() == 2);
 }
 
-TEST_CASE("the facts: pieces of a light add up, an open light stays open, states are read back") {
+TEST_CASE("the facts of a journal: parts of an exposure add up, an open exposure stays open, states are read back") {
     auto records = parse_journal(three_records(), "x").value().records;
     JournalFacts facts = facts_of(records).value();
     CHECK(facts.lights.at(3).lit_s == 1);

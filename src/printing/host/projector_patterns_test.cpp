@@ -20,7 +20,7 @@ long count(const job::Image& image, std::uint8_t value) {
 
 }  // namespace
 
-TEST_CASE("every pattern has the panel's size, whatever that is") {
+TEST_CASE("every pattern has the panel's size, whatever it is") {
     for (const std::string& name : pattern_names()) {
         for (const auto& [width, height] : {std::pair{16, 16}, {320, 200}, {1920, 1080}, {17, 900}}) {
             PatternOptions options{width, height, 50, 3, 5, 3};
@@ -34,7 +34,7 @@ TEST_CASE("every pattern has the panel's size, whatever that is") {
     CHECK_FALSE(test_pattern("white", {8, 200, 0, 1, 5, 3}));
 }
 
-TEST_CASE("white is white, black is black, squares are squares, the ramp has every value") {
+TEST_CASE("white, black, checkerboard and ramp have the right pixel values") {
     CHECK(count(*test_pattern("white", small), 255) == 320 * 200);
     CHECK(count(*test_pattern("black", small), 0) == 320 * 200);
     PatternOptions squares = small;
@@ -50,7 +50,7 @@ TEST_CASE("white is white, black is black, squares are squares, the ramp has eve
     CHECK(ramp.at(63, 511) == 255);
 }
 
-TEST_CASE("the border's rectangle is as wide as is said, and the rulers' marks are millimetres") {
+TEST_CASE("the border's rectangle has the stated size, and the rulers' marks are millimetres") {
     const auto image = *test_pattern("border", small);
     const MeasuredSpan span = measured_span(320, 200);
     CHECK(span.x_px == 288);
@@ -68,7 +68,7 @@ TEST_CASE("the border's rectangle is as wide as is said, and the rulers' marks a
     for (int x = 0; x < 320; ++x) REQUIRE(image.at(0, x) == 255);
 }
 
-TEST_CASE("measured distances give the pixel's size") {
+TEST_CASE("the pixel size follows from measured distances") {
     const auto size = pixel_size(320, 200, 28.8, 18.0);
     REQUIRE(size);
     CHECK(size->pixel_um == near(100, {.relative = 1e-12}));
@@ -80,7 +80,7 @@ TEST_CASE("measured distances give the pixel's size") {
     CHECK_FALSE(pixel_size(320, 200, std::nan(""), 18));
 }
 
-TEST_CASE("a mask makes a light that falls off towards the edges the same everywhere") {
+TEST_CASE("a mask makes uneven light uniform") {
     const auto table = parse_light_table("# mW/cm2\n4.0, 5.0, 4.0\n 4.5; 5.5; 4.5\n4.0\t5.0\t4.0\n", "light.txt");
     REQUIRE_MESSAGE(table, (table ? "" : table.error().message));
     CHECK(table->columns == 3);

@@ -103,7 +103,7 @@ TEST_CASE("a job is read back as written") {
     CHECK(!archive->image("printer.toml").has_value());
 }
 
-TEST_CASE("an entry that was changed, taken away or put in since the job was made is refused when it is read") {
+TEST_CASE("an entry changed, removed or added after the job was made is refused when it is read") {
     const Folder folder;
     const fs::path path = folder / "a.zip";
     const Manifest m = manifest();
@@ -225,7 +225,7 @@ TEST_CASE("cutting an archive short anywhere is refused, never a crash") {
     }
 }
 
-TEST_CASE("any flipped byte gives an error or a valid job") {
+TEST_CASE("a flipped byte anywhere gives an error or a valid job") {
     const Folder folder;
     const fs::path path = folder / "a.zip";
     REQUIRE(write(path).has_value());
@@ -246,7 +246,7 @@ TEST_CASE("any flipped byte gives an error or a valid job") {
     }
 }
 
-TEST_CASE("sizes that an entry claims are checked before memory is taken") {
+TEST_CASE("sizes stated in entries are checked before memory is allocated") {
     const Folder folder;
     const fs::path path = folder / "a.zip";
     REQUIRE(write(path).has_value());

@@ -109,7 +109,7 @@ TEST_CASE("every format has every layer of every material, blank ones too") {
     CHECK(format_from("png").error().message == "format \"png\": must be sl1, nanodlp, zip or vats");
 }
 
-TEST_CASE("an .sl1 read as PrusaSlicer and UVtools read it") {
+TEST_CASE("an .sl1 file can be read as PrusaSlicer and UVtools read it") {
     const pliant::test::Folder folder("export");
     const Archive archive = make(folder / "two.zip");
     const auto zip = ZipReader::open(export_job(archive, Format::sl1, folder / "a").value().at(1));
@@ -144,7 +144,7 @@ TEST_CASE("an .sl1 read as PrusaSlicer and UVtools read it") {
     CHECK(number(config, "numFast") == 10);
 }
 
-TEST_CASE("layers that fade are told where they are, and only there") {
+TEST_CASE("transition layers are written to a job that has them, and only there") {
     const pliant::test::Folder folder("export");
     JobSettings s = settings();
     s.exposures["soft"] = {2, 3, 0, 50, {}};
@@ -165,7 +165,7 @@ TEST_CASE("layers that fade are told where they are, and only there") {
     CHECK(json(*nano, "profile.json")["TransitionalLayer"] == 3);
 }
 
-TEST_CASE("a .nanodlp read as NanoDLP and UVtools read it") {
+TEST_CASE("a .nanodlp file can be read as NanoDLP and UVtools read it") {
     const pliant::test::Folder folder("export");
     const Archive archive = make(folder / "two.zip");
     const auto zip = ZipReader::open(export_job(archive, Format::nanodlp, folder / "b").value().at(1));
@@ -214,7 +214,7 @@ TEST_CASE("a .nanodlp read as NanoDLP and UVtools read it") {
     }
 }
 
-TEST_CASE("info.json counts the pieces of a layer and measures the largest and the smallest") {
+TEST_CASE("info.json counts the parts of a layer, and gives the largest and smallest area") {
     const pliant::test::Folder folder("export");
     const std::vector<slice::Body> bodies{{"soft", box({-2000, -500, 0}, {-1000, 500, 100}), ""},
                                           {"soft", box({0, 0, 0}, {500, 200, 100}), ""}};
@@ -232,7 +232,7 @@ TEST_CASE("info.json counts the pieces of a layer and measures the largest and t
     CHECK(info[1]["TotalSolidArea"].get<double>() == near(1.1, {.relative = 1e-12}));
 }
 
-TEST_CASE("a zip read as UVtools reads it; folders of vats as their contract says") {
+TEST_CASE("a zip can be read as UVtools reads it, and folders of vats as documented") {
     const pliant::test::Folder folder("export");
     const Archive archive = make(folder / "two.zip");
     const auto zip = ZipReader::open(export_job(archive, Format::zip, folder / "b").value().at(0));
@@ -249,7 +249,7 @@ TEST_CASE("a zip read as UVtools reads it; folders of vats as their contract say
     }
 }
 
-TEST_CASE("every export that has a layer height gives it back") {
+TEST_CASE("every export that holds a layer height gives it back") {
     const pliant::test::Folder folder("export");
     const Archive archive = make(folder / "two.zip");
     for (const Format format : {Format::sl1, Format::nanodlp, Format::zip}) {
@@ -266,7 +266,7 @@ TEST_CASE("every export that has a layer height gives it back") {
           std::string::npos);
 }
 
-TEST_CASE("layers of many heights go only where each layer stands alone") {
+TEST_CASE("layers of different heights are exported only to formats that allow them") {
     const pliant::test::Folder folder("export");
     JobSettings s = settings();
     s.slicing.tops_um = {50, 150};
@@ -293,7 +293,7 @@ TEST_CASE("equal jobs give equal bytes") {
     CHECK(first.value() == read_file(export_job(archive, Format::nanodlp, folder / "b").value()[0]).value());
 }
 
-TEST_CASE("what was exported comes back as a job, from zip files and from folders") {
+TEST_CASE("an exported job can be imported again, from zip files and from folders") {
     const pliant::test::Folder folder("export");
     const Archive archive = make(folder / "two.zip");
     (void)export_job(archive, Format::sl1, folder / "a");
@@ -318,7 +318,7 @@ TEST_CASE("what was exported comes back as a job, from zip files and from folder
     CHECK(after.warnings.empty());
 }
 
-TEST_CASE("pixels that two stacks light go to one of them, and it is said") {
+TEST_CASE("pixels lit in two stacks go to one of them, with a warning") {
     const pliant::test::Folder folder("export");
     fs::create_directories(folder / "x");
     slice::RunImage image(64, 48);
@@ -337,7 +337,7 @@ TEST_CASE("pixels that two stacks light go to one of them, and it is said") {
           "images of \"soft\": 0.025 mm^3 are exposed by other materials too, which keep them");
 }
 
-TEST_CASE("stacks with gaps, without images and of other sizes are refused") {
+TEST_CASE("stacks with missing numbers, without images or of different sizes are refused") {
     const pliant::test::Folder folder("export");
     CHECK(ImageStack::open(folder.path()).error().message.find("holds no layer images") != std::string::npos);
     const std::string png = encode_png(slice::RunImage(30, 20));

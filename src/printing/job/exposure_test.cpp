@@ -13,13 +13,13 @@ namespace {
 const Material soft{"soft", "flex", 0, 0, 2, 12};
 }
 
-TEST_CASE("bottom, transition and normal layers") {
+TEST_CASE("bottom, transition and normal layers have their exposures") {
     const ExposureRule rule{3, 4, 0, 50};
     const double wanted[] = {12, 12, 12, 10, 8, 6, 4, 2, 2};
     for (int k = 0; k < 9; ++k) CHECK(exposure_s(soft, rule, k, 50) == near(wanted[k], {.relative = 1e-12}));
 }
 
-TEST_CASE("thicker layers get more light by the working curve, spans what they say") {
+TEST_CASE("the exposure of thicker layers follows the working curve; a span's exposure is used as given") {
     ExposureRule rule{0, 0, 100, 50};
     CHECK(exposure_s(soft, rule, 5, 50) == 2);
     CHECK(exposure_s(soft, rule, 5, 100) == near(2 * std::exp(0.5), {.relative = 1e-3}));

@@ -22,7 +22,7 @@ slice::Image image(int width, int height, const std::vector<std::string>& rows) 
 
 }  // namespace
 
-TEST_CASE("pieces hang together through sides of pixels; grey counts as its share") {
+TEST_CASE("components join along sides of pixels, and a grey pixel counts its share") {
     const ImageAreas a = areas_of(image(6, 4,
                                         {".##..+",  //
                                          ".#..#.",  //
@@ -39,7 +39,7 @@ TEST_CASE("pieces hang together through sides of pixels; grey counts as its shar
     CHECK(a.max_y == 2);
 }
 
-TEST_CASE("a ring is one piece, its hole none; a faint rim belongs to its piece") {
+TEST_CASE("a ring is one component, and a grey rim belongs to its component") {
     const ImageAreas a = areas_of(image(5, 4,
                                         {"+++++",  //
                                          "+#.#+",  //
@@ -51,7 +51,7 @@ TEST_CASE("a ring is one piece, its hole none; a faint rim belongs to its piece"
     CHECK(a.smallest_px == a.total_px);
 }
 
-TEST_CASE("a dark image has no components") {
+TEST_CASE("a black image has no components") {
     const ImageAreas a = areas_of(image(3, 1, {"..."}));
     CHECK(a.count == 0);
     CHECK(a.total_px == 0);

@@ -129,7 +129,7 @@ TEST_CASE("JSON of another shape is refused with the key") {
     CHECK(refused_json(std::string(50, '[') + std::string(50, ']')).find("nested deeper") != std::string::npos);
 }
 
-TEST_CASE("names of entries") {
+TEST_CASE("entry names: safe ones, unsafe ones and names of images") {
     for (const char* good : {"a", "layers/00012_soft.png", "a..b", "a b", "é/ü"}) CHECK(is_safe_entry_name(good));
     for (const char* bad : {"", "/a", "a/", "a//b", "..", "../a", "a/../b", "./a", "a\\b", "C:a", "a\nb"})
         CHECK(!is_safe_entry_name(bad));

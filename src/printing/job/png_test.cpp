@@ -36,12 +36,12 @@ TEST_CASE("images are read back as written, from one pixel to a full screen") {
     }
 }
 
-TEST_CASE("a blank full screen takes little") {
+TEST_CASE("a blank full-screen image takes under 2,300 bytes") {
     const Image blank{1920, 1080, std::vector<std::uint8_t>(1920 * 1080)};
     CHECK(encode_png(blank).size() < 2300);
 }
 
-TEST_CASE("other images are refused") {
+TEST_CASE("other images than 8-bit grey ones of the expected size are refused") {
     const std::string good = encode_png(pattern(30, 20));
     CHECK(refused("").find("is not a PNG") != std::string::npos);
     CHECK(refused(good.substr(0, 28)).find("is not a PNG") != std::string::npos);
@@ -57,14 +57,14 @@ TEST_CASE("other images are refused") {
     refused(changed);
 }
 
-TEST_CASE("a header that lies about its size costs no memory") {
+TEST_CASE("a header with a false size allocates no memory") {
     std::string liar = encode_png(pattern(30, 20));
     liar[17] = 0x10;  // width 0x10001e: a million pixels
     liar[21] = 0x10;
     CHECK(refused(liar, {0x10001e, 0x100014}).find("cannot hold") != std::string::npos);
 }
 
-TEST_CASE("rows of every kind survive the choice of filters") {
+TEST_CASE("rows of every kind are read back, whatever filter was chosen") {
     // Equal rows, blank rows between, sideways steps, moving grey edges: each filter is best somewhere.
     slice::RunImage image(300, 60);
     for (int row = 5; row < 55; ++row) {

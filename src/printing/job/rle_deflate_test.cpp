@@ -27,7 +27,7 @@ void check_round_trip(const std::string& bytes) {
 
 }  // namespace
 
-TEST_CASE("runs of every length up to three matches, alone and one after another") {
+TEST_CASE("runs of any length up to three maximal matches, alone and in sequence, are read back") {
     std::string all;
     for (std::size_t length = 0; length < 800; ++length) {
         const std::string run(length, static_cast<char>(length * 7));
@@ -37,7 +37,7 @@ TEST_CASE("runs of every length up to three matches, alone and one after another
     check_round_trip(all);
 }
 
-TEST_CASE("every byte, noise, and counts so uneven that the code must be limited") {
+TEST_CASE("every byte, noise, and counts that need a code limited to 15 bits are read back") {
     std::string bytes;
     for (int i = 0; i < 256; ++i) bytes.push_back(static_cast<char>(i));
     check_round_trip(bytes);
@@ -59,6 +59,6 @@ TEST_CASE("every byte, noise, and counts so uneven that the code must be limited
     check_round_trip(deep);
 }
 
-TEST_CASE("two million equal bytes take about 2 bits per 258") {
+TEST_CASE("two million equal bytes take about 2 bits per 258 bytes") {
     CHECK(deflate_runs(std::string(2000000, '\0')).size() < 2100);
 }

@@ -5,7 +5,7 @@
 namespace pliant::job {
 
 // The examples of FIPS 180-4 (NIST, "SHA256.pdf"), and the empty message.
-TEST_CASE("fingerprints are those of the standard") {
+TEST_CASE("SHA-256 agrees with the standard's examples") {
     CHECK(sha256_hex("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
     CHECK(sha256_hex("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     CHECK(sha256_hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq") ==

@@ -33,7 +33,7 @@ std::string refused(const Files& files) {
 
 }  // namespace
 
-TEST_CASE("every format says its layer height in its own words and unit") {
+TEST_CASE("the layer height is read from every format, with its own key and unit") {
     CHECK(um({{"config.ini", "action = print\r\nlayerHeight = 0.05\r\n"}}) == near(50, {.relative = 1e-12}));
     CHECK(um({{"prusaslicer.ini", "initial_layer_height = 0.1\nlayer_height=0.025\n"}}) ==
           near(25, {.relative = 1e-12}));
@@ -60,7 +60,7 @@ TEST_CASE("files without a layer height give none") {
     CHECK(um({{"config.ini", std::string("\0\xff=\n==\n", 7)}}) == -1);
 }
 
-TEST_CASE("an invalid height is an error that names file and key") {
+TEST_CASE("an invalid layer height is an error that names file and key") {
     CHECK(refused({{"config.ini", "layerHeight = thin"}}) ==
           "config.ini: layerHeight = \"thin\": a layer height above 0 and below 10 mm is needed");
     for (const char* value : {"0", "-0.05", "nan", "inf", "10", "0.05mm", ""})

@@ -39,7 +39,7 @@ TEST_CASE("areas must agree and no pixel may be lit twice") {
           "job.zip: layer 0: layers/a.png and layers/b.png both light the pixel at row 5, column 19");
 }
 
-TEST_CASE("pixels may be lit twice as far as the manifest says so") {
+TEST_CASE("pixels may be lit twice as far as the manifest allows it") {
     CHECK(verdict(17, 0.1, false, 0.03).empty());
     CHECK(verdict(17, 0.1, false, 0.02) ==
           "job.zip: layer 0: layers/a.png and layers/b.png both light the pixel at row 5, column 17");

@@ -37,7 +37,7 @@ std::string only_problem(const std::string& what, const std::string& with) {
 
 }  // namespace
 
-TEST_CASE("a board that fits has no problems; every difference is one, with what to do") {
+TEST_CASE("a board that fits its printer has no problems; every difference is one, with a remedy") {
     CHECK(problems(good_board).empty());
     CHECK(only_problem("PARSER:1", "PARSER:0").find("EMERGENCY_PARSER") != std::string::npos);
     CHECK(only_problem("X525.21", "X80.00").find("M92 X is 80, the printer file has 525.2129") != std::string::npos);
@@ -78,7 +78,7 @@ TEST_CASE("accelerations of all moves, home offsets, soft endstops and the power
     CHECK(problems(silent)[0].find("M211: no answer") == 0);
 }
 
-TEST_CASE("a tower on the extruder of a classic build has no soft endstops") {
+TEST_CASE("the tower on a classic build's extruder needs no soft endstops") {
     Printer printer = load_printer("examples/printers/tower8.toml").value();
     printer.controller.dialect = Dialect::classic;
     printer.axes[static_cast<std::size_t>(Axis::tower)].letter = 'E';
@@ -87,7 +87,7 @@ TEST_CASE("a tower on the extruder of a classic build has no soft endstops") {
         CHECK_MESSAGE(problem.find("M211") == std::string::npos, problem);
 }
 
-TEST_CASE("soft endstops in the words of older releases") {
+TEST_CASE("soft endstops are read in the form of older releases") {
     const BoardReport board =
         parse_board_report("echo:Soft endstops: Off  Min: X:0.00 Y:-5.00   Max: X:200.00 Y:210.50\n");
     CHECK(board.soft_endstops == false);

@@ -7,7 +7,7 @@
 using namespace pliant::machine;
 using pliant::near;
 
-TEST_CASE("the law fits the means of table 4.2") {
+TEST_CASE("the cleaning law fits the means of table 4.2") {
     const auto tests = cleaning_tests();
     CHECK(cleaning_law(CleaningMethod::spray).removed(15) == near(tests[0].mean(), {.relative = 1e-12}));
     CHECK(cleaning_law(CleaningMethod::ultrasound).removed(15) == near(tests[1].mean(), {.relative = 1e-12}));

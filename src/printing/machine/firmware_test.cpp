@@ -46,7 +46,7 @@ Printer with_drives(Printer printer) {
 
 }  // namespace
 
-TEST_CASE("the lists in firmware/ are what the printer files ask for") {
+TEST_CASE("the lists in firmware/ are those of the printer files") {
     for (const std::string name : {"tower", "tower8"}) {
         for (const MarlinRelease release : releases) {
             Printer printer = load(name);
@@ -61,7 +61,7 @@ TEST_CASE("the lists in firmware/ are what the printer files ask for") {
     }
 }
 
-TEST_CASE("every example printer's list keeps the names and rules of every release") {
+TEST_CASE("the settings of every example printer obey names and rules of every release") {
     for (const auto& entry : std::filesystem::directory_iterator("examples/printers")) {
         if (entry.path().extension() != ".toml") continue;
         Printer printer = with_drives(load(entry.path().stem().string()));
@@ -73,7 +73,7 @@ TEST_CASE("every example printer's list keeps the names and rules of every relea
     }
 }
 
-TEST_CASE("lists of machines with a far switch, a door, jerk and an odd name keep them too") {
+TEST_CASE("the settings obey the rules also with a far switch, a door, jerk and an unusual name") {
     for (const MarlinRelease release : releases) {
         Printer printer = load("tower8");
         printer.controller.firmware = release;
@@ -94,7 +94,7 @@ TEST_CASE("lists of machines with a far switch, a door, jerk and an odd name kee
     }
 }
 
-TEST_CASE("the rules find what no release compiles, and what 2.1.3 refuses") {
+TEST_CASE("the rules find settings that no release compiles, and those that 2.1.3 refuses") {
     const auto broken = [](MarlinRelease release, const std::string& name, const std::string& value) {
         Printer printer = load("tower8");
         printer.controller.firmware = release;
@@ -121,7 +121,7 @@ TEST_CASE("the rules find what no release compiles, and what 2.1.3 refuses") {
         CHECK(broken(MarlinRelease::v2_1_2, later, "0") == std::string(later) + " is not known\n");
 }
 
-TEST_CASE("axes that turn come before those that do not, and M119 calls them so") {
+TEST_CASE("rotary axes come before linear extra axes, and have the names that M119 uses") {
     const Printer carousel = with_drives(load("carousel"));
     const auto settings = firmware_settings(carousel).value();
     CHECK(value(settings, "AXIS4_NAME") == "'C'");
@@ -132,7 +132,7 @@ TEST_CASE("axes that turn come before those that do not, and M119 calls them so"
     CHECK(switch_names(carousel, {Axis::tower, false, false}) == std::vector<std::string>{"a_min", "j_min"});
 }
 
-TEST_CASE("what 2.1.3 knows by other names") {
+TEST_CASE("settings renamed in 2.1.3 have their new names") {
     Printer printer = load("tower");
     printer.controller.firmware = MarlinRelease::v2_1_3;
     printer.door = {"y_max", true};
@@ -145,7 +145,7 @@ TEST_CASE("what 2.1.3 knows by other names") {
     CHECK(firmware_ini(printer)->starts_with("# Marlin 2.1.3 for the machine \"tower prototype\""));
 }
 
-TEST_CASE("the settings stand in the section that the scripts of all releases read") {
+TEST_CASE("the settings are in the one section that the scripts of all releases read") {
     // The build script of 2.1.1 takes "all" for the name of a section, and fails.
     for (const MarlinRelease release : releases) {
         Printer printer = load("tower");
@@ -156,7 +156,7 @@ TEST_CASE("the settings stand in the section that the scripts of all releases re
     }
 }
 
-TEST_CASE("gear, pinion and screws become steps; the tower is a linear axis of its own") {
+TEST_CASE("gears, pinions and screws give steps per mm; the tower is a linear axis of its own") {
     const auto settings = firmware_settings(load("tower8")).value();
     // 200 x 4 x 99 / 150.796; stand-in; 200 x 16 / 4; 200 x 4 x 99 / 251.327
     CHECK(value(settings, "DEFAULT_AXIS_STEPS_PER_UNIT") == "{ 525.2129, 80, 800, 315.1273 }");
@@ -186,7 +186,7 @@ TEST_CASE("impossible builds are refused with a reason") {
     CHECK(firmware_settings(motors).error().message.find("no free socket") != std::string::npos);
 }
 
-TEST_CASE("the list of a machine with a magnet or a fork lets M42 write to their pin, which must be free") {
+TEST_CASE("with a magnet or a fork, M42 may write to its pin, which must be free") {
     for (const char* name : {"tower_magnet", "wall"}) {
         Printer printer = load_printer(std::string("examples/printers/") + name + ".toml").value();
         for (const MarlinRelease release : {MarlinRelease::v2_1_1, MarlinRelease::v2_1_2, MarlinRelease::v2_1_3}) {

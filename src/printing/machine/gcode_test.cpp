@@ -38,7 +38,7 @@ TEST_CASE("M118 keeps its message") {
     CHECK(c->text == "tok 17");
 }
 
-TEST_CASE("what is not strictly a command is refused") {
+TEST_CASE("anything but a strict command is refused") {
     for (const char* line : {"", "g1 X1", "G", "Gx", "G1 X1 X2", "G1 X1..2", "G1 X1e400", "G1 Xnan", "G1 x1", "T0",
                              "G1 X1;", "G1 X1\nG1", "G-1", "G99999", "N1 G1 X1*33", "G1 X2000000000"}) {
         CAPTURE(line);
@@ -46,13 +46,13 @@ TEST_CASE("what is not strictly a command is refused") {
     }
 }
 
-TEST_CASE("comments and blanks are stripped") {
+TEST_CASE("comments, blanks and line ends are removed") {
     CHECK(strip_comment("  G1 X1 ; there") == "G1 X1");
     CHECK(strip_comment("; only") == "");
     CHECK(strip_comment("G1\r") == "G1");
 }
 
-TEST_CASE("a move names the axes that change and comes back the same") {
+TEST_CASE("a move names only the axes that change, and is read back the same") {
     const Printer p = three_axes();
     const Position from{{1000, 2000, 3000}};
     const Position to{{1000, 2050, 3001}};
@@ -64,7 +64,7 @@ TEST_CASE("a move names the axes that change and comes back the same") {
     CHECK_FALSE(move_target(p, parse_command("G1 X").value(), from));
 }
 
-TEST_CASE("directives come back as they were written") {
+TEST_CASE("directives are read back as written") {
     const auto d = parse_directive(write_expose({12, 1, 2.5, "layers/00012_soft.png"}));
     REQUIRE(d);
     REQUIRE(d->expose);
@@ -76,7 +76,7 @@ TEST_CASE("directives come back as they were written") {
     CHECK(parse_directive(write_stop("M107 P1"))->stop_command == "M107 P1");
 }
 
-TEST_CASE("a damaged directive is an error, never a guess") {
+TEST_CASE("a damaged directive is an error") {
     for (const char* line :
          {";@", ";@expos layer=1", ";@expose", ";@expose layer=1 material=0 seconds=2",
           ";@expose layer=-1 material=0 seconds=2 image=a", ";@stop", ";@stop rm -rf",

@@ -40,7 +40,7 @@ void take_by_magnet(Bench& b) {
 
 }  // namespace
 
-TEST_CASE("a magnet takes the vat that is level before it, and lets it go only in its slot") {
+TEST_CASE("a magnet takes only the vat level with it, and releases it only in its slot") {
     Bench b("tower_magnet");
     b.refused(b.lock.magnet(true), "no vat before it");
     b.must(b.lock.magnet(false));
@@ -65,7 +65,7 @@ TEST_CASE("a magnet takes the vat that is level before it, and lets it go only i
     b.go(Axis::tower, b.printer.level_um(2));
 }
 
-TEST_CASE("after a stop the vat is not held: the carriage neither moves nor homes before the magnet is on again") {
+TEST_CASE("after a stop the carriage neither moves nor homes before the magnet is on again") {
     Bench b("tower_magnet");
     take_by_magnet(b);
     b.go(Axis::carriage, 0);
@@ -80,7 +80,7 @@ TEST_CASE("after a stop the vat is not held: the carriage neither moves nor home
     CHECK(again->magnet_holds());
 }
 
-TEST_CASE("nothing moves that a magnet or a fork has not yet let go or taken") {
+TEST_CASE("axes wait until a magnet or fork has finished taking or releasing a vat") {
     Bench b("tower_magnet");
     Settling settling(b.printer);
     const Position here = b.lock.position();
@@ -103,7 +103,7 @@ TEST_CASE("nothing moves that a magnet or a fork has not yet let go or taken") {
     CHECK(fork.check(here, along, 6.5));
 }
 
-TEST_CASE("a retriever fetches a vat from its place in the wall and brings it back") {
+TEST_CASE("a retriever takes a vat from its place in the wall and brings it back") {
     Bench b("wall");
     const int row_um = b.printer.row_um(7), column_um = b.printer.column_um(7), low_um = row_um - 20000;
     CHECK(row_um == 50000 + 152400);         // slot 7: second row,
@@ -138,7 +138,7 @@ TEST_CASE("a retriever fetches a vat from its place in the wall and brings it ba
     b.refused(b.try_go(Axis::carriage, b.printer.carriage.tower_um), "no slot is level");
 }
 
-TEST_CASE("a retriever puts a vat only into an empty place, and takes none from one") {
+TEST_CASE("a retriever puts a vat only into an empty place, and takes none from an empty place") {
     Bench b("wall");
     const auto before = [&](int slot, int lower_um) {
         b.go(Axis::table, b.printer.column_um(slot));

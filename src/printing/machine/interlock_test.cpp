@@ -46,7 +46,7 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("nothing moves before it is homed, and homing has an order") {
+TEST_CASE("an axis moves only after homing, and axes are homed in order") {
     Bench b;
     CHECK(b.refused(Axis::tower, 10000, "before it is homed"));
     CHECK_FALSE(b.lock.home(Axis::carriage));
@@ -58,7 +58,7 @@ TEST_CASE("nothing moves before it is homed, and homing has an order") {
     CHECK(b.lock.position() == Position{{0, 400000, 0}});
 }
 
-TEST_CASE("no axis leaves its travel") {
+TEST_CASE("no axis moves outside its travel") {
     Bench b;
     b.home();
     CHECK(b.refused(Axis::platform, -1, "outside its travel"));
@@ -66,7 +66,7 @@ TEST_CASE("no axis leaves its travel") {
     CHECK(b.refused(Axis::tower, 1460001, "outside its travel"));
 }
 
-TEST_CASE("a vat is fetched and put back") {
+TEST_CASE("a vat is taken from its slot and put back") {
     Bench b;
     b.home();
     b.load();
@@ -78,7 +78,7 @@ TEST_CASE("a vat is fetched and put back") {
     CHECK(b.lock.vat_in_slot(1) == 0);
 }
 
-TEST_CASE("the tower stands still while a vat is hooked or the carriage is at it") {
+TEST_CASE("the tower does not move while a vat is hooked or the carriage is at the tower") {
     Bench b;
     b.home();
     b.must(Axis::tower, 500);
@@ -92,7 +92,7 @@ TEST_CASE("the tower stands still while a vat is hooked or the carriage is at it
     CHECK(b.refused(Axis::tower, 0, "a vat is hooked"));
 }
 
-TEST_CASE("the carriage meets the tower only where hooks or a level, empty slot allow it") {
+TEST_CASE("the carriage enters the tower only with clear hooks, or with a vat for a level, empty slot") {
     Bench b;
     b.home();
     CHECK(b.refused(Axis::carriage, 355600, "hooks not clear"));
@@ -105,7 +105,7 @@ TEST_CASE("the carriage meets the tower only where hooks or a level, empty slot 
     CHECK(b.refused(Axis::carriage, 340600, "no slot is level"));
 }
 
-TEST_CASE("the vat stays while the platform is down in it, but for the shear stroke") {
+TEST_CASE("with the platform in the vat the carriage moves only within the shear stroke") {
     Bench b;
     b.home();
     b.load();
@@ -118,7 +118,7 @@ TEST_CASE("the vat stays while the platform is down in it, but for the shear str
     CHECK(b.refused(Axis::platform, 84549, "the platform is down"));
 }
 
-TEST_CASE("with a brush the vat goes into the tower under a part that it wipes, and nothing else passes there") {
+TEST_CASE("with a brush the part may be 1 mm above the rim, only while the vat goes into the tower") {
     Bench b;
     b.home();
     b.load();
@@ -138,7 +138,7 @@ TEST_CASE("with a brush the vat goes into the tower under a part that it wipes, 
     CHECK(b.refused(Axis::platform, 85549, "the platform is down"));
 }
 
-TEST_CASE("a part hangs below the platform: clear height grows with it, and it is not pressed on the floor") {
+TEST_CASE("the height needed above a vat grows with the part, and the part is not pressed onto the floor") {
     Bench b;
     b.printer.cleaning.brush = false;
     b.home();
@@ -154,7 +154,7 @@ TEST_CASE("a part hangs below the platform: clear height grows with it, and it i
     b.must(Axis::carriage, 355600);
 }
 
-TEST_CASE("light needs a vat under the platform and stillness, and nothing moves in it") {
+TEST_CASE("an exposure needs a vat under the platform and no motion, and nothing moves during it") {
     Bench b;
     CHECK_FALSE(b.lock.light_on(false));
     b.home();
@@ -181,8 +181,7 @@ TEST_CASE("after an emergency stop the axes must be homed again") {
     CHECK(b.lock.position()[Axis::platform] == 300000);
 }
 
-TEST_CASE(
-    "after a restart a vat under the platform or half-way is not lost: it is pulled out, and the tower comes back") {
+TEST_CASE("after a restart a vat outside the tower is kept: the axes home, and the vat can be put back") {
     Bench b;
     b.home();
     b.load();
@@ -198,7 +197,7 @@ TEST_CASE(
     b.must(Axis::carriage, 355600);
 }
 
-TEST_CASE("homing does not tear a vat that hangs half on its hooks") {
+TEST_CASE("with a vat half-way on its hooks carriage and tower are not homed") {
     Bench b;
     b.home();
     b.load();
@@ -210,7 +209,7 @@ TEST_CASE("homing does not tear a vat that hangs half on its hooks") {
     CHECK_FALSE(b.lock.home(Axis::tower));
 }
 
-TEST_CASE("a state is kept and restored") {
+TEST_CASE("the interlocks' state is saved and restored") {
     Bench b;
     b.home();
     b.load();

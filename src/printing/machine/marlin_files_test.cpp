@@ -55,7 +55,7 @@ std::string error_of(Edit edit) {
 
 }  // namespace
 
-TEST_CASE("every setting of the list holds in the files, once per place, and nothing else has changed") {
+TEST_CASE("every setting is in the files once per place, and nothing else has changed") {
     for (const MarlinRelease release : {MarlinRelease::v2_1_1, MarlinRelease::v2_1_2, MarlinRelease::v2_1_3}) {
         const auto files = stock(release);
         const auto settings = firmware_settings(tower8(release)).value();
@@ -83,7 +83,7 @@ TEST_CASE("every setting of the list holds in the files, once per place, and not
     }
 }
 
-TEST_CASE("files that already are as they should be are not changed") {
+TEST_CASE("files that already have all settings are not changed") {
     const MarlinRelease release = MarlinRelease::v2_1_2;
     const auto files = stock(release);
     const auto settings = firmware_settings(tower8(release)).value();
@@ -97,7 +97,7 @@ TEST_CASE("files that already are as they should be are not changed") {
     CHECK(again.configuration_adv == first.configuration_adv);
 }
 
-TEST_CASE("files of another release, of another program, or without a setting are named") {
+TEST_CASE("files of another release or program, or without a setting, are refused by name") {
     const auto replace = [](std::string& text, const std::string& old, const std::string& now) {
         const std::size_t at = text.find(old);
         REQUIRE(at != std::string::npos);
@@ -132,7 +132,7 @@ TEST_CASE("a vendor's configuration is recognised by its author") {
     CHECK(configure_marlin(settings, MarlinRelease::v2_1_2, files[0], files[1])->author == "\"(A Vendor, Model 3)\"");
 }
 
-TEST_CASE("settings in all the shapes that Marlin's own files give them") {
+TEST_CASE("settings are changed in every form that occurs in Marlin's files") {
     // Cases found in the files of 2.1.1, in our own words and numbers: guarded by #ifndef, behind a branch of another
     // setting, in three branches, redefined for a kit, named in a comment, continued on the next line, used as
     // another's value.

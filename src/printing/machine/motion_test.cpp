@@ -31,7 +31,7 @@ TEST_CASE("a long move is a trapezoid, a short one a triangle") {
     CHECK(move_seconds(p, {{0, 0, 0}}, {{0, 0, 0}}, 0) == 0);
 }
 
-TEST_CASE("in a coordinated move the slowest axis sets the pace") {
+TEST_CASE("in a coordinated move the slowest axis sets the time") {
     const Printer p = simple();
     // Along the diagonal both axes move 20 mm: the platform alone would take 20/4 + 4/8.
     CHECK(move_seconds(p, {{0, 0, 0}}, {{20000, 20000, 0}}, 0) == near(5.5, {.relative = 1e-12}));
@@ -48,7 +48,7 @@ TEST_CASE("motion is symmetric in time") {
     CHECK(position_at(way, {}, to, 99).um[0] == 100000);
 }
 
-TEST_CASE("homing goes to the switch at homing speed") {
+TEST_CASE("homing takes the distance to the switch over the homing speed") {
     const Printer p = simple();
     CHECK(home_seconds(p, Axis::platform, 40000) == near(12, {.relative = 1e-12}));
     CHECK(home_seconds(p, Axis::carriage, 40000) == near(8, {.relative = 1e-12}));

@@ -23,16 +23,16 @@ std::string message_with(const char* name, const std::string& from, const std::s
     return printer ? "" : printer.error().message;
 }
 
-struct Slip {
+struct Mistake {
     const char *from, *to, *message;
 };
 
-void check_slips(const char* name, std::initializer_list<Slip> slips) {
-    for (const Slip& slip : slips) {
-        const std::string message = message_with(name, slip.from, slip.to);
-        INFO(std::string(slip.to));
+void check_mistakes(const char* name, std::initializer_list<Mistake> mistakes) {
+    for (const Mistake& mistake : mistakes) {
+        const std::string message = message_with(name, mistake.from, mistake.to);
+        INFO(std::string(mistake.to));
         // Consequential errors may follow on further lines.
-        CHECK_MESSAGE(holds(message.substr(0, message.find('\n')), slip.message), message);
+        CHECK_MESSAGE(holds(message.substr(0, message.find('\n')), mistake.message), message);
     }
 }
 
@@ -54,23 +54,24 @@ TEST_CASE("a magnet instead of hooks is read, and its force is checked") {
               .empty());
 }
 
-TEST_CASE("mistakes in the table of a magnet are named") {
-    check_slips("tower_magnet",
-                {{"\"electromagnet\"", "\"magnet\"", "hooks.kind"},
-                 {"on = \"M42 P11 S255\"", "on = \"G1 X5\"", "must be an M106, M107 or M42 command"},
-                 {"off = \"M42 P11 S0\"\n", "", "hooks: \"off\" is missing"},
-                 {"engage = \"200 ms\"", "engage = \"-1 s\"", "hooks.engage: must be above 0"},
-                 {"release = \"500 ms\"", "release = \"5 mm\"", "hooks.release"},
-                 {"force = \"60 N\"", "# force", "force: and vat_mass go together"},
-                 {"release = \"500 ms\"", "release = \"500 ms\"\ntravel = \"3 mm\"", "hooks.travel: belongs to hooks"},
-                 {"M42 P11 S255", "M42 P12 S255", "is the pin of the emergency line"},
-                 {"on = \"M42 P11 S255\"             # servo output of the RAMPS, to a transistor: off without "
-                  "power\noff = \"M42 P11 S0\"",
-                  "on = \"M106 P1 S255\"\noff = \"M107 P1\"", "is the output of pump"}});
-    check_slips("tower", {{"[hooks]\n", "[hooks]\nengage = \"1 s\"\n", "needs kind = \"electromagnet\""}});
+TEST_CASE("mistakes in a magnet's table are named") {
+    check_mistakes(
+        "tower_magnet",
+        {{"\"electromagnet\"", "\"magnet\"", "hooks.kind"},
+         {"on = \"M42 P11 S255\"", "on = \"G1 X5\"", "must be an M106, M107 or M42 command"},
+         {"off = \"M42 P11 S0\"\n", "", "hooks: \"off\" is missing"},
+         {"engage = \"200 ms\"", "engage = \"-1 s\"", "hooks.engage: must be above 0"},
+         {"release = \"500 ms\"", "release = \"5 mm\"", "hooks.release"},
+         {"force = \"60 N\"", "# force", "force: and vat_mass go together"},
+         {"release = \"500 ms\"", "release = \"500 ms\"\ntravel = \"3 mm\"", "hooks.travel: belongs to hooks"},
+         {"M42 P11 S255", "M42 P12 S255", "is the pin of the emergency line"},
+         {"on = \"M42 P11 S255\"             # servo output of the RAMPS, to a transistor: off without "
+          "power\noff = \"M42 P11 S0\"",
+          "on = \"M106 P1 S255\"\noff = \"M107 P1\"", "is the output of pump"}});
+    check_mistakes("tower", {{"[hooks]\n", "[hooks]\nengage = \"1 s\"\n", "needs kind = \"electromagnet\""}});
 }
 
-TEST_CASE("a wall of vats has its places in rows and columns") {
+TEST_CASE("a wall of vats has slots in rows and columns") {
     const Printer p = load_printer("examples/printers/wall.toml").value();
     CHECK(p.store() == Store::wall);
     CHECK(p.has_carriage());
@@ -83,9 +84,9 @@ TEST_CASE("a wall of vats has its places in rows and columns") {
     CHECK(axis_name(Axis::tower, p.store()) == "lift");
 }
 
-TEST_CASE("mistakes in the table of a wall are named") {
-    check_slips("wall",
-                {{"rows = 4", "rows = 0", "wall.rows: is 0, must be from 1 to 100"},
+TEST_CASE("mistakes in a wall's table are named") {
+    check_mistakes(
+        "wall", {{"rows = 4", "rows = 0", "wall.rows: is 0, must be from 1 to 100"},
                  {"bay = [\"480 mm\", \"300 mm\"]", "bay = [\"480 mm\"]", "wall.bay"},
                  {"bay = [\"480 mm\", \"300 mm\"]", "bay = [\"1480 mm\", \"300 mm\"]",
                   "axis.rail.travel: the bay at 1480.000 mm is outside"},

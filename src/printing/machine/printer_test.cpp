@@ -34,7 +34,7 @@ std::string message_with(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-TEST_CASE("the tower of the thesis is read in micrometres and seconds") {
+TEST_CASE("the printer file of the thesis' tower is read in micrometres and seconds") {
     const auto printer = load_printer(tower_file);
     REQUIRE_MESSAGE(printer, (printer ? "" : printer.error().message));
     CHECK(printer->layer_um == 50);
@@ -58,7 +58,7 @@ TEST_CASE("the tower of the thesis is read in micrometres and seconds") {
     CHECK(printer->pump.on == "M106 P1 S255");
 }
 
-TEST_CASE("offsets of outlines belong to a resin") {
+TEST_CASE("XY compensation and elephant foot belong to a resin") {
     std::string text = tower_text();
     const std::string table = "[resin.semi-flex]\n";
     REQUIRE(text.find(table) != std::string::npos);
@@ -74,7 +74,7 @@ TEST_CASE("offsets of outlines belong to a resin") {
                 "resin.semi-flex.xy_compensation: must be -10 mm to 10 mm"));
 }
 
-TEST_CASE("a wrong printer file gets a line with file, key and remedy") {
+TEST_CASE("an invalid printer file gives a line with file, key and remedy") {
     CHECK(holds(message_with("letter = \"Y\"", "letter = \"Z\""), "has the letter of the platform axis"));
     CHECK(holds(message_with("letter = \"Y\"", "letter = \"yy\""), "p.toml:36: axis.tower.letter"));
     CHECK(holds(message_with("slots = 8", "slots = 3"), "must be from 1 to 3"));
@@ -92,7 +92,7 @@ TEST_CASE("a wrong printer file gets a line with file, key and remedy") {
     CHECK(holds(message_with("tower_position = \"355.6 mm\"", "tower_position = \"1e300 mm\""), "over 100 m"));
 }
 
-TEST_CASE("the image's place, greys and mask are read, and nonsense is refused") {
+TEST_CASE("image rotation, offset, grey curve and mask are read, and invalid values are refused") {
     const auto with = [](const std::string& lines) {
         const std::string text = read_file("examples/printers/tower.toml").value();
         const std::string key = "mirror_x = false";
@@ -119,7 +119,7 @@ TEST_CASE("an empty file and a missing file are errors, not crashes") {
     CHECK_FALSE(load_printer("examples/printers/none.toml"));
 }
 
-TEST_CASE("the firmware of a board is one of the known releases, whatever its last number") {
+TEST_CASE("the firmware is one of the known releases, whatever its last number") {
     CHECK(load_printer(tower_file)->controller.firmware == MarlinRelease::v2_1_2);
     const auto with = [](const std::string& version) {
         return parse_printer(replaced(tower_text(), "[controller]\n", "[controller]\nfirmware = \"" + version + "\"\n"),
@@ -133,7 +133,7 @@ TEST_CASE("the firmware of a board is one of the known releases, whatever its la
     }
 }
 
-TEST_CASE("a brush: its height, its share, what they are without being said, and what cannot be") {
+TEST_CASE("a brush: its height and share, their defaults, and invalid values") {
     const Printer tower = load_printer(tower_file).value();
     CHECK(tower.has_brush());
     CHECK(tower.carriage.along_y);
@@ -154,7 +154,7 @@ TEST_CASE("a brush: its height, its share, what they are without being said, and
     CHECK(holds(on_table.error().message, "cleaning.brush: needs a [tower]"));
 }
 
-TEST_CASE("sprinklers have a place, a direction of length 1 and a cone") {
+TEST_CASE("sprinklers have a position, a direction of length 1 and a cone") {
     const Printer tower = load_printer(tower_file).value();
     REQUIRE(tower.sprinklers.size() == 3);
     const Sprinkler& head = tower.sprinklers[1];

@@ -29,7 +29,7 @@ std::string error_of(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-TEST_CASE("solution goes round: what evaporates is gone, what is washed off gathers, until it is spent") {
+TEST_CASE("reused solution: evaporation is lost, washed-off resin collects, until it must be changed") {
     const Printer p = printer_with_reservoir();
     SolutionCircuit c(p);
     c.clean(15, 1);
@@ -50,7 +50,7 @@ TEST_CASE("solution goes round: what evaporates is gone, what is washed off gath
     CHECK(c.used_ml() == near(46 * 3 + in_it, {.relative = 1e-12}));
 }
 
-TEST_CASE("evaporation leaves the resin behind; a low reservoir is topped up") {
+TEST_CASE("evaporation leaves the resin behind, and a low reservoir is refilled") {
     Printer p = printer_with_reservoir();
     p.solution.resin_share = 0.01;
     p.solution.evaporation_ml_h = 90;
@@ -70,7 +70,7 @@ TEST_CASE("evaporation leaves the resin behind; a low reservoir is topped up") {
     CHECK(c.liquid_ml() == near(10, {.relative = 1e-12}));  // never less than its resin
 }
 
-TEST_CASE("a filter keeps its share until it is full") {
+TEST_CASE("a filter removes its share of resin until it is full") {
     Printer p = printer_with_reservoir();
     p.solution.filter_share = 0.5;
     p.solution.filter_ml = 2;
@@ -87,7 +87,7 @@ TEST_CASE("a filter keeps its share until it is full") {
     CHECK_FALSE(c.needs());
 }
 
-TEST_CASE("without a reservoir every cleaning takes fresh solution") {
+TEST_CASE("without a reservoir every cleaning uses fresh solution") {
     Printer p = printer_with_reservoir();
     p.solution = {};
     SolutionCircuit c(p);
@@ -99,7 +99,7 @@ TEST_CASE("without a reservoir every cleaning takes fresh solution") {
     CHECK_FALSE(c.draws_air());
 }
 
-TEST_CASE("a reservoir in the printer file, and the slips") {
+TEST_CASE("a reservoir is read from the printer file, and mistakes are named") {
     const Printer tower = load_printer("examples/printers/tower.toml").value();
     CHECK(tower.solution.volume_ml == near(5000, {.relative = 1e-12}));
     CHECK(tower.solution.fill_ml == near(5000, {.relative = 1e-12}));

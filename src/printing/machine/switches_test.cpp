@@ -57,7 +57,7 @@ TEST_CASE("the prototype has two fans, three limit switches and a relay as emerg
     CHECK(load_printer("examples/printers/single.toml").value().door.input == "y_max");
 }
 
-TEST_CASE("a wrong switch, door, fan or emergency line is named with its remedy") {
+TEST_CASE("mistakes in switches, door, fans and emergency line are named, with a remedy") {
     CHECK(wrong("\n[door]\ninput = \"y_max\"\ninverted = true\n").empty());
     CHECK(holds(wrong("\n[door]\ninput = \"y_min\"\n"), "is the limit switch of the tower"));
     CHECK(holds(wrong("\n[door]\ninput = \"front\"\n"), "door.input"));
@@ -88,7 +88,7 @@ TEST_CASE("the older form of one fan is still read") {
     CHECK(p.fans[0].off == "M107 P0");
 }
 
-TEST_CASE("a switch is read only from a whole line") {
+TEST_CASE("a switch is read only from a complete line") {
     CHECK(parse_switch("x_min: TRIGGERED") == SwitchReading{"x_min", true});
     CHECK(parse_switch("filament: open") == SwitchReading{"filament", false});
     for (const char* line : {"x_min:open", "x_min: opn", "x_min: TRIGGERE", ": open", "Reporting endstop status",
@@ -96,14 +96,14 @@ TEST_CASE("a switch is read only from a whole line") {
         CHECK_FALSE(parse_switch(line));
 }
 
-TEST_CASE("switches are called by their letter, extra axes also by Marlin's own name") {
+TEST_CASE("switches are named by their axis letter, on extra axes also by Marlin's own name") {
     const Printer p = load_printer("examples/printers/two_towers.toml").value();  // tower A, table B
     CHECK(switch_names(p, {Axis::platform, true, false}) == std::vector<std::string>{"z_max"});
     CHECK(switch_names(p, {Axis::tower, false, false}) == std::vector<std::string>{"a_min", "i_min"});
     CHECK(switch_names(p, {Axis::table, false, false}) == std::vector<std::string>{"b_min", "j_min"});
 }
 
-TEST_CASE("a switch that is pressed where it must not be, both ends at once, a switch that is not there") {
+TEST_CASE("errors: a switch pressed in the wrong place, both ends pressed, a switch that is missing") {
     const Printer p = tower_with(
                           "\n[[limit_switch]]\naxis = \"platform\"\nend = \"min\"\n"
                           "\n[door]\ninput = \"y_max\"\n")
@@ -131,7 +131,7 @@ TEST_CASE("a switch that is pressed where it must not be, both ends at once, a s
     CHECK(door_open(p, with(4, true)) == true);
 }
 
-TEST_CASE("the firmware is built for inverted switches, a switch at the far end, the door, the fan and the relay") {
+TEST_CASE("firmware settings cover inverted switches, a far switch, door, fan and relay") {
     Printer p = tower_with(
                     "\n[door]\ninput = \"y_max\"\ninverted = true\n"
                     "\n[[limit_switch]]\naxis = \"platform\"\nend = \"min\"\ninverted = true\n")
@@ -150,7 +150,7 @@ TEST_CASE("the firmware is built for inverted switches, a switch at the far end,
     CHECK(holds(firmware_ini(p).error().message, "no free input"));
 }
 
-TEST_CASE("no program writes to the pin of the emergency line") {
+TEST_CASE("a job's G-code may not write to the pin of the emergency line") {
     const Printer p = load_printer("examples/printers/tower.toml").value();
     Followed at{Interlock(p)};
     CHECK(holds(at.line(p, "M42 P12 S0").error().message, "emergency line"));

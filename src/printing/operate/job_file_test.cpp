@@ -81,7 +81,7 @@ struct Job {
 
 }  // namespace
 
-TEST_CASE("a job opens with its printer; one without says what to do") {
+TEST_CASE("a job opens with its printer; a job without a printer gets a remedy") {
     Job job;
     job.write();
     const auto open = open_job(job.path);
@@ -97,7 +97,7 @@ TEST_CASE("a job opens with its printer; one without says what to do") {
     CHECK(holds(open_job(job.path).error().message, "slice the robot again with --printer"));
 }
 
-TEST_CASE("a mask is read where the printer names one, from beside its file and from the job") {
+TEST_CASE("a mask is read from the folder of the printer file, and from the job") {
     Job job;
     CHECK_FALSE(load_mask(job.printer.projector, job.folder / "p.toml").value().has_value());
     machine::Projector masked = job.printer.projector;
@@ -116,7 +116,7 @@ TEST_CASE("a mask is read where the printer names one, from beside its file and 
     CHECK(mask_of(open_job(job.path)->archive, masked).value() == image_of_half(0));
 }
 
-TEST_CASE("a proved job is made ready: images, materials, journal beside it, vats as full as the plan asks") {
+TEST_CASE("a checked job is made ready: images, materials, journal beside it, vats filled as planned") {
     const Job job;
     job.write();
     const auto ready = load_job(job.path);
@@ -137,7 +137,7 @@ TEST_CASE("a proved job is made ready: images, materials, journal beside it, vat
     }
 }
 
-TEST_CASE("operator tasks before a layer are requested once, in the order of layers") {
+TEST_CASE("tasks before a layer are asked for once, in the order of layers") {
     Job job;
     const double uses_ml = plan::make_plan(job.manifest, job.printer)->vats.front().resin_ml;
     job.set("fill", fmt::format("\"{} ml\"", 0.6 * uses_ml));
@@ -157,7 +157,7 @@ TEST_CASE("operator tasks before a layer are requested once, in the order of lay
     }
 }
 
-TEST_CASE("a program that was changed is refused with its line, whoever remade the fingerprints") {
+TEST_CASE("a changed G-code line is refused with its number, even if all checksums are right") {
     Job job;
     const std::string lit = "G1 ";
     job.gcode.insert(job.gcode.find(lit, job.gcode.size() / 2), "G1 Z9 F600\n");
@@ -169,7 +169,7 @@ TEST_CASE("a program that was changed is refused with its line, whoever remade t
     CHECK_FALSE(load_job(job.path).has_value());
 }
 
-TEST_CASE("the host's limits are the printer file's, and its programs those of the planner") {
+TEST_CASE("the host's limits come from the printer file, its programs from the planner") {
     Job job;
     machine::Controller controller;
     controller.window_lines = 3;

@@ -14,7 +14,7 @@
 using namespace pliant;
 using namespace pliant::operate;
 
-TEST_CASE("a folder shows the picture as long as there is light") {
+TEST_CASE("with a folder as projector the picture is there exactly during the exposure") {
     const pliant::test::Folder folder;
     {
         PictureProjector projector(folder.path());
@@ -31,7 +31,7 @@ TEST_CASE("a folder shows the picture as long as there is light") {
     CHECK_FALSE(nowhere.show({2, 1, {0, 200}}));
 }
 
-TEST_CASE("the command after a layer knows the layer; one that fails or hangs is reported") {
+TEST_CASE("the command after a layer knows the layer's number; its failure or timeout is reported") {
     const pliant::test::Folder folder;
     const std::string file = (folder.path() / "layer").string();
     CHECK(run_layer_command("echo -n $PLIANT_LAYER > " + file, 12));

@@ -19,13 +19,13 @@ using namespace pliant::operate;
 namespace {
 
 /// A host that goes so far with exposure 17 and is then killed.
-void die(const ProcessGuard::Options& options, const std::function<void(ProcessGuard&)>& deeds) {
+void run_killed_host(const ProcessGuard::Options& options, const std::function<void(ProcessGuard&)>& actions) {
     const pid_t host = ::fork();
     if (host == 0) {
         auto guard = ProcessGuard::start(options);
         std::ofstream(options.shown) << "light";
         guard->announced(17);
-        deeds(*guard);
+        actions(*guard);
         ::kill(::getpid(), SIGKILL);
     }
     ::waitpid(host, nullptr, 0);
@@ -38,7 +38,7 @@ double now_s() {
 }
 
 /// What the next host learns of exposure 17; the guard of the previous one may still be writing.
-std::optional<double> heard(const ProcessGuard::Options& options) {
+std::optional<double> recorded_exposure_s(const ProcessGuard::Options& options) {
     auto guard = ProcessGuard::start(options);
     REQUIRE(guard);
     std::optional<double> on_s;
@@ -53,33 +53,33 @@ TEST_CASE("if the host is killed during an exposure, the guard turns it off and 
     const pliant::test::Folder folder;
     const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
     const double before_s = now_s();
-    die(options, [](ProcessGuard& guard) {
+    run_killed_host(options, [](ProcessGuard& guard) {
         guard.lit(now_s());
         ::usleep(200000);
     });
-    const auto on_s = heard(options);
+    const auto on_s = recorded_exposure_s(options);
     CHECK_FALSE(std::filesystem::exists(options.shown));
     REQUIRE(on_s);
     CHECK(*on_s > 0.19);
     CHECK(*on_s <= now_s() - before_s);
 }
 
-TEST_CASE("a host killed between its note and the exposure has given none") {
+TEST_CASE("a host killed between its journal entry and the exposure: 0 s of light") {
     const pliant::test::Folder folder;
     const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
-    die(options, [](ProcessGuard&) {});
-    CHECK(heard(options) == 0);
+    run_killed_host(options, [](ProcessGuard&) {});
+    CHECK(recorded_exposure_s(options) == 0);
     CHECK(std::filesystem::exists(options.shown));
 }
 
-TEST_CASE("a host killed between exposure and note: it was on until then") {
+TEST_CASE("a host killed between an exposure and its journal entry: the whole exposure counts") {
     const pliant::test::Folder folder;
     const ProcessGuard::Options options{folder.path() / "witness", folder.path() / "shown.png", 1};
-    die(options, [&](ProcessGuard& guard) {
+    run_killed_host(options, [&](ProcessGuard& guard) {
         guard.lit(100);
         guard.dark(102.5);
     });
-    const auto on_s = heard(options);
+    const auto on_s = recorded_exposure_s(options);
     REQUIRE(on_s);
     CHECK(*on_s == near(2.5, {.relative = 1e-12}));
 }

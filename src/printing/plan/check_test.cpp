@@ -26,12 +26,12 @@ std::string error_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("a valid sequence passes") {
+TEST_CASE("a valid program passes") {
     CHECK(error_of(start + load + "G1 Z0.05\nM400\n" + light) == "");
     CHECK(error_of("; only a comment\n\nM84 S0\n") == "");
 }
 
-TEST_CASE("what the machine must never do is named with its line") {
+TEST_CASE("actions that are never allowed are refused with their line") {
     CHECK(holds(error_of("G90\nG1 X10\n"), "G-code line 2: the carriage moves before it is homed"));
     CHECK(holds(error_of("G28 Z\nG1 Z10\n"), "a move before G90"));
     CHECK(holds(error_of(start + "G1 X355.6\n"), "line 5"));
@@ -40,7 +40,7 @@ TEST_CASE("what the machine must never do is named with its line") {
     CHECK(holds(error_of(start + "G1 Z401\n"), "outside its travel"));
 }
 
-TEST_CASE("commands outside the dialect are refused") {
+TEST_CASE("commands outside the supported dialect are refused") {
     CHECK(holds(error_of("G91\n"), "G91 does not belong"));
     CHECK(holds(error_of("M112\n"), "M112 is not a command"));
     CHECK(holds(error_of("g1 x1\n"), "not a command"));
@@ -50,8 +50,7 @@ TEST_CASE("commands outside the dialect are refused") {
     CHECK(holds(error_of(start + "G1 E5\n"), "E is not an axis"));
 }
 
-TEST_CASE(
-    "foreign programs: numbers, checksums, units, messages and reports pass; what they move is checked all the same") {
+TEST_CASE("G-code of other programs: harmless lines pass, moves are checked as always") {
     CHECK(error_of("G21\nM117 hello\nN1 G90*3\nN2 G28 Z*7\nM114\nM105\n") == "");
     CHECK(holds(error_of("G21\nG90\nN3 G1 X5*12\n"), "G-code line 3: the carriage moves before it is homed"));
     CHECK(holds(error_of("G91\n"), "relative"));
@@ -59,7 +58,7 @@ TEST_CASE(
     CHECK(holds(error_of("G92 X0\n"), "G92 moves the origin of X"));
 }
 
-TEST_CASE("the pump runs over the drain only, behind a fence, and not for ever") {
+TEST_CASE("the pump runs over the drain only, after M400, and not without end") {
     const std::string push = start + load + "G1 X355.6\n";
     CHECK(error_of(push + "M400\nM106 P1 S255\nG1 Y0.5\nG1 X335\nM400\nM107 P1\nG1 X0\n") == "");
     CHECK(holds(error_of(push + "M106 P1 S255\n"), "M400 before it is missing"));

@@ -16,7 +16,7 @@ machine::Printer machine_of(const char* name) {
 
 }  // namespace
 
-TEST_CASE("the swap of the thesis: 24, 3, 15 and 24 s that make 62 to 63, because the hooks move within the spray") {
+TEST_CASE("the thesis' swap: 24, 3, 15 and 24 s take 62 to 63 s, since the hooks move during the spray") {
     const SwapSteps s = figures(machine_of("tower")).swap;
     CHECK(s.push_s == near(24, {.relative = 0.02}));
     CHECK(s.hooks_s == near(3, {.relative = 1e-12}));
@@ -27,7 +27,7 @@ TEST_CASE("the swap of the thesis: 24, 3, 15 and 24 s that make 62 to 63, becaus
     CHECK(s.push_s + s.hooks_s + s.clean_s + s.pull_s > 65);
 }
 
-TEST_CASE("table 4.1 against Zhou: 72 against 6 square inches, 8 against 2 vats, 62 against 180 s, 15 against 120 s") {
+TEST_CASE("table 4.1 against Zhou: 72 and 6 square inches, 8 and 2 vats, 62 and 180 s, 15 and 120 s") {
     const PrinterFigures tower = figures(machine_of("tower8"));
     const PrinterFigures rotary = figures(machine_of("rotary"));
     CHECK(tower.area_mm2 / square_inch_mm2 == near(72, {.relative = 1e-12}));
@@ -40,7 +40,7 @@ TEST_CASE("table 4.1 against Zhou: 72 against 6 square inches, 8 against 2 vats,
     CHECK(rotary.removed == near(0.59, {.relative = 1e-12}));
 }
 
-TEST_CASE("eight vats in 60 in; a packing density of about 0.6 for the prototype's four vats, 0.3 for two in a ring") {
+TEST_CASE("eight vats need 60 in; packing density 0.6 for four vats in the tower, 0.3 for two in a ring") {
     const machine::Printer tower = machine_of("tower");
     CHECK(tower_height_mm(tower, 8) == near(60 * 25.4, {.relative = 1e-12}));
     CHECK(tower_height_mm(tower, 9) - tower_height_mm(tower, 8) == near(8 * 25.4, {.relative = 1e-12}));
@@ -49,7 +49,7 @@ TEST_CASE("eight vats in 60 in; a packing density of about 0.6 for the prototype
     CHECK(ring_packing(304.8, 152.4, 2) == near(0.3, {.relative = 0.02}));
 }
 
-TEST_CASE("a neighbour of the tower is always as near; rows and rings grow with their vats") {
+TEST_CASE("the time to the next vat of a tower is constant; in rows and rings it grows with their vats") {
     const std::vector<int> vats = {2, 8, 32};
     const auto tower = swap_over_vats(machine_of("tower"), vats);
     const auto rotary = swap_over_vats(machine_of("rotary"), vats);
@@ -60,7 +60,7 @@ TEST_CASE("a neighbour of the tower is always as near; rows and rings grow with 
     CHECK(rotary[2].mean_s > rotary[0].mean_s + 10);
 }
 
-TEST_CASE("a swap follows the bed's length one to one, and the motors") {
+TEST_CASE("the swap time grows with the bed's length, and falls with faster motors") {
     const machine::Printer tower = machine_of("tower");
     const auto swap_s = [&](double bed, double motors) { return figures(with_bed(tower, bed, motors)).swap.total_s; };
     CHECK(swap_s(1, 1) == near(figures(tower).swap.total_s, {.relative = 1e-12}));
@@ -74,7 +74,7 @@ TEST_CASE("a swap follows the bed's length one to one, and the motors") {
     CHECK(figures(with_bed(linear, 2, 1)).swap.total_s > figures(linear).swap.total_s);
 }
 
-TEST_CASE("a wall grows by columns; half of its room is the retriever's; a larger bed lengthens its carriage's way") {
+TEST_CASE("a wall grows by columns; half its volume is the retriever's; a larger bed takes longer") {
     const machine::Printer wall = machine_of("wall");
     const PrinterFigures f = figures(wall);
     CHECK(f.places == 16);

@@ -52,7 +52,7 @@ ChangeCosts even_costs(int vats, double swap) {
 
 }  // namespace
 
-TEST_CASE("the least cost is that of trying every order, and the order given has it") {
+TEST_CASE("the least cost agrees with trying every order, and the returned order has it") {
     std::mt19937 random(7);
     for (int round = 0; round < 150; ++round) {
         const ChangeCosts costs = random_costs(5, random);
@@ -68,7 +68,7 @@ TEST_CASE("the least cost is that of trying every order, and the order given has
     }
 }
 
-TEST_CASE("one layer of seven vats: the cheapest path through all of them") {
+TEST_CASE("one layer of seven vats: the cheapest order of all") {
     std::mt19937 random(3);
     for (int round = 0; round < 10; ++round) {
         const ChangeCosts costs = random_costs(7, random);
@@ -77,7 +77,7 @@ TEST_CASE("one layer of seven vats: the cheapest path through all of them") {
     }
 }
 
-TEST_CASE("with even costs the least cost is the least number of swaps") {
+TEST_CASE("with equal costs the least cost is the fewest swaps") {
     std::mt19937 random(11);
     for (int round = 0; round < 50; ++round) {
         const std::vector<VatList> layers = random_layers(8, 6, random);
@@ -87,7 +87,7 @@ TEST_CASE("with even costs the least cost is the least number of swaps") {
     }
 }
 
-TEST_CASE("an expensive pair is avoided even if the store moves farther") {
+TEST_CASE("an expensive pair is avoided even if the tower moves farther") {
     ChangeCosts costs = even_costs(3, 60);
     costs.swap[costs.at(0, 2)] = 500;
     costs.load = {0, 100, 100};
@@ -96,7 +96,7 @@ TEST_CASE("an expensive pair is avoided even if the store moves farther") {
     CHECK(found.cost == 120);
 }
 
-TEST_CASE("more vats in a layer than can be tried: a complete order all the same, and it says so") {
+TEST_CASE("too many vats in a layer for an exact search give a complete order, marked as not exact") {
     std::mt19937 random(5);
     const ChangeCosts costs = random_costs(40, random);
     VatList all(40);
@@ -107,7 +107,7 @@ TEST_CASE("more vats in a layer than can be tried: a complete order all the same
     CHECK(least_cost_order(std::vector<VatList>{all, all}, even_costs(40, 1)).exact);
 }
 
-TEST_CASE("nothing to print costs nothing") {
+TEST_CASE("layers without material cost nothing") {
     const LeastCost found = least_cost_order(std::vector<VatList>{{}, {}}, even_costs(2, 5));
     CHECK(found.cost == 0);
     CHECK(found.order.size() == 2);

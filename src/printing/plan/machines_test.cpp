@@ -99,7 +99,7 @@ TEST_CASE("the planned time is that of the commands, to the microsecond, on ever
     }
 }
 
-TEST_CASE("no order of the planner takes longer than the thesis' rule or the naive one, and none beats the bound") {
+TEST_CASE("the planned order never takes longer than the thesis' rule or the naive one, nor less than the bound") {
     std::mt19937 random(9);
     for (const machine::Printer& printer : plan::test::machines()) {
         for (int round = 0; round < 10; ++round) {
@@ -111,14 +111,14 @@ TEST_CASE("no order of the planner takes longer than the thesis' rule or the nai
     }
 }
 
-TEST_CASE("the rotary machine's change of vats takes the 180 s that are reported for it, 120 of them cleaning") {
+TEST_CASE("a swap of the rotary machine takes the reported 180 s, 120 s of them cleaning") {
     const machine::Printer printer = machine::load_printer("examples/printers/rotary.toml").value();
     const Seconds s = swap_seconds(printer, 1, 2);
     CHECK(s.total == near(180, {.relative = 0.02}));
     CHECK(s.clean == near(120, {.relative = 1e-12}));
 }
 
-TEST_CASE("a rotary table takes the shorter way round, within the travel of its cables") {
+TEST_CASE("a rotary table takes the shorter way round, within its travel") {
     const machine::Printer p = machine::load_printer("examples/printers/carousel.toml").value();
     CHECK(p.nearest_um(270000, 0) == -90000);
     CHECK(p.nearest_um(180000, 10000) == 180000);
@@ -128,7 +128,7 @@ TEST_CASE("a rotary table takes the shorter way round, within the travel of its 
     CHECK_FALSE(p.table_at(-89999, 270000));
 }
 
-TEST_CASE("a classic build has the tower on E: set by hand, absolute, allowed to move cold") {
+TEST_CASE("a classic build moves the tower as extruder E: origin set by G92, absolute, cold moves allowed") {
     const machine::Printer printer = with_letter_e();
     const job::Manifest job = plan::test::make_job({{0, 1}}, {"semi-flex", "rigid-flex"});
     const std::string text = write_gcode(make_plan(job, printer).value(), job, printer);
@@ -138,7 +138,7 @@ TEST_CASE("a classic build has the tower on E: set by hand, absolute, allowed to
     CHECK(text.find("G28 E") == std::string::npos);
 }
 
-TEST_CASE("two vats of one resin: the second takes over on the layer that the first cannot fill") {
+TEST_CASE("two vats of one resin: the second takes over at the layer that the first cannot fill") {
     machine::Printer printer = plan::test::tower();
     printer.vat_shape.least_ml = 0;
     printer.vats[2].resin = "semi-flex";
@@ -155,7 +155,7 @@ TEST_CASE("two vats of one resin: the second takes over on the layer that the fi
           std::string::npos);
 }
 
-TEST_CASE("a pair that needs longer cleaning, and one that is worth avoiding, change the order") {
+TEST_CASE("a pair with longer cleaning, or with an extra cost, changes the order") {
     machine::Printer printer = plan::test::tower();
     const job::Manifest job = plan::test::make_job({{0, 1, 2}}, {"semi-flex", "rigid-flex", "tough"});
     CHECK(make_plan(job, printer)->order[0] == VatList{0, 1, 2});
@@ -167,7 +167,7 @@ TEST_CASE("a pair that needs longer cleaning, and one that is worth avoiding, ch
     CHECK(before < 80);
 }
 
-TEST_CASE("resin that is washed off and solution that is used follow from the number of cleanings") {
+TEST_CASE("the resin washed off and the solution used follow from the number of cleanings") {
     machine::Printer printer = plan::test::tower();
     const job::Manifest job = plan::test::make_job({{0, 1}, {0, 1}}, {"semi-flex", "rigid-flex"});
     const Plan brushed = make_plan(job, printer).value();
@@ -184,7 +184,7 @@ TEST_CASE("resin that is washed off and solution that is used follow from the nu
     CHECK(plan.waste_ml / ((100 + 200 + 200) * 0.06 / 1000) == near(1, {.relative = 1e-12}));
 }
 
-TEST_CASE("solution that goes round: a die of 340 cleanings takes little of it, and it is changed when it is spent") {
+TEST_CASE("reused solution: a job of 340 cleanings uses little, and it is changed when it has too much resin") {
     machine::Printer printer = plan::test::tower();
     job::Manifest job =
         plan::test::make_job(std::vector<std::vector<int>>(170, {0, 1, 2}), {"semi-flex", "rigid-flex", "tough"});
@@ -218,7 +218,7 @@ TEST_CASE("solution that goes round: a die of 340 cleanings takes little of it, 
     CHECK(plan_json(plate).find("\"care\"") != std::string::npos);
 }
 
-TEST_CASE("where the store takes longer than the cleaning, the pump runs as long, and the plan counts it") {
+TEST_CASE("if the tower takes longer than the cleaning, the pump runs until it arrives, and the plan counts that") {
     const machine::Printer printer = plan::test::tower();
     const Plan far =
         make_plan(plan::test::make_job({{0}, {3}, {0}}, {"semi-flex", "rigid-flex", "tough", "elastomer"}), printer)
@@ -228,7 +228,7 @@ TEST_CASE("where the store takes longer than the cleaning, the pump runs as long
     CHECK(far.solution.pumped_ml > 3 * 20 + 10);
 }
 
-TEST_CASE("a program that has lost a line that the interlocks depend on is refused") {
+TEST_CASE("a G-code program without any line that the interlocks need is refused") {
     const machine::Printer printer = plan::test::tower();
     const job::Manifest job = plan::test::make_job({{0, 1}, {1}}, {"semi-flex", "rigid-flex"});
     const std::string text = write_gcode(make_plan(job, printer).value(), job, printer);

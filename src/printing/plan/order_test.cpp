@@ -57,13 +57,13 @@ TEST_CASE("eight materials in every layer: 1599 swaps in a fixed order, 1400 by 
     check_all(repeated(all, 200), 1599, 1400, 1400);
 }
 
-TEST_CASE("blank layers are skipped, nothing at all costs nothing") {
+TEST_CASE("blank layers are skipped, and an empty job needs no swap") {
     check_all({{}, {0}, {}, {0, 1}, {}, {1}, {}}, 1, 1, 1);
     check_all({}, 0, 0, 0);
     check_all({{}, {}}, 0, 0, 0);
 }
 
-TEST_CASE("the rule of the thesis does not look ahead; the fewest swaps do") {
+TEST_CASE("the thesis' rule does not look ahead and needs more swaps than the least number") {
     check_all({{0, 1, 2}, {0}}, 3, 3, 2);
     check_all({{0, 1}, {0, 2}, {1, 2}}, 5, 4, 3);
 }

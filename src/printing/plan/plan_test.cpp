@@ -35,7 +35,7 @@ std::string error_of(const job::Manifest& job, const machine::Printer& printer) 
 
 }  // namespace
 
-TEST_CASE("two halves of 200 layers: 200 swaps, their time and resin") {
+TEST_CASE("two halves of 200 layers: 200 swaps, with their time and resin") {
     const machine::Printer printer = plan::test::tower();
     const job::Manifest job = plan::test::make_job(repeated({0, 1}, 200), two);
     const Plan plan = planned(job, printer);
@@ -87,7 +87,7 @@ TEST_CASE("materials of one resin share a vat and need no swap") {
     CHECK(plan.order[0] == VatList{2});
 }
 
-TEST_CASE("more resins than vats, a foreign projector, too tall, out of order, no exposure: errors") {
+TEST_CASE("too many resins, another projector, a part too tall, layers out of order, no exposure: errors") {
     const machine::Printer printer = plan::test::tower();
     CHECK(
         holds(error_of(plan::test::make_job({{0, 1, 2, 3, 4}}, {"a", "b", "c", "d", "e"}), printer), "needs 5 resins"));
@@ -109,7 +109,7 @@ TEST_CASE("more resins than vats, a foreign projector, too tall, out of order, n
     CHECK(holds(error_of(job, printer), "needs exposures"));
 }
 
-TEST_CASE("blank layers and resin that runs out are noticed") {
+TEST_CASE("warnings: a material that prints nothing, and a vat that holds too little resin") {
     machine::Printer printer = plan::test::tower();
     printer.vats[0].fill_ml = 60.01;  // of which 60 must stay
     const Plan plan = planned(plan::test::make_job({{0}, {0}, {}, {}, {0}}, two), printer);
@@ -120,7 +120,7 @@ TEST_CASE("blank layers and resin that runs out are noticed") {
     CHECK(holds(plan.warnings[2], "1 layer lies higher"));
 }
 
-TEST_CASE("the G-code passes the interlocks, is absolute, and lights each image once behind a fence") {
+TEST_CASE("the G-code passes the interlocks, is absolute, and shows each image once, after M400") {
     const machine::Printer printer = plan::test::tower();
     const job::Manifest job =
         plan::test::make_job({{0, 1, 2}, {0, 2}, {}, {1}, {0, 1, 2}}, {"semi-flex", "rigid-flex", "tough"});
@@ -141,7 +141,7 @@ TEST_CASE("the G-code passes the interlocks, is absolute, and lights each image 
     CHECK(holds(text, ";@stop M107 P1"));
 }
 
-TEST_CASE("an empty job homes and does nothing") {
+TEST_CASE("an empty job homes the axes and does nothing else") {
     const machine::Printer printer = plan::test::tower();
     const job::Manifest job = plan::test::make_job({}, two);
     const Plan plan = planned(job, printer);
@@ -170,7 +170,7 @@ TEST_CASE("the plan as text shows times as h:mm:ss") {
     CHECK(holds(text, "slot 2"));
 }
 
-TEST_CASE("the models of known swap counts: naive and best, as their table gives them") {
+TEST_CASE("jobs with known swap counts: naive order and best order agree with the table") {
     const machine::Printer printer = machine::load_printer("examples/printers/tower8.toml").value();
     std::vector<std::string> resins;
     for (const machine::Vat& vat : printer.vats) resins.push_back(vat.resin);
@@ -188,7 +188,7 @@ TEST_CASE("the models of known swap counts: naive and best, as their table gives
     CHECK(counts(repeated({0, 1, 2, 3, 4, 5, 6, 7}, 200)) == std::pair(1599, 1400));  // checker8
 }
 
-TEST_CASE("a resin that no vat holds is an error with the name that was meant, unless any vat will do") {
+TEST_CASE("a resin in no vat is an error with the nearest name, unless any vat may be used") {
     const machine::Printer printer = plan::test::tower();
     job::Manifest job = plan::test::make_job({{0}, {0, 1}}, {"semiflex", "rigid-flex"});
     CHECK(make_plan(job, printer).has_value());
@@ -209,7 +209,7 @@ TEST_CASE("a resin that no vat holds is an error with the name that was meant, u
     CHECK(make_plan(job, printer).has_value());
 }
 
-TEST_CASE("the vats are listed for whoever fills them") {
+TEST_CASE("the list of vats says what to fill in") {
     job::Manifest job = plan::test::make_job({{0}, {0, 1}}, {"glue", "rigid-flex"});
     const Plan plan = make_plan(job, plan::test::tower()).value();
     CHECK(vat_lines(plan) ==

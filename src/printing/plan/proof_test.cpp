@@ -67,7 +67,7 @@ void change_line(std::string& gcode, const std::string& begin, int nth,
 
 }  // namespace
 
-TEST_CASE("what the planner writes is proved on every machine, whatever the job") {
+TEST_CASE("the planner's G-code passes the proof on every machine, for every job") {
     for (const machine::Printer& printer : plan::test::machines()) {
         CAPTURE(printer.name);
         const std::size_t n = std::min<std::size_t>(3, printer.vats.size());
@@ -79,7 +79,7 @@ TEST_CASE("what the planner writes is proved on every machine, whatever the job"
     }
 }
 
-TEST_CASE("exposures of their own, refills, long and short cleaning, resins that are filled in") {
+TEST_CASE("the proof accepts given exposures, refills, long and short cleaning, and resins filled in") {
     Case c = two_materials();
     c.job.layers[1].images[1].exposure_s = 7.1234;
     c.job.bottom_layers = 1;
@@ -98,7 +98,7 @@ TEST_CASE("exposures of their own, refills, long and short cleaning, resins that
     CHECK(case_of(still, {{0, 1}, {0, 1}}, resins_of(still, 2)).error() == "");
 }
 
-TEST_CASE("a light that is missing, doubled, longer, shorter, of another image is found, with layer and line") {
+TEST_CASE("the proof finds an exposure missing, repeated, too long, too short or of another image") {
     const Case good = two_materials();
     REQUIRE(good.error() == "");
     const auto changed = [&](const std::function<std::string(std::string)>& change) {
@@ -120,7 +120,7 @@ TEST_CASE("a light that is missing, doubled, longer, shorter, of another image i
     CHECK(changed(with("layer=2", "layer=1")).starts_with("G-code line "));
 }
 
-TEST_CASE("a vat that is put away without its brush reaching the part is found") {
+TEST_CASE("the proof finds a vat put away with the part too high for its brush") {
     Case c = two_materials();
     // The way up for the first swap, with two layers of part: a brush reaches the part 1 mm above the rim, at 82.55 mm.
     change_line(c.gcode, "G1 Z83.650", 0, [](std::string line) { return line.replace(4, 6, "84.650"); });
@@ -131,7 +131,7 @@ TEST_CASE("a vat that is put away without its brush reaching the part is found")
     CHECK(holds(bare.error(), "the platform is down"));  // without a brush the part must not pass this low
 }
 
-TEST_CASE("a wrong height, a missing lift, rest, stroke or approach is found") {
+TEST_CASE("the proof finds a wrong height, and a missing lift, rest, stroke or approach") {
     const machine::Printer tower = plan::test::tower();
     const Case good = case_of(tower, {{0}, {0}, {0}}, {tower.vats[0].resin});
     const auto changed = [&](const std::string& begin, int nth, const std::function<std::string(std::string)>& change) {
@@ -161,7 +161,7 @@ TEST_CASE("a wrong height, a missing lift, rest, stroke or approach is found") {
     CHECK(holds(late.error(), "the projector is dark after 0.7 s"));
 }
 
-TEST_CASE("cleaning that is left out, cut short, or a rest in place of its strokes is found") {
+TEST_CASE("the proof finds cleaning left out, cut short, or without its strokes") {
     const Case good = two_materials();
     const auto cleaned = [&](const std::function<void(std::vector<std::string>&)>& change) {
         Case c = good;
@@ -201,7 +201,7 @@ TEST_CASE("cleaning that is left out, cut short, or a rest in place of its strok
     CHECK(holds(c.error(), "switches nothing"));
 }
 
-TEST_CASE("a program that is cut anywhere is found, but for what comes after the part hangs clear and clean") {
+TEST_CASE("the proof finds a program cut anywhere before the part is clean and clear") {
     const Case good = two_materials();
     std::vector<std::size_t> ends = {0};
     for (std::size_t at = good.gcode.find('\n'); at != std::string::npos; at = good.gcode.find('\n', at + 1))
@@ -218,7 +218,7 @@ TEST_CASE("a program that is cut anywhere is found, but for what comes after the
     CHECK(holds(c.error(), "the last: layer "));
 }
 
-TEST_CASE("other vats than the job's resins are in, and vats that run dry, are found") {
+TEST_CASE("the proof finds vats with the wrong resins, and vats that run dry") {
     Case c = two_materials();
     std::swap(c.printer.vats[0].resin, c.printer.vats[1].resin);
     c.plan = make_plan(c.job, c.printer).value();
@@ -230,7 +230,7 @@ TEST_CASE("other vats than the job's resins are in, and vats that run dry, are f
     CHECK(holds(c.error(), "has run dry"));
 }
 
-TEST_CASE("the proof is about meaning: another program's habits pass") {
+TEST_CASE("the proof accepts G-code that another program has rewritten with the same meaning") {
     Case c = two_materials();
     std::string text = "G21\n";
     int number = 0;

@@ -40,7 +40,7 @@ struct Program {
 
 }  // namespace
 
-TEST_CASE("property: a print can be cancelled after any line, and every vat is in its slot again") {
+TEST_CASE("property: a print can be cancelled after any line, and every vat is then in its slot") {
     for (const machine::Printer& printer : test::machines()) {
         const Program p(printer);
         for (int n = 0; n <= p.lines(); ++n) {
@@ -58,7 +58,7 @@ TEST_CASE("property: a print can be cancelled after any line, and every vat is i
     }
 }
 
-TEST_CASE("property: a print can pause after any line and goes on to its end as if nothing had been") {
+TEST_CASE("property: a print can pause after any line and continue to the same end") {
     for (const machine::Printer& printer : test::machines()) {
         const Program p(printer);
         for (int n = 0; n <= p.lines(); ++n) {
@@ -75,7 +75,7 @@ TEST_CASE("property: a print can pause after any line and goes on to its end as 
     }
 }
 
-TEST_CASE("property: whatever the interlocks let somebody do by hand can be ended safely") {
+TEST_CASE("property: from any state that manual control allows, the machine can be stopped safely") {
     std::mt19937 random(77);
     for (const machine::Printer& p : test::machines()) {
         for (int walk = 0; walk < 60; ++walk) {

@@ -36,7 +36,7 @@ double seconds_of_swap(const machine::Printer& printer, int to_slot) {
 
 }  // namespace
 
-TEST_CASE("a swap with the next slot takes the 62 to 63 s of the thesis, from its motions") {
+TEST_CASE("a swap with the next slot takes the thesis' 62 to 63 s, computed from its motions") {
     const machine::Printer printer = test::tower();
     Sequence s = loaded(printer);
     const Seconds before = s.seconds();
@@ -53,7 +53,7 @@ TEST_CASE("a swap with the next slot takes the 62 to 63 s of the thesis, from it
     CHECK(29.5 / 10 + 10.0 / 200 == near(3, {.relative = 1e-12}));
 }
 
-TEST_CASE("a far slot costs what the tower's way takes beyond the spray") {
+TEST_CASE("a far slot adds the time that the tower needs beyond the spray") {
     const machine::Printer printer = test::tower();
     const double next = seconds_of_swap(printer, 2);
     const double far = seconds_of_swap(printer, 4);
@@ -65,7 +65,7 @@ TEST_CASE("a far slot costs what the tower's way takes beyond the spray") {
     CHECK(far > next);
 }
 
-TEST_CASE("the same swap on a slower carriage takes longer: times are motions, not entries") {
+TEST_CASE("a slower carriage makes the same swap longer, as its motions say") {
     machine::Printer slow = test::tower();
     const double before = seconds_of_swap(slow, 2);
     slow.axes[0].speed_mm_s /= 2;
@@ -75,7 +75,7 @@ TEST_CASE("the same swap on a slower carriage takes longer: times are motions, n
     CHECK(seconds_of_swap(slow, 2) == near(2 * push + 15, {.relative = 0.02}));
 }
 
-TEST_CASE("the brush wipes a part that hangs 1 mm over the rim for 10 s; it takes no time of its own") {
+TEST_CASE("the brush wipes a part 1 mm above the rim for 10 s, without extra time") {
     machine::Printer printer = test::tower();
     const double with_s = seconds_of_swap(printer, 2);
     Sequence s = loaded(printer);
@@ -90,7 +90,7 @@ TEST_CASE("the brush wipes a part that hangs 1 mm over the rim for 10 s; it take
     CHECK(loaded(printer).position()[Axis::platform] == 1000 + 82550 + 2000);
 }
 
-TEST_CASE("every fan of the machine dries the part while the next vat comes, none at any other time") {
+TEST_CASE("every fan dries the part while the next vat comes, and at no other time") {
     const machine::Printer printer = test::tower();
     REQUIRE(printer.fans.size() == 2);
     Sequence s = loaded(printer);
@@ -122,7 +122,7 @@ double retriever_seconds(double lift_mm, double rail_mm) {
 
 }  // namespace
 
-TEST_CASE("a magnet takes no stroke: a far slot comes sooner by what hooks need, the next one is hidden in the spray") {
+TEST_CASE("a magnet saves the hooks' strokes: a far slot is faster, and the next one waits for the spray only") {
     const machine::Printer magnet = machine_of("tower_magnet");
     const double stroke = 355.6 / 15.2 + 15.2 / 50, back_off = 15 / 15.2 + 15.2 / 50;
     CHECK(swap_seconds(magnet, 1, 2).total / (2 * stroke + 15) == near(1, {.relative = 1e-4}));
@@ -144,7 +144,7 @@ TEST_CASE("a magnet takes no stroke: a far slot comes sooner by what hooks need,
     CHECK(on < swap.find("X0.000"));
 }
 
-TEST_CASE("a wall's swap takes what carriage, hooks and retriever take one after the other, if nothing is sprayed") {
+TEST_CASE("without spray a wall's swap is the sum of carriage, hooks and retriever") {
     machine::Printer wall = machine_of("wall");
     const double stroke = 355.6 / 15.2 + 15.2 / 50, back_off = 15 / 15.2 + 15.2 / 50;
     // Down 29.5 mm at 10 mm/s while the platform rises 1 mm at 100 mm/s^2; up again alone.
@@ -160,7 +160,7 @@ TEST_CASE("a wall's swap takes what carriage, hooks and retriever take one after
     CHECK(swap_seconds(wall, 1, 7).total / all == near(1, {.relative = 1e-4}));
 }
 
-TEST_CASE("a wall's retriever works while the part is sprayed, and the spray does not wait for it") {
+TEST_CASE("a wall's retriever works during the spray, and the spray does not wait for it") {
     const machine::Printer wall = machine_of("wall");
     machine::Printer dry = wall;
     dry.cleaning.spray_s = 0;

@@ -28,7 +28,7 @@ std::vector<Stretch> of(const SwapTimeline& timeline, Device device) {
 
 }  // namespace
 
-TEST_CASE("one swap as the thesis draws it: push, spray over the tower's way, pull under the fans") {
+TEST_CASE("one swap as drawn in the thesis: push, spray during the tower's move, pull under the fans") {
     const SwapTimeline swap = timeline_of({{0, 1}, {0, 1}}, {"semi-flex", "rigid-flex"});
     CHECK(swap.from_slot == 1);
     CHECK(swap.to_slot == 2);
@@ -61,14 +61,14 @@ TEST_CASE("one swap as the thesis draws it: push, spray over the tower's way, pu
     CHECK(of(swap, Device::light).empty());
 }
 
-TEST_CASE("the swap with the tower's longest way is chosen; a job without swaps has none") {
+TEST_CASE("the swap with the longest tower move is chosen; a job without swaps has none") {
     const SwapTimeline far = timeline_of({{0}, {1}, {2}, {0}}, {"semi-flex", "rigid-flex", "third"});
     CHECK(far.from_slot == 3);
     CHECK(far.to_slot == 1);
     CHECK(timeline_of({{0}, {0}}, {"semi-flex"}).stretches.empty());
 }
 
-TEST_CASE("the timeline of a job ends when the job does, and every light stands in the visit of its layer") {
+TEST_CASE("the timeline ends with the job, and every exposure lies within its vat's visit") {
     const machine::Printer printer = test::tower();
     const job::Manifest job = test::make_job({{0, 1}, {0, 1}, {1}}, {"semi-flex", "rigid-flex"});
     const Plan plan = make_plan(job, printer).value();
@@ -99,7 +99,7 @@ TEST_CASE("the timeline of a job ends when the job does, and every light stands 
     CHECK(lit_s == near(plan.seconds.expose, {.relative = 1e-12}));
 }
 
-TEST_CASE("magnet, lift, rail and fork have bars of their own") {
+TEST_CASE("magnet, lift, rail and fork have their own rows") {
     const auto bars = [](const char* name, Device device) {
         const auto printer = machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value();
         const SwapTimeline swap = swap_timeline(printer, printer.vats[0].slot, printer.vats[2].slot);

@@ -55,13 +55,13 @@ std::string refused(const std::function<void(Order&)>& change) {
 
 }  // namespace
 
-TEST_CASE("a part stands on the platform in its middle") {
+TEST_CASE("a part is centred on the platform") {
     const Box3 box = done([](Order&) {}).box();
     CHECK(box.low == Vec3{-4000, -2000, 0});
     CHECK(box.high == Vec3{4000, 2000, 3000});
 }
 
-TEST_CASE("--turn, --copies and --spacing") {
+TEST_CASE("--turn, --copies and --spacing arrange the part") {
     CHECK(done([](Order& o) { o.turn = {0, 90, 0}; }).box().high.z == near(8000, {.relative = 1e-12}));
     const Arranged two = done([](Order& o) {
         o.copies = 2;
@@ -83,7 +83,7 @@ TEST_CASE("--turn, --copies and --spacing") {
     CHECK(!refused([](Order& o) { o.turn = {0, HUGE_VAL, 0}; }).empty());
 }
 
-TEST_CASE("--support, --lift and --raft") {
+TEST_CASE("--support, --lift and --raft add supports") {
     const Arranged a = done([](Order& o) {
         o.support = "firm";
         o.lift = "2 mm";
@@ -114,7 +114,7 @@ TEST_CASE("--support, --lift and --raft") {
     CHECK(refused([](Order& o) { o.raft = "2 mm"; }) == "--raft: needs --support MATERIAL");
 }
 
-TEST_CASE("--support-angle, -spacing, -tip and -pillar") {
+TEST_CASE("--support-angle, -spacing, -tip and -pillar change the supports") {
     const auto with = [](std::string Order::*option, const char* text) {
         return [=](Order& o) {
             o.support = "firm";
@@ -136,7 +136,7 @@ TEST_CASE("--support-angle, -spacing, -tip and -pillar") {
     CHECK(refused(with(&Order::support_pillar, "3")).find("--support-pillar: ") == 0);
 }
 
-TEST_CASE("--least-layer makes layers of many heights, --hollow cavities") {
+TEST_CASE("--least-layer gives layers of different heights, and --hollow a cavity") {
     const Arranged a = done([](Order& o) { o.least_layer = "10 um"; });
     REQUIRE(!a.settings.slicing.tops_um.empty());
     CHECK(a.settings.slicing.tops_um.back() >= 3000);
@@ -155,7 +155,7 @@ TEST_CASE("--least-layer makes layers of many heights, --hollow cavities") {
     CHECK(refused([](Order& o) { o.hollow = "101 mm"; }).find("at most 100 mm") != std::string::npos);
 }
 
-TEST_CASE("--scale and --at") {
+TEST_CASE("--scale and --at scale and move the part") {
     const Box3 larger = done([](Order& o) { o.scale = 1.5; }).box();
     CHECK(larger.size().x == near(12000, {.relative = 1e-12}));
     CHECK(larger.size().z == near(4500, {.relative = 1e-12}));
@@ -195,7 +195,7 @@ const std::string table_head = "wish,x (mm),y (mm),z (mm),nx,ny,nz,radius (mm)\n
 
 }  // namespace
 
-TEST_CASE("--support-paint goes with the part: turned, scaled and on every copy") {
+TEST_CASE("--support-paint is turned, scaled and copied with the part") {
     // In drawn coordinates: blocked everywhere, enforced at the corner x = 5.5, y = 3.5 under the top.
     const std::string paint = table_head + "block,3,2,3,0,0,-1,9\nenforce,5.5,3.5,3,0,0,-1,0.4\n";
     const Arranged plain = table_with([&](Order& o) { o.support_paint = paint; });
@@ -233,7 +233,7 @@ TEST_CASE("--support-paint goes with the part: turned, scaled and on every copy"
     CHECK(supports_of(over).empty());
 }
 
-TEST_CASE("--support-paint without supports, or with a table that is none, is refused") {
+TEST_CASE("--support-paint without --support, or with an invalid table, is refused") {
     CHECK(refused([](Order& o) { o.support_paint = table_head + "block,3,2,3,0,0,-1,9\n"; }) ==
           "--support-paint: needs --support MATERIAL");
     const std::string text = refused([](Order& o) {

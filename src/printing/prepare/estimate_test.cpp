@@ -32,7 +32,7 @@ Drawing blocks() {
 
 }  // namespace
 
-TEST_CASE("an estimate is the plan of the sliced job where bodies reach through their heights") {
+TEST_CASE("the estimate of prisms equals the plan of the sliced job") {
     const pliant::test::Folder folder;
     const PrinterFile printer = tower();
     for (const auto& [turn, copies] : {std::pair{std::vector<double>{}, 1}, {std::vector<double>{0, 0, 90}, 2}}) {
@@ -54,7 +54,7 @@ TEST_CASE("an estimate is the plan of the sliced job where bodies reach through 
     }
 }
 
-TEST_CASE("the estimate of a real robot is near what slicing it tells") {
+TEST_CASE("the estimate of a real robot is close to the plan of its sliced job") {
     const pliant::test::Folder folder;
     const PrinterFile printer = tower();
     Order order;
@@ -70,7 +70,7 @@ TEST_CASE("the estimate of a real robot is near what slicing it tells") {
     CHECK(guess->seconds.total == near(made->plan.seconds.total, {.relative = 0.02}));
 }
 
-TEST_CASE("parts that slicing refuses have no estimate") {
+TEST_CASE("orders that slicing refuses have no estimate") {
     Order order;
     order.copies = 100000;
     CHECK_FALSE(estimate(order, tower().printer, blocks()));

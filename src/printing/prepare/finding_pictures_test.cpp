@@ -18,7 +18,7 @@ const slice::Raster raster{400, 300, 100};
 
 }  // namespace
 
-TEST_CASE("an island is listed, and white in its picture") {
+TEST_CASE("an island is listed, and drawn white in its picture") {
     // A gate with something that hangs between its legs.
     const std::vector<slice::Body> bodies{{"soft", box({-4000, -500, 0}, {-3000, 500, 900}), ""},
                                           {"soft", box({3000, -500, 0}, {4000, 500, 900}), ""},
@@ -49,7 +49,7 @@ TEST_CASE("an island is listed, and white in its picture") {
     CHECK(std::count(image->pixels.begin(), image->pixels.end(), 255) == 24);
 }
 
-TEST_CASE("the grain of the raster is one finding, after those that matter") {
+TEST_CASE("islands of raster size are one finding, after the important ones") {
     slice::Findings found;
     const auto group = [](slice::Severity severity, int islands, std::int64_t pixels, int layer) {
         slice::IslandGroup g;

@@ -71,7 +71,7 @@ TEST_CASE("two materials become a job with the right layers, areas and volumes")
     CHECK(int{image.at(24, 27)} == 0);
 }
 
-TEST_CASE("the archive is the same every time") {
+TEST_CASE("slicing twice gives the same bytes of archive") {
     const pliant::test::Folder folder("job");
     std::vector<std::string> bytes;
     for (const char* name : {"a.zip", "b.zip"}) {
@@ -85,7 +85,7 @@ TEST_CASE("the archive is the same every time") {
     CHECK(bytes[0] == bytes[1]);
 }
 
-TEST_CASE("a material without settings, a bad body and cancellation stop the job") {
+TEST_CASE("a material without settings, an invalid body and cancellation stop the job") {
     const pliant::test::Folder folder("job");
     auto writer = Writer::create(folder / "a.zip");
     Progress progress;
@@ -117,7 +117,7 @@ TEST_CASE("features narrower than asked for are named with material, layers and 
           "from row 14, column 31 on");
 }
 
-TEST_CASE("exposures of layers, heights, shared light and findings reach the manifest") {
+TEST_CASE("exposures of layers, layer heights, bonds and findings are written to the manifest") {
     const pliant::test::Folder folder("job");
     const fs::path path = folder / "job.zip";
     auto writer = Writer::create(path);

@@ -7,7 +7,7 @@
 using namespace pliant;
 using namespace pliant::prepare;
 
-TEST_CASE("lengths have a unit and come out in micrometres") {
+TEST_CASE("a length has a unit and is converted to micrometres") {
     CHECK(*length_um("--x", "0.4 mm", 7) == near(400, {.relative = 1e-12}));
     CHECK(*length_um("--x", "25 um", 7) == near(25, {.relative = 1e-12}));
     CHECK(*length_um("--x", "-1 cm", 7) == near(-10000, {.relative = 1e-12}));
@@ -22,7 +22,7 @@ TEST_CASE("lengths have a unit and come out in micrometres") {
     CHECK(length_um("--x", "1e303 m", 7).error().message == "--x 1e303 m: is not a possible length");
 }
 
-TEST_CASE("lengths within limits, the limits included") {
+TEST_CASE("a length may be at its limits and not beyond") {
     CHECK(*length_um("--x", "1 um", 7, 1, 10000) == near(1, {.relative = 1e-12}));
     CHECK(*length_um("--x", "10 mm", 7, 1, 10000) == near(10000, {.relative = 1e-12}));
     CHECK(*length_um("--x", "", 0, 1, 10000) == 0);  // missing values are not checked
@@ -46,7 +46,7 @@ TEST_CASE("layers are whole micrometres from 1 to 1000") {
     CHECK(layer_height_um("--layer", "50").error().message.find("--layer: ") == 0);
 }
 
-TEST_CASE("plain numbers have nothing around them") {
+TEST_CASE("a plain number has no sign, blanks or unit") {
     CHECK(plain_number("0") == 0);
     CHECK(plain_number("12") == 12);
     for (const char* wrong : {"", "-", "1.5", " 1", "1 ", "+1", "0x1", "99999999999", "-3"})

@@ -19,7 +19,7 @@ std::string refused(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("touches of the brush are read in their order, in micrometres") {
+TEST_CASE("strokes of painted supports are read in order, in micrometres") {
     const auto read =
         read_paint(head + "enforce,10,5,0.5,0,0,-1,2\n# rubbed out\nusual,1,2,3,0,-0.6,-0.8,1\n", "p.csv");
     REQUIRE(read.has_value());
@@ -31,7 +31,7 @@ TEST_CASE("touches of the brush are read in their order, in micrometres") {
     CHECK((*read)[1].normal == Vec3{0, -0.6, -0.8});
 }
 
-TEST_CASE("what is wrong in a table of painted supports is told with its line") {
+TEST_CASE("mistakes in a table of painted supports are reported with their line") {
     CHECK(holds(refused("wish,x (mm)\nblock,1\n"), "p.csv:1: there is no column \"y (mm)\""));
     CHECK(holds(refused(head + "forbid,1,2,3,0,0,-1,1\n"), "p.csv:2: \"forbid\" must be enforce, block or usual"));
     CHECK(holds(refused(head + "block,1,2,3,0,0,-1,0\n"), "p.csv:2: painted supports: a radius of 0 mm"));

@@ -54,7 +54,7 @@ std::size_t exposures(const Manifest& m) {
 
 }  // namespace
 
-TEST_CASE("bodies of one resin are exposed at once, and each keeps its volume in the manifest") {
+TEST_CASE("bodies of one resin share an exposure, and the manifest keeps each body's volume") {
     const Manifest m = made_of(row, settings());
     CHECK(exposures(m) == 2 * 20 + 10);
     REQUIRE(m.materials.size() == 2);
@@ -74,7 +74,7 @@ TEST_CASE("bodies of one resin are exposed at once, and each keeps its volume in
     CHECK(m.warnings.empty());
 }
 
-TEST_CASE("what is lit in another way is exposed on its own") {
+TEST_CASE("bodies whose exposures differ are exposed separately") {
     const auto count = [](const std::function<void(JobSettings&)>& change) {
         JobSettings s = settings();
         change(s);
@@ -90,7 +90,7 @@ TEST_CASE("what is lit in another way is exposed on its own") {
     CHECK(count([](JobSettings& s) { s.slicing.bonds = {{"a", "b", 1, 0}}; }) == 3);
 }
 
-TEST_CASE("transition layers of what is printed together are those of its parts") {
+TEST_CASE("bodies exposed together have the transition layers of their materials") {
     JobSettings s = settings();
     s.exposures["a"] = s.exposures["c"] = {2, 3, 0, 50, {}};
     const Manifest m = made_of(row, s);
@@ -99,7 +99,7 @@ TEST_CASE("transition layers of what is printed together are those of its parts"
     CHECK(m.layers[2].images.at(1).exposure_s == 0);
 }
 
-TEST_CASE("a joint name is short and no other material's") {
+TEST_CASE("a joined material's name is short, and differs from all other names") {
     JobSettings s = settings();
     s.materials = {{"a", "flex", 0, 0, 3, 9}, {"b", "flex", 0, 0, 3, 9}, {"a+b", "hard", 0, 0, 3, 9}};
     CHECK(printed_together(s.materials, s).materials[0].name == "a+b+");

@@ -8,7 +8,7 @@ using namespace pliant;
 using namespace pliant::job;
 using nlohmann::json;
 
-TEST_CASE("the record holds what was asked for, and no folder") {
+TEST_CASE("the record holds the options given, and no folders") {
     JobSettings settings{"finger", "0.1.0", 2, {{64, 48, 100}, 50, {}}, {{"soft", "flex", 0, 0, 3, 9}}};
     settings.copies = 2;
     settings.least_feature_um = 300;

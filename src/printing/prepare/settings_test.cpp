@@ -73,7 +73,7 @@ std::string layer_or_error(const std::string& layer, Drawing drawing) {
 
 }  // namespace
 
-TEST_CASE("layer images are printed as high as they were sliced") {
+TEST_CASE("layer images are printed at the height they were sliced at") {
     const pliant::test::Folder folder("stacks");
     CHECK(layer_or_error("", stacks(folder, "0.1")) == "100");  // not the printer's 50
     CHECK(layer_or_error("100 um", stacks(folder, "0.1")) == "100");
@@ -89,13 +89,13 @@ TEST_CASE("layer images are printed as high as they were sliced") {
     CHECK(layer_or_error("", stacks(folder, "1.5")).find("layer images are for layers of 1500 um") == 0);
 }
 
-TEST_CASE("images that do not say how high their layers are take --layer, or the printer's with a warning") {
+TEST_CASE("images without a layer height take --layer, or the printer's with a warning") {
     const pliant::test::Folder folder("stacks");
     CHECK(layer_or_error("100 um", stacks(folder, "")) == "100");
     CHECK(layer_or_error("", stacks(folder, "")) == "50 assumed");
 }
 
-TEST_CASE("options not given are the printer's") {
+TEST_CASE("options that are not given take the printer's values") {
     const job::JobSettings s = settings_of([](Order&) {});
     CHECK(s.name == "blocks");
     CHECK(s.slicing.layer_um == 50);
@@ -114,7 +114,7 @@ TEST_CASE("options not given are the printer's") {
     CHECK(s.exposures.empty());
 }
 
-TEST_CASE("--layer and --least-feature") {
+TEST_CASE("--layer and --least-feature set their values") {
     CHECK(settings_of([](Order& o) { o.layer = "25 um"; }).slicing.layer_um == 25);
     CHECK(settings_of([](Order& o) { o.least_feature = "0.3 mm"; }).least_feature_um == near(300, {.relative = 1e-12}));
     CHECK(settings_of([](Order& o) { o.least_feature = "10 mm"; }).least_feature_um ==
@@ -148,7 +148,7 @@ TEST_CASE("--interlock and --overlap name two materials, pixels and layers") {
         CHECK(refused([&](Order& o) { o.overlaps = {wrong}; }).find("must be whole numbers") != std::string::npos);
 }
 
-TEST_CASE("--exposure: of a material, of its first layers, of some layers") {
+TEST_CASE("--exposure sets all layers of a material, its first layers, or some layers") {
     auto s = settings_of([](Order& o) { o.exposures = {"soft=3 s"}; });
     CHECK(s.materials[0].exposure_s == 3);
     CHECK(s.materials[0].bottom_exposure_s == 9);  // still the longer one
@@ -180,7 +180,7 @@ TEST_CASE("--exposure: of a material, of its first layers, of some layers") {
     CHECK(refused([](Order& o) { o.exposures = {"soft=3 mm"}; }).find("--exposure soft=3 mm: ") == 0);
 }
 
-TEST_CASE("an exposure far from the printer file's is told, with how deep it cures") {
+TEST_CASE("an exposure far from the printer file's gives a warning with its cure depth") {
     machine::Printer p = printer();
     p.resins[0].cure_depth_um = 150;
     p.resins[0].critical_share = 0.2;
@@ -204,7 +204,7 @@ TEST_CASE("an exposure far from the printer file's is told, with how deep it cur
                                                             "printer file gives resin \"firm\""});
 }
 
-TEST_CASE("--resin: another resin with its exposures; one that no vat holds is an error unless any vat will do") {
+TEST_CASE("--resin sets resin and exposures; one that no vat holds is an error unless any vat may be used") {
     Drawing drawing = two_blocks();
     Order order;
     order.resins = {"soft=firm"};
@@ -231,7 +231,7 @@ TEST_CASE("--resin: another resin with its exposures; one that no vat holds is a
     CHECK(!refused([](Order& o) { o.resins = {"soft"}; }).empty());
 }
 
-TEST_CASE("what the resins of the printer ask for reaches their materials") {
+TEST_CASE("the resins' settings in the printer file reach their materials") {
     machine::Printer p = printer();
     p.resins[1].xy_compensation_um = -40;
     p.resins[0].transition_layers = 5;
@@ -247,7 +247,7 @@ TEST_CASE("what the resins of the printer ask for reaches their materials") {
     CHECK(!s->light.none());
 }
 
-TEST_CASE("--support with a material that no body has takes the resin of its name; the record keeps what was asked") {
+TEST_CASE("--support with a material of no body takes the resin of that name; the record keeps the option") {
     Order order;
     order.support = "firm";
     Drawing drawing = two_blocks();
@@ -273,7 +273,7 @@ TEST_CASE("--support with a material that no body has takes the resin of its nam
     CHECK(request.supports[1] == std::pair<std::string, std::string>{"raft", "1 mm"});
 }
 
-TEST_CASE("--no-anti-alias and --threshold reach the rules") {
+TEST_CASE("--no-anti-alias and --threshold set the slicing rules") {
     const auto s = settings_of([](Order& o) {
         o.no_anti_alias = true;
         o.threshold = 0.3;

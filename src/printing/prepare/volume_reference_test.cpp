@@ -111,7 +111,7 @@ mesh::TriMesh jittered(const mesh::TriMesh& surface, const fs::path& file) {
 
 }  // namespace
 
-TEST_CASE("the images of every closed model hold its volume within 0.1 %, also with jittered corners") {
+TEST_CASE("the images of every closed model have its volume within 0.1 %, also with jittered corners") {
     const pliant::test::Folder folder("volumes");
     const std::vector<Model> models = closed_models();
     CHECK(models.size() >= 100);

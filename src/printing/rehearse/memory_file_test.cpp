@@ -8,7 +8,7 @@
 using namespace pliant;
 using rehearse::MemoryFile;
 
-TEST_CASE("a journal in memory is kept, locked and read like one on a disk, and is gone with the file") {
+TEST_CASE("a journal in memory can be written, locked and read, and ends with its file") {
     std::filesystem::path path;
     {
         MemoryFile first = MemoryFile::make().value();
@@ -29,7 +29,7 @@ TEST_CASE("a journal in memory is kept, locked and read like one on a disk, and 
     CHECK_FALSE(std::filesystem::exists(path));
 }
 
-TEST_CASE("two files in memory are two") {
+TEST_CASE("two files in memory are separate") {
     const MemoryFile a = MemoryFile::make().value(), b = MemoryFile::make().value();
     REQUIRE(a.path() != b.path());
     REQUIRE(host::Journal::open(a.path(), false).value().append("begin", {}));

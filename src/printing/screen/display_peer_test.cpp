@@ -128,9 +128,9 @@ ScreenOptions options(int width = width_px, int height = height_px) {
     return {width, height, 3600, PLIANT_SCREEN_PROGRAM};
 }
 
-bool comes(const std::function<bool()>& true_at_last) {
+bool becomes_true(const std::function<bool()>& condition) {
     for (int i = 0; i < 2000; ++i) {
-        if (true_at_last()) return true;
+        if (condition()) return true;
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     return false;
@@ -175,14 +175,14 @@ TEST_CASE("the display shows a job's images pixel by pixel, and black before, be
         REQUIRE_MESSAGE(projector, (projector ? "" : projector.error().message));
         CHECK(projector->panel().width_px == width_px);
         CHECK(projector->panel().refresh_hz == near(60, {.relative = 1e-12}));
-        CHECK(comes([&] { return x.all(0); }));
+        CHECK(becomes_true([&] { return x.all(0); }));
         for (const job::Layer& layer : job.manifest().layers) {
             for (const job::LayerImage& file : layer.images) {
                 const job::Image image = job.image(file.file).value();
                 REQUIRE(projector->show_for(image, 600));
-                CHECK(comes([&] { return x.screenshot() == image; }));
+                CHECK(becomes_true([&] { return x.screenshot() == image; }));
                 REQUIRE(projector->black());
-                CHECK(comes([&] { return x.all(0); }));
+                CHECK(becomes_true([&] { return x.all(0); }));
             }
         }
     }
@@ -192,11 +192,11 @@ TEST_CASE("the display shows a job's images pixel by pixel, and black before, be
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     CHECK(release_display(0).value());
-    CHECK(comes([&] { return x.all(255); }));
+    CHECK(becomes_true([&] { return x.all(255); }));
     CHECK_FALSE(release_display(0).value());
 }
 
-TEST_CASE("lights end by themselves and are as long as asked, to a frame of 60 Hz, by the frames presented") {
+TEST_CASE("an exposure ends by itself and lasts the time asked for, to one frame of 60 Hz") {
     Session session;
     if (cannot_start(session)) return;
     const job::Image white = test_pattern("white", {width_px, height_px, 0, 1, 5, 3}).value();
@@ -205,7 +205,7 @@ TEST_CASE("lights end by themselves and are as long as asked, to a frame of 60 H
     for (const double seconds : {0.05, 0.1, 0.25, 0.5, 1.0}) {
         REQUIRE(projector->show_for(white, seconds));
         const auto light = projector->finish();
-        CHECK(comes([&] { return session.server.all(0); }));
+        CHECK(becomes_true([&] { return session.server.all(0); }));
         REQUIRE(light);
         REQUIRE(*light);
         CAPTURE(seconds);
@@ -218,10 +218,10 @@ TEST_CASE("lights end by themselves and are as long as asked, to a frame of 60 H
         CHECK((*light)->longest_frame_s >= 1.0 / 60);
     }
     REQUIRE(projector->show_for(white, 0.1));
-    CHECK(comes([&] { return session.server.all(0); }));  // the host does nothing
+    CHECK(becomes_true([&] { return session.server.all(0); }));  // the host does nothing
 }
 
-TEST_CASE("kill -9 of the host in the middle of a light leaves black, and the next host goes on") {
+TEST_CASE("killing the host during an exposure makes the display black, and the next host can continue") {
     Session session;
     if (cannot_start(session)) return;
     const Server& x = session.server;
@@ -239,14 +239,14 @@ TEST_CASE("kill -9 of the host in the middle of a light leaves black, and the ne
     char lit = 0;
     REQUIRE(::read(ends[0], &lit, 1) == 1);
     REQUIRE(lit == '1');
-    CHECK(comes([&] { return x.screenshot() == grid; }));
+    CHECK(becomes_true([&] { return x.screenshot() == grid; }));
     const auto second = ScreenProjector::open("0", options());
     REQUIRE_FALSE(second);
     CHECK(second.error().message.find("another program is using this panel") != std::string::npos);
     CHECK(x.screenshot() == grid);
     ::kill(host, SIGKILL);
     ::waitpid(host, nullptr, 0);
-    CHECK(comes([&] { return x.all(0); }));
+    CHECK(becomes_true([&] { return x.all(0); }));
     for (int i = 0; i < 20; ++i) {
         CHECK(x.all(0));
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -254,12 +254,12 @@ TEST_CASE("kill -9 of the host in the middle of a light leaves black, and the ne
     auto next = ScreenProjector::open("0", options());
     REQUIRE_MESSAGE(next, (next ? "" : next.error().message));
     REQUIRE(next->show(grid));
-    CHECK(comes([&] { return x.screenshot() == grid; }));
+    CHECK(becomes_true([&] { return x.screenshot() == grid; }));
     REQUIRE(next->black());
-    CHECK(comes([&] { return x.all(0); }));
+    CHECK(becomes_true([&] { return x.all(0); }));
 }
 
-TEST_CASE("when the process that holds the display is killed, another one makes it black again") {
+TEST_CASE("if the process that holds the display is killed, another one makes it black") {
     Session session;
     if (cannot_start(session)) return;
     const Server& x = session.server;
@@ -267,14 +267,14 @@ TEST_CASE("when the process that holds the display is killed, another one makes 
     auto projector = ScreenProjector::open("0", options());
     REQUIRE(projector);
     REQUIRE(projector->show_for(white, 600));
-    CHECK(comes([&] { return x.screenshot() == white; }));
+    CHECK(becomes_true([&] { return x.screenshot() == white; }));
     REQUIRE(::kill(projector->holder_process(), SIGKILL) == 0);
     CHECK_FALSE(projector->finish());
-    CHECK(comes([&] { return x.all(0); }));
-    CHECK(comes([&] { return ScreenProjector::open("0", options()).has_value(); }));
+    CHECK(becomes_true([&] { return x.all(0); }));
+    CHECK(becomes_true([&] { return ScreenProjector::open("0", options()).has_value(); }));
 }
 
-TEST_CASE("a display of another size, or one that is not there, is an error with numbers") {
+TEST_CASE("a display of another size, or a missing one, is an error with numbers") {
     Session session;
     if (cannot_start(session)) return;
     const auto wrong = ScreenProjector::open("0", options(1920, 1080));

@@ -29,7 +29,7 @@ struct Source {
 
 }  // namespace
 
-TEST_CASE("the next image is ready when requested, and every image is fetched once") {
+TEST_CASE("the next image is ready when it is requested, and every image is fetched once") {
     Source source;
     const ImageAhead::Order order = {{0, 0}, {0, 1}, {1, 1}, {1, 0}, {9, 0}, {2, 0}};
     {
@@ -45,7 +45,7 @@ TEST_CASE("the next image is ready when requested, and every image is fetched on
     CHECK_FALSE(source.together);
 }
 
-TEST_CASE("another order gives the same images") {
+TEST_CASE("images requested in another order are the same") {
     Source source;
     ImageAhead ahead(source.function(), {{0, 0}, {1, 0}, {2, 0}, {3, 0}});
     for (const int layer : {2, 3, 0, 5, 1, 2, 2}) CHECK(ahead.get(layer, 0)->pixels[0] == 10 * layer);
@@ -53,7 +53,7 @@ TEST_CASE("another order gives the same images") {
     CHECK_FALSE(source.together);
 }
 
-TEST_CASE("the order is that of the G-code") {
+TEST_CASE("the order of images is that of the G-code") {
     const auto order = order_of_exposures(
         "G28 Z\n;@expose layer=0 material=1 seconds=2.5 image=a.png\n; a comment\n;@stop M107 P1\n;@expose broken\n"
         ";@expose layer=1 material=0 seconds=2.5 image=b.png");

@@ -50,9 +50,9 @@ ScreenOptions options() {
 }
 
 /// Waits for a condition; the test's own time limit ends it otherwise.
-bool comes(const std::function<bool()>& true_at_last) {
+bool becomes_true(const std::function<bool()>& condition) {
     for (int i = 0; i < 2000; ++i) {
-        if (true_at_last()) return true;
+        if (condition()) return true;
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     return false;
@@ -60,7 +60,7 @@ bool comes(const std::function<bool()>& true_at_last) {
 
 }  // namespace
 
-TEST_CASE("lights appear in the folder, end by themselves, are measured, and leave their images") {
+TEST_CASE("exposures appear in the folder, end by themselves, are measured, and leave their images") {
     Folder folder("lights");
     {
         auto projector = ScreenProjector::open(folder.path.string(), options());
@@ -87,12 +87,12 @@ TEST_CASE("lights appear in the folder, end by themselves, are measured, and lea
     for (int i = 1; i <= 4; ++i) CHECK(folder.image("0000" + std::to_string(i) + ".png") == noise(i));
 }
 
-TEST_CASE("a light ends without its host, and a second one takes over from the first") {
+TEST_CASE("an exposure ends without the host, and a new one replaces a running one") {
     Folder folder("stalled");
     auto projector = ScreenProjector::open(folder.path.string(), options());
     REQUIRE(projector);
     REQUIRE(projector->show_for(noise(1), 0.2));
-    CHECK(comes([&] { return !folder.lit(); }));  // the host says and does nothing
+    CHECK(becomes_true([&] { return !folder.lit(); }));  // the host says and does nothing
     REQUIRE(projector->show_for(noise(2), 60));
     CHECK(folder.image("shown.png") == noise(2));
     CHECK(projector->last_light()->asked_s == near(0.2, {.relative = 1e-12}));
@@ -101,7 +101,7 @@ TEST_CASE("a light ends without its host, and a second one takes over from the f
     CHECK(projector->last_light()->asked_s == 60);
 }
 
-TEST_CASE("the end of the host is the end of the light, also by kill -9") {
+TEST_CASE("when the host ends, also by kill -9, the exposure ends") {
     for (const int signal : {SIGKILL, SIGTERM, SIGSEGV, 0}) {
         Folder folder("killed");
         int ends[2];
@@ -124,7 +124,7 @@ TEST_CASE("the end of the host is the end of the light, also by kill -9") {
             CHECK(folder.image("shown.png") == noise(1));
             ::kill(host, signal);
         }
-        CHECK(comes([&] { return !folder.lit(); }));
+        CHECK(becomes_true([&] { return !folder.lit(); }));
         int how = 0;
         ::waitpid(host, &how, 0);
         ::close(ends[0]);
@@ -132,7 +132,7 @@ TEST_CASE("the end of the host is the end of the light, also by kill -9") {
     }
 }
 
-TEST_CASE("one folder has one host; images of another size and lights of no length are refused") {
+TEST_CASE("a folder has one host; images of another size and exposures of no length are refused") {
     Folder folder("one");
     auto projector = ScreenProjector::open(folder.path.string(), options());
     REQUIRE(projector);
@@ -150,7 +150,7 @@ TEST_CASE("one folder has one host; images of another size and lights of no leng
     CHECK(projector->finish());
 }
 
-TEST_CASE("failures to open are explained") {
+TEST_CASE("errors on opening give their reason") {
     ScreenOptions other = options();
     other.program = "/nowhere/pliant-screen";
     CHECK(ScreenProjector::open("/tmp", other).error().message.find("/nowhere/pliant-screen") != std::string::npos);
@@ -160,7 +160,7 @@ TEST_CASE("failures to open are explained") {
     CHECK(ScreenProjector::open("/proc/pliant", options()).error().message.find("/proc/pliant") != std::string::npos);
 }
 
-TEST_CASE("when the process that holds the panel dies, the host learns it and the light is out") {
+TEST_CASE("if the process that holds the panel dies, the host gets an error and the light is off") {
     Folder folder("holder");
     auto projector = ScreenProjector::open(folder.path.string(), options());
     REQUIRE(projector);
@@ -168,5 +168,5 @@ TEST_CASE("when the process that holds the panel dies, the host learns it and th
     REQUIRE(projector->holder_process() > 0);
     REQUIRE(::kill(projector->holder_process(), SIGKILL) == 0);
     CHECK_FALSE(projector->finish());
-    CHECK(comes([&] { return !folder.lit(); }));
+    CHECK(becomes_true([&] { return !folder.lit(); }));
 }

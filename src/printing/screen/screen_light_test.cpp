@@ -47,7 +47,7 @@ Result<Light> light(
 
 }  // namespace
 
-TEST_CASE("a light has as many frames as its time has, to the nearest, at any rate") {
+TEST_CASE("an exposure has the nearest number of frames to its time, at any frame rate") {
     for (const int rate : {24, 50, 60, 75, 120}) {
         for (const double seconds : {0.001, 0.02, 0.1, 0.25, 0.5, 1.0, 1.2345, 2.5, 12.0, 61.0}) {
             CountingPanel panel;
@@ -64,7 +64,7 @@ TEST_CASE("a light has as many frames as its time has, to the nearest, at any ra
     }
 }
 
-TEST_CASE("frames that come late do not make the light longer, unless the last one is") {
+TEST_CASE("late frames do not lengthen an exposure, unless the last one is late") {
     CountingPanel panel;
     panel.late = {{10, 3}, {20, 6}};
     const Result<Light> got = light(panel, 1.0);
@@ -91,7 +91,7 @@ TEST_CASE("a cancelled exposure ends with the next frame") {
     CHECK_FALSE(panel.lit.back());
 }
 
-TEST_CASE("a frame that fails is followed by black") {
+TEST_CASE("after a failed frame a black one is shown") {
     for (const int present : {0, 2, 5}) {
         CountingPanel panel;
         panel.fails_at = present;

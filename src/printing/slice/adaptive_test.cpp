@@ -27,7 +27,7 @@ mesh::TriMesh pyramid(double half_base) {
 
 }  // namespace
 
-TEST_CASE("uniform and individual layers are counted alike") {
+TEST_CASE("uniform layers and a list of layer tops are counted alike") {
     const Layers alike(50), own(std::vector<int>{50, 100, 150});
     for (int z = -100; z < 400; ++z) {
         CHECK(alike.middles_up_to(z, 1) == own.middles_up_to(z, 1));
@@ -43,7 +43,7 @@ TEST_CASE("uniform and individual layers are counted alike") {
     CHECK(mixed.middles_up_to(205, 1) == 4);
 }
 
-TEST_CASE("upright walls get thick layers, slanted ones as thin as their steps ask for") {
+TEST_CASE("upright walls get thick layers; slanted ones get layers as thin as the step limit asks for") {
     const std::vector<Body> upright{{"soft", box({-1000, -1000, 0}, {1000, 1000, 1000}), ""}};
     CHECK(adaptive_tops(upright, {25, 100}).value().size() == 10);
     // 45 degrees: n = 1 / sqrt 2, so at most 25 sqrt 2 = 35.4, in steps of 5.
@@ -54,7 +54,7 @@ TEST_CASE("upright walls get thick layers, slanted ones as thin as their steps a
     CHECK(!adaptive_tops(slanted, {100, 25}).has_value());
 }
 
-TEST_CASE("the volume of layers of many heights is that of the pyramid") {
+TEST_CASE("layers of different heights have the volume of the pyramid") {
     // Upright below, slanted above: both limits are reached.
     std::vector<Body> bodies{{"soft", pyramid(2000), ""}, {"firm", box({-3000, 2100, 0}, {3000, 2300, 3000}), ""}};
     Settings settings{{160, 120, 50}, 100, {}};

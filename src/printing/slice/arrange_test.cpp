@@ -8,7 +8,7 @@ using namespace pliant;
 using namespace pliant::slice;
 using namespace pliant::slice::test;
 
-TEST_CASE("a part is turned about x, then y, then z") {
+TEST_CASE("a part is rotated about x, then y, then z") {
     std::vector<Body> bodies{{"soft", box({0, 0, 0}, {1000, 2000, 3000}), "a"}};
     REQUIRE(turn(bodies, {90, 0, 90}).has_value());  // y to z, z to -y; then x to y, -y to x
     const Box3 box = mesh::bounds(bodies[0].surface_um);
@@ -21,7 +21,7 @@ TEST_CASE("a part is turned about x, then y, then z") {
           "body 's' (soft): consists of slices, which can be turned about z only");
 }
 
-TEST_CASE("a part is scaled in all its numbers") {
+TEST_CASE("scaling a part scales surfaces, slices and blends") {
     std::vector<Body> bodies{{"soft", box({-1000, 0, 0}, {1000, 2000, 3000}), "a"},
                              {"soft", {}, "s", {{100, 150, {{{0, 0}, {100, 0}, {0, 100}}}}}}};
     bodies[0].blend = Blend{"firm", {0, 0, 0}, {0, 0, 3000}};
@@ -35,7 +35,7 @@ TEST_CASE("a part is scaled in all its numbers") {
     CHECK(scale(bodies, 101).error().message == "a scale of 101: must be 0.01 to 100");
 }
 
-TEST_CASE("copies fill rows, and too many are refused with the number that fits") {
+TEST_CASE("copies are arranged in rows; too many are refused with the number that fits") {
     const Raster raster{64, 48, 100};  // 6.4 x 4.8 mm
     std::vector<Body> bodies{{"soft", box({0, 0, 0}, {1800, 1000, 100}), "a"}};
     const std::vector<Body> one = bodies;
@@ -52,7 +52,7 @@ TEST_CASE("copies fill rows, and too many are refused with the number that fits"
     CHECK(!repeat(bodies, 2, -1, raster).has_value());
 }
 
-TEST_CASE("copies of what is flat, and with no room between them") {
+TEST_CASE("copies of a flat part, and copies without spacing, are made") {
     const Raster raster{64, 48, 100};
     mesh::TriMesh flat;
     add_triangle(flat, {0, 0, 0}, {0, 1000, 0}, {0, 0, 1000});

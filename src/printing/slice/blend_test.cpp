@@ -35,7 +35,7 @@ Shares shares_of(const SlicedLayer& layer) {
 
 }  // namespace
 
-TEST_CASE("a ramp deals out its integral, in every layer, whole pixels, none twice") {
+TEST_CASE("a blend lights the integral of its share, in every layer, in whole pixels, none twice") {
     // 6 x 4 mm, 60 x 40 pixels; the share rises from 0 to 1 along x, so half of it is of the second material.
     const std::vector<Body> bodies{
         blended(box({-3000, -2000, 0}, {3000, 2000, 500}), {"firm", {-3000, 0, 0}, {3000, 0, 0}})};
@@ -65,7 +65,7 @@ TEST_CASE("a ramp deals out its integral, in every layer, whole pixels, none twi
     }
 }
 
-TEST_CASE("grey edges, cells of several pixels, a ramp upwards and odd shares") {
+TEST_CASE("blends with grey edges, cells of several pixels, a vertical ramp and uneven shares") {
     const auto pillar = prism(regular_polygon(90, 2000), 0, 1000);
     const Blend up{"firm", {0, 0, 0}, {0, 0, 1000}, {0.25, 0.75, 0.5}, 3};
     const auto slicer = Slicer::prepare(std::vector<Body>{blended(pillar, up)}, {raster, 50, {}});
@@ -78,7 +78,7 @@ TEST_CASE("grey edges, cells of several pixels, a ramp upwards and odd shares") 
     }
 }
 
-TEST_CASE("equal layers are dealt out in different ways, and always in the same way") {
+TEST_CASE("equal layers of a blend have different patterns, the same on every run") {
     const std::vector<Body> bodies{
         blended(box({-3000, -2000, 0}, {3000, 2000, 500}), {"firm", {0, 0, 0}, {0, 0, 1e6}, {0.5, 0.5}})};
     const auto slicer = Slicer::prepare(bodies, {raster, 50, {}});
@@ -87,7 +87,7 @@ TEST_CASE("equal layers are dealt out in different ways, and always in the same 
     CHECK(!(slicer->layer(2).images[0].image == slicer->layer(3).images[0].image));
 }
 
-TEST_CASE("a blend stands beside another body of one of its materials") {
+TEST_CASE("a blend may touch another body of one of its materials") {
     std::vector<Body> bodies{blended(box({-3000, -2000, 0}, {0, 2000, 100}), {"firm", {-3000, 0, 0}, {0, 0, 0}}),
                              {"firm", box({0, -2000, 0}, {3000, 2000, 100}), "block"}};
     const auto slicer = Slicer::prepare(bodies, {raster, 50, {}});

@@ -22,7 +22,7 @@ Settings with_bond(const Bond& bond) {
 
 }  // namespace
 
-TEST_CASE("a bond lights a strip of the neighbour twice and changes no owner") {
+TEST_CASE("a bond lights a strip of the neighbour too, and the owner of pixels does not change") {
     const std::vector<Body> halves{{"soft", box({-2000, -1000, 0}, {0, 1000, 200}), ""},
                                    {"firm", box({0, -1000, 0}, {2000, 1000, 200}), ""}};
     const auto slicer = Slicer::prepare(halves, with_bond({"soft", "firm", 3, 0}));
@@ -37,7 +37,7 @@ TEST_CASE("a bond lights a strip of the neighbour twice and changes no owner") {
     CHECK(layer.images[0].image.at(24, 35) == 0);
 }
 
-TEST_CASE("checks see a pixel that is lit twice once") {
+TEST_CASE("the inspection counts a pixel lit twice once") {
     const std::vector<Body> halves{{"soft", box({-2000, -1000, 0}, {0, 1000, 200}), ""},
                                    {"firm", box({0, -1000, 0}, {2000, 1000, 200}), ""}};
     const auto slicer = Slicer::prepare(halves, with_bond({"soft", "firm", 3, 0}));
@@ -51,7 +51,7 @@ TEST_CASE("checks see a pixel that is lit twice once") {
     CHECK(findings.pieces[0].voxels == 4 * 800);
 }
 
-TEST_CASE("a bond over layers lights what lies right above and below") {
+TEST_CASE("a bond over layers lights the area of contact just above and below") {
     const std::vector<Body> stacked{{"soft", box({-1000, -1000, 0}, {1000, 1000, 200}), ""},
                                     {"firm", box({-500, -500, 200}, {500, 500, 400}), ""}};
     const auto slicer = Slicer::prepare(stacked, with_bond({"soft", "firm", 0, 2}));
@@ -67,7 +67,7 @@ TEST_CASE("a bond over layers lights what lies right above and below") {
     CHECK(!Slicer::prepare(stacked, with_bond({"soft", "firm", 0, 0})).has_value());
 }
 
-TEST_CASE("bleed compensation leaves out the lowest layers of undersides, and nothing else") {
+TEST_CASE("bleed compensation removes the lowest layers above an underside, and nothing else") {
     // A table: two legs and a plate from 200 to 500 um.
     const std::vector<Body> table{{"soft", box({-2000, -500, 0}, {-1000, 500, 500}), ""},
                                   {"soft", box({1000, -500, 0}, {2000, 500, 500}), ""},

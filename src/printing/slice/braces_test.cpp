@@ -21,7 +21,7 @@ bool never(const Strut&) {
 
 }  // namespace
 
-TEST_CASE("short pillars stand alone, slender ones are tied every ten diameters, to and fro") {
+TEST_CASE("short pillars have no braces; slender ones are braced every ten diameters, in alternating directions") {
     CHECK(braces({pillar(0, 0, 10), pillar(3, 0, 10)}, 100, never).struts.empty());
     const Braces made = braces({pillar(0, 0, 34), pillar(3, 0, 40)}, 100, never);
     REQUIRE(made.struts.size() == 4);  // from 0, 10, 20 and 30 mm, 3 mm up each
@@ -36,7 +36,7 @@ TEST_CASE("short pillars stand alone, slender ones are tied every ten diameters,
     }
 }
 
-TEST_CASE("each slender pillar has two ties where neighbours are near enough, and none that are barred") {
+TEST_CASE("each slender pillar has two braces if neighbours are near enough, and no brace that is blocked") {
     std::vector<Pillar> grid;
     for (int i = 0; i < 4; ++i) {
         for (int j = 0; j < 4; ++j) grid.push_back(pillar(3 * i, 3 * j, 15));

@@ -39,7 +39,7 @@ const std::vector<Body> halves{{"soft", box({-1000, -1000, 0}, {0, 1000, 500}), 
 
 }  // namespace
 
-TEST_CASE("a square shrinks and grows by what is asked for") {
+TEST_CASE("a square shrinks and grows by the given offset") {
     CHECK(area(cut(square, {}, 0), 0) == 400);
     CHECK(area(cut(square, {{"soft", {-100}}}, 0), 0) == near(18 * 18, {.relative = 1e-12}));
     CHECK(area(cut(square, {{"soft", {-50}}}, 0), 0) == near(19 * 19, {.relative = 0.001}));
@@ -71,14 +71,14 @@ TEST_CASE("borders between materials stay, each material has its own offset, and
     }
 }
 
-TEST_CASE("the elephant foot is cut away in the first layers only") {
+TEST_CASE("elephant-foot compensation shrinks the first layers only") {
     const std::map<std::string, Compensation> foot{{"soft", {0, 200, 2}}};
     CHECK(area(cut(square, foot, 0), 0) == near(16 * 16, {.relative = 1e-12}));
     CHECK(area(cut(square, foot, 1), 0) == near(18 * 18, {.relative = 1e-12}));
     CHECK(area(cut(square, foot, 2), 0) == 400);
 }
 
-TEST_CASE("a wall thinner than twice the offset vanishes; a gap between materials is closed before it grows") {
+TEST_CASE("a wall thinner than twice the offset disappears; a gap between materials closes before the offset") {
     CHECK(area(cut({{"soft", box({-60, -1000, 0}, {60, 1000, 500}), ""}, square[0]}, {}, 0), 0) == 400);
     const std::vector<Body> wall{{"soft", box({-60, -1000, 0}, {60, 1000, 500}), ""},
                                  {"rigid", box({1000, -1000, 0}, {1500, 1000, 500}), ""}};
@@ -90,7 +90,7 @@ TEST_CASE("a wall thinner than twice the offset vanishes; a gap between material
     CHECK(area(layer, 0) + area(layer, 1) == near(18 * 18, {.relative = 1e-12}));
 }
 
-TEST_CASE("without anti-aliasing pixels stay full or dark") {
+TEST_CASE("without anti-aliasing compensated pixels stay full or black") {
     const SlicedLayer layer = cut(square, {{"soft", {-30}}}, 0, {false, 0.5, 20});
     CHECK(area(layer, 0) == 396);  // of a corner's pixel (11/16)^2 are left, less than half
     CHECK(area(cut(square, {{"soft", {-60}}}, 0, {false, 0.5, 20}), 0) == 18 * 18);

@@ -101,7 +101,7 @@ const Raster raster{40, 30, 50};
 
 }  // namespace
 
-TEST_CASE("every pixel of a triangle, a turned square and a disc gets its exact coverage") {
+TEST_CASE("every pixel of a triangle, a rotated square and a disc has its exact coverage") {
     for (const bool mirror_x : {false, true}) {
         for (const bool mirror_y : {false, true}) {
             const Raster r{40, 30, 50, mirror_x, mirror_y};
@@ -113,14 +113,14 @@ TEST_CASE("every pixel of a triangle, a turned square and a disc gets its exact 
     }
 }
 
-TEST_CASE("shapes inside one pixel, on its borders and up to the raster's edge") {
+TEST_CASE("shapes inside one pixel, on pixel borders and at the raster's edge have exact coverage") {
     check_every_pixel({{10, 10}, {20, 12}, {15, 30}}, raster);
     check_every_pixel({{0, 0}, {50, 0}, {50, 50}, {0, 50}}, raster);
     check_every_pixel({{-1000, -750}, {1000, -750}, {1000, 750}, {-1000, 750}}, raster);
     check_every_pixel({{-1000, -750}, {1000, -750}, {1000, -749.5}, {-1000, -749.75}}, raster);
 }
 
-TEST_CASE("an outline costs cells where it passes, nothing inside") {
+TEST_CASE("an outline takes cells along its border only") {
     CellBuffer buffer;
     const double a = 500.0 * grid_per_um;
     buffer.add(0, in_image({{-a, -a, a, -a}, {a, -a, a, a}, {a, a, -a, a}, {-a, a, -a, -a}}, raster));

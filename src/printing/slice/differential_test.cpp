@@ -80,7 +80,7 @@ double sampled(const mesh::TriMesh& mesh, int row, int column, double z) {
 
 }  // namespace
 
-TEST_CASE("grey values are the share of points inside, for boulders with cavities") {
+TEST_CASE("grey values are the covered share, for random bodies with cavities") {
     Random random(2024);
     for (int round = 0; round < 8; ++round) {
         mesh::TriMesh mesh = boulder({0, 0, 1500}, 1700, random);
@@ -106,7 +106,7 @@ TEST_CASE("grey values are the share of points inside, for boulders with cavitie
     }
 }
 
-TEST_CASE("two materials: every pixel is lit by at most one, and together they are the union") {
+TEST_CASE("two materials: every pixel is lit by one at most, and together they light the union") {
     Random random(7);
     for (int round = 0; round < 6; ++round) {
         mesh::TriMesh a = boulder({-400, 0, 1500}, 1400, random), b = boulder({500, 100, 1500}, 1300, random);

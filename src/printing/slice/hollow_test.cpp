@@ -47,7 +47,7 @@ const std::vector<Body> block{{"soft", box({-8000, -6000, 0}, {8000, 6000, 10000
 
 }  // namespace
 
-TEST_CASE("distances are those that a search finds") {
+TEST_CASE("distances agree with an exhaustive search") {
     const CellGrid grid{13, 9, 7};
     std::vector<std::uint8_t> solid(grid.size(), 1);
     for (const auto& [x, y, z] : {std::array{3, 2, 1}, std::array{9, 7, 5}, std::array{6, 4, 3}})
@@ -73,7 +73,7 @@ TEST_CASE("distances are those that a search finds") {
     }
 }
 
-TEST_CASE("a block becomes a closed box whose walls are at least as thick as asked for") {
+TEST_CASE("a block becomes a closed box whose walls have at least the given thickness") {
     const Outcome o = hollowed(block, {2000, 0});
     CHECK(o.hollowing.cavities == 1);
     REQUIRE(o.findings.cavities.size() == 1);
@@ -87,7 +87,7 @@ TEST_CASE("a block becomes a closed box whose walls are at least as thick as ask
     CHECK(16 * 12 * 10 - o.volume_mm3 == near(o.hollowing.volume_mm3, {.relative = 1e-9}));
 }
 
-TEST_CASE("drains open the box: no trap is left, and holes are as large as their cylinders") {
+TEST_CASE("drains open the box: no closed cavity is left, and the holes have their cylinders' size") {
     const Outcome closed = hollowed(block, {2000, 0}), open = hollowed(block, {2000, 1500});
     CHECK(open.hollowing.drains == 2);
     for (const Cavity& c : open.findings.cavities) CHECK(c.end != Cavity::End::closed);
@@ -97,7 +97,7 @@ TEST_CASE("drains open the box: no trap is left, and holes are as large as their
     CHECK(drilled < 2 * hole * 1.3);
 }
 
-TEST_CASE("a part that is nowhere thick enough is refused") {
+TEST_CASE("a part without any place thick enough is refused") {
     Progress progress;
     const auto made = hollow_out(block, settings, {6000, 0}, progress);
     REQUIRE(!made.has_value());

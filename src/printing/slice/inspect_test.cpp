@@ -27,7 +27,7 @@ Body solid(const Vec3& low, const Vec3& high) {
 
 }  // namespace
 
-TEST_CASE("a block has neither islands nor cavities and is one piece") {
+TEST_CASE("a block has no islands or cavities, and is one component") {
     const Findings f = findings_of({solid({-1000, -1000, 0}, {1000, 1000, 500})});
     CHECK(f.islands.empty());
     CHECK(f.cavities.empty());
@@ -37,7 +37,7 @@ TEST_CASE("a block has neither islands nor cavities and is one piece") {
     CHECK(describe(f, raster).empty());
 }
 
-TEST_CASE("a part of a table that begins below the top is an island, its legs are not") {
+TEST_CASE("a part of a table that hangs below its plate is an island; legs are not") {
     // Two legs, a plate on top, and a stalactite that begins in layer 4 and meets the plate in layer 8.
     const Findings f =
         findings_of({solid({-2000, -500, 0}, {-1500, 500, 400}), solid({1500, -500, 0}, {2000, 500, 400}),
@@ -53,7 +53,7 @@ TEST_CASE("a part of a table that begins below the top is an island, its legs ar
         "an island begins in mid-air in layer 4, held from layer 8 on: up to 0.04"));
 }
 
-TEST_CASE("closed cavities, cups and tunnels are told apart") {
+TEST_CASE("closed cavities, cups and tunnels are distinguished") {
     const mesh::TriMesh cube = box({-1000, -1000, 0}, {1000, 1000, 500});
     // Closed: layers 2 to 7.
     Findings f =
@@ -92,7 +92,7 @@ TEST_CASE("closed cavities, cups and tunnels are told apart") {
     CHECK(f.cavities[0].last_layer == 9);
 }
 
-TEST_CASE("pieces that touch nowhere are counted") {
+TEST_CASE("separate components are counted") {
     const Findings f =
         findings_of({solid({-1000, -1000, 0}, {-500, 1000, 500}), solid({500, -1000, 0}, {1000, 1000, 300})});
     REQUIRE(f.pieces.size() == 2);
@@ -100,13 +100,13 @@ TEST_CASE("pieces that touch nowhere are counted") {
     CHECK(f.islands.empty());
 }
 
-TEST_CASE("layers of faint lines are reported") {
+TEST_CASE("layers with faint pixels only are reported") {
     const Findings f =
         findings_of({solid({-1000, -1000, 0}, {1000, 1000, 200}), solid({10, -1000, 200}, {40, 1000, 300})});
     CHECK(f.faint_layers == std::vector<int>{4, 5});
 }
 
-TEST_CASE("islands that grow together before anything holds them are one group") {
+TEST_CASE("islands that join before they are supported are one group") {
     // A table with its plate at layer 8; below hangs a comb: three teeth in layers 2 and 3, joined by a bar in layers 4
     // to 7, unsupported before layer 8. A second plate, never supported, floats beside it.
     const Findings f =
@@ -136,7 +136,7 @@ TEST_CASE("islands that grow together before anything holds them are one group")
         "3 islands that grow together begin in mid-air in layer 2, held from layer 8 on: up to 0.26"));
 }
 
-TEST_CASE("the grain of the raster is one line, however much of it there is, and does not hide what hangs") {
+TEST_CASE("islands of raster size take one line, whatever their number, and hide no larger island") {
     std::vector<Body> bodies{solid({-3000, -2000, 0}, {3000, 2000, 100})};
     // A ceiling on four walls, with specks of a pixel in the layer below it, and a ledge of 2 x 1 mm that begins there
     // too.

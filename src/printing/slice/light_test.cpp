@@ -4,7 +4,7 @@
 
 using namespace pliant::slice;
 
-TEST_CASE("grey values follow straight lines between the calibrated points") {
+TEST_CASE("grey values are interpolated linearly between the calibrated points") {
     const std::array<double, 3> light{0, 0.8, 1};
     const auto values = grey_values(light);
     CHECK(int{values[0]} == 0);
@@ -15,7 +15,7 @@ TEST_CASE("grey values follow straight lines between the calibrated points") {
     for (int v = 0; v < 256; ++v) CHECK(int{grey_values(straight)[static_cast<std::size_t>(v)]} == v);
 }
 
-TEST_CASE("the mask takes its share of every lit pixel") {
+TEST_CASE("the mask scales every lit pixel") {
     RunImage image(4, 2);
     image.append(1, 0, 3, 200);
     LightCorrection correction;

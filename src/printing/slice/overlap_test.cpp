@@ -30,7 +30,7 @@ std::vector<Segment> rectangle(double x0, double y0, double x1, double y1) {
 
 }  // namespace
 
-TEST_CASE("two turned squares share a regular octagon") {
+TEST_CASE("two rotated squares overlap in a regular octagon") {
     const double r = std::sqrt(2.0);  // squares of side 2
     const std::vector<std::vector<Segment>> outlines{closed(regular_polygon(4, r, std::numbers::pi / 4)),
                                                      closed(regular_polygon(4, r))};
@@ -41,7 +41,7 @@ TEST_CASE("two turned squares share a regular octagon") {
     CHECK(areas[1].others == 0);
 }
 
-TEST_CASE("two circles of 200 corners share nearly a lens") {
+TEST_CASE("two circles of 200 corners overlap nearly in a lens") {
     constexpr int corners = 200;
     auto moved = regular_polygon(corners, 1);
     for (Point2& p : moved) p.x += 0.7;
@@ -52,7 +52,7 @@ TEST_CASE("two circles of 200 corners share nearly a lens") {
     CHECK(areas[0].others < lens);
 }
 
-TEST_CASE("the last body keeps the place; holes and touching borders are no overlap") {
+TEST_CASE("the last body keeps the overlap; holes and touching borders are no overlap") {
     auto ring = rectangle(0, 0, 10, 10);
     for (Segment& s : rectangle(2, 2, 8, 8)) ring.push_back({s.x1, s.y1, s.x0, s.y0});
     const std::vector<std::vector<Segment>> outlines{ring, rectangle(2, 2, 8, 8), rectangle(10, 0, 12, 10),
@@ -65,7 +65,7 @@ TEST_CASE("the last body keeps the place; holes and touching borders are no over
     CHECK(areas[3].own == 0);
 }
 
-TEST_CASE("an overlap in pixels that neither body fills counts whole") {
+TEST_CASE("an overlap in partly filled pixels counts fully") {
     // 30 um of a pixel of 100 um, and borders in the middle of pixels all around.
     const std::vector<Body> bodies{{"soft", box({-950, -450, 0}, {50, 450, 100}), "left"},
                                    {"firm", box({-250, -350, 0}, {1050, 550, 100}), "right"}};
@@ -97,7 +97,7 @@ double lit_um2(const std::vector<Body>& bodies, const Raster& raster, double& ov
 
 }  // namespace
 
-TEST_CASE("pixels that the outlines of overlapping bodies share hold what both cover together, not their sum") {
+TEST_CASE("pixels on shared outlines of overlapping bodies get their common coverage, not the sum") {
     double overlap_mm3 = 0;
     // All outer borders are at a quarter of a pixel of 100 um, those of both bodies on the same lines.
     const std::vector<Body> boxes{{"soft", box({-975, -475, 0}, {325, 425, 50}), ""},
@@ -123,7 +123,7 @@ TEST_CASE("pixels that the outlines of overlapping bodies share hold what both c
     CHECK(lit == near(2 * whole - overlap_mm3 / 0.05 * 1e6, {.relative = 1e-4}));
 }
 
-TEST_CASE("what bodies keep is all there is, each place once") {
+TEST_CASE("the areas that bodies keep make up the whole union, each place once") {
     const std::vector<std::vector<Segment>> outlines{closed(regular_polygon(7, 10)), closed(regular_polygon(5, 9, 0.2)),
                                                      rectangle(-3, -20, 2, 4), closed(regular_polygon(3, 8, 1))};
     const auto area = [](const std::vector<Segment>& lines) {

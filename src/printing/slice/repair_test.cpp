@@ -42,7 +42,7 @@ std::string refused(const TriMesh& mesh) {
 
 }  // namespace
 
-TEST_CASE("a good cube is welded and otherwise left alone") {
+TEST_CASE("a good cube is welded and otherwise not changed") {
     const Repaired r = repaired(cube);
     CHECK(r.surface.points.size() == 8);
     CHECK(r.surface.triangles.size() == 12);
@@ -50,7 +50,7 @@ TEST_CASE("a good cube is welded and otherwise left alone") {
     CHECK(r.warnings.empty());
 }
 
-TEST_CASE("any missing triangle is put back, with a warning that names body and layers") {
+TEST_CASE("any missing triangle is filled in, with a warning that names body and layers") {
     for (std::size_t i = 0; i < cube.triangles.size(); ++i) {
         TriMesh open = cube;
         open.triangles.erase(open.triangles.begin() + static_cast<long>(i));
@@ -79,7 +79,7 @@ TEST_CASE("a T-junction is closed without a warning") {
     CHECK(volume_um3(r.surface) == near(1e9, {.relative = 1e-12}));
 }
 
-TEST_CASE("points at open edges that no pixel tells apart are joined, with a note, and thin walls stay") {
+TEST_CASE("points at open edges closer than a pixel are joined, with a note, and thin walls stay") {
     TriMesh torn = box({0, 0, 0}, {1000, 1000, 20});
     for (std::size_t i = 0; i < torn.points.size(); i += 3) torn.points[i] += Vec3{3, -2, 1};
     const auto apart = repair(torn, "body 'b' (soft)", 50);
@@ -98,7 +98,7 @@ TEST_CASE("points at open edges that no pixel tells apart are joined, with a not
     CHECK(thin->warnings.empty());
 }
 
-TEST_CASE("inside out: the whole, one triangle, one of two shells") {
+TEST_CASE("inverted surfaces are turned over: all, one triangle, one of two shells") {
     const Repaired whole = repaired(turned_inside_out(cube));
     CHECK(volume_um3(whole.surface) == near(1e9, {.relative = 1e-12}));
     CHECK(whole.warnings == std::vector<std::string>{"body 'b' (soft): flipped 1 shell that was inside out"});
@@ -115,14 +115,14 @@ TEST_CASE("inside out: the whole, one triangle, one of two shells") {
     CHECK(two.warnings.size() == 1);
 }
 
-TEST_CASE("a cavity stays a cavity, whichever way the whole is turned") {
+TEST_CASE("a cavity stays a cavity, also in an inverted solid") {
     const TriMesh hollow = together(cube, turned_inside_out(box({200, 200, 200}, {800, 800, 800})));
     CHECK(volume_um3(repaired(hollow).surface) == near(0.784e9, {.relative = 1e-12}));
     CHECK(repaired(hollow).warnings.empty());
     CHECK(volume_um3(repaired(turned_inside_out(hollow)).surface) == near(0.784e9, {.relative = 1e-12}));
 }
 
-TEST_CASE("repeated and degenerate triangles are harmless") {
+TEST_CASE("repeated and degenerate triangles do not change the volume") {
     TriMesh mesh = cube;
     mesh.triangles.push_back(mesh.triangles[4]);
     add_triangle(mesh, {0, 0, 0}, {0, 0, 0}, {1000, 0, 0});

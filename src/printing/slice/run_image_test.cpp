@@ -22,7 +22,7 @@ Image mixture(int width, int height) {
 
 }  // namespace
 
-TEST_CASE("an image comes back from its runs, and both answer alike") {
+TEST_CASE("an image converted to runs and back is the same, and both give the same answers") {
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 7}, {65, 11}, {64, 4}}) {
         const Image image = mixture(width, height);
         const RunImage runs = RunImage::from_image(image);
@@ -38,7 +38,7 @@ TEST_CASE("an image comes back from its runs, and both answer alike") {
     }
 }
 
-TEST_CASE("neighbours of one value are one run, dark pixels none") {
+TEST_CASE("neighbouring pixels of one value form one run, black pixels none") {
     RunImage image(100, 50);
     CHECK(image.blank());
     CHECK(image.end_row() == 0);

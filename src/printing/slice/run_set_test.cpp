@@ -41,7 +41,7 @@ bool near(const Image& image, int row, int column, int r) {
 
 }  // namespace
 
-TEST_CASE("sets of runs against pixel by pixel") {
+TEST_CASE("set operations on runs agree with pixel by pixel ones") {
     for (unsigned seed = 0; seed < 20; ++seed) {
         const Image a = random_image(seed, 0.4), b = random_image(seed + 100, 0.6), few = random_image(seed, 0.02);
         const RunSet sa = set_of(a), sb = set_of(b), sf = set_of(few);
@@ -66,7 +66,7 @@ TEST_CASE("sets of runs against pixel by pixel") {
     }
 }
 
-TEST_CASE("a square grows by its sides and rounded corners and shrinks back") {
+TEST_CASE("a square grows with rounded corners, and shrinks back to itself") {
     RunSet square(width, height);
     for (int row = 10; row < 20; ++row) square.append_row(row, {{10, 20}});
     const RunSet wide = grown(square, 4);

@@ -74,7 +74,7 @@ void check_layers(const std::string& name, std::size_t layers, long pixels, std:
 
 }  // namespace
 
-TEST_CASE("cubes that are whole, or that repair makes whole") {
+TEST_CASE("good cubes, and cubes that repair makes good, have the full area in every layer") {
     check_layers("cube_good_binary.stl", 200, 10000, 0);
     check_layers("binary_header_says_solid.stl", 200, 10000, 0);
     check_layers("hole_one_triangle.stl", 200, 10000, 1);
@@ -88,7 +88,7 @@ TEST_CASE("cubes that are whole, or that repair makes whole") {
     check_layers("flat_on_layer_planes.stl", 1, 10000, 0);
 }
 
-TEST_CASE("a cavity is left open") {
+TEST_CASE("a cavity stays empty") {
     const auto outcome = slice_file("cavity_inverted_inner.stl");
     REQUIRE(outcome.has_value());
     REQUIRE(outcome->full_pixels.size() == 200);
@@ -96,7 +96,7 @@ TEST_CASE("a cavity is left open") {
     CHECK(outcome->warnings.empty());
 }
 
-TEST_CASE("what is no printable solid is refused") {
+TEST_CASE("an open sheet, a 1 um cube and a NaN vertex are refused") {
     CHECK(slice_file("open_sheet.stl").error().message.find("the surface is open") != std::string::npos);
     CHECK(slice_file("tiny_1um_cube.stl").error().message.find("nothing to print") != std::string::npos);
     CHECK(slice_file("binary_nan_vertex.stl").error().message.find("is not finite") != std::string::npos);

@@ -68,7 +68,7 @@ int shared_pixels(const Sliced& sliced, int layer) {
 
 }  // namespace
 
-TEST_CASE("a box lights its pixels and no other, whichever way the image is mirrored") {
+TEST_CASE("a box lights exactly its pixels, however the image is mirrored") {
     const std::vector<Body> bodies{{"soft", box({-1000, 500, 0}, {2000, 1500, 200}), ""}};
     for (const bool mirror_x : {false, true}) {
         for (const bool mirror_y : {false, true}) {
@@ -88,7 +88,7 @@ TEST_CASE("a box lights its pixels and no other, whichever way the image is mirr
     }
 }
 
-TEST_CASE("a turned and moved image shows the part turned and moved") {
+TEST_CASE("a rotated and shifted image shows the part rotated and shifted") {
     const std::vector<Body> bodies{{"soft", box({-1000, 500, 0}, {2000, 1500, 50}), ""}};
     Settings settings{raster, 50, {}};
     settings.raster.rotation_deg = 90;  // x becomes y: rows 20 up to 10 down, columns 15 to 5 left of the middle
@@ -119,7 +119,7 @@ TEST_CASE("grey values are the exact coverage") {
     CHECK(int{image.at(13, 42)} == 32);   // 255/8 = 31.9
 }
 
-TEST_CASE("without anti-aliasing the threshold decides") {
+TEST_CASE("without anti-aliasing the threshold decides which pixels are lit") {
     Settings settings{raster, 50, {false, 0.5, 20}};
     const std::vector<Body> bodies{{"soft", box({0, 0, 0}, {1025, 1050, 50}), ""}};
     CHECK(value_sum(slice_all(bodies, settings).shots.at(0).image) == 110 * 255);
@@ -129,7 +129,7 @@ TEST_CASE("without anti-aliasing the threshold decides") {
     CHECK(value_sum(slice_all(bodies, settings).shots.at(0).image) == 121 * 255);
 }
 
-TEST_CASE("two half cubes share their plane without a gap or a double pixel, wherever it lies in a pixel") {
+TEST_CASE("two half cubes meet without gap or double pixel, wherever in a pixel their interface is") {
     for (const double x : {0.0, 12.5, 30.0, 50.0, 51.0, 99.0}) {
         const Sliced s = slice_all({{"soft", box({-1000, -1000, 0}, {x, 1000, 100}), ""},
                                     {"rigid", box({x, -1000, 0}, {1000, 1000, 100}), ""}});
@@ -144,7 +144,7 @@ TEST_CASE("two half cubes share their plane without a gap or a double pixel, whe
     }
 }
 
-TEST_CASE("a slanted interface leaves every pixel full and in one image") {
+TEST_CASE("at a slanted interface every pixel is full and in one image only") {
     const std::vector<Point2> left{{-1000, -1000}, {-300, -1000}, {400, 1000}, {-1000, 1000}};
     const std::vector<Point2> right{{-300, -1000}, {1000, -1000}, {1000, 1000}, {400, 1000}};
     const Sliced s = slice_all({{"soft", prism(left, 0, 50), ""}, {"rigid", prism(right, 0, 50), ""}});
@@ -174,7 +174,7 @@ TEST_CASE("bodies of one material may overlap") {
     CHECK(value_sum(s.shots.at(0).image) == 200 * 255);
 }
 
-TEST_CASE("a later body inside an earlier one replaces it, a small part of a pixel does not") {
+TEST_CASE("a later body inside an earlier one replaces it, but a small share of a pixel does not") {
     const Sliced s = slice_all(
         {{"soft", box({-1000, -1000, 0}, {1000, 1000, 50}), ""}, {"rigid", box({-240, -200, 0}, {260, 200, 50}), ""}});
     CHECK(shared_pixels(s, 0) == 0);
@@ -183,7 +183,7 @@ TEST_CASE("a later body inside an earlier one replaces it, a small part of a pix
     CHECK(s.summary.overlap_mm3 == near(0.5 * 0.4 * 0.05, {.relative = 1e-9}));
 }
 
-TEST_CASE("gaps far below a pixel between materials leave no dark line") {
+TEST_CASE("gaps much narrower than a pixel between materials leave no dark line") {
     for (const double x : {0.0, 45.0, 93.0, 95.0}) {
         const std::vector<Body> bodies{{"soft", box({-1000, -1000, 0}, {x, 1000, 50}), ""},
                                        {"rigid", box({x + 10, -1000, 0}, {1000, 1000, 50}), ""}};
@@ -205,7 +205,7 @@ TEST_CASE("outer borders do not count as gaps") {
     CHECK(s.summary.closed_gap_pixels == 0);
 }
 
-TEST_CASE("shells: cavity, overlap of two shells, touching shells, inside out") {
+TEST_CASE("shells: a cavity, two overlapping shells, touching shells, inverted shells") {
     const auto first = [](const mesh::TriMesh& mesh, int layer) {
         const Sliced s = slice_all({{"soft", mesh, ""}});
         return value_sum(s.shots.at(layer).image);
@@ -223,7 +223,7 @@ TEST_CASE("shells: cavity, overlap of two shells, touching shells, inside out") 
           400 * 255);
 }
 
-TEST_CASE("faces on layer planes and on layer middles land in exactly one layer") {
+TEST_CASE("a face on a layer plane or in the middle of a layer is in exactly one layer") {
     for (const double z : {50.0, 25.0, 75.0, 60.0}) {
         const Sliced s = slice_all({{"soft", box({-1000, -1000, 0}, {1000, 1000, 25}), ""},
                                     {"rigid", box({-1000, -1000, z}, {1000, 1000, z + 50}), ""}});
@@ -238,7 +238,7 @@ TEST_CASE("faces on layer planes and on layer middles land in exactly one layer"
     }
 }
 
-TEST_CASE("a stack of bodies fills every layer once, whatever the heights") {
+TEST_CASE("a stack of bodies fills every layer once, whatever their heights") {
     std::vector<Body> bodies;
     const std::vector<double> heights{0, 25, 110, 125, 333.3, 500};
     for (std::size_t i = 0; i + 1 < heights.size(); ++i)
@@ -248,7 +248,7 @@ TEST_CASE("a stack of bodies fills every layer once, whatever the heights") {
     for (int k = 0; k < 10; ++k) CHECK(s.shots[k].layer == k);
 }
 
-TEST_CASE("a cone's layers have the polygon's area at mid height") {
+TEST_CASE("a cone's layers have the area of its section at mid height") {
     // Apex above a 97-gon of radius 2000: area at height z is the base's times (1 - z/h)^2.
     const int corners = 97;
     const auto base = regular_polygon(corners, 2000);
@@ -268,7 +268,7 @@ TEST_CASE("a cone's layers have the polygon's area at mid height") {
     }
 }
 
-TEST_CASE("unprintable parts are refused with numbers") {
+TEST_CASE("parts outside the image, below the platform or without solid surface are refused with numbers") {
     const Settings settings{raster, 50, {}};
     const Body cube{"soft", box({-1000, -1000, 0}, {1000, 1000, 500}), "cube"};
     CHECK(refused({{"soft", box({-1000, -1000, 0}, {4000, 1000, 500}), ""}}, settings).find("x -1.000 to 4.000 mm") !=
@@ -284,7 +284,7 @@ TEST_CASE("unprintable parts are refused with numbers") {
     CHECK(refused({cube}, {raster, 50, {true, 0, 20}}).find("threshold 0") == 0);
 }
 
-TEST_CASE("bodies too small to appear and floating parts are reported") {
+TEST_CASE("bodies too small to be lit, and floating parts, are reported") {
     const Sliced s = slice_all({{"soft", box({-1000, -1000, 0}, {1000, 1000, 100}), ""},
                                 {"speck", box({0, 0, 30}, {1, 1, 31}), ""},
                                 {"hair", box({1500, 0, 0}, {1501, 1000, 100}), ""},
@@ -295,7 +295,7 @@ TEST_CASE("bodies too small to appear and floating parts are reported") {
     CHECK(s.summary.warnings[2].find("2 empty layers between printed ones, the first is layer 2") == 0);
 }
 
-TEST_CASE("emit's error and cancellation stop the work") {
+TEST_CASE("an error of emit, or cancellation, stops slicing") {
     const std::vector<Body> bodies{{"soft", box({-1000, -1000, 0}, {1000, 1000, 500}), ""}};
     Progress progress;
     const auto stopped = slice_bodies(
@@ -311,7 +311,7 @@ TEST_CASE("emit's error and cancellation stop the work") {
               .cause == Cause::cancelled);
 }
 
-TEST_CASE("any tangle of triangles is refused or printed inside its box") {
+TEST_CASE("random triangle soups are refused, or printed inside their bounding box") {
     std::uint32_t state = 7;
     const auto random = [&](int n) {
         state = state * 1664525 + 1013904223;
@@ -342,7 +342,7 @@ TEST_CASE("any tangle of triangles is refused or printed inside its box") {
     CHECK(printed > 30);
 }
 
-TEST_CASE("placing centres the part, lowers it, and refuses what is too large") {
+TEST_CASE("a part is centred and put on the platform; one that is too large is refused") {
     std::vector<Body> bodies{{"soft", box({5000, 6000, 7000}, {6000, 8000, 7100}), ""},
                              {"rigid", box({6000, 6000, 7000}, {7000, 8000, 7200}), ""}};
     const auto warnings = place_on_platform(bodies, raster);

@@ -68,7 +68,7 @@ SupportSettings in_wax() {
 
 }  // namespace
 
-TEST_CASE("shapes of supports are closed and as large as their formulas") {
+TEST_CASE("support shapes are closed and have the volumes of their formulas") {
     // A cylinder of radius 1 mm and a cone frustum on it.
     const double wanted = std::numbers::pi * (1 * 2 + 1.0 / 3 * (1 + 0.5 + 0.25));
     CHECK(volume_of(turned_solid(500, -200, {{0, 1000}, {2000, 1000}, {3000, 500}})) ==
@@ -80,7 +80,7 @@ TEST_CASE("shapes of supports are closed and as large as their formulas") {
           near(0.5 * (8 + 2 * (4 + 2) + polygon), {.relative = 1e-3}));
 }
 
-TEST_CASE("a table in mid-air stands on tips, no island is left, and the part keeps its volume") {
+TEST_CASE("a plate in mid-air gets tips, no island is left, and the part keeps its volume") {
     const std::vector<Body> plate{{"soft", box({-6000, -4000, 5000}, {6000, 4000, 6000}), ""}};
     const Outcome o = supported(plate, in_wax());
     CHECK(o.islands == 0);
@@ -99,7 +99,7 @@ TEST_CASE("a table in mid-air stands on tips, no island is left, and the part ke
     CHECK(o.warnings.empty());
 }
 
-TEST_CASE("only flat undersides get tips, and a barred pillar stands on the part") {
+TEST_CASE("only flat undersides get tips, and a blocked pillar stands on the part") {
     // A column with a roof at 60 degrees needs none; a floor below a ledge carries supports.
     const std::vector<Body> steep{
         {"soft", prism({{-1000, -1000}, {1000, -1000}, {1000, 1000}, {-1000, 1000}}, 0, 4000), ""}};
@@ -113,7 +113,7 @@ TEST_CASE("only flat undersides get tips, and a barred pillar stands on the part
     CHECK(o.supports.on_part == o.supports.tips);
 }
 
-TEST_CASE("a sphere in mid-air, on a raft, in a material of its own") {
+TEST_CASE("a sphere in mid-air is supported on a raft, in a separate support material") {
     mesh::TriMesh ball;
     constexpr int rings = 24, around = 48;
     const auto at = [&](int i, int j) {
@@ -162,7 +162,7 @@ std::vector<Body> steep_roof() {
 
 }  // namespace
 
-TEST_CASE("painted by hand: a steep underside is held where it is wanted, and nowhere else") {
+TEST_CASE("painted supports: a steep underside gets tips where they are enforced, and nowhere else") {
     SupportSettings wanted = in_wax();
     CHECK(supported(steep_roof(), wanted).supports.tips == 0);
     // On its underside, 4 mm up: x = 1000 + 4000 / tan 60, normal down and to the right.
@@ -184,7 +184,7 @@ TEST_CASE("painted by hand: a steep underside is held where it is wanted, and no
     CHECK(supported(steep_roof(), wanted).supports.tips == 0);
 }
 
-TEST_CASE("painted by hand: no tip where it is blocked, not even under an island") {
+TEST_CASE("painted supports: no tip where they are blocked, not even under an island") {
     const std::vector<Body> plate{{"soft", box({-6000, -4000, 5000}, {6000, 4000, 6000}), ""}};
     SupportSettings wanted = in_wax();
     wanted.paint = {touch(SupportWish::block, {4000, 0, 5000}, 2500)};
@@ -226,7 +226,7 @@ TEST_CASE("invalid supports are refused") {
     CHECK(refused(s) == "painted supports: a normal of length 0");
 }
 
-TEST_CASE("tall supports are braced, the braces need no support themselves, and one alone has a broad foot") {
+TEST_CASE("tall supports are braced, braces need no support, and a single pillar has a broad foot") {
     const Settings tall{{200, 160, 100}, 100, {}};
     const auto made_for = [&](const std::vector<Body>& part) {
         Progress progress;

@@ -32,7 +32,7 @@ std::string refused(const Teeth& teeth) {
 
 }  // namespace
 
-TEST_CASE("two halves take three pixels from each other, two layers by two, and no light is lost") {
+TEST_CASE("two halves interlock by three pixels, alternating every two layers, and the total light is kept") {
     const Slicer slicer = slicer_with(halves, {{"soft", "rigid", 3, 2}});
     const SlicedLayer plain = slicer_with(halves, {}).layer(0);
     for (int k = 0; k < 10; ++k) {
@@ -52,7 +52,7 @@ TEST_CASE("two halves take three pixels from each other, two layers by two, and 
     }
 }
 
-TEST_CASE("what is thinner than the teeth is missing in every other layer; what touches nothing stays") {
+TEST_CASE("a wall thinner than the teeth is missing in every other layer; bodies that do not touch stay") {
     const std::vector<Body> bodies{{"soft", box({-1000, -1000, 0}, {0, 1000, 500}), ""},
                                    {"rigid", box({0, -1000, 0}, {200, 1000, 500}), ""},
                                    {"tough", box({1000, -1000, 0}, {1500, 1000, 500}), ""}};

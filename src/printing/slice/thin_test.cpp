@@ -36,7 +36,7 @@ TEST_CASE("a wall of 0.2 mm is thinner than 0.3 mm and not than 0.2 mm") {
     CHECK(thin_in(wall, 50).empty());
 }
 
-TEST_CASE("corners, discs and triangles are not thin; a fin on a block and a needle's tip are") {
+TEST_CASE("corners, discs and triangles are not thin; a fin on a block and the tip of a needle are") {
     CHECK(thin_in({{"soft", box({-1000, -1000, 0}, {1000, 1000, 500}), ""}}, 400).empty());
     CHECK(thin_in({{"soft", prism(regular_polygon(4, 1500, 0.3), 0, 500), ""}}, 400).empty());
     CHECK(thin_in({{"soft", prism(regular_polygon(64, 1500), 0, 500), ""}}, 400).empty());
@@ -47,7 +47,7 @@ TEST_CASE("corners, discs and triangles are not thin; a fin on a block and a nee
     CHECK(thin_in({{"soft", prism({{-1500, -200}, {1500, 0}, {-1500, 200}}, 0, 500), ""}}, 300).size() == 1);
 }
 
-TEST_CASE("each material has its own features") {
+TEST_CASE("thin features are found per material") {
     const std::vector<Body> sandwich{{"soft", box({-1000, -1000, 0}, {0, 1000, 500}), ""},
                                      {"rigid", box({0, -1000, 0}, {100, 1000, 500}), ""},
                                      {"soft", box({100, -1000, 0}, {1000, 1000, 500}), ""}};

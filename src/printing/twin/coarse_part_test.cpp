@@ -29,7 +29,7 @@ double volume(const CoarsePart& part, int material) {
 
 }  // namespace
 
-TEST_CASE("two materials side by side are there cell by cell, and the last slab grows with its layers") {
+TEST_CASE("two materials side by side are in their cells, and the last slab grows with its layers") {
     CoarsePart part(100, 60, 50, 25600);  // slabs of 100 um
     part.add(0, 50, 0, block(10, 20, 10, 30));
     part.add(0, 50, 1, block(10, 20, 30, 40));
@@ -51,7 +51,7 @@ TEST_CASE("two materials side by side are there cell by cell, and the last slab 
     CHECK(volume(part, 1) == 10 * 10 * 100 + 5 * 100 * 50);
 }
 
-TEST_CASE("a cell that is barely touched is empty, one that is mostly full is not") {
+TEST_CASE("a cell covered by a quarter is empty, one covered by half is full") {
     CoarsePart part(4096, 64, 50, 256);  // cells of 4 px
     REQUIRE(part.cell_px() == 4);
     part.add(0, 50, 0, block(0, 1, 0, 4));    // a quarter of a cell
@@ -65,7 +65,7 @@ TEST_CASE("a cell that is barely touched is empty, one that is mostly full is no
     CHECK(faint.runs().empty());
 }
 
-TEST_CASE("however fine the part, the runs stay bounded, and the volume is kept") {
+TEST_CASE("the number of runs is limited for any resolution, and the volume is kept") {
     CoarsePart part(512, 512, 50, 100 * 50);
     double all = 0;
     for (int layer = 0; layer < 100; ++layer) {
@@ -91,7 +91,7 @@ TEST_CASE("however fine the part, the runs stay bounded, and the volume is kept"
     }
 }
 
-TEST_CASE("invalid input is ignored") {
+TEST_CASE("empty or invalid layers are ignored, and pixels beyond the frame are cut off") {
     CoarsePart part(100, 60, 50, 1000);
     part.add(100, 100, 0, block(0, 5, 0, 5));
     part.add(0, 50, -1, block(0, 5, 0, 5));

@@ -28,7 +28,7 @@ const job::Image right{4, 2, {0, 0, 255, 255, 0, 204, 255, 255}};
 
 }  // namespace
 
-TEST_CASE("light cures the gap under the platform, in runs of equal pixels") {
+TEST_CASE("an exposure cures the gap under the platform, in runs of equal pixels") {
     const auto printer = small();
     Cure cure(printer);
     cure.expose(left, 0, 2, 50);
@@ -47,7 +47,7 @@ TEST_CASE("light cures the gap under the platform, in runs of equal pixels") {
     CHECK(cure.faults().empty());
 }
 
-TEST_CASE("too short a light leaves nothing, the critical share is enough") {
+TEST_CASE("below the critical share of the exposure nothing cures; at it a layer does") {
     const auto printer = small();
     for (const double seconds : {1.59, 1.6}) {
         Cure cure(printer);
@@ -58,7 +58,7 @@ TEST_CASE("too short a light leaves nothing, the critical share is enough") {
     }
 }
 
-TEST_CASE("a light given in pieces adds up, whether the first piece cures or not, and takes its resin once") {
+TEST_CASE("an exposure given in parts adds up, and uses its resin once") {
     const auto printer = small();
     for (const double first : {0.3, 1.7}) {
         Cure cure(printer);
@@ -90,7 +90,7 @@ TEST_CASE("a second exposure of the same pixels is counted") {
     CHECK(cure.pixels_lit_twice() == 3);
 }
 
-TEST_CASE("thickness is the gap; a gap that is too deep is lost with all that follows") {
+TEST_CASE("the layer thickness is the gap; in too deep a gap the layer and all later ones are lost") {
     const auto printer = small();
     Cure cure(printer);
     cure.expose(left, 0, 2, 50);
@@ -102,7 +102,7 @@ TEST_CASE("thickness is the gap; a gap that is too deep is lost with all that fo
     CHECK(cure.faults().size() == 1);
 }
 
-TEST_CASE("resin that a vat no longer holds does not cure") {
+TEST_CASE("resin that is used up does not cure") {
     auto printer = small();
     printer.vats[0].fill_ml = 2e-6;  // a layer of the left image takes 1.6e-6
     Cure cure(printer);
@@ -114,7 +114,7 @@ TEST_CASE("resin that a vat no longer holds does not cure") {
     CHECK(cure.layers().size() == 1);
 }
 
-TEST_CASE("working curve: the exposure cures the stated depth, its critical share one layer; or as given") {
+TEST_CASE("the working curve follows from cure depth and critical share, or from given constants") {
     auto printer = small();
     const WorkingCurve derived = working_curve(printer, printer.resins[0]);
     CHECK(derived.depth_um(2) == near(120, {.relative = 1e-12}));  // no irradiance in the file: 1 W/m^2
@@ -127,7 +127,7 @@ TEST_CASE("working curve: the exposure cures the stated depth, its critical shar
     CHECK(given.depth_um(50 * 2.718281828459045) == near(100, {.relative = 1e-12}));
 }
 
-TEST_CASE("light passes through a ceiling and cures liquid below it, more with every layer") {
+TEST_CASE("light through an overhang cures resin below it, more with every layer") {
     auto printer = small();
     printer.projector.irradiance_W_m2 = 100;
     printer.resins[0].penetration_um = 100;

@@ -18,7 +18,7 @@ machine::Printer printer_with_film() {
 
 }  // namespace
 
-TEST_CASE("the film on the part that is not sprayed off mixes into the next vat") {
+TEST_CASE("the part of the film that the spray leaves mixes into the next vat") {
     const auto printer = printer_with_film();
     Fluids fluids(printer);
     CHECK(fluids.leave(0, 1000) == near(0.1, {.relative = 1e-12}));  // 1000 mm^2 under 100 um: 100 ul
@@ -32,7 +32,7 @@ TEST_CASE("the film on the part that is not sprayed off mixes into the next vat"
     CHECK(fluids.enter(2, 100) == 0);
 }
 
-TEST_CASE("a brush returns its share to the vat: less is lost, washed off and carried on") {
+TEST_CASE("a brush returns its share to the vat: less is lost, washed off and carried over") {
     const auto printer = printer_with_film();
     Fluids fluids(printer);
     CHECK(fluids.leave(0, 1000, 0.29) == near(0.071, {.relative = 1e-12}));
@@ -42,7 +42,7 @@ TEST_CASE("a brush returns its share to the vat: less is lost, washed off and ca
     CHECK(fluids.enter(1, 100) / (0.071 * 0.0525) == near(1, {.relative = 1e-12}));
 }
 
-TEST_CASE("solution with resin in it cleans less, and carries resins to where they have never been") {
+TEST_CASE("solution that holds resin cleans less, and carries resins into other vats") {
     auto printer = printer_with_film();
     printer.solution = {100, 100, 0, 0, 0, 0, 1, 0, 0};
     Fluids fluids(printer);
@@ -64,7 +64,7 @@ TEST_CASE("solution with resin in it cleans less, and carries resins to where th
     CHECK(fluids.clean(15) == near(0.0525, {.relative = 1e-12}));
 }
 
-TEST_CASE("used solution counts as foreign resin") {
+TEST_CASE("resin in used solution counts as foreign resin") {
     auto printer = printer_with_film();
     printer.solution = {100, 100, 0.2, 0, 0, 0, 1, 0, 0};
     Fluids fluids(printer);
@@ -86,7 +86,7 @@ TEST_CASE("without cleaning the whole film is carried over, from vat to vat") {
     CHECK(fluids.share(2, 0) == near(0.01, {.relative = 1e-12}));
 }
 
-TEST_CASE("fresh resin dilutes contamination; a removed part takes its film along") {
+TEST_CASE("fresh resin dilutes contamination; removing the part removes its film") {
     const auto printer = printer_with_film();
     Fluids fluids(printer);
     fluids.leave(0, 1000);
@@ -101,7 +101,7 @@ TEST_CASE("fresh resin dilutes contamination; a removed part takes its film alon
     CHECK(fluids.enter(2, 100) == 0);
 }
 
-TEST_CASE("faults are named on the command line") {
+TEST_CASE("faults are parsed from the command line") {
     CHECK(parse_fault("stall:40:90")->kind == Fault::Kind::stall);
     CHECK(parse_fault("stall:40:90")->n == 40);
     CHECK(parse_fault("stall:40:90")->amount == 90);

@@ -120,7 +120,7 @@ Report inspected(const std::vector<double>& heights_mm, double seconds = 2.5) {
 
 }  // namespace
 
-TEST_CASE("the right layers pass, with the drawn volume") {
+TEST_CASE("correct layers pass, with the drawn volume") {
     const Report r = inspected({0.05, 0.1});
     CHECK_MESSAGE(r.passed, report_text(r));
     CHECK(r.materials[0].cured_mm3 == near(0.4, {.relative = 1e-12}));
@@ -130,7 +130,7 @@ TEST_CASE("the right layers pass, with the drawn volume") {
     CHECK(report_json(r).find("\"passed\": true") != std::string::npos);
 }
 
-TEST_CASE("after the part is removed and the vat filled the next print begins anew") {
+TEST_CASE("after removing the part and filling the vat a new print can begin") {
     const auto printer = small_tower();
     Twin twin(printer);
     print(twin, {0.05, 0.1});
@@ -154,7 +154,7 @@ TEST_CASE("after the part is removed and the vat filled the next print begins an
     CHECK_MESSAGE(again.passed, report_text(again));
 }
 
-TEST_CASE("a missing layer, a wrong height, a short or a double light fail") {
+TEST_CASE("a missing layer, a wrong height, a short and a repeated exposure fail") {
     const Report missing = inspected({0.05});
     CHECK_FALSE(missing.passed);
     CHECK(missing.missing_layers == 1);
@@ -171,7 +171,7 @@ TEST_CASE("a missing layer, a wrong height, a short or a double light fail") {
     CHECK(twice.most_dose == near(2, {.relative = 1e-12}));
 }
 
-TEST_CASE("a volume that the images do not hold fails against the model") {
+TEST_CASE("images whose volume differs from the model's fail") {
     const auto printer = small_tower();
     Twin twin(printer);
     print(twin, {0.05, 0.1});
@@ -182,7 +182,7 @@ TEST_CASE("a volume that the images do not hold fails against the model") {
     CHECK(inspect(twin, job, half_image)->passed);
 }
 
-TEST_CASE("cured in a resin other than the material's counts as foreign") {
+TEST_CASE("material cured in another resin than its own counts as foreign") {
     const auto printer = small_tower();
     Twin twin(printer);
     print(twin, {0.05, 0.1});
@@ -194,7 +194,7 @@ TEST_CASE("cured in a resin other than the material's counts as foreign") {
     CHECK(r.materials[0].missing_mm3 == 0);
 }
 
-TEST_CASE("an unavailable image is an error") {
+TEST_CASE("a missing image is an error") {
     const auto printer = small_tower();
     Twin twin(printer);
     CHECK_FALSE(inspect(twin, half_job(), [](int, int) -> Result<job::Image> { return input_error("gone"); }));
@@ -236,7 +236,7 @@ const std::vector<job::Image> pyramid{all_lit, half, corner};
 
 }  // namespace
 
-TEST_CASE("ten times the light, and a tenth more or less, are a wrong dose and nothing else") {
+TEST_CASE("ten times the exposure, and 10 % more or less, are a wrong dose and nothing else") {
     for (const double share : {10.0, 1.1, 0.9}) {
         std::vector<Light> lights = lights_of(pyramid);
         lights[1].seconds *= share;
@@ -257,7 +257,7 @@ TEST_CASE("ten times the light, and a tenth more or less, are a wrong dose and n
     CHECK(verdict(job, pyramid, lights).passed);
 }
 
-TEST_CASE("swapped images of one material are found, whether the projector or the archive swaps them") {
+TEST_CASE("swapped images of one material are found, whether swapped by projector or archive") {
     std::vector<Light> lights = lights_of(pyramid);
     std::swap(lights[0].image, lights[1].image);
     const Report shown = verdict(job_of(pyramid), pyramid, lights);
@@ -273,7 +273,7 @@ TEST_CASE("swapped images of one material are found, whether the projector or th
           "layer 0, material \"soft\": the image holds 4.00 pixels, the manifest says 8.00 (image)");
 }
 
-TEST_CASE("one darkened and one stray pixel are found, by a single grey value") {
+TEST_CASE("one pixel darkened or added is found, even by one grey value") {
     for (const int value : {0, 254}) {
         std::vector<job::Image> images = pyramid;
         images[1].pixels[5] = static_cast<std::uint8_t>(value);
@@ -288,8 +288,7 @@ TEST_CASE("one darkened and one stray pixel are found, by a single grey value") 
     CHECK(verdict(job_of(pyramid), stray, lights_of(stray)).wrong_images == 1);
 }
 
-TEST_CASE(
-    "light through an underside may cure as deep as a layer is known; what is deeper fails unless it is accepted") {
+TEST_CASE("overcure below an underside is allowed up to the known depth; more fails unless accepted") {
     // A table: twenty layers of a leg, twenty of its plate.
     std::vector<job::Image> table(20, corner);
     table.resize(40, all_lit);
@@ -340,7 +339,7 @@ TEST_CASE("only intended deviations can be accepted, and misspelt names are repo
     CHECK_FALSE(verdict(job_of(pyramid), pyramid, lights, {{Finding::Kind::overcure, Finding::Kind::volume}}).passed);
 }
 
-TEST_CASE("the tolerance of a volume: a surface that may lie half a layer off, and grey that is rounded") {
+TEST_CASE("the volume tolerance: half a layer at surfaces, and rounding of grey values") {
     // A cube of 5 mm, pixels of 158.75 um, layers of 50 um: 3 %, where 1 % and half a pixel were 10.5 %.
     const double border_um = border_error_um(158.75, true, false);
     CHECK(border_um == near(0.4402, {.relative = 1e-3}));

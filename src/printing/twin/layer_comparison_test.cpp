@@ -29,7 +29,7 @@ TEST_CASE("correct layers have no difference, in any order of exposures") {
     CHECK(d.images[0].missing == 0);
 }
 
-TEST_CASE("missing, stray and foreign pixels are told apart") {
+TEST_CASE("missing, stray and foreign pixels are distinguished") {
     const Runs darker{{0, 0, 3, 255}, {0, 4, 5, 100}};
     const LayerDifference missing = difference(both, {{0, &darker, 2.5}, {1, &right, 2.5}}, slack_s);
     CHECK(missing.missing_px == 1);
@@ -49,7 +49,7 @@ TEST_CASE("missing, stray and foreign pixels are told apart") {
     CHECK(dark.missing_px == 11);  // the shared pixel lacks both resins
 }
 
-TEST_CASE("a light that is longer or shorter than asked is a wrong dose of its pixels") {
+TEST_CASE("an exposure longer or shorter than asked is a wrong dose of its pixels") {
     for (const double seconds : {0.25, 2.4, 2.6, 25.0}) {
         const LayerDifference d = difference(both, {{0, &left, seconds}, {1, &right, 2.5}}, slack_s);
         CHECK(d.wrong_px == 0);
@@ -63,7 +63,7 @@ TEST_CASE("a light that is longer or shorter than asked is a wrong dose of its p
         CHECK(difference(both, {{0, &left, 5, pieces}, {1, &right, 2.5}}, 10).wrong_dose_px == (pieces > 1 ? 5 : 0));
 }
 
-TEST_CASE("images of one resin may come in one picture; grey is a share of the pixel, not of the time") {
+TEST_CASE("images of one resin may be shown as one; grey is a share of the pixel, not of the time") {
     const std::vector<AskedImage> same{{0, left, 2.5}, {0, right, 2.5}};
     const Runs whole{{0, 0, 10, 255}};
     const LayerDifference merged = difference(same, {{0, &whole, 2.5}}, slack_s);
@@ -73,7 +73,7 @@ TEST_CASE("images of one resin may come in one picture; grey is a share of the p
     CHECK(difference(same, {{0, &left, 5}, {0, &right, 2.5}}, slack_s).wrong_dose_px == 5);
 }
 
-TEST_CASE("property: what is shown as asked passes, and any one voxel changed is found and counted once") {
+TEST_CASE("property: images shown as asked pass, and any one changed voxel is found and counted once") {
     std::mt19937 random(5);
     const auto pick = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(most + 1)); };
     constexpr int width = 9, height = 4;

@@ -39,14 +39,14 @@ TEST_CASE("errors come in Marlin's order: number, then presence, then value of t
     CHECK(reader.last_number() == 0);
 }
 
-TEST_CASE("M110 sets the number") {
+TEST_CASE("M110 sets the line number") {
     LineReader reader;
     const std::string line = "N0 M110 N41";
     REQUIRE(read(reader, fmt::format("{}*{}\n", line, checksum(line)))[0].error.empty());
     CHECK(reader.last_number() == 41);
 }
 
-TEST_CASE("lines without a number are not verified; comments, blanks and empty lines are dropped") {
+TEST_CASE("lines without a number are not checked; comments, blanks and empty lines are removed") {
     LineReader reader;
     CHECK(read(reader, " M400*33\n")[0].command == "M400");
     CHECK(read(reader, "\n\r\n;only\n").empty());

@@ -46,7 +46,7 @@ double deepest_um(double penetration_um) {
 
 }  // namespace
 
-TEST_CASE("a job is told how deep its own light will cure below an underside, however little a vat holds") {
+TEST_CASE("a job gets warnings of its overcure below undersides, however little resin a vat holds") {
     for (const double penetration_um : {60.0, 100.0}) {
         const machine::Printer printer = printer_with(penetration_um);
         const Screen screen(printer.projector, std::nullopt);
@@ -64,7 +64,7 @@ TEST_CASE("a job is told how deep its own light will cure below an underside, ho
     }
 }
 
-TEST_CASE("the manifest's time of an image counts, and an image that cannot be had is an error") {
+TEST_CASE("an image's exposure in the manifest is used, and a missing image is an error") {
     const machine::Printer printer = printer_with(60);
     const Screen screen(printer.projector, std::nullopt);
     job::Manifest job = table();

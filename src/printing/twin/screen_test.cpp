@@ -33,13 +33,13 @@ int value_at(const Runs& runs, int column) {
 
 }  // namespace
 
-TEST_CASE("without grey and mask an image is its coverage") {
+TEST_CASE("without grey curve and mask an image is its coverage") {
     const Screen::Picture picture = Screen(projector({}), std::nullopt).coverage(ramp());
     CHECK(picture.runs == ramp());
     CHECK(picture.overlit_px == 0);
 }
 
-TEST_CASE("grey is undone: the light of a coverage cures that coverage") {
+TEST_CASE("the grey curve is inverted: the grey value for a coverage gives that coverage") {
     const Screen screen(projector({0, 0.5, 0.8, 1}), std::nullopt);
     // The light of coverages 1/3 and 2/3 in the printer file, and of the midpoint between 2/3 and 1.
     const Runs shown = {{0, 0, 1, 128}, {0, 1, 2, 204}, {0, 2, 3, 230}, {0, 3, 4, 255}};
@@ -50,7 +50,7 @@ TEST_CASE("grey is undone: the light of a coverage cures that coverage") {
     CHECK(value_at(runs, 3) == 255);
 }
 
-TEST_CASE("the mask is undone, and light that passes it is counted") {
+TEST_CASE("the mask is inverted, and pixels brighter than it allows are counted") {
     job::Image mask{256, 1, std::vector<std::uint8_t>(256, 200)};
     const Screen screen(projector({}), mask);
     const Screen::Picture picture = screen.coverage(ramp());

@@ -41,7 +41,7 @@ struct Host {
 
 }  // namespace
 
-TEST_CASE("a host opens the device like a serial port, homes the machine a thousand times as fast, and comes back") {
+TEST_CASE("a host can open the device like a serial port, home at 1000 times the speed, and connect again") {
     const auto printer = machine::load_printer("examples/printers/tower.toml").value();
     const pliant::test::Folder folder("serve");
     const std::filesystem::path link = folder / "printer";
@@ -69,7 +69,7 @@ TEST_CASE("a host opens the device like a serial port, homes the machine a thous
     CHECK(twin.interlock().homed(machine::Axis::platform));
 }
 
-TEST_CASE("a link is not put over a file that is there") {
+TEST_CASE("a link does not replace an existing file") {
     const pliant::test::Folder folder("serve");
     CHECK_FALSE(Pty::open(folder.path()));
     CHECK_FALSE(Pty::open(folder / "no such folder" / "x"));

@@ -49,7 +49,7 @@ TEST_CASE("surfaces hidden from the jets stay wet: a tube of 4 mm is cleaned les
     CHECK(tube < block - 0.05);
 }
 
-TEST_CASE("it follows the part as it grows, knows nothing before the first layer or without heads") {
+TEST_CASE("the share follows the growing part; before the first layer, or without sprinklers, there is none") {
     machine::Printer printer = tower();
     const job::Image image = picture([](double x, double y) { return std::hypot(x, y) < 20; });
     Cure cure(printer);
@@ -69,7 +69,7 @@ TEST_CASE("it follows the part as it grows, knows nothing before the first layer
     CHECK_FALSE(SprayedPart(blind).removed(cure, 15));
 }
 
-TEST_CASE("the lower end of the part is what has cured in this layer, or the layer before where that is more") {
+TEST_CASE("the part's lower end is the larger of this layer and the one before") {
     const machine::Printer printer = tower();
     Cure cure(printer);
     const job::Image left = picture([](double x, double y) { return x < 0 && std::abs(x) < 10 && std::abs(y) < 10; });

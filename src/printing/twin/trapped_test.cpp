@@ -37,7 +37,7 @@ const std::vector<std::string> open_ring = {"       ", " ##### ", " #     ", " #
 
 }  // namespace
 
-TEST_CASE("a pocket between two plates is closed, and its volume and place are known") {
+TEST_CASE("a cavity between two plates is closed, with its volume and height") {
     const auto found = trapped_in({drawn(1, plate), drawn(2, ring), drawn(3, ring), drawn(4, plate)});
     REQUIRE(found.size() == 1);
     CHECK(found[0].closed);
@@ -50,7 +50,7 @@ TEST_CASE("a pocket between two plates is closed, and its volume and place are k
     CHECK(found[0].y_end_px == 3);
 }
 
-TEST_CASE("what is open below or at its lowest side drains; what is open at its upper side only is a cup") {
+TEST_CASE("a cavity open below or at its lowest side drains; one open only at its upper side is a cup") {
     CHECK(trapped_in({drawn(1, plate), drawn(2, ring), drawn(3, ring)}).empty());
     CHECK(trapped_in({drawn(1, plate), drawn(2, ring), drawn(3, open_ring), drawn(4, plate)}).empty());
     const auto cup = trapped_in({drawn(1, plate), drawn(2, open_ring), drawn(3, ring), drawn(4, plate)});
@@ -62,7 +62,7 @@ TEST_CASE("what is open below or at its lowest side drains; what is open at its 
     CHECK(trapped_in({drawn(4, plate), drawn(3, ring), drawn(2, open_ring), drawn(1, plate)}).size() == 1);
 }
 
-TEST_CASE("two pockets that join further up are one, largest first; a solid part and an empty one hold nothing") {
+TEST_CASE("cavities that join further up are one, the largest comes first; solid and empty parts have none") {
     const std::vector<std::string> two = {"       ", " ##### ", " # # # ", " ##### ", "       "};
     const std::vector<std::string> wide = {"       ", " ##### ", " #   # ", " ##### ", "       "};
     const auto joined = trapped_in({drawn(1, plate), drawn(2, wide), drawn(3, two), drawn(4, plate)});
@@ -75,7 +75,7 @@ TEST_CASE("two pockets that join further up are one, largest first; a solid part
     CHECK(trapped_in({}).empty());
 }
 
-TEST_CASE("a wall made of two resins counts; one less than half cured leaks") {
+TEST_CASE("a wall of two resins holds; one less than half cured leaks") {
     const std::vector<std::string> shared = {"       ", " ##### ", " #  +# ", " ##### ", "       "};
     const std::vector<std::string> weak = {"       ", " ##### ", " #  o+ ", " ##+## ", "       "};
     CHECK(trapped_in({drawn(1, plate), drawn(2, shared), drawn(3, plate)}).size() == 1);

@@ -13,7 +13,7 @@ using machine::Axis;
 using pliant::test::holds;
 using twin::test::Peer;
 
-TEST_CASE("it starts like Marlin and answers questions") {
+TEST_CASE("the twin starts like Marlin and answers queries") {
     const auto printer = machine::load_printer("examples/printers/tower.toml").value();
     Twin twin(printer);
     CHECK(twin.take_output().substr(0, 6) == "start\n");
@@ -28,7 +28,7 @@ TEST_CASE("it starts like Marlin and answers questions") {
     CHECK(b.raw("\n;x\n").empty());
 }
 
-TEST_CASE("asked about its build it answers as a board that fits its machine, and not one without emergency parser") {
+TEST_CASE("the twin's reports pass the check of its board, and fail without emergency parser") {
     for (const bool parser : {true, false}) {
         Options options;
         options.emergency_parser = parser;
@@ -51,14 +51,14 @@ TEST_CASE("asked about its build it answers as a board that fits its machine, an
     CHECK(holds(b.send("M119"), "z_max: TRIGGERED\n"));
 }
 
-TEST_CASE("a bad line gets Error, Resend and an ok; the right one is then taken") {
+TEST_CASE("a bad line gets Error, Resend and ok; the correct line is then taken") {
     Peer b;
     CHECK(b.raw("N1 M400*1\n") == "Error:checksum mismatch, Last Line: 0\nResend: 1\nok\n");
     CHECK(b.send("M400") == "ok\n");
     CHECK(b.raw(Peer::line(4, "M400")) == "Error:Line Number is not Last Line Number+1, Last Line: 1\nResend: 2\nok\n");
 }
 
-TEST_CASE("ok comes when a move is queued, M400 when it is done, and busy in between") {
+TEST_CASE("ok comes when a move is queued, that of M400 when the move is done, and busy meanwhile") {
     Peer b;
     b.home();
     const double start = b.twin.now();
@@ -71,7 +71,7 @@ TEST_CASE("ok comes when a move is queued, M400 when it is done, and busy in bet
     CHECK(b.twin.take_output() == "ok\n");
 }
 
-TEST_CASE("the queue holds four lines and the receive buffer what fits; the rest is lost") {
+TEST_CASE("the queue holds four lines and the receive buffer a limited number; the rest is lost") {
     Peer b;
     std::string lines;
     for (int i = 0; i < 60; ++i) lines += "G4 P1\n";
@@ -83,7 +83,7 @@ TEST_CASE("the queue holds four lines and the receive buffer what fits; the rest
     CHECK(oks > 20);
 }
 
-TEST_CASE("what the interlocks forbid is refused, reported and recorded") {
+TEST_CASE("moves that the interlocks forbid are refused, reported and recorded") {
     Peer b;
     CHECK(holds(b.send("G1 X10"), "Error:interlock: the carriage moves before"));
     b.home();
@@ -94,7 +94,7 @@ TEST_CASE("what the interlocks forbid is refused, reported and recorded") {
     CHECK(holds(b.twin.log().violations.back(), "no vat under the platform"));
 }
 
-TEST_CASE("M410 stops in mid-move and the axes must be homed again") {
+TEST_CASE("M410 stops a move half-way, and the axes must be homed again") {
     Peer b;
     b.home();
     b.send("G1 Z300 F1200", 2.6);
@@ -103,7 +103,7 @@ TEST_CASE("M410 stops in mid-move and the axes must be homed again") {
     CHECK(holds(b.send("G1 Z340"), "Error:interlock: the platform moves before it is homed"));
 }
 
-TEST_CASE("M112 kills, only a reset revives") {
+TEST_CASE("after M112 only a reset helps") {
     Peer b;
     CHECK(holds(b.raw("M112\n"), "Error:Printer halted. kill() called!"));
     CHECK(b.send("M114").empty());
@@ -113,7 +113,7 @@ TEST_CASE("M112 kills, only a reset revives") {
     CHECK(b.send("M400") == "ok\n");
 }
 
-TEST_CASE("idle motors let go after two minutes unless M84 S0 was sent") {
+TEST_CASE("idle motors switch off after two minutes unless M84 S0 was sent") {
     Peer b;
     b.home();
     b.raw("", 121);
@@ -125,7 +125,7 @@ TEST_CASE("idle motors let go after two minutes unless M84 S0 was sent") {
     CHECK(kept.send("G1 Z300") == "ok\n");
 }
 
-TEST_CASE("faults on demand") {
+TEST_CASE("faults given as options happen: a corrupt byte, a lost line, a lost ok, a reset") {
     Peer corrupt({false, 2, {{Fault::Kind::corrupt_byte, 1}}});
     CHECK(holds(corrupt.send("M400"), "Error:"));
     Peer lost({false, 2, {{Fault::Kind::lose_line, 1}}});

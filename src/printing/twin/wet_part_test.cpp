@@ -33,7 +33,7 @@ double solid(const wash::PartCells& cells) {
 
 }  // namespace
 
-TEST_CASE("a part hangs where its images are, mirrored as the projector is, with its volume") {
+TEST_CASE("a wet part has the place and volume of its images, mirrored as the projector is") {
     CoarsePart part(200, 100, 100, 4000);
     // 1 mm high, 4 x 2 mm, right of and above the middle; then 1 mm of half of it.
     part.add(0, 1000, 0, block(10, 30, 120, 160));
@@ -52,6 +52,6 @@ TEST_CASE("a part hangs where its images are, mirrored as the projector is, with
     CHECK(mirrored.at(mirrored.columns - 1, 0, mirrored.slabs - 1));
 }
 
-TEST_CASE("nothing is solid: no cells, no faces") {
+TEST_CASE("a part without solid cells has no faces") {
     CHECK(wash::wet_faces(wet_part(CoarsePart(10, 10, 50, 1000), projector(false, false))).empty());
 }

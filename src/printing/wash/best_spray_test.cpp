@@ -23,7 +23,7 @@ PartCells disc() {
 
 }  // namespace
 
-TEST_CASE("the best spray takes less solution than the printer's own for the same cleanness, and reaches it") {
+TEST_CASE("the best spray reaches the printer's own cleanness with less solution") {
     machine::Printer p = tower();
     const PartCells part = disc();
     const std::vector<Face> faces = wet_faces(part);
@@ -43,7 +43,7 @@ TEST_CASE("the best spray takes less solution than the printer's own for the sam
     CHECK(best->seconds == near(store_s, {.relative = 0.01}));
 }
 
-TEST_CASE("on a machine whose moves take no time nobody who tries other strokes by hand finds a shorter cleaning") {
+TEST_CASE("with instant moves no other strokes clean in a shorter time than the best spray") {
     machine::Printer p = tower();
     for (machine::AxisSpec& axis : p.axes) axis.speed_mm_s = axis.acceleration_mm_s2 = 1e7;
     p.cleaning.speed_mm_s = p.hooks.speed_mm_s = 1e7;
@@ -61,7 +61,7 @@ TEST_CASE("on a machine whose moves take no time nobody who tries other strokes 
     }
 }
 
-TEST_CASE("an unreachable goal is reported, and what is missing") {
+TEST_CASE("an unreachable goal is reported, with what is missing") {
     const machine::Printer p = tower();
     const Result<BestSpray> scaffold = best_spray(coarsened(wash::test::scaffold(), 32), p, 0.99);
     REQUIRE_FALSE(scaffold);

@@ -27,7 +27,7 @@ bool is_side(const Face& face) {
 
 }  // namespace
 
-TEST_CASE("down a wall everything runs on, nothing goes up, and the lower edge takes it all") {
+TEST_CASE("down a wall all liquid runs to the lower edge, and none goes up") {
     // A column of 1 mm, 10 mm high; the top half millimetre of its wall is hit.
     const PartCells column = test::cells_of(1, 10, 0.5, [](double, double, double) { return true; });
     const std::vector<Face> faces = wet_faces(column);
@@ -45,7 +45,7 @@ TEST_CASE("down a wall everything runs on, nothing goes up, and the lower edge t
     }
 }
 
-TEST_CASE("off an underside it drips onto the ledge below, covers it and leaves over all its edges") {
+TEST_CASE("from an underside liquid drips onto the ledge below, wets it and leaves over all its edges") {
     // A plate of 4 mm over one of 8 mm, held 6 mm below it by a thin stem at the edge.
     const auto solid = [](double x, double y, double d) {
         if (d < 1) return std::abs(x) < 2 && std::abs(y) < 2;
@@ -72,7 +72,7 @@ TEST_CASE("off an underside it drips onto the ledge below, covers it and leaves 
     CHECK(off_below / hit == near(1, {.relative = 1e-12}));
 }
 
-TEST_CASE("into a pit whose tip points up nothing runs") {
+TEST_CASE("no liquid runs into a pit whose tip points up") {
     const PartCells block = test::pyramids();
     const std::vector<Face> faces = wet_faces(block);
     const auto rates = flow(block, faces, [](const Face& f) {

@@ -41,7 +41,7 @@ Cleanness cleaned(const PartCells& part, const machine::Printer& printer) {
 
 }  // namespace
 
-TEST_CASE("a plate over one head gets the flow that its distance and the cone give") {
+TEST_CASE("a plate over one sprinkler gets the flow given by distance and cone") {
     const machine::Printer p = one_head(60);
     const PartCells plate = test::cells_of(10, 2, 0.5, [](double, double, double) { return true; });
     const std::vector<Face> faces = wet_faces(plate);
@@ -60,7 +60,7 @@ TEST_CASE("a plate over one head gets the flow that its distance and the cone gi
     CHECK(middles == 4);
 }
 
-TEST_CASE("beyond the cone, behind another piece and on its far side a part stays wet") {
+TEST_CASE("beyond the cone, behind another part and on the far side the part stays wet") {
     // 40 mm wide, 84.55 mm away: the edge is seen under 13 degrees, more than half of a cone of 20.
     const PartCells plate = test::cells_of(40, 2, 0.5, [](double, double, double) { return true; });
     const std::vector<Face> faces = wet_faces(plate);
@@ -80,7 +80,7 @@ TEST_CASE("beyond the cone, behind another piece and on its far side a part stay
     CHECK(c.unseen > 0.5);
 }
 
-TEST_CASE("the four parts of table 4.2: drawn as heavy as weighed, they come as clean as measured") {
+TEST_CASE("the four parts of table 4.2 have the weighed masses and the measured cleanness") {
     const machine::Printer p = tower();
     for (const test::Measured& m : test::parts_of_table_4_2()) {
         const std::string name = m.name;
@@ -103,7 +103,7 @@ TEST_CASE("the four parts of table 4.2: drawn as heavy as weighed, they come as 
     CHECK(jets.removed < scaffold.removed - 0.1);
 }
 
-TEST_CASE("cells that are joined keep where the part is, and about its surface") {
+TEST_CASE("joining cells keeps the part's place, and nearly its surface") {
     const PartCells fine = test::cylinder();
     const PartCells coarse = coarsened(fine, 54);
     CHECK(coarse.cell_mm == near(1, {.relative = 1e-12}));

@@ -9,7 +9,7 @@ using namespace pliant;
 using namespace pliant::host;
 using Signal = machine::EmergencyLine::Signal;
 
-TEST_CASE("a line is named by its signal and its device") {
+TEST_CASE("an emergency line is parsed from its signal and device") {
     CHECK(parse_emergency_line("none")->signal == Signal::none);
     CHECK(parse_emergency_line("dtr:/dev/ttyUSB1")->signal == Signal::dtr);
     const auto low = parse_emergency_line("file-low:/sys/class/gpio/gpio17/value").value();
@@ -23,7 +23,7 @@ TEST_CASE("a line is named by its signal and its device") {
     }
 }
 
-TEST_CASE("a pin's file: released when opened, pulled and released again, the other way round if asked for") {
+TEST_CASE("a pin's file is released on opening, pulled and released again, inverted if asked for") {
     const pliant::test::Folder folder("pin");
     const std::string name = (folder / "value").string();
     REQUIRE(write_file(name, ""));
@@ -39,7 +39,7 @@ TEST_CASE("a pin's file: released when opened, pulled and released again, the ot
     }
 }
 
-TEST_CASE("an unusable emergency line is refused before anything moves; none is accepted") {
+TEST_CASE("an emergency line that cannot be used is refused before anything moves; \"none\" is accepted") {
     CHECK(open_emergency_line({Signal::file, "/none/value", 0, true}).error().message.find("/none/value") !=
           std::string::npos);
     CHECK(open_emergency_line({Signal::dtr, "/dev/null", 0, true}).error().message.find("/dev/null") !=

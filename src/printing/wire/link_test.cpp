@@ -16,7 +16,7 @@ using pliant::test::holds;
 namespace {
 
 /// Answers the first line that contains `part` with `first`, otherwise like a faultless Marlin.
-struct Once {
+struct AnswerOnce {
     std::string part, first;
     bool done = false;
     std::string operator()(const std::string& line) {
@@ -27,9 +27,9 @@ struct Once {
 };
 
 /// Answers like a faultless Marlin up to the first line of the print.
-std::string deaf_to_moves(const std::string& line, bool& deaf) {
-    deaf = deaf || line.find(" G1 ") != std::string::npos;
-    return deaf ? "" : good_answer(line);
+std::string silent_on_moves(const std::string& line, bool& silent) {
+    silent = silent || line.find(" G1 ") != std::string::npos;
+    return silent ? "" : good_answer(line);
 }
 
 struct Bench {
@@ -55,7 +55,7 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("lines are numbered and checksummed from M110 on") {
+TEST_CASE("lines have numbers and checksums, starting with M110") {
     Bench b(good_answer);
     CHECK(b.error_of_print() == "");
     // xor of "N0 M110 N0" and of "N1 G1 X1", by hand.
@@ -66,24 +66,24 @@ TEST_CASE("lines are numbered and checksummed from M110 on") {
     CHECK(b.link.resends() == 0);
 }
 
-TEST_CASE("a refused line is sent again from there, with or without the whole answer") {
+TEST_CASE("a refused line and those after it are sent again, even if the answer is incomplete") {
     for (const char* answer : {"Error:checksum mismatch, Last Line: 2\nResend: 3\nok\n",  // the normal case
                                "Error:checksum mismatch, Last Line: 2\nResend: 3\n",      // without ok
                                "Error:checksum mismatch, Last Line: 2\nok\n",             // without Resend
                                "Resend: 3\nok\n"}) {
         CAPTURE(answer);
-        Bench b(Once{"X3*", answer});
+        Bench b(AnswerOnce{"X3*", answer});
         CHECK(b.error_of_print() == "");
         CHECK(b.times_written("X3*") == 2);
         CHECK(b.link.resends() >= 1);
     }
 }
 
-TEST_CASE("numbers that count no lines are garbage") {
+TEST_CASE("impossible line numbers in answers are ignored") {
     for (const char* number : {"9223372036854775807", "99999999999999999999", "2147483648", "-3"}) {
         CAPTURE(number);
-        Bench b(
-            Once{"X3*", fmt::format("Error:checksum mismatch, Last Line: {}\nResend: {}\nok\nok\n", number, number)});
+        Bench b(AnswerOnce{
+            "X3*", fmt::format("Error:checksum mismatch, Last Line: {}\nResend: {}\nok\nok\n", number, number)});
         CHECK(b.error_of_print() == "");
         CHECK(b.link.resends() == 0);
     }
@@ -91,7 +91,7 @@ TEST_CASE("numbers that count no lines are garbage") {
     CHECK_FALSE(b.link.last_line());
 }
 
-TEST_CASE("a lost ok is detected by querying the last line: no resend, no damage counted") {
+TEST_CASE("a lost ok is found by asking for the last line: nothing is sent again or counted as damage") {
     bool lost = false;
     Bench b(
         [&](const std::string& line) -> std::string {
@@ -106,7 +106,7 @@ TEST_CASE("a lost ok is detected by querying the last line: no resend, no damage
     CHECK(b.link.resends() == 0);
 }
 
-TEST_CASE("the last line number counts once received twice: a truncated one does not") {
+TEST_CASE("the last line number is accepted when received twice; a truncated one is not") {
     int asked = 0;
     Bench b([&](const std::string& line) {
         return is_probe(line) ? refusal(++asked == 1 ? 1004 : 1000004) : good_answer(line);
@@ -115,9 +115,9 @@ TEST_CASE("the last line number counts once received twice: a truncated one does
     CHECK(asked == 3);
 }
 
-TEST_CASE("an ok for another host's line is not that of M110") {
+TEST_CASE("an ok for another host's line is not taken for that of M110") {
     // M110 is lost; an ok for an old line arrives instead.
-    Bench b(Once{"M110", "ok N77 P15 B3\n"});
+    Bench b(AnswerOnce{"M110", "ok N77 P15 B3\n"});
     b.wire.forgets = "M110";
     REQUIRE(b.link.connect(1000000));
     CHECK(b.times_written("M110") == 2);
@@ -126,21 +126,20 @@ TEST_CASE("an ok for another host's line is not that of M110") {
     CHECK(b.link.resends() == 0);
 }
 
-TEST_CASE(
-    "a printer that does not answer: port and baud rate, or a board that was halted, if it is known to have been") {
-    const auto deaf = [](const std::string&) { return std::string(); };
-    CHECK(holds(Bench(deaf).error_of_print(), "baud rate? A board that was halted"));
+TEST_CASE("a silent printer: the error names port and baud rate, or the reset button after a halt") {
+    const auto silent = [](const std::string&) { return std::string(); };
+    CHECK(holds(Bench(silent).error_of_print(), "baud rate? A board that was halted"));
     LinkOptions halted;
     halted.may_be_halted = true;
     halted.most_connects = 3;
-    Bench b(deaf, halted);
+    Bench b(silent, halted);
     const std::string message = b.error_of_print();
     CHECK(holds(message, "press the board's reset button"));
     CHECK_FALSE(holds(message, "baud"));
     CHECK(b.clock.now_s < 15);
 }
 
-TEST_CASE("halting: M410, and M112 between 5 and 20 ms later") {
+TEST_CASE("halting sends M410, and M112 between 5 and 20 ms later") {
     Bench b(good_answer);
     REQUIRE(b.link.connect());
     const double before_s = b.clock.now_s;
@@ -152,15 +151,15 @@ TEST_CASE("halting: M410, and M112 between 5 and 20 ms later") {
     CHECK(b.link.has_halted());
 }
 
-TEST_CASE("a move that the firmware leaves out ends the print, and so does homing that fails") {
-    CHECK(holds(Bench(Once{"X3*", "echo:Home X First\nok\n"}).error_of_print(), "left a move out: Home X First"));
+TEST_CASE("a move that the firmware leaves out, and homing that fails, end the print") {
+    CHECK(holds(Bench(AnswerOnce{"X3*", "echo:Home X First\nok\n"}).error_of_print(), "left a move out: Home X First"));
     const std::string killed = "echo:Homing Failed\nError:Printer halted. kill() called!\n//action:poweroff\n";
-    const std::string message = Bench(Once{"X3*", killed}).error_of_print();
+    const std::string message = Bench(AnswerOnce{"X3*", killed}).error_of_print();
     CHECK(holds(message, "homing failed"));
     CHECK(holds(message, "reset the board"));
 }
 
-TEST_CASE("a fence with an end: late is late, though the printer says that it is busy") {
+TEST_CASE("a fence with a time limit fails at that limit, even while the printer says busy") {
     bool blocked = false;
     Bench b([&](const std::string& line) {
         blocked = blocked || line.find("G28") != std::string::npos;
@@ -208,32 +207,32 @@ TEST_CASE("busy restarts the timeout") {
     CHECK(link.resends() == 0);
 }
 
-TEST_CASE("signs that the machine is not in the expected state end the print") {
-    CHECK(holds(Bench(Once{"X3*", "echo:Unknown command: \"G1 X3\"\nok\n"}).error_of_print(), "does not know"));
-    CHECK(holds(Bench(Once{"X3*", "start\necho: External Reset\n"}).error_of_print(), "restarted"));
-    CHECK(holds(Bench(Once{"X3*", "Watchdog Reset\n"}).error_of_print(), "restarted"));
-    CHECK(holds(Bench(Once{"X3*", "Error:Printer halted. kill() called!\n"}).error_of_print(), "Printer halted"));
+TEST_CASE("messages of an unknown command, a restart or a halt end the print") {
+    CHECK(holds(Bench(AnswerOnce{"X3*", "echo:Unknown command: \"G1 X3\"\nok\n"}).error_of_print(), "does not know"));
+    CHECK(holds(Bench(AnswerOnce{"X3*", "start\necho: External Reset\n"}).error_of_print(), "restarted"));
+    CHECK(holds(Bench(AnswerOnce{"X3*", "Watchdog Reset\n"}).error_of_print(), "restarted"));
+    CHECK(holds(Bench(AnswerOnce{"X3*", "Error:Printer halted. kill() called!\n"}).error_of_print(), "Printer halted"));
     // A reset whose `start` was lost: line numbers begin anew, long after line 1.
     const std::string anew = "Error:Line Number is not Last Line Number+1, Last Line: 0\nResend: 1\nok\n";
-    Bench reset(Once{"X6*", "oksta" + anew});
+    Bench reset(AnswerOnce{"X6*", "oksta" + anew});
     CHECK(holds(reset.error_of_print(), "restarted"));
     CHECK(reset.times_written("X1*") == 1);
-    CHECK(holds(Bench(Once{"X3*", "Resend: 77\nok\n"}).error_of_print(), "asks for line 77"));
+    CHECK(holds(Bench(AnswerOnce{"X3*", "Resend: 77\nok\n"}).error_of_print(), "asks for line 77"));
 }
 
-TEST_CASE("endless refusal and endless silence are given up") {
+TEST_CASE("endless refusals, and endless silence, end with an error") {
     const auto refuse = [](const std::string& line) -> std::string {
         return line.find("X3*") != std::string::npos ? "Error:checksum mismatch, Last Line: 2\nResend: 3\nok\n"
                                                      : good_answer(line);
     };
     CHECK(holds(Bench(refuse).error_of_print(), "too noisy"));
-    bool is_deaf = false;
-    const auto deaf = [&](const std::string& line) { return deaf_to_moves(line, is_deaf); };
-    CHECK(holds(Bench(deaf).error_of_print(), "stopped answering"));
+    bool is_silent = false;
+    const auto silent = [&](const std::string& line) { return silent_on_moves(line, is_silent); };
+    CHECK(holds(Bench(silent).error_of_print(), "stopped answering"));
     CHECK(holds(Bench([](const std::string&) { return std::string(); }).error_of_print(), "does not answer"));
 }
 
-TEST_CASE("other lines are not answers") {
+TEST_CASE("a printer that sends other lines:") {
     constexpr const char* talk = "T:20.0 /0.0 B:20.0 /0.0\n";
     SUBCASE("one that never answers is given up") {
         Bench b([](const std::string&) { return std::string(); });
@@ -244,7 +243,7 @@ TEST_CASE("other lines are not answers") {
         CHECK_FALSE(b.link.last_line());
         CHECK(b.clock.now_s < 200);
     }
-    SUBCASE("a lost ok is found out meanwhile") {
+    SUBCASE("a lost ok is found all the same") {
         int seen = 0;
         Bench b(
             [&](const std::string& line) -> std::string {
@@ -270,22 +269,22 @@ TEST_CASE("garbage between the lines is ignored") {
     CHECK(b.error_of_print() == "");
 }
 
-TEST_CASE("the window holds lines and bytes back") {
+TEST_CASE("the window limits the lines and bytes that are under way") {
     // Nothing is answered: only what fits the window is written.
-    bool is_deaf = false;
-    const auto deaf = [&](const std::string& line) { return deaf_to_moves(line, is_deaf); };
-    Bench lines(deaf, {2, 120, 3, 12, 0.2, 1});
+    bool is_silent = false;
+    const auto silent = [&](const std::string& line) { return silent_on_moves(line, is_silent); };
+    Bench lines(silent, {2, 120, 3, 12, 0.2, 1});
     CHECK_FALSE(lines.error_of_print().empty());
     CHECK(lines.times_written("N2 ") > 0);
     CHECK(lines.times_written("N3 ") == 0);
-    is_deaf = false;
-    Bench bytes(deaf, {4, 27, 3, 12, 0.2, 1});  // "\nN1 G1 X1*96\n" has 13 bytes
+    is_silent = false;
+    Bench bytes(silent, {4, 27, 3, 12, 0.2, 1});  // "\nN1 G1 X1*96\n" has 13 bytes
     CHECK_FALSE(bytes.error_of_print().empty());
     CHECK(bytes.times_written("N2 ") > 0);
     CHECK(bytes.times_written("N3 ") == 0);
 }
 
-TEST_CASE("a command that would not survive the wire is refused") {
+TEST_CASE("a command that the wire cannot carry is refused") {
     Bench b(good_answer);
     REQUIRE(b.link.connect());
     CHECK_FALSE(b.link.send(""));
@@ -294,7 +293,7 @@ TEST_CASE("a command that would not survive the wire is refused") {
     CHECK_FALSE(b.link.send(std::string(81, 'G')));
 }
 
-TEST_CASE("a wire that damages every third line is not trusted, one that damages every tenth is") {
+TEST_CASE("a wire that damages every third line is refused, one that damages every tenth is used") {
     for (const long every : {3L, 10L}) {
         CAPTURE(every);
         long damaged = 0;

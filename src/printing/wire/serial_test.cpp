@@ -34,7 +34,7 @@ struct Pty {
 
 }  // namespace
 
-TEST_CASE("bytes go through a terminal unchanged, at 115200 and 250000 baud") {
+TEST_CASE("bytes pass a terminal unchanged, at 115200 and 250000 baud") {
     for (const int baud : {115200, 250000}) {
         Pty pty;
         auto wire = SerialWire::open(pty.name, baud);
@@ -49,7 +49,7 @@ TEST_CASE("bytes go through a terminal unchanged, at 115200 and 250000 baud") {
     }
 }
 
-TEST_CASE("a device that is not there, is no terminal, or goes away is an error") {
+TEST_CASE("a missing device, one that is no terminal, and one that goes away are errors") {
     CHECK_FALSE(SerialWire::open("/dev/none", 115200));
     CHECK_FALSE(SerialWire::open("/dev/null", 115200));
     Pty pty;
@@ -59,7 +59,7 @@ TEST_CASE("a device that is not there, is no terminal, or goes away is an error"
     CHECK_FALSE(wire->read(1));
 }
 
-TEST_CASE("two hosts on one port are refused, and the next may have it") {
+TEST_CASE("a second host on one port is refused; after the first closes it, the port is free") {
     Pty pty;
     {
         auto wire = SerialWire::open(pty.name, 115200);
@@ -73,7 +73,7 @@ TEST_CASE("two hosts on one port are refused, and the next may have it") {
     CHECK(SerialWire::open(pty.name, 115200));
 }
 
-TEST_CASE("ports are listed by the boards behind them") {
+TEST_CASE("ports are listed with the boards behind them") {
     const pliant::test::Folder folder("ports");
     std::filesystem::create_directories(folder / "usb" / "1-1" / "1-1:1.0");
     std::ofstream(folder / "usb" / "1-1" / "product") << "Arduino Mega 2560\n";

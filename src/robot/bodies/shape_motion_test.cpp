@@ -57,14 +57,14 @@ double error(const Moved& m, const std::function<Vec3(const Vec3& mm)>& formula)
 
 }  // namespace
 
-TEST_CASE("a box that grows takes its mesh along evenly") {
+TEST_CASE("the mesh of a growing box moves linearly") {
     for (const int order : {1, 2}) {
         const Moved m = moved(body("{ box = [[0, 0, 0], [20, 6, \"= p\"]] }"), 8, order);
         CHECK(error(m, [](const Vec3& p) { return Vec3{0, 0, p.z / 8}; }) < 1e-11);
     }
 }
 
-TEST_CASE("a part that is moved or turned moves as a whole") {
+TEST_CASE("a moved or rotated part moves as a rigid body") {
     const Moved there =
         moved(body("{ translate = [\"= p\", \"= 2 * p\", 0], of = { box = [[0, 0, 0], [9, 6, 6]] } }"), 3);
     CHECK(error(there, [](const Vec3&) { return Vec3{1, 2, 0}; }) < 1e-11);
@@ -88,7 +88,7 @@ TEST_CASE("a part that is moved or turned moves as a whole") {
     CHECK(checked > 20);
 }
 
-TEST_CASE("round surfaces stay round, mid-edge nodes too") {
+TEST_CASE("round surfaces stay round, mid-edge nodes included") {
     const Moved m = moved(body("{ cylinder = { from = [0, 0, 0], to = [0, 0, 12], radius = \"= p\" } }"), 5, 2);
     REQUIRE_MESSAGE(m.motion, (m.motion ? "" : m.motion.error().message));
     int on = 0;
@@ -103,14 +103,14 @@ TEST_CASE("round surfaces stay round, mid-edge nodes too") {
     CHECK(on > 50);
 }
 
-TEST_CASE("bodies that touch share the motion of what is between them") {
+TEST_CASE("bodies that touch have the same motion at their common face") {
     const Moved m = moved(body("{ box = [[0, 0, 0], [20, 6, \"= p\"]] }", "low") +
                               body("{ box = [[0, 0, \"= p\"], [20, 6, 12]] }", "high"),
                           5);
     CHECK(error(m, [](const Vec3& p) { return Vec3{0, 0, p.z < 5 ? p.z / 5 : (12 - p.z) / 7}; }) < 1e-11);
 }
 
-TEST_CASE("bodies that come apart have no motion, and a number that moves nothing has none") {
+TEST_CASE("bodies that come apart have no motion; a number that moves nothing gives zero motion") {
     const Moved apart = moved(
         body("{ box = [[0, 0, 0], [20, 6, \"= p\"]] }", "low") + body("{ box = [[0, 0, 5], [20, 6, 12]] }", "high"), 5);
     REQUIRE_FALSE(apart.motion);
@@ -119,7 +119,7 @@ TEST_CASE("bodies that come apart have no motion, and a number that moves nothin
     CHECK(error(still, [](const Vec3&) { return Vec3{}; }) == 0);
 }
 
-TEST_CASE("a hole that wanders is followed by the mesh around it") {
+TEST_CASE("the mesh follows a moving hole") {
     const Moved m =
         moved(body("{ difference = [{ box = [[0, 0, 0], [30, 6, 12]] }, { cylinder = { from = [\"= p\", -1, "
                    "6], to = [\"= p\", 7, 6], radius = 3 } }] }"),

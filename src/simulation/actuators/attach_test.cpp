@@ -31,7 +31,7 @@ Vec3 expected(const Vec3& p) {
 
 }  // namespace
 
-TEST_CASE("carried points and eyelets of every size follow affine motions exactly") {
+TEST_CASE("points and eyelets of any size follow affine motions exactly") {
     for (const int order : {1, 2}) {
         mesh::TetMesh mesh = reference::kuhn_box({10, 4, 4}, 10, 4, 4, [](Vec3) { return 0; });
         if (order == 2) mesh = mesh::to_quadratic(mesh);
@@ -48,7 +48,7 @@ TEST_CASE("carried points and eyelets of every size follow affine motions exactl
     }
 }
 
-TEST_CASE("an eyelet does not reach over a gap") {
+TEST_CASE("an eyelet does not reach across a gap") {
     // Two blocks side by side, joined by a bridge far from the point.
     mesh::TetMesh box =
         reference::kuhn_box({9, 2, 6}, 9, 2, 6, [](Vec3 c) { return c.x > 4 && c.x < 5 && c.z > 1 ? 1 : 0; });
@@ -66,7 +66,7 @@ TEST_CASE("an eyelet does not reach over a gap") {
     for (const int node : point->nodes) CHECK(mesh.points[static_cast<std::size_t>(node)].x <= 4);
 }
 
-TEST_CASE("a point outside is refused, a hair outside is carried by the nearest tet") {
+TEST_CASE("a point outside is refused; one within the tolerance is carried by the nearest tet") {
     const mesh::TetMesh mesh = reference::kuhn_box({1, 1, 1}, 2, 2, 2, [](Vec3) { return 0; });
     const Attacher attacher(mesh);
     CHECK_FALSE(attacher.carried_by_tet({1.5, 0.5, 0.5}, 1e-3));
@@ -85,7 +85,7 @@ mesh::TetMesh half_ring() {
 
 }  // namespace
 
-TEST_CASE("points in curved tets are where they were put, and a cable round a bollard loses what Euler says") {
+TEST_CASE("points in curved tets keep their place, and a cable round a bollard loses tension as Euler says") {
     const mesh::TetMesh mesh = half_ring();
     std::vector<double> rest;
     for (const Vec3& p : mesh.points) rest.insert(rest.end(), {p.x, p.y, p.z});
@@ -110,7 +110,7 @@ TEST_CASE("points in curved tets are where they were put, and a cable round a bo
     CHECK(left == near(std::exp(-friction * turn * (guides - 2) / (guides - 1)), {.relative = 1e-12}));
 }
 
-TEST_CASE("a point a little outside keeps its place, and moves with the face as a rigid arm would") {
+TEST_CASE("a point just outside keeps its place, and moves as if on a rigid arm on the nearest face") {
     for (const int order : {1, 2}) {
         mesh::TetMesh mesh = reference::kuhn_box({10, 4, 4}, 10, 4, 4, [](Vec3) { return 0; });
         if (order == 2) mesh = mesh::to_quadratic(mesh);

@@ -40,7 +40,7 @@ void compare(std::vector<double> x, const Force& force, const Visit& visit) {
 
 }  // namespace
 
-TEST_CASE("buoyancy is the change of the energy of the water that is displaced") {
+TEST_CASE("buoyancy is the derivative of the displaced water's energy") {
     const linalg::Vector3 gravity(0.5, -1, -9);
     for (const bool level : {false, true}) {
         Fluid fluid{1000, 0, 0, {}, {}, {}};

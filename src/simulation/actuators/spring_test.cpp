@@ -52,7 +52,7 @@ Eigen::MatrixXd hessian_at(const SpringPath& spring, const std::vector<double>& 
 
 }  // namespace
 
-TEST_CASE("gradient and second gradient of a spring are those of its energy, stretched and pressed") {
+TEST_CASE("gradient and Hessian of a spring agree with its energy, in tension and compression") {
     for (const double free_length : {1.0, 9.0}) {
         const SpringPath spring(bent_spring(false, free_length), positions);
         CHECK((spring.force(positions) > 0) == (free_length < 2));
@@ -74,7 +74,7 @@ TEST_CASE("gradient and second gradient of a spring are those of its energy, str
     }
 }
 
-TEST_CASE("a band that only pulls does nothing while it is slack") {
+TEST_CASE("a band that only pulls has no force while it is slack") {
     const SpringPath band(bent_spring(true, 9), positions);
     CHECK(band.force(positions) == 0);
     CHECK(band.energy(positions) == 0);

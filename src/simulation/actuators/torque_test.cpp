@@ -11,7 +11,7 @@
 using namespace pliant;
 using namespace pliant::sim;
 
-TEST_CASE("the forces of a torque sum to nothing and turn with all of it, and the tangent is their change") {
+TEST_CASE("the forces of a torque sum to zero and rotate with the body, and the tangent agrees with differences") {
     std::vector<double> x = {0, 0, 0, 1, 0.1, 0, 0.2, 1.3, 0.1, 0.4, 0.3, 0.9, -0.5, 0.2, 0.4};
     const Eigen::Index size = static_cast<Eigen::Index>(x.size());
     const linalg::Vector3 torque(0.3, -0.7, 1.1);

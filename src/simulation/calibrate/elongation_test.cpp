@@ -34,7 +34,7 @@ const std::string header = "length (mm),interface (mm),elongation (mm),joint (mm
 
 }  // namespace
 
-TEST_CASE("T3.7 is exact for springs, and any ratio of moduli comes back from small strains") {
+TEST_CASE("T3.7 is exact for springs, and for any ratio of moduli at small strain") {
     // Springs: E_A u / L1 = E_B (dL - u) / (L - L1).
     for (const double ratio : {0.2, 1.0, 3.75}) {
         const double L = 0.1, L1 = 0.03, dL = 0.02;
@@ -45,7 +45,7 @@ TEST_CASE("T3.7 is exact for springs, and any ratio of moduli comes back from sm
     }
 }
 
-TEST_CASE("at large strain the closed form finds the ratio, and says what T3.7 errs by") {
+TEST_CASE("at large strain the closed form gives the exact ratio, and the error of T3.7") {
     for (const double ratio : {0.3, 1.0, 2.0, 3.75, 10.0}) {
         for (const double L1 : {25.0, 50.0, 75.0}) {
             const auto row = evaluate({100, L1, 30, joint_of(ratio, 100, L1, 30)});
@@ -61,14 +61,14 @@ TEST_CASE("at large strain the closed form finds the ratio, and says what T3.7 e
     CHECK(row->neo_hookean == near(3.745, {.relative = 1e-3}));
 }
 
-TEST_CASE("the simulated bar's joint gives nearly the ratio that was put in; its clamps are the difference") {
+TEST_CASE("the joint of a simulated bar gives the ratio of its moduli within 1 %, because of the clamps") {
     RatioOptions options;
     options.cells = {24, 3, 3};
     const double joint_mm = reference_displacement_mm(options, 3.75).value();
     CHECK(evaluate({0.1, 0.05, 0.03, joint_mm * 1e-3})->neo_hookean / 3.75 == near(1, {.relative = 0.01}));
 }
 
-TEST_CASE("the shape parameter is matched to the test, whichever part is held") {
+TEST_CASE("the shape parameter is matched to a test, whichever part is held") {
     RatioOptions options;  // the bar that the match runs on
     options.cells = {12, 2, 2};
     options.strain = 0.2;
@@ -82,7 +82,7 @@ TEST_CASE("the shape parameter is matched to the test, whichever part is held") 
     CHECK_FALSE(match_shape_parameter({1, 0.005, 0.2, 0.001}, options.cells));  // no cell ends there
 }
 
-TEST_CASE("tables of tests, in any unit of length") {
+TEST_CASE("tables of tests are read in any unit of length") {
     const auto rows =
         parse_elongation_csv("Interface (cm);Length [mm];Joint (mm);Elongation (mm);who\n5;100;5.143;30;x\n", "t.csv");
     REQUIRE_MESSAGE(rows, (rows ? "" : rows.error().message));
@@ -97,7 +97,7 @@ TEST_CASE("tables of tests, in any unit of length") {
     CHECK(json["shape_parameter_small_strain"].get<double>() == near((3 * 3.745 - 1) / 2, {.relative = 1e-3}));
 }
 
-TEST_CASE("several tests have a mean and its interval") {
+TEST_CASE("several tests give a mean and its 95 % interval") {
     const auto rows = parse_elongation_csv(header + "100,50,0.002,0.0005\n100,50,0.002,0.0004\n", "t.csv");
     REQUIRE(rows);
     // Ratios 3 and 4 for springs, which bars match to 1e-4 at strains of 4e-5: mean 3.5, t(1) 12.706 times 0.5.
@@ -106,7 +106,7 @@ TEST_CASE("several tests have a mean and its interval") {
     CHECK(json["half_width_95"].get<double>() == near(6.353, {.relative = 2e-4}));
 }
 
-TEST_CASE("tests that no bar has are refused with their line") {
+TEST_CASE("impossible tests are refused with their line") {
     check_problem("", "t.csv: is empty; the first line names the columns: length (mm)");
     check_problem("length (mm),interface (mm),joint (mm)\n1,2,3\n", "t.csv:1: no column is named \"elongation\"");
     check_problem("length,interface (mm),elongation (mm),joint (mm)\n1,2,3,4\n", "length has no unit");

@@ -46,7 +46,7 @@ Fit fit_of(const TensileTest& test, FitLaw law, int terms = 1) {
 
 }  // namespace
 
-TEST_CASE("exact data give the constants back") {
+TEST_CASE("exact data give the exact constants") {
     const Fit neo = fit_of(made_test([](double l) { return 0.4e6 * (l - 1 / (l * l)); }, 0), FitLaw::neo_hookean);
     CHECK(neo.constants[0].value == near(1.2e6, {.relative = 1e-12}));  // E = 3 mu
     CHECK(neo.r_squared == near(1, {.relative = 1e-12}));
@@ -96,7 +96,7 @@ TEST_CASE("Student's t against the tables") {
         CHECK(student_t_95(n) == near(t, {.relative = 2e-3}));
 }
 
-TEST_CASE("a law that loses stability inside the data is reported, one that keeps it is not") {
+TEST_CASE("a law that loses stability within the data is reported, a stable one is not") {
     CHECK(unstable_ranges(material::MooneyRivlin{0.2e6, 0.05e6, 1e7}, 0.5, 3).empty());
     CHECK(unstable_ranges(material::Yeoh{0.11e6, 0.02e6, 0, 1e7}, 0.5, 3).empty());
     // Negative c20: the true stress of a pulled bar stops growing where d(l P)/d(ln l) = 0.
@@ -111,7 +111,7 @@ TEST_CASE("a law that loses stability inside the data is reported, one that keep
                       [](const std::string& text) { return text.find("balloon") != std::string::npos; }));
 }
 
-TEST_CASE("too little data is an error, not a fit") {
+TEST_CASE("too little data is an error") {
     const auto few = fit({{1.0, 1.1, 1.2}, {0, 1e5, 2e5}}, {FitLaw::yeoh, 1, 0.49});
     REQUIRE_FALSE(few);
     CHECK(few.error().message.find("2 rows with a stretch other than 1 are too few for 3 constants") !=
@@ -126,7 +126,7 @@ TEST_CASE("a constant that the data do not determine is named") {
     CHECK(named);
 }
 
-TEST_CASE("the block for the robot file") {
+TEST_CASE("the fitted law is written as a material for the robot file") {
     const Fit y = fit_of(made_test(yeoh, 0), FitLaw::yeoh);
     CHECK(material_toml(y, "cast") ==
           "[material.cast]\nlaw = \"yeoh\"\nc10 = \"0.11 MPa\"\nc20 = \"-10 kPa\"\nc30 = \"3 kPa\"\npoisson_ratio = "

@@ -27,7 +27,7 @@ TEST_CASE("equal materials: the interface of a long bar moves half as far as its
     CHECK(*R == near(1, {.relative = 1e-6}));
 }
 
-TEST_CASE("a match gives the displacement that was asked for") {
+TEST_CASE("the matched shape parameter gives the displacement that was asked for") {
     const RatioOptions options = coarse();
     const auto R = match_shape_parameter(options, 6, 3);
     REQUIRE(R);
@@ -37,7 +37,7 @@ TEST_CASE("a match gives the displacement that was asked for") {
     CHECK_FALSE(match_shape_parameter(options, 16, 3));  // more than half: the soft part would have to be stiffer
 }
 
-TEST_CASE("small strains of a long bar follow the map of moduli at Poisson ratio 0, where no clamp disturbs") {
+TEST_CASE("a long bar at small strain and Poisson ratio 0 follows the small-strain map") {
     // The uniaxial stiffness of the blend is 3 w a / (2 + a): w and 3 w a / (2 + a) for the two halves, so the ratio of
     // their stretches is known.
     RatioOptions options = coarse();
@@ -50,7 +50,7 @@ TEST_CASE("small strains of a long bar follow the map of moduli at Poisson ratio
     CHECK(*u == near(0.1 * soft / (1 + soft), {.relative = 0.04}));
 }
 
-TEST_CASE("the interface may lie anywhere: cells are stretched so that they end there") {
+TEST_CASE("the interface may lie anywhere: cells are stretched to end at it") {
     RatioOptions options = coarse();
     for (const double interface : {0.3, 0.7}) {
         options.interface = interface;
@@ -68,7 +68,7 @@ TEST_CASE("the interface may lie anywhere: cells are stretched so that they end 
     CHECK(b / a > 1.04);
 }
 
-TEST_CASE("three ratios make a curve through them") {
+TEST_CASE("three ratios give a curve through their points") {
     RatioOptions options = coarse();
     options.ratios = {1, 2, 4};
     Progress silent;
@@ -86,7 +86,7 @@ TEST_CASE("three ratios make a curve through them") {
     CHECK(ratio_text(*result).find("T3.8") != std::string::npos);
 }
 
-TEST_CASE("bad options are refused") {
+TEST_CASE("invalid options are refused") {
     Progress silent;
     RatioOptions options = coarse();
     CHECK_FALSE(calibrate_ratio(options, silent));

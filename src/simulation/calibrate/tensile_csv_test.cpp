@@ -18,7 +18,7 @@ void check_problem(const std::string& text, const std::string& wanted) {
 
 }  // namespace
 
-TEST_CASE("stretch and stress, with comments, blank lines and other columns") {
+TEST_CASE("a table of stretch and stress is read, with comments, blank lines and other columns") {
     const auto test = parse_tensile_csv("# a test\n\ntime (s),stretch,stress (MPa)\n0,1,0\n1, 1.5 ,0.25\r\n", "a.csv");
     REQUIRE(test);
     REQUIRE(test->stretch.size() == 2);
@@ -26,7 +26,7 @@ TEST_CASE("stretch and stress, with comments, blank lines and other columns") {
     CHECK(test->stress_Pa[1] == near(0.25e6, {.relative = 1e-12}));
 }
 
-TEST_CASE("strain in per cent, semicolons, quotes, and true quantities beside the nominal ones") {
+TEST_CASE("a table of strain in per cent is read, with semicolons, quotes, and true quantities beside") {
     const auto test = parse_tensile_csv(
         "\xEF\xBB\xBF\"Time (s)\";True Strain;True Stress (MPa);Engineering Strain (%);Engineering Stress [kPa]\n"
         "0.2;0.4;9;50;12.5\n",
@@ -36,7 +36,7 @@ TEST_CASE("strain in per cent, semicolons, quotes, and true quantities beside th
     CHECK(test->stress_Pa[0] == near(12500, {.relative = 1e-12}));
 }
 
-TEST_CASE("what is wrong is said with the line") {
+TEST_CASE("errors in a tensile table name the line") {
     check_problem("", "test.csv: is empty");
     check_problem("stretch,stress (MPa)\n", "no rows");
     check_problem("x,stress (MPa)\n1,2\n", "test.csv:1: no column is named \"stretch\"");

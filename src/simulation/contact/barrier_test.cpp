@@ -10,7 +10,7 @@
 using namespace pliant::sim::contact;
 using pliant::near;
 
-TEST_CASE("the barrier has the values of its formula, and derivatives to match") {
+TEST_CASE("barrier values agree with the formula, and derivatives with finite differences") {
     CHECK(barrier(1.0, 4.0).value == near(0.5625 * std::log(4.0), {.relative = 1e-12}));
     for (const double D : {1e-4, 0.03, 0.5, 1.9}) {
         const double h = 1e-6 * D, reach = 2;
@@ -21,7 +21,7 @@ TEST_CASE("the barrier has the values of its formula, and derivatives to match")
     }
 }
 
-TEST_CASE("the barrier ends smoothly at its reach and is infinite where features touch") {
+TEST_CASE("the barrier ends smoothly at its reach, and is infinite at touching") {
     const Curve end = barrier(1 - 1e-6, 1.0);
     CHECK(end.value < 1e-17);
     CHECK(std::abs(end.slope) < 1e-11);
@@ -31,7 +31,7 @@ TEST_CASE("the barrier ends smoothly at its reach and is infinite where features
     CHECK(std::isinf(barrier(0.0, 1.0).value));
 }
 
-TEST_CASE("the mollifier rises from 0 to 1 with a level end") {
+TEST_CASE("the mollifier rises from 0 to 1 and ends with slope 0") {
     CHECK(mollifier(0, 2).value == 0);
     CHECK(mollifier(1, 2).value == near(0.75, {.relative = 1e-12}));
     CHECK(mollifier(2, 2).value == 1);

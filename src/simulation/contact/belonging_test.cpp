@@ -33,13 +33,13 @@ bool together(const Notch& n, std::vector<int> first, std::vector<int> second, d
 
 }  // namespace
 
-TEST_CASE("what nearly touches one edge from where surfaces meet is one skin, a narrow notch is not") {
+TEST_CASE("surfaces that nearly touch within one edge of their seam count as joined, a narrow notch does not") {
     CHECK(together(notch(1e-6), {2}, {4, 5, 8}, 2e-6));
     CHECK(together(notch(0.005), {2}, {4, 5, 8}, 0.01));
     CHECK_FALSE(together(notch(0.0175), {2}, {4, 5, 8}, 0.035));  // 2 degrees
 }
 
-TEST_CASE("far from a seam only what touches by the mesh's scale belongs together") {
+TEST_CASE("away from a seam only surfaces that touch within rounding count as joined") {
     CHECK(together(notch(2e-5), {6, 7}, {8, 9}, 8e-5));
     // Three edges lie between these: a gap of a hundredth of an edge there is a gap.
     Notch far = notch(0.0025);
@@ -57,7 +57,7 @@ TEST_CASE("far from a seam only what touches by the mesh's scale belongs togethe
     CHECK_FALSE(together(far, {10}, {8, 12, 9}, 0.015));
 }
 
-TEST_CASE("nodes of obstacles belong to nothing unless they touch") {
+TEST_CASE("nodes of obstacles count as joined only if they touch") {
     const Notch n = notch(0.1);
     CHECK_FALSE(together(n, {2}, {20, 21, 22}, 1e-9));
     CHECK(together(n, {2}, {20, 21, 22}, 1e-13));

@@ -22,7 +22,7 @@ double distance(Features features, const Stencil& x) {
 
 }  // namespace
 
-TEST_CASE("a point that falls on a triangle stops at the share it must keep") {
+TEST_CASE("a point that falls on a triangle stops at the distance share it must keep") {
     const Stencil x{{{0.2, 0.2, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, dx{{{0, 0, -2}, {}, {}, {}}};
     CHECK(largest_step(Features::point_triangle, x, dx, 0.1, 1) == near(0.45, {.relative = 2e-3}));
     CHECK(largest_step(Features::point_triangle, x, dx, 0.1, 0.3) == 0.3);
@@ -32,13 +32,13 @@ TEST_CASE("a point that falls on a triangle stops at the share it must keep") {
     CHECK(largest_step(Features::point_triangle, touching, dx, 0.1, 1) == 0);
 }
 
-TEST_CASE("a common motion, however large, does not limit the step") {
+TEST_CASE("a common motion of both features, however large, does not limit the step") {
     const Stencil x{{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0.1}, {0, 1, 0.1}}};
     const Vec3 far{10, -20, 30};
     CHECK(largest_step(Features::edge_edge, x, {far, far, far, far}, 0.1, 1) == 1);
 }
 
-TEST_CASE("random motions: the share is kept at every instant up to the step, and the step is not cut short") {
+TEST_CASE("random motions: the share is kept at every instant of the step, and the step is not too short") {
     std::mt19937 random(3);
     int hindered = 0;
     for (int k = 0; k < 4000; ++k) {

@@ -93,7 +93,7 @@ std::vector<double> minus(const std::vector<double>& a, const std::vector<double
 
 }  // namespace
 
-TEST_CASE("a clearance holds for small motions, for bending and for turning as a whole, and knows where it ends") {
+TEST_CASE("a clearance holds for small motions, bending and rigid rotation, and ends before contact") {
     const Bars bars;
     const Clearance clearance = bars.clearance(bars.body.rest);
     CHECK(clearance.holds(bars.body.rest, {}));
@@ -112,8 +112,7 @@ TEST_CASE("a clearance holds for small motions, for bending and for turning as a
     CHECK_FALSE(clearance.holds(std::vector<double>(past.size(), std::nan("")), {}));
 }
 
-TEST_CASE(
-    "where a clearance holds, no feature comes within reach or to a tenth of a distance that it had, all the way") {
+TEST_CASE("while a clearance holds, no feature comes within reach or to a tenth of its former distance") {
     const Bars bars;
     std::mt19937 random(3);
     std::uniform_real_distribution<double> uniform(-1, 1);

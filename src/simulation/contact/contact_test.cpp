@@ -110,7 +110,7 @@ std::vector<Key> brute_force_pairs(const Surface& s, std::span<const double> res
 
 }  // namespace
 
-TEST_CASE("at rest there is no contact, however large the distance, nor after a rigid motion") {
+TEST_CASE("at rest, and after a rigid motion, there is no contact, for any contact distance") {
     const SpringBody body = two_boxes(4);
     Settings far = usual;
     far.distance_m = 0.01;
@@ -128,7 +128,7 @@ TEST_CASE("at rest there is no contact, however large the distance, nor after a 
     CHECK(std::isinf(contact.smallest_distance({}, x)));
 }
 
-TEST_CASE("the pairs are those that looking at all features finds") {
+TEST_CASE("the contact pairs agree with a search over all features") {
     const SpringBody body = two_boxes(4);
     const Contact contact = contact_of(body, usual);
     const Surface surface = make_surface(body.triangles);
@@ -143,7 +143,7 @@ TEST_CASE("the pairs are those that looking at all features finds") {
     }
 }
 
-TEST_CASE("gradient and Hessian of the whole potential by finite differences") {
+TEST_CASE("gradient and Hessian of the whole potential agree with finite differences") {
     const SpringBody body = two_boxes(2);
     const Contact contact = contact_of(body, usual);
     const Vector x = approached(contact, 27, 1.7e-3, 5e-5, 9);
@@ -169,7 +169,7 @@ TEST_CASE("gradient and Hessian of the whole potential by finite differences") {
     CHECK((H - H.transpose()).norm() < 1e-12 * H.norm());
 }
 
-TEST_CASE("no step of any size lets surfaces pass through each other") {
+TEST_CASE("steps of any size never let surfaces pass through each other") {
     const SpringBody body = two_boxes(3);
     const Contact contact = contact_of(body, usual);
     const Surface surface = make_surface(body.triangles);
@@ -194,8 +194,7 @@ TEST_CASE("no step of any size lets surfaces pass through each other") {
     CHECK(hindered > 10);
 }
 
-TEST_CASE(
-    "what is remembered changes nothing: pairs and steps are those of a contact that sees a state for the first time") {
+TEST_CASE("cached data change nothing: pairs and steps equal those of a new contact") {
     const SpringBody body = two_boxes(4);
     const Contact contact = contact_of(body, usual);
     const auto check_pairs = [&](const Vector& x) {
@@ -227,7 +226,7 @@ TEST_CASE(
     CHECK(pairs > 1000);
 }
 
-TEST_CASE("a cube that is let down on a plane rests above it and presses with its weight") {
+TEST_CASE("a cube let down on a plane rests above it and presses with its weight") {
     const SpringBody body = spring_box({0, 0, 0.003}, {0.01, 0.01, 0.01}, {2, 2, 2});
     const HalfSpace floor{{0, 0, 0}, {0, 0, 2}};
     mesh::TriMesh table{{{-0.02, -0.03, 0}, {0.05, -0.03, 0}, {0.04, 0.05, 0}, {-0.02, 0.04, 0}},
@@ -270,7 +269,7 @@ TEST_CASE("a cube that is let down on a plane rests above it and presses with it
     }
 }
 
-TEST_CASE("two boxes that are squashed against each other never intersect") {
+TEST_CASE("two boxes pressed together never intersect") {
     const SpringBody body = two_boxes(3);
     const Contact contact = contact_of(body, usual);
     const Surface surface = make_surface(body.triangles);
@@ -351,7 +350,7 @@ Slide slide_down(double friction) {
 
 }  // namespace
 
-TEST_CASE("a block on an incline sticks where friction is enough, and slides as Coulomb says where it is not") {
+TEST_CASE("a block on an incline sticks if friction suffices, and otherwise accelerates as Coulomb says") {
     const double steep = std::tan(M_PI / 6);
     const Slide stuck = slide_down(1.2 * steep);
     CHECK(std::abs(stuck.last_step_m) < 1e-6);
@@ -362,7 +361,7 @@ TEST_CASE("a block on an incline sticks where friction is enough, and slides as 
     }
 }
 
-TEST_CASE("forces on the robot from an obstacle that drags along it point along the motion") {
+TEST_CASE("an obstacle that slides along the robot pulls it in the direction of its motion") {
     const SpringBody body = spring_box({0, 0, 5e-4}, {0.01, 0.01, 0.005}, {2, 2, 1});
     mesh::TriMesh table{{{-0.02, -0.03, 0}, {0.05, -0.03, 0}, {0.04, 0.05, 0}}, {{0, 1, 2}}};
     const Contact contact = contact_of(body, usual, {{"table", table, 0.5}});
@@ -418,7 +417,7 @@ TEST_CASE("the same bits on any number of threads") {
         for (int repeat = 0; repeat < 3; ++repeat) CHECK(outcome(threads) == one);
 }
 
-TEST_CASE("bodies that touch at rest are bonded: no force, no hindrance") {
+TEST_CASE("bodies that touch at rest are bonded: no contact force, no limited step") {
     SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {2, 2, 2});
     body.add(spring_box({0, 0, 0.01}, {0.01, 0.01, 0.01}, {3, 3, 3}));
     const Contact contact = contact_of(body, usual);
@@ -427,7 +426,7 @@ TEST_CASE("bodies that touch at rest are bonded: no force, no hindrance") {
     CHECK(contact.largest_step(contact.rest(), still) == 1);
 }
 
-TEST_CASE("what makes no sense is refused, with the name of what is wrong") {
+TEST_CASE("invalid settings and obstacles are refused by name") {
     const SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {1, 1, 1});
     const Surface surface = make_surface(body.triangles);
     const auto message = [&](const Settings& settings, std::vector<Obstacle> obstacles) -> std::string {
@@ -487,7 +486,7 @@ SpringBody box_with_slivers(double hair) {
 
 }  // namespace
 
-TEST_CASE("slivers do not hinder: what is a hair apart at rest belongs together") {
+TEST_CASE("surfaces of slivers, close together at rest, do not limit the step") {
     for (const double hair : {3e-10, 6e-8, 1e-6}) {
         CAPTURE(hair);
         const SpringBody body = box_with_slivers(hair);
@@ -506,7 +505,7 @@ TEST_CASE("slivers do not hinder: what is a hair apart at rest belongs together"
     }
 }
 
-TEST_CASE("a crossing is told with its place, whether or not the robot may touch itself") {
+TEST_CASE("a crossing is reported with its place, with or without self-contact") {
     const SpringBody body = two_boxes(3);
     Settings without_self = usual;
     without_self.self = false;
@@ -529,7 +528,7 @@ TEST_CASE("a crossing is told with its place, whether or not the robot may touch
     CHECK_FALSE(contact.crossing(contact.rest()).has_value());
 }
 
-TEST_CASE("an obstacle acts where it is drawn: the robot rests on it within a tenth of the distance of contact") {
+TEST_CASE("an obstacle acts where it is drawn: the robot rests within a tenth of the contact distance") {
     // A cube on a floor and on a block, under a pressure of 3 % of the stiffness: without insets it would hover at 0.97
     // of the distance above.
     const SpringBody body = spring_box({0, 0, 0.003}, {0.01, 0.01, 0.01}, {2, 2, 2});

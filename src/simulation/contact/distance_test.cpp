@@ -93,15 +93,15 @@ double sampled_edges(const Stencil& x) {
 
 }  // namespace
 
-TEST_CASE("point and triangle: every part, its distance and its derivatives") {
+TEST_CASE("point and triangle: distance and derivatives for every nearest feature") {
     check_cases(point_triangle_cases, nearest_point_triangle);
 }
 
-TEST_CASE("two edges: every part, its distance and its derivatives") {
+TEST_CASE("two edges: distance and derivatives for every nearest feature") {
     check_cases(edge_cases, nearest_edges);
 }
 
-TEST_CASE("no sampled point of the features is nearer, and one is nearly as near") {
+TEST_CASE("no sampled point of the features is nearer, and the nearest sample is almost as near") {
     std::mt19937 random(11);
     for (int k = 0; k < 60; ++k) {
         const Stencil x{random_vector(random), random_vector(random), random_vector(random), random_vector(random)};
@@ -116,14 +116,14 @@ TEST_CASE("no sampled point of the features is nearer, and one is nearly as near
     }
 }
 
-TEST_CASE("the quick bound is the distance itself where features face each other") {
+TEST_CASE("the quick bound equals the distance where features face each other") {
     const Stencil pt{{{0, 0, 1}, {-1, -1, 0}, {1, -1, 0}, {0, 2, 0}}},
         ee{{{-1, 0, 0}, {1, 0, 0}, {0, -2, 3}, {0, 2, 3}}};
     CHECK(distance_bound(Features::point_triangle, pt) == near(1, {.relative = 1e-12}));
     CHECK(distance_bound(Features::edge_edge, ee) == near(3, {.relative = 1e-12}));
 }
 
-TEST_CASE("nearly parallel edges that cross keep their true distance") {
+TEST_CASE("nearly parallel edges that cross have their true distance") {
     for (const double angle : {1e-2, 1e-4, 1e-6, 1e-7}) {
         const double gap = 1e-5;
         const Stencil x{{{-1, 0, 0}, {1, 0, 0}, {-1, -angle, gap}, {1, angle, gap}}};
@@ -140,7 +140,7 @@ TEST_CASE("degenerate features: a triangle without area, an edge without length"
     CHECK(squared_distance(nearest_edges(point), point) == near(1, {.relative = 1e-12}));
 }
 
-TEST_CASE("squared cross product of two edges and its derivatives") {
+TEST_CASE("the derivatives of the squared cross product of two edges agree with finite differences") {
     std::mt19937 random(13);
     for (int k = 0; k < 20; ++k) {
         const Stencil x{random_vector(random), random_vector(random), random_vector(random), random_vector(random)};

@@ -64,7 +64,7 @@ Eigen::MatrixXd hessian(const Friction& friction, const std::vector<double>& x) 
 
 }  // namespace
 
-TEST_CASE("friction's derivatives by finite differences, sticking and sliding") {
+TEST_CASE("friction's derivatives agree with finite differences, sticking and sliding") {
     const Scene s = scene();
     const Friction friction = s.friction();
     for (const double size : {0.002, 0.005, 0.1}) {
@@ -85,7 +85,7 @@ TEST_CASE("friction's derivatives by finite differences, sticking and sliding") 
     }
 }
 
-TEST_CASE("without slip there is no force; past the slip it is the coefficient times the normal force") {
+TEST_CASE("without slip there is no friction force; at full slip it is the coefficient times the normal force") {
     const Scene s = scene();
     const Friction friction = s.friction();
     CHECK(gradient(friction, s.start).norm() == 0);
@@ -103,7 +103,7 @@ TEST_CASE("without slip there is no force; past the slip it is the coefficient t
     CHECK(norm(friction.force(0, x)) == near(s.pairs[0].limit_N * (2 * 0.4 - 0.4 * 0.4), {.relative = 1e-12}));
 }
 
-TEST_CASE("motion along the normal makes no friction") {
+TEST_CASE("motion along the normal causes no friction") {
     const Scene s = scene();
     std::vector<double> x = s.start;
     x[2] += 0.1;

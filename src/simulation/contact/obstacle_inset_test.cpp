@@ -46,7 +46,7 @@ mesh::TriMesh ball(double radius, int divisions) {
 
 }  // namespace
 
-TEST_CASE("every side of a box moves in by the depth, however its corners are cut into triangles") {
+TEST_CASE("every side of a box moves in by the depth, however its faces are triangulated") {
     const auto points = inset(box({3, 2, 1}), 0.1);
     REQUIRE(points);
     for (int k = 0; k < 8; ++k) {
@@ -55,13 +55,13 @@ TEST_CASE("every side of a box moves in by the depth, however its corners are cu
     }
 }
 
-TEST_CASE("a ball gets a radius that is smaller by the depth") {
+TEST_CASE("a ball's radius shrinks by the depth") {
     const auto points = inset(ball(10, 3), 0.5);
     REQUIRE(points);
     for (const Vec3& p : *points) CHECK(norm(p) == near(9.5, {.relative = 1e-3}));
 }
 
-TEST_CASE("what is open, inside out or too thin stays as it is") {
+TEST_CASE("open, inverted and too thin obstacles are not changed") {
     mesh::TriMesh open = box({1, 1, 1});
     open.triangles.pop_back();
     CHECK_FALSE(inset(open, 0.01));

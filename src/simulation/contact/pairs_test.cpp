@@ -58,7 +58,7 @@ Stencil scaled_about_origin(Stencil x, double s) {
 
 }  // namespace
 
-TEST_CASE("gradient and Hessian of every kind of pair by finite differences") {
+TEST_CASE("gradient and Hessian of every kind of pair agree with finite differences") {
     std::mt19937 random(5);
     for (const Case& c : cases()) {
         CAPTURE(c.name);
@@ -78,7 +78,7 @@ TEST_CASE("gradient and Hessian of every kind of pair by finite differences") {
     }
 }
 
-TEST_CASE("the mollifier takes part in the nearly parallel cases, and in no other") {
+TEST_CASE("the mollifier acts in the nearly parallel cases only") {
     for (const Case& c : cases()) {
         CAPTURE(c.name);
         if (c.pair.kind != PairKind::edge_edge) continue;
@@ -87,7 +87,7 @@ TEST_CASE("the mollifier takes part in the nearly parallel cases, and in no othe
     }
 }
 
-TEST_CASE("a pair's forces cancel, have no moment, and turn with the pair") {
+TEST_CASE("the forces of a pair sum to zero, have no moment, and rotate with the pair") {
     std::mt19937 random(6);
     for (const Case& c : cases()) {
         CAPTURE(c.name);
@@ -115,7 +115,7 @@ TEST_CASE("a pair's forces cancel, have no moment, and turn with the pair") {
     }
 }
 
-TEST_CASE("at half of its reach a plane presses with 4.33 times the stiffness, whatever the reach") {
+TEST_CASE("at half its reach a plane presses with 4.33 times the stiffness, whatever the reach") {
     for (const double reach : {1e-5, 1e-3, 0.4}) {
         Pair pair = pair_of(PairKind::point_plane, reach);
         const Stencil x{0.5 * reach * pair.normal, {}, {}, {}};
@@ -126,7 +126,7 @@ TEST_CASE("at half of its reach a plane presses with 4.33 times the stiffness, w
     }
 }
 
-TEST_CASE("beyond the reach there is nothing, and touching or behind a plane costs infinitely") {
+TEST_CASE("beyond the reach the energy is zero; at or behind a plane it is infinite") {
     for (const Case& c : cases()) {
         CAPTURE(c.name);
         const Stencil far = scaled_about_origin(c.x, 8);
@@ -139,7 +139,7 @@ TEST_CASE("beyond the reach there is nothing, and touching or behind a plane cos
     CHECK(distance(plane, {Vec3{0, -0.6, -0.8}, {}, {}, {}}) == near(-1, {.relative = 1e-12}));
 }
 
-TEST_CASE("projection takes away the negative eigenvalues and leaves the rest") {
+TEST_CASE("projection sets negative eigenvalues to zero and keeps the others") {
     for (const Case& c : cases()) {
         CAPTURE(c.name);
         const Matrix12 H = potential_hessian(c.pair, stiffness, c.x);

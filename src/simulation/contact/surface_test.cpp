@@ -29,7 +29,7 @@ std::vector<double> positions(const mesh::TetMesh& mesh) {
 
 }  // namespace
 
-TEST_CASE("the surface of a tet, linear and quadratic") {
+TEST_CASE("the surface of a tet has the right faces, edges and points, linear and quadratic") {
     const Surface linear = robot_surface(one_tet());
     CHECK(linear.triangles.size() == 4);
     CHECK(linear.edges.size() == 6);
@@ -40,13 +40,13 @@ TEST_CASE("the surface of a tet, linear and quadratic") {
     CHECK(quadratic.points.size() == 10);
 }
 
-TEST_CASE("triangles of quadratic faces keep the outward sense: they enclose the tet's volume") {
+TEST_CASE("triangles of quadratic faces are oriented outwards: they enclose the tet's volume") {
     const mesh::TetMesh mesh = mesh::to_quadratic(one_tet());
     mesh::TriMesh closed{mesh.points, robot_surface(mesh).triangles};
     CHECK(mesh::signed_volume(closed) == near(1.0 / 6, {.relative = 1e-12}));
 }
 
-TEST_CASE("points, edges and triangles each share out the whole area") {
+TEST_CASE("the areas of points, edges and triangles each sum to the whole surface") {
     for (const mesh::TetMesh& mesh : {one_tet(), mesh::to_quadratic(one_tet())}) {
         const SurfaceAreas areas = surface_areas(robot_surface(mesh), positions(mesh));
         const double whole = 1.5 + std::sqrt(3.0) / 2;
@@ -56,7 +56,7 @@ TEST_CASE("points, edges and triangles each share out the whole area") {
     }
 }
 
-TEST_CASE("a segment crosses a triangle only through its inside") {
+TEST_CASE("a segment crosses a triangle only through its interior") {
     const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
     CHECK(segment_crosses_triangle({0.2, 0.2, -1}, {0.3, 0.2, 1}, a, b, c));
     CHECK(segment_crosses_triangle({0.3, 0.2, 1}, {0.2, 0.2, -1}, a, b, c));

@@ -50,7 +50,7 @@ std::vector<double> some_motion(std::size_t size, double pace) {
 
 }  // namespace
 
-TEST_CASE("forces of eight tets of shape-blend at a time are those of the law, however far they are stretched") {
+TEST_CASE("the forces of eight shape-blend tets at once agree with the law, at any stretch") {
     for (const int order : {1, 2}) {
         const Model model = mixed(order);
         const Elements& elements = model.elements();
@@ -81,7 +81,7 @@ TEST_CASE("forces of eight tets of shape-blend at a time are those of the law, h
     }
 }
 
-TEST_CASE("stiffness of eight tets of shape-blend at a time is the symmetric part of the law's") {
+TEST_CASE("the stiffness of eight shape-blend tets at once is the symmetric part of the law's") {
     for (const int order : {1, 2}) {
         const Model model = mixed(order);
         const Elements& elements = model.elements();

@@ -39,7 +39,7 @@ double written(std::size_t batch, std::size_t pair, std::size_t i, std::size_t l
 
 }  // namespace
 
-TEST_CASE("what tets write adds up in their blocks, in one run and in many that share a few blocks or nearly all") {
+TEST_CASE("contributions of tets are summed in their blocks, however many tets share a block") {
     std::mt19937 random(5);
     for (const auto& [batches, reach] : {std::pair<std::size_t, double>{1, 1}, {300, 0.01}, {2500, 0.02}, {600, 0.8}}) {
         const std::size_t blocks = 20 * batches;

@@ -48,7 +48,7 @@ double energy_one_by_one(const Elements& elements, std::span<const double> x) {
 
 }  // namespace
 
-TEST_CASE("energy of eight tets at a time is that of the laws; forces and stiffness are its derivatives") {
+TEST_CASE("the energy of eight tets at once agrees with the laws, forces and stiffness with its derivatives") {
     for (const int order : {1, 2}) {
         const auto model = Model::create(mixed(order));
         REQUIRE(model);
@@ -91,7 +91,7 @@ TEST_CASE("energy of eight tets at a time is that of the laws; forces and stiffn
     }
 }
 
-TEST_CASE("projected stiffness of eight tets at a time is that of the laws, each point made positive by itself") {
+TEST_CASE("the projected stiffness of eight tets at once agrees with the laws, projected point by point") {
     for (const int order : {1, 2}) {
         const auto model = Model::create(mixed(order));
         REQUIRE(model);
@@ -132,7 +132,7 @@ TEST_CASE("projected stiffness of eight tets at a time is that of the laws, each
     }
 }
 
-TEST_CASE("an inverted or NaN tet is detected in every lane") {
+TEST_CASE("an inverted or NaN tet is detected in every SIMD lane") {
     const auto model = Model::create(mixed(1));
     REQUIRE(model);
     const std::vector<double> good = distorted(model->mesh());
@@ -152,7 +152,7 @@ TEST_CASE("an inverted or NaN tet is detected in every lane") {
     }
 }
 
-TEST_CASE("a rotation of the whole body does not stretch it") {
+TEST_CASE("a linearised rigid rotation becomes the exact rotation") {
     for (const int order : {1, 2}) {
         Description d = mixed(order);
         d.supports = {{"point", {0}, {}}};

@@ -59,7 +59,7 @@ constexpr std::array kinds = {Joint::Kind::ball, Joint::Kind::hinge, Joint::Kind
 
 }  // namespace
 
-TEST_CASE("forces are the gradient of the energy, and the Hessian that of the forces") {
+TEST_CASE("joint forces are the gradient of the energy, and the Hessian is that of the forces") {
     const JointDrive drive{0.3, 0.05, 0.01};
     std::vector<int> index(8);
     for (int k = 0; k < 8; ++k) index[static_cast<std::size_t>(k)] = k;
@@ -93,7 +93,7 @@ TEST_CASE("forces are the gradient of the energy, and the Hessian that of the fo
     }
 }
 
-TEST_CASE("force and torque are those on the second thing, and do work as the energy falls") {
+TEST_CASE("reported force and torque act on the second body, and their work is the energy lost") {
     const JointDrive drive{0.3, 0.05, 0};
     for (const Joint::Kind kind : kinds) {
         CAPTURE(static_cast<int>(kind));
@@ -123,7 +123,7 @@ TEST_CASE("a rigid motion of both ends causes no joint force") {
     }
 }
 
-TEST_CASE("the angle counts whole turns from where the step began") {
+TEST_CASE("the joint angle counts whole turns from the start of the step") {
     Joint joint = some_joint(Joint::Kind::hinge, true);
     joint.law = {};
     // The first thing has its own axes at the origin; the second, which is fixed, is rotated by q about the first axis.

@@ -11,7 +11,7 @@
 using namespace pliant;
 using namespace pliant::sim;
 
-TEST_CASE("forces of tets add up at their nodes, whatever nodes they share, in many pieces and in one") {
+TEST_CASE("forces of tets are summed at their nodes, whatever nodes they share, in one run and in many") {
     constexpr std::size_t lanes = batch_lanes;
     std::mt19937 random(3);
     for (const std::size_t nodes_per_tet : {4U, 10U}) {

@@ -24,7 +24,7 @@ std::vector<double> some_positions(std::size_t nodes) {
 
 }  // namespace
 
-TEST_CASE("a plate that moves as a whole has no energy, and its gradient and Hessian are derivatives") {
+TEST_CASE("a rigidly moved plate has no energy; gradient and Hessian agree with finite differences") {
     const std::size_t count = 7;
     const std::vector<double> rest = some_positions(count);
     std::vector<int> nodes(count);
@@ -68,7 +68,7 @@ TEST_CASE("a plate that moves as a whole has no energy, and its gradient and Hes
     }
 }
 
-TEST_CASE("a bar squeezed between a clamp and a plate: the plate's face stays as it was drawn") {
+TEST_CASE("a bar squeezed between a clamp and a plate: the plate's face keeps its shape") {
     constexpr double side = 0.01;
     for (const int order : {1, 2}) {
         Description d;

@@ -66,7 +66,7 @@ TEST_CASE("every step is traversed backwards once, the last first") {
     }
 }
 
-TEST_CASE("with so many states no step is taken more often than the binomial says, and no more states exist") {
+TEST_CASE("with a limited number of kept states the repeated steps are the fewest possible") {
     for (const int kept : {1, 2, 3, 5, 8}) {
         for (const int steps : {2, 5, 20, 100, 165, 495}) {
             if (kept == 1 && steps > 100) continue;
@@ -82,7 +82,7 @@ TEST_CASE("with so many states no step is taken more often than the binomial say
     CHECK(reach_back(2, 2) == 6);
 }
 
-TEST_CASE("an error ends it") {
+TEST_CASE("an error ends the traversal") {
     int taken = 0;
     const Status status = go_back<int>(
         0, 0, 20, 3,

@@ -74,7 +74,7 @@ struct Steps {
 };
 
 /// As the program takes them.
-Steps taken(const Description& d, const Program& program) {
+Steps steps_of_program(const Description& d, const Program& program) {
     const Case c(d);
     Stepper stepper(c.model, stepper_options(program));
     RobotState robot = stepper.rest();
@@ -159,7 +159,7 @@ Worst worst_error(const Description& d, const Program& program, bool by_place) {
     Progress silent;
     auto found = program_gradient(c.model, program, objective, {.by = {.rest = by_place}}, silent);
     REQUIRE_MESSAGE(found, found.error().message);
-    const Steps as = taken(d, program);
+    const Steps as = steps_of_program(d, program);
     CHECK(found->value == near(value_of(d, as, objective), {.relative = 1e-6}));
     Worst worst;
     const auto note = [&](const std::string& name, double told, double size, const auto& value) {
@@ -217,12 +217,12 @@ Program in_time(int steps) {
 
 }  // namespace
 
-TEST_CASE("thrown objects that meet a soft body and the ground, by all numbers, starts and places") {
+TEST_CASE("gradients of thrown objects that hit a soft body and the ground, by numbers, velocities and places") {
     const Worst worst = worst_error(scene(0), in_time(6), true);
     MESSAGE("worst: ", worst.error, " (", worst.name, ")");
 }
 
-TEST_CASE("the same with friction that remembers") {
+TEST_CASE("gradients of thrown objects with friction whose anchors are kept") {
     const Worst worst = worst_error(scene(0.5), in_time(6), false);
     MESSAGE("worst: ", worst.error, " (", worst.name, ")");
 }

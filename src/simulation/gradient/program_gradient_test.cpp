@@ -134,7 +134,7 @@ double worst_error(const Description& d, const Program& program) {
 
 }  // namespace
 
-TEST_CASE("a quasi-static program, as the sum over its steps") {
+TEST_CASE("the gradient of a quasi-static program is the sum over its steps") {
     for (const int order : {1, 2}) {
         const double worst =
             worst_error(bender(order), {.steps = 2, .tolerance = 1e-11, .solver = Solver::newton, .checks = false});
@@ -142,7 +142,7 @@ TEST_CASE("a quasi-static program, as the sum over its steps") {
     }
 }
 
-TEST_CASE("a program in motion through time") {
+TEST_CASE("the gradient of a program in dynamics") {
     const Program program{.steps = 5,
                           .duration = 0.02,
                           .tolerance = 1e-11,
@@ -213,7 +213,7 @@ Lagged steps_of(const Description& d, int steps, const Lagged* as, const Paramet
 
 }  // namespace
 
-TEST_CASE("friction that slips from where the step before has ended, by all numbers and by each share of an obstacle") {
+TEST_CASE("gradients with friction that slips from the last step's end, by numbers and obstacle motion") {
     const int steps = 3;
     const Description d = rubbing();
     Objective objective = at_end({Measure::Kind::marker, 0, {0.3, -0.5, 0.8}}, steps);
@@ -250,7 +250,7 @@ TEST_CASE("friction that slips from where the step before has ended, by all numb
     CHECK(found.instants[1].by_inputs.norm() > 0);  // through friction only: the objective depends on the end alone
 }
 
-TEST_CASE("as many states are kept as one likes, on any number of threads: the same bits") {
+TEST_CASE("any number of kept states and threads gives the same bits") {
     const Description d = bender(1, 0.02);
     const Program program{
         .steps = 7, .duration = 0.02, .tolerance = 1e-6, .dynamics = Dynamics{{20, 0.001}}, .checks = false};
@@ -278,7 +278,7 @@ TEST_CASE("as many states are kept as one likes, on any number of threads: the s
     }
 }
 
-TEST_CASE("steps that had to be halved, in time, count with all their pieces") {
+TEST_CASE("steps in time that had to be halved count with all their parts") {
     Program program{.steps = 2,
                     .duration = 0.02,
                     .tolerance = 1e-11,
@@ -308,7 +308,7 @@ TEST_CASE("steps that had to be halved, in time, count with all their pieces") {
     }
 }
 
-TEST_CASE("missing measures, steps that do not converge, and cancelling") {
+TEST_CASE("missing measures, steps that do not converge, and cancelling are errors") {
     const auto model = Model::create(bender());
     Progress silent;
     const auto told = [&](const Measure& measure, const Program& program, Progress& progress) {

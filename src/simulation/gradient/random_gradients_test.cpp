@@ -31,7 +31,7 @@ struct Judged {
 
 /// Converges another robot, or other controls, from a nearby converged state with its factor, so that each iteration
 /// reduces the error by a factor proportional to the difference. False: it does not converge.
-bool converge_beside(Linearisation& at, const Equilibrium& system, const Controls& controls, State& state) {
+bool converge_nearby(Linearisation& at, const Equilibrium& system, const Controls& controls, State& state) {
     system.place_supports(controls, state.x);
     double least = 1e300;
     for (int k = 0; k < 40; ++k) {
@@ -79,11 +79,11 @@ Eigen::VectorXd rounding_of(const Linearisation& at, const std::vector<Measure>&
 /// Compares a derivative with differences of states that are converged anew, relative to its own size; allows for the
 /// effect of rounding, measured on states that should be equal: converged from a slightly different start, or of a
 /// robot that differs in the last digits.
-void hold_against(const std::string& name, double told, double size, Found& found,
-                  const std::function<double(double change, unsigned shaken)>& value_from) {
+void compare_with_differences(const std::string& name, double told, double size, Found& found,
+                              const std::function<double(double change, unsigned perturbed)>& value_from) {
     double noise = 1e-15;
-    for (const unsigned shaken : {1, 2, 3, 4})
-        noise = std::max(noise, std::fabs(value_from(0, shaken) - value_from(0, 0)));
+    for (const unsigned perturbed : {1, 2, 3, 4})
+        noise = std::max(noise, std::fabs(value_from(0, perturbed) - value_from(0, 0)));
     for (const double digits : {1e-12, 3e-12, 1e-11}) {
         for (const double change : {digits * size, -digits * size})
             noise = std::max(noise, std::fabs(value_from(change, 0) - value_from(0, 0) - told * change));
@@ -116,25 +116,26 @@ void try_shape(Linearisation& at, unsigned seed, const Slope& sum, const Judged&
     Noise noise(seed);
     const Eigen::VectorXd motion = noise.vector(by->rest.size());
     const Parameter nothing{Parameter::Kind::gravity, 0, "", "", 1};
-    hold_against("rest positions", by->rest.dot(motion), 0.05 * test::side, found, [&](double change, unsigned shaken) {
-        Description moved = d;
-        for (std::size_t n = 0; n < moved.mesh.points.size(); ++n) {
-            for (std::size_t c = 0; c < 3; ++c)
-                moved.mesh.points[n][c] += change * motion[static_cast<Eigen::Index>(3 * n + c)];
-        }
-        const Case other(std::move(moved));
-        Controls controls = controls_with(at, other.system, nothing, 0);
-        controls.drives = other.system.controls(at.controls().time).drives;
-        State state = at.state();
-        for (Eigen::Index a = 0; a < state.multiplier.size(); ++a) {
-            if (controls.drives[static_cast<std::size_t>(a)].kind == Drive::Kind::multiplier)
-                state.multiplier[a] = controls.drives[static_cast<std::size_t>(a)].value;
-        }
-        Noise aside(shaken);
-        if (shaken > 0) state.x += 1e-8 * test::side * aside.vector(state.x.size());
-        return converge_beside(at, other.system, controls, state) ? judged(other.system, controls, state)
-                                                                  : std::nan("");
-    });
+    compare_with_differences(
+        "rest positions", by->rest.dot(motion), 0.05 * test::side, found, [&](double change, unsigned perturbed) {
+            Description moved = d;
+            for (std::size_t n = 0; n < moved.mesh.points.size(); ++n) {
+                for (std::size_t c = 0; c < 3; ++c)
+                    moved.mesh.points[n][c] += change * motion[static_cast<Eigen::Index>(3 * n + c)];
+            }
+            const Case other(std::move(moved));
+            Controls controls = controls_with(at, other.system, nothing, 0);
+            controls.drives = other.system.controls(at.controls().time).drives;
+            State state = at.state();
+            for (Eigen::Index a = 0; a < state.multiplier.size(); ++a) {
+                if (controls.drives[static_cast<std::size_t>(a)].kind == Drive::Kind::multiplier)
+                    state.multiplier[a] = controls.drives[static_cast<std::size_t>(a)].value;
+            }
+            Noise aside(perturbed);
+            if (perturbed > 0) state.x += 1e-8 * test::side * aside.vector(state.x.size());
+            return converge_nearby(at, other.system, controls, state) ? judged(other.system, controls, state)
+                                                                      : std::nan("");
+        });
 }
 
 /// By a few of all numbers, chosen at random, and along one motion of all rest positions.
@@ -160,30 +161,31 @@ void try_robot(Linearisation& at, unsigned seed, Found& found) {
     for (std::size_t k = 0; k < slopes.size(); ++k) add(slopes[k], judged.weights[static_cast<Eigen::Index>(k)], sum);
     const auto by = gradient(at, sum, {});
     REQUIRE_MESSAGE(by, by.error().message);
-    const auto converged = [&](const Equilibrium& system, const Controls& controls, State state, unsigned shaken) {
-        Noise aside(shaken);
-        if (shaken > 0) state.x += 1e-8 * test::side * aside.vector(state.x.size());
-        return converge_beside(at, system, controls, state) ? judged(system, controls, state) : std::nan("");
+    const auto converged = [&](const Equilibrium& system, const Controls& controls, State state, unsigned perturbed) {
+        Noise aside(perturbed);
+        if (perturbed > 0) state.x += 1e-8 * test::side * aside.vector(state.x.size());
+        return converge_nearby(at, system, controls, state) ? judged(system, controls, state) : std::nan("");
     };
     const std::vector<Parameter> wanted = inputs(at), made_of = parameters(at);
     for (std::size_t k = 0; k < wanted.size(); ++k) {
         if (wanted.size() > 3 && dice.chance(0.5)) continue;
         const double size = wanted[k].value != 0 ? std::fabs(wanted[k].value) : 1;
-        hold_against(wanted[k].name, by->inputs[static_cast<Eigen::Index>(k)], size, found,
-                     [&](double change, unsigned shaken) {
-                         State state = at.state();
-                         const Controls controls = with_input(at, wanted[k], change, state);
-                         return converged(at.system(), controls, state, shaken);
-                     });
+        compare_with_differences(wanted[k].name, by->inputs[static_cast<Eigen::Index>(k)], size, found,
+                                 [&](double change, unsigned perturbed) {
+                                     State state = at.state();
+                                     const Controls controls = with_input(at, wanted[k], change, state);
+                                     return converged(at.system(), controls, state, perturbed);
+                                 });
     }
     for (std::size_t k = 0; k < made_of.size(); ++k) {
         if (dice.chance(0.6)) continue;
         const Parameter& p = made_of[k];
-        hold_against(p.name, by->parameters[static_cast<Eigen::Index>(k)], size_of(p), found,
-                     [&](double change, unsigned shaken) {
-                         const Case other(with_value(d, p, p.value + change));
-                         return converged(other.system, controls_with(at, other.system, p, change), at.state(), shaken);
-                     });
+        compare_with_differences(p.name, by->parameters[static_cast<Eigen::Index>(k)], size_of(p), found,
+                                 [&](double change, unsigned perturbed) {
+                                     const Case other(with_value(d, p, p.value + change));
+                                     return converged(other.system, controls_with(at, other.system, p, change),
+                                                      at.state(), perturbed);
+                                 });
     }
     try_shape(at, seed, sum, judged, found);
 }
@@ -227,7 +229,7 @@ void try_robots(const std::function<test::RandomProgram(unsigned seed)>& made) {
 
 }  // namespace
 
-TEST_CASE("random robots, by what is wanted of them and by what they are made with") {
+TEST_CASE("gradients of random robots, by their goals and by their parameters") {
     try_robots([](unsigned seed) {
         test::RandomProgram p = test::random_program(seed);
         p.robot = with_more(std::move(p.robot), seed);
@@ -235,7 +237,7 @@ TEST_CASE("random robots, by what is wanted of them and by what they are made wi
     });
 }
 
-TEST_CASE("random bodies that nothing holds, with objects over a ground, at rest and thrown") {
+TEST_CASE("gradients of random free bodies with objects over a ground, at rest and thrown") {
     try_robots([](unsigned seed) {
         test::RandomProgram p = test::random_free_program(seed);
         for (const FreeObject& object : p.robot.objects)

@@ -28,12 +28,12 @@ Description moved_rest(Description d, const Eigen::VectorXd& motion, double step
 }
 
 /// A converged robot with all that can be measured on it.
-struct Settled_robot {
+struct SettledRobot {
     Case c;
     Linearisation at;
     std::vector<Measure> measures;
     std::vector<Slope> slopes;
-    explicit Settled_robot(const Description& d)
+    explicit SettledRobot(const Description& d)
         : c(d),
           at(c.at(settled_from(c.system, c.system.controls(time_of_all), c.system.rest()),
                   c.system.controls(time_of_all))),
@@ -74,7 +74,7 @@ using ChamberKind = ChamberTarget::Kind;
 
 }  // namespace
 
-TEST_CASE("rest positions, with what is wanted as a share of rest, as a change of it, and as such") {
+TEST_CASE("gradients by rest positions, for targets as ratio, change and value") {
     const std::vector<std::pair<CableTarget, ChamberTarget>> wanted = {
         {{CableKind::length_ratio, 0.95}, {ChamberKind::gas_ratio, 1.3}},
         {{CableKind::shortening_m, 0.1 * edge}, {ChamberKind::volume_ratio, 1.2}},
@@ -85,7 +85,7 @@ TEST_CASE("rest positions, with what is wanted as a share of rest, as a change o
         for (const auto& [cable, chamber] : wanted) {
             if (order == 2 && cable.kind != CableKind::length_ratio) continue;
             const Description d = shaped(order, cable, chamber);
-            Settled_robot robot(d);
+            SettledRobot robot(d);
             Noise noise(4);
             const Eigen::VectorXd motion = noise.vector(robot.at.state().x.size());
             const By by{.inputs = false, .parameters = false, .rest = true};
@@ -99,7 +99,7 @@ TEST_CASE("rest positions, with what is wanted as a share of rest, as a change o
     MESSAGE("rest positions: ", worst);
 }
 
-TEST_CASE("rest positions of a robot with gap elements") {
+TEST_CASE("gradients by rest positions of a robot with gap elements") {
     Description d = plain();
     d.materials.push_back({"gap", gap_law(1e6), 0});
     d.cables = {flexor(d.mesh, {CableKind::length_ratio, 0.99})};
@@ -108,7 +108,7 @@ TEST_CASE("rest positions of a robot with gap elements") {
     for (std::size_t t = 0; t < 5; ++t) d.mesh.region[t + 20] = 1;
     d.growths = {{1, {0.8, 0.6, 0}, 0, 1e5, edge, {1.5 * edge, 0.5 * edge, 0.9 * edge}}};
     d.markers = {{"tip", d.cables[0].points.back()}};
-    Settled_robot robot(d);
+    SettledRobot robot(d);
     Noise noise(4);
     const Eigen::VectorXd motion = noise.vector(robot.at.state().x.size());
     CHECK(gradient_error(robot.told({.inputs = false, .parameters = false, .rest = true},
@@ -117,7 +117,7 @@ TEST_CASE("rest positions of a robot with gap elements") {
                          [&](double change) { return robot.values_of_robot(moved_rest(d, motion, change)); }) < 1e-6);
 }
 
-TEST_CASE("guide points: carried by a tet, spread over a patch, fixed in space; of either order") {
+TEST_CASE("gradients by guide points: in a tet, spread over a patch, fixed in space; both orders") {
     double worst = 0;
     for (const int order : {1, 2}) {
         Description d = shaped(order, {CableKind::length_ratio, 0.95}, {ChamberKind::gas_ratio, 1.2});
@@ -139,7 +139,7 @@ TEST_CASE("guide points: carried by a tet, spread over a patch, fixed in space; 
         By by{.inputs = false, .parameters = false};
         by.guides = {
             {0, 0, {}}, {0, 1, *attacher.slope(points[1], 0, 0)}, {0, 2, *attacher.slope(points[2], radius, 0)}};
-        Settled_robot robot(d);
+        SettledRobot robot(d);
         for (Eigen::Index k = 0; k < 9; ++k) {
             CAPTURE(k);
             const double error =
@@ -172,7 +172,7 @@ Description met_ends(const std::array<Vec3, 3>& cable, const std::array<Vec3, 3>
     return d;
 }
 
-TEST_CASE("rest positions and guide points where ends of a cable's and of a spring's segments have met") {
+TEST_CASE("gradients by rest positions and guide points where segment ends of a cable and a spring meet") {
     const std::array<Vec3, 3> cable = {Vec3{2.9 * edge, 0.5 * edge, 0.98 * edge},
                                        {2.88 * edge, 0.5 * edge, 1.0 * edge},
                                        {1.45 * edge, 0.62 * edge, 0.93 * edge}};
@@ -180,7 +180,7 @@ TEST_CASE("rest positions and guide points where ends of a cable's and of a spri
                                         {2.28 * edge, 0.12 * edge, 0.03 * edge},
                                         {1.2 * edge, 0.13 * edge, 0.07 * edge}};
     const Description d = met_ends(cable, spring);
-    Settled_robot robot(d);
+    SettledRobot robot(d);
     const auto x = linalg::view(robot.at.state().x);
     const Eigen::VectorXd rest = robot.c.system.rest().x;
     REQUIRE(robot.c.system.actuators()[0].cable().closed_segment(x) == 0);
@@ -205,11 +205,11 @@ TEST_CASE("rest positions and guide points where ends of a cable's and of a spri
     }
 }
 
-TEST_CASE("tet by tet: constants of the law, Young's modulus, density; and together those of the whole material") {
+TEST_CASE("gradients tet by tet: law constants, Young's modulus, density; their sum is the material's") {
     double worst = 0;
     for (const int order : {1, 2}) {
         const Description d = shaped(order, {CableKind::length_ratio, 0.95}, {ChamberKind::gas_ratio, 1.2});
-        Settled_robot robot(d);
+        SettledRobot robot(d);
         const auto numbers = material::parameters(d.materials[0].law);
         for (const Eigen::Index tet : {3, 70}) {
             const auto of_one = [&](const Material& changed) {
@@ -256,13 +256,13 @@ TEST_CASE("tet by tet: constants of the law, Young's modulus, density; and toget
     MESSAGE("tet by tet: ", worst);
 }
 
-TEST_CASE("changes along any direction are those of the gradients: the Jacobian and its transpose") {
+TEST_CASE("directional changes agree with the gradients: the Jacobian and its transpose") {
     Description d = shaped(1, {CableKind::length_ratio, 0.95}, {ChamberKind::gas_ratio, 1.2});
     d.materials.push_back({"B", material::Ogden{2, {1.5e5, -0.3e5}, {1.3, -2.0}, 18e5}, 1100});
     d.material_of_tet.assign(d.mesh.tet_count(), 0);
     for (std::size_t t = 0; t < d.mesh.tet_count(); t += 2) d.material_of_tet[t] = 1;
     d.pressures = {patch(d.mesh, -1)};
-    Settled_robot robot(d);
+    SettledRobot robot(d);
     Noise noise(8);
     std::vector<Variation> rows;
     for (const Slope& of : robot.slopes) {

@@ -102,7 +102,7 @@ const ControlsOf at_50_percent = [](Equilibrium& system) { return system.control
 
 }  // namespace
 
-TEST_CASE("cable, sealed chamber, springs, loads, supports that turn and roll, two laws, of either order") {
+TEST_CASE("derivatives with cable, sealed chamber, springs, loads, moving supports and two laws, both orders") {
     for (const int order : {1, 2}) {
         CAPTURE(order);
         Case c(everything(order));
@@ -111,7 +111,7 @@ TEST_CASE("cable, sealed chamber, springs, loads, supports that turn and roll, t
     }
 }
 
-TEST_CASE("every law") {
+TEST_CASE("derivatives for every law") {
     Worst all;
     for (const auto& [name, law] : laws) {
         CAPTURE(name);
@@ -127,7 +127,7 @@ TEST_CASE("every law") {
     MESSAGE("laws: inputs ", all.inputs, ", parameters ", all.parameters);
 }
 
-TEST_CASE("a slack cable does nothing, and its tension is zero whatever changes") {
+TEST_CASE("a slack cable has no effect, and its tension and its derivatives are zero") {
     Description d = plain();
     d.gravity_m_s2 = {0, 0, 9.81};
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 1.1}),
@@ -139,7 +139,7 @@ TEST_CASE("a slack cable does nothing, and its tension is zero whatever changes"
     MESSAGE("slack: inputs ", worst.inputs, ", parameters ", worst.parameters);
 }
 
-TEST_CASE("a cable that drags in its guides, as its shares are lagged") {
+TEST_CASE("derivatives for a cable with friction, with lagged tension shares") {
     Description d = plain();
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.95})};
     d.cables[0].friction = 0.4;
@@ -158,7 +158,7 @@ TEST_CASE("a cable that drags in its guides, as its shares are lagged") {
     MESSAGE("cable with friction: inputs ", worst.inputs, ", parameters ", worst.parameters);
 }
 
-TEST_CASE("a cable through gap elements") {
+TEST_CASE("derivatives for a cable through gap elements") {
     Description d = plain();
     d.materials.push_back({"gap", gap_law(1e6), 0});
     d.materials.push_back({"wide gap", gap_law(1e6), 0});
@@ -174,7 +174,7 @@ TEST_CASE("a cable through gap elements") {
     MESSAGE("gap elements: inputs ", worst.inputs, ", parameters ", worst.parameters);
 }
 
-TEST_CASE("contact with an obstacle that moves, and of the robot with itself, friction as it is lagged") {
+TEST_CASE("derivatives for contact with a moving obstacle and self-contact, with lagged friction") {
     Case c(touching_blocks());
     const Settled at = pressed(c.system);
     State start = at.state;

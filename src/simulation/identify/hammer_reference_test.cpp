@@ -50,7 +50,7 @@ struct Silicone {
 
 }  // namespace
 
-TEST_CASE("hanging hammers: moduli from the rotation of the head, corners to 10 mm") {
+TEST_CASE("hanging hammers: moduli from the head's rotation predict the corners within 10 mm") {
     constexpr std::array<Silicone, 2> silicones = {
         {{"moldstar_15_points.csv", 1180, 27.5, 320e3, 390e3}, {"ecoflex_00-50_points.csv", 1070, 54.1, 115e3, 135e3}}};
     for (const Silicone& silicone : silicones) {

@@ -65,19 +65,19 @@ bool has_warning(const Identification& result, const std::vector<std::string>& w
 
 }  // namespace
 
-TEST_CASE("two moduli from markers") {
+TEST_CASE("two moduli are identified from markers") {
     check_found(Bar(pulled), {"material.firm.youngs_modulus", "material.soft.youngs_modulus"}, {1.1e6, 0.95e6},
                 {"middle_x_mm", "middle_z_mm", "tip_x_mm", "tip_z_mm"}, {0.5, 1});
 }
 
-TEST_CASE("constants of a law with a list of them") {
+TEST_CASE("constants of a law with a list of constants are identified") {
     const Bar bar(pulled,
                   {R"(material.soft={law="ogden", mu=["0.2 MPa", "20 kPa"], alpha=[1.5, 4], poisson_ratio=0.42})"});
     check_found(bar, {"material.soft.mu.0", "material.soft.alpha.1"}, {0.24e6, 5.5},
                 {"tip_x_mm", "tip_z_mm", "flexor_length_mm"}, {0.25, 0.5, 0.75, 1});
 }
 
-TEST_CASE("Poisson's ratio from lateral contraction") {
+TEST_CASE("Poisson's ratio is identified from lateral contraction") {
     const Bar bar(R"(
         load = [{ name = "pull", box = [[60, 0, 0], [60, 10, 10]], force = ["12 N", "0 N", "0 N"] }]
         program = { steps = 2 }
@@ -85,7 +85,7 @@ TEST_CASE("Poisson's ratio from lateral contraction") {
     check_found(bar, {"material.soft.poisson_ratio"}, {0.47}, {"tip_x_mm", "corner_y_mm", "corner_z_mm"}, {0.5, 1});
 }
 
-TEST_CASE("the offset of a gauge of pressure") {
+TEST_CASE("the offset of a pressure gauge is identified") {
     const Bar bar(R"(
         chamber = [{ name = "air", region = "air", target.pressure = "12 kPa" }]
         program = { steps = 3 }
@@ -94,7 +94,7 @@ TEST_CASE("the offset of a gauge of pressure") {
                 {"tip_x_mm", "air_volume_mm3", "air_pressure_kPa"}, {0.2, 0.6, 1});
 }
 
-TEST_CASE("the offset of a cable's zero length") {
+TEST_CASE("the offset of a cable's zero length is identified") {
     const Bar bar(R"(
         cable = [{ name = "flexor", points = [[0, 5, 9], [30, 5, 9], [60, 5, 9]], target.length_ratio = 0.9 }]
         program = { steps = 4 }
@@ -103,7 +103,7 @@ TEST_CASE("the offset of a cable's zero length") {
                 {"tip_x_mm", "tip_z_mm", "flexor_tension_N"}, {0.1, 0.5, 1});
 }
 
-TEST_CASE("modulus and damping of a swinging bar") {
+TEST_CASE("modulus and damping are identified from a swinging bar") {
     const Bar bar(R"(
         program = { duration = "120 ms", time_step = "6 ms", gravity = [0, 0, -9.81], stiffness_damping = 0.002 }
     )");
@@ -111,7 +111,7 @@ TEST_CASE("modulus and damping of a swinging bar") {
                 {"tip_z_mm", "middle_z_mm"}, {0.02, 0.05, 0.08, 0.1, 0.12});
 }
 
-TEST_CASE("friction of a cable from its tension") {
+TEST_CASE("a cable's friction is identified from its tension") {
     const Bar bar(R"(
         [program]
         steps = 4
@@ -124,11 +124,11 @@ TEST_CASE("friction of a cable from its tension") {
     check_found(bar, {"cable.flexor.friction"}, {0.25}, {"tip_z_mm", "flexor_tension_N"}, {0.5, 1});
 }
 
-TEST_CASE("density from a bar under its own weight") {
+TEST_CASE("the density is identified from a bar under its own weight") {
     check_found(Bar(heavy), {"material.soft.density"}, {1300}, {"tip_z_mm"}, {0.5, 1});
 }
 
-TEST_CASE("what a measured value depends on through the law of the softest material: contact") {
+TEST_CASE("a modulus is identified from contact forces, which depend on it through the contact stiffness") {
     const Bar bar(R"(
         obstacle = [{ name = "block", geometry = { box = [[40, -3, -4], [80, 13, -1]] }, move = [0, 0, 3] }]
         program = { steps = 4 }
@@ -136,7 +136,7 @@ TEST_CASE("what a measured value depends on through the law of the softest mater
     check_found(bar, {"material.soft.youngs_modulus"}, {0.8e6}, {"block_force_z_N", "clamp_force_z_N"}, {0.5, 1});
 }
 
-TEST_CASE("two unknowns that only act together are named, and those that do nothing") {
+TEST_CASE("unknowns that cannot be separated, and unknowns without effect, are named") {
     const Bar bar(R"(
         load = [{ name = "press", box = [[30, 0, 10], [60, 10, 10]], pressure = "5 kPa" }]
         program = { steps = 2 }
@@ -173,8 +173,7 @@ TEST_CASE("an unknown at its bound is reported") {
     CHECK(has_warning(result, {"material.soft.youngs_modulus", "is at its bound, 1 MPa"}));
 }
 
-TEST_CASE(
-    "intervals hold the truth about as often as they say, and what is fitted on one half is judged on the other") {
+TEST_CASE("95 % intervals hold the true value in about 95 % of tries, and held-out rows judge the fit") {
     const Bar bar(pulled, {"program.steps=2"});
     const auto unknowns = bar.unknowns({"material.firm.youngs_modulus", "material.soft.youngs_modulus"});
     const std::array truth = {1.6e6, 0.8e6};

@@ -48,7 +48,7 @@ VectorXd vector(double a, double b) {
 
 }  // namespace
 
-TEST_CASE("a curved valley is followed to its minimum, around points without a solution") {
+TEST_CASE("least squares reaches the minimum of a curved valley, around points without a solution") {
     for (const double wall : {unbounded, 1.02}) {
         VectorXd best;
         const auto end = minimise(rosenbrock(best, wall), vector(-1.2, 1));
@@ -70,7 +70,7 @@ TEST_CASE("with one unknown at its bound the other is optimised") {
     CHECK(end->u[1] == near(0.25, {.relative = 1e-6}));  // as far as |r|^2 tells
 }
 
-TEST_CASE("too few trials are reported, a start without a solution is an error") {
+TEST_CASE("too few trials are reported; a start without a solution is an error") {
     VectorXd best;
     LeastSquaresProblem problem = rosenbrock(best, unbounded);
     problem.most_trials = 3;
@@ -82,7 +82,7 @@ TEST_CASE("too few trials are reported, a start without a solution is an error")
     CHECK_FALSE(minimise(rosenbrock(other, -2), vector(-1.2, 1)));
 }
 
-TEST_CASE("intervals of a straight line are those of the formula") {
+TEST_CASE("the intervals of a straight-line fit agree with the formula") {
     // y = a + b x at x = 0, 1, 2, 3, with residuals that are at right angles to both columns.
     MatrixXd J(4, 2);
     J << 1, 0, 1, 1, 1, 2, 1, 3;
@@ -106,7 +106,7 @@ TEST_CASE("intervals of a straight line are those of the formula") {
     CHECK(std::isnan(held.half_width[0]));
 }
 
-TEST_CASE("columns that are parallel, or nearly, are named; one of zeros does not matter") {
+TEST_CASE("parallel and nearly parallel columns are named; a column of zeros is ignored") {
     MatrixXd J(4, 4);
     J << 1, 2, 1, 0, 1, 2, 0, 0, 2, 4, 1, 0, 3, 6, 5, 0;
     const VectorXd r = VectorXd::Constant(4, 0.1);

@@ -32,7 +32,7 @@ void check_problem(const std::string& csv, const std::string& wanted) {
 
 }  // namespace
 
-TEST_CASE("rows by time or by step, with empty cells and scatters") {
+TEST_CASE("rows are read by time or by step, with empty cells and scatters") {
     const Bar bar(more);
     const Measurements m = bar.read(
         "# from a video\ntime;tip_x_mm;tip_x_mm_scatter;flexor_tension_N\n0.5;59;0.2;\n1.25;;;3.5\n2;55;0.1;4\n");
@@ -48,7 +48,7 @@ TEST_CASE("rows by time or by step, with empty cells and scatters") {
     CHECK(steps.values[1].time == near(1.25, {.relative = 1e-12}));
 }
 
-TEST_CASE("rows held out for validation") {
+TEST_CASE("rows can be held out for validation") {
     const Bar bar(more);
     const std::string rows = "step,tip_x_mm\n0,60\n1,59\n2,58\n3,57\n4,56\n";
     const auto judged = [](const Measurements& m) {
@@ -62,7 +62,7 @@ TEST_CASE("rows held out for validation") {
     CHECK(judged(bar.read("step,use,tip_x_mm\n1,fit,59\n2,judge,58\n")) == "fj");
 }
 
-TEST_CASE("a table that simulate wrote can be read") {
+TEST_CASE("a table that simulate has written can be read") {
     const Bar bar(more);
     const Measurements m = bar.read(
         "index,time,converged,iterations,substeps,residual,wall_ms,min_J,solver,"
@@ -71,7 +71,7 @@ TEST_CASE("a table that simulate wrote can be read") {
     CHECK(m.values.size() == 3);
 }
 
-TEST_CASE("what is wrong is said with file and line") {
+TEST_CASE("errors in measurements name file and line") {
     check_problem("", "m.csv: is empty; the first line names the columns: time,tip_x_mm");
     check_problem("tip_x_mm\n59\n", "m.csv:1: no column \"time\" or \"step\" says when each row was measured");
     check_problem("time\n1\n", "m.csv:1: no column holds a measured value; possible are middle_x_mm");

@@ -61,7 +61,7 @@ const std::string pulled = R"(
 
 }  // namespace
 
-TEST_CASE("slopes of markers, angles, lengths and forces of a robot at rest") {
+TEST_CASE("derivatives of markers, angles, lengths and forces at equilibrium") {
     check_slopes(pulled + "program = { steps = 3, gravity = [0, 2, -9.81] }",
                  {"material.firm.youngs_modulus", "material.soft.poisson_ratio", "material.firm.density",
                   "cable.flexor.target.offset", "cable.flexor.target.shortening"},
@@ -70,19 +70,19 @@ TEST_CASE("slopes of markers, angles, lengths and forces of a robot at rest") {
                  {0, 0.2, 1.0 / 3, 1}, 1e-5);
 }
 
-TEST_CASE("slopes of what a support carries") {
+TEST_CASE("derivatives of a support's force") {
     check_slopes("program = { steps = 2, gravity = [0, 2, -9.81] }",
                  {"material.firm.density", "material.soft.youngs_modulus"}, {"clamp_force_y_N", "clamp_force_z_N"},
                  {0.5, 1}, 1e-5);
 }
 
-TEST_CASE("slopes by more unknowns than are measured, from transposed solutions") {
+TEST_CASE("derivatives by more unknowns than measured values, from transposed solutions") {
     check_slopes(pulled + "program = { steps = 2 }",
                  {"material.firm.youngs_modulus", "material.soft.youngs_modulus", "cable.flexor.target.offset"},
                  {"tip_z_mm"}, {0.4, 1}, 1e-5);
 }
 
-TEST_CASE("slopes of air: pressure, volume and gas") {
+TEST_CASE("derivatives of a chamber's pressure, volume and gas") {
     const std::vector<std::string> columns = {"tip_x_mm", "air_volume_mm3", "air_pressure_kPa"};
     check_slopes("chamber = [{ name = \"air\", region = \"air\", target.pressure = \"9 kPa\" }]\nprogram.steps = 2",
                  {"chamber.air.target.offset", "chamber.air.target.pressure", "material.soft.youngs_modulus"}, columns,
@@ -93,13 +93,13 @@ TEST_CASE("slopes of air: pressure, volume and gas") {
                  {"chamber.air.target.offset", "chamber.air.target.volume_ratio"}, columns, {0.5, 1}, 1e-5);
 }
 
-TEST_CASE("slopes of a swinging bar, through all steps before") {
+TEST_CASE("derivatives for a swinging bar, through all earlier steps") {
     check_slopes("program = { duration = \"60 ms\", time_step = \"6 ms\", gravity = [0, 0, -9.81], mass_damping = 3 }",
                  {"material.soft.youngs_modulus", "material.soft.density", "program.mass_damping"},
                  {"tip_z_mm", "middle_z_mm", "clamp_force_z_N"}, {0.006, 0.016, 0.03, 0.06}, 1e-5);
 }
 
-TEST_CASE("slopes by contact stiffness of a bar that a block lifts") {
+TEST_CASE("derivatives by contact stiffness, for a bar lifted by a block") {
     check_slopes(R"(
         obstacle = [{ name = "block", geometry = { box = [[40, -3, -4], [80, 13, -1]] }, move = [0, 0, 3] }]
         contact = { stiffness = "60 kPa" }
@@ -109,7 +109,7 @@ TEST_CASE("slopes by contact stiffness of a bar that a block lifts") {
                  {"block_force_z_N", "tip_z_mm", "block_force_x_N"}, {0.5, 1}, 1e-5);
 }
 
-TEST_CASE("forward slopes through earlier steps equal the adjoint ones, with contact friction too") {
+TEST_CASE("forward derivatives through earlier steps equal the adjoint ones, also with contact friction") {
     for (const char* text : {R"(
         obstacle = [{ name = "block", geometry.box = [[40, -3, -4], [80, 13, -1]], friction = 0.3, move = [0, 0, 3] }]
         contact = { stiffness = "60 kPa" }

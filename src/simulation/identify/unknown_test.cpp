@@ -14,7 +14,7 @@ using namespace pliant::sim::identify::testing;
 
 namespace {
 
-const std::string rich = R"(
+const std::string many_parameters = R"(
     cable = [{ name = "flexor", points = [[0, 5, 9], [60, 5, 9]], target.length_ratio = 0.9 },
              { name = "rope", points = [[0, 5, 1], [60, 5, 1]], friction = 0.2, target.tension = "2 N" }]
     spring = [{ name = "band", points = [[0, 1, 9], [60, 1, 9]], stiffness = "10 N/m", free_length = "40 mm" }]
@@ -33,8 +33,8 @@ std::string problem(const Bar& bar, const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("every number that a robot offers is one that --set takes, with its value or another") {
-    const Bar bar(rich);
+TEST_CASE("every number that a robot offers as unknown can be set with --set") {
+    const Bar bar(many_parameters);
     const auto all = possible_unknowns(bar.robot());
     CHECK(all.size() == 25);
     for (const Unknown& unknown : all) {
@@ -49,7 +49,7 @@ TEST_CASE("every number that a robot offers is one that --set takes, with its va
     }
 }
 
-TEST_CASE("coordinates and their rates") {
+TEST_CASE("coordinates of unknowns and their derivatives") {
     for (const Scale scale : {Scale::linear, Scale::log, Scale::poisson}) {
         const Unknown unknown{"k", "", 0.3, 0, 1, scale, 0.2};
         const double u = unknown.coordinate(0.3), h = 1e-5;
@@ -59,8 +59,8 @@ TEST_CASE("coordinates and their rates") {
     }
 }
 
-TEST_CASE("bounds, with units where the key has one") {
-    const Bar bar(rich);
+TEST_CASE("bounds are read, with units where the key has one") {
+    const Bar bar(many_parameters);
     const auto E = *find_unknown(bar.robot(), "material.soft.youngs_modulus=0.5 MPa..900kPa");
     CHECK(E.low == near(0.5e6, {.relative = 1e-12}));
     CHECK(E.high == near(0.9e6, {.relative = 1e-12}));
@@ -75,7 +75,7 @@ TEST_CASE("bounds, with units where the key has one") {
 }
 
 TEST_CASE("an invalid unknown is reported in one line") {
-    const Bar bar(rich);
+    const Bar bar(many_parameters);
     CHECK(problem(bar, "material.sof.youngs_modulus") ==
           "material.sof.youngs_modulus: the robot has no such parameter to find; did you mean "
           "\"material.soft.youngs_modulus\"?");

@@ -40,7 +40,7 @@ void check_found(Description d, const std::vector<std::pair<double, double>>& ra
 
 }  // namespace
 
-TEST_CASE("a length, a tension, a volume and a pressure are recovered from the position they lead to") {
+TEST_CASE("length, tension, volume and pressure are recovered from the position they cause") {
     check_found(bar(1), {{0.7, 1}}, {0.85});
     check_found(bar(1, 1, CableTarget::Kind::tension_N), {{0, 10}}, {4});
     check_found(bar(1, 1, CableTarget::Kind::shortening_m), {{0, 0.02}}, {0.007});
@@ -49,7 +49,7 @@ TEST_CASE("a length, a tension, a volume and a pressure are recovered from the p
     check_found(hollow(1, pressure), {{0.8, 1}, {0, 1e4}}, {0.92, 5e3});
 }
 
-TEST_CASE("several cables are found again, also with quadratic elements") {
+TEST_CASE("inputs of several cables are recovered, also with quadratic elements") {
     check_found(bar(2), {{0.7, 1}, {0.7, 1}}, {0.95, 0.8});
     check_found(bar(4), {{0.7, 1}, {0.7, 1}, {0.7, 1}, {0.7, 1}}, {0.8, 0.95, 0.9, 1});
     check_found(bar(3, 2), {{0.7, 1}, {0.7, 1}, {0.7, 1}}, {0.9, 1, 0.85});
@@ -73,7 +73,7 @@ InverseTask path_task(const Model& model, std::size_t waypoints) {
 
 }  // namespace
 
-TEST_CASE("a path of 20 waypoints is followed, and the program that was found leads along it") {
+TEST_CASE("a path of 20 waypoints is followed, and its program reaches them") {
     Description d = bar(3);
     const Model model = made(d);
     const InverseTask task = path_task(model, 20);
@@ -110,7 +110,7 @@ TEST_CASE("the same bits on any number of threads") {
     for (std::size_t k = 0; k < one.waypoints.size(); ++k) CHECK(one.waypoints[k].values == four.waypoints[k].values);
 }
 
-TEST_CASE("loads that grow with the waypoints' times are compensated") {
+TEST_CASE("the inverse compensates loads that grow with the waypoints' times") {
     Description d = bar(2);
     d.loads = {
         {"weight", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > length - 1e-9; }), {}, {0, 0, -0.02}}};
@@ -132,7 +132,7 @@ TEST_CASE("loads that grow with the waypoints' times are compensated") {
     for (std::size_t k = 1; k < 4; ++k) CHECK(result.waypoints[k].values[0] < result.waypoints[k - 1].values[0]);
 }
 
-TEST_CASE("friction in the guides: each waypoint is a step from the one before") {
+TEST_CASE("with friction in the guides each waypoint is solved as a step from the one before") {
     Description d = bar(2);
     for (Cable& cable : d.cables) cable.friction = 0.2;
     const Model model = made(std::move(d));
@@ -179,7 +179,7 @@ TEST_CASE("if the search from rest fails, another starting point is used, and a 
     CHECK_FALSE(solve(model, task, {.starts = 0}).reached);
 }
 
-TEST_CASE("a search that is cancelled keeps the waypoints that it has") {
+TEST_CASE("a cancelled search keeps the waypoints it has") {
     class AfterTwo final : public Progress {
     public:
         void advance(std::string_view, double fraction) override { over_ = fraction > 0.39; }

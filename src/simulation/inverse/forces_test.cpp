@@ -72,13 +72,13 @@ void check_gradients(const Goal& goal, const std::vector<double>& values) {
 
 }  // namespace
 
-TEST_CASE("forces of supports and obstacles change with the inputs as equilibria show it") {
+TEST_CASE("derivatives of support and contact forces by inputs agree with equilibria") {
     check_gradients(force_goal(GoalKind::support_force, {}, false), {1, 0.88});
     check_gradients(force_goal(GoalKind::contact_force, {}, false), {1, 0.88});
     check_gradients(force_goal(GoalKind::contact_force, {}, true), {1, 0.88});
 }
 
-TEST_CASE("the bar is pressed on the table with the force that is wanted") {
+TEST_CASE("the bar is pressed on the table with the wanted force") {
     const Model model = made(over_table());
     InverseTask task = task_for(model, {{0.8, 1}, {0.8, 1}});
     task.goals = {force_goal(GoalKind::contact_force, {0.05, 0, 0}, true)};

@@ -35,7 +35,7 @@ bool names(const Waypoint& at, Limit::Kind kind, const std::string& input) {
 
 }  // namespace
 
-TEST_CASE("beyond the range: the nearest point is at its end, which is named") {
+TEST_CASE("a goal beyond the range: the nearest point is at the range's end, which is named") {
     const Model model = made(bar(1));
     InverseTask task = task_for(model, {{0.85, 1}});
     const Vec3 wanted = tip_under(model, task, {0.75});
@@ -48,7 +48,7 @@ TEST_CASE("beyond the range: the nearest point is at its end, which is named") {
     CHECK(found.goals[0].error == near(nearest_sampled(model, task, wanted, 20), {.absolute = 1e-5}));
 }
 
-TEST_CASE("outside the workspace: the nearest point, as found by dense sampling") {
+TEST_CASE("a goal outside the workspace: the nearest point agrees with dense sampling") {
     const Model model = made(bar(2));
     InverseTask task = task_for(model, {{0.75, 1}, {0.75, 1}});
     for (const Vec3& aside : {Vec3{0.01, 0, 0.005}, Vec3{-0.004, 0.006, 0.001}, Vec3{0.004, 0.003, -0.03}}) {
@@ -62,7 +62,7 @@ TEST_CASE("outside the workspace: the nearest point, as found by dense sampling"
     }
 }
 
-TEST_CASE("a cable that would have to push is named; actuators that move the robot elsewhere have no limit") {
+TEST_CASE("a cable that would have to push is named; actuators that act in other directions are not") {
     const Model model = made(bar(1));
     InverseTask task = task_for(model, {{0.7, 1}});
     const Vec3 pulled = tip_under(model, task, {0.9});
@@ -77,7 +77,7 @@ TEST_CASE("a cable that would have to push is named; actuators that move the rob
     CHECK(aside.goals[0].error == near(0.01, {.absolute = 2e-5}));
 }
 
-TEST_CASE("an antagonist pays out and takes over") {
+TEST_CASE("an antagonist cable lengthens first and then pulls") {
     const Model model = made(bar(2));
     InverseTask task = task_for(model, {{0.7, 1}, {0.7, 1}});
     const Vec3 up = tip_under(model, task, {0.85, 1}), down = tip_under(model, task, {1, 0.85});
@@ -89,7 +89,7 @@ TEST_CASE("an antagonist pays out and takes over") {
     CHECK(result.reached);
 }
 
-TEST_CASE("a rate leaves a waypoint out of reach, and is named") {
+TEST_CASE("a waypoint that the rate limit leaves out of reach names the rate") {
     const Model model = made(bar(1));
     InverseTask task = task_for(model, {{0.7, 1}});
     const Vec3 a = tip_under(model, task, {0.95}), b = tip_under(model, task, {0.85});
@@ -134,7 +134,7 @@ TEST_CASE("for redundant cables a tension penalty gives the smallest tensions") 
     CHECK(second == near(0, {.absolute = 0.1}));
 }
 
-TEST_CASE("points spread over a cube are Halton's") {
+TEST_CASE("points spread over a cube are Halton points") {
     CHECK(spread_point(1, 3)[0] == near(0.5, {.relative = 1e-15}));
     CHECK(spread_point(3, 3)[0] == near(0.75, {.relative = 1e-15}));
     CHECK(spread_point(4, 3)[1] == near(4.0 / 9, {.relative = 1e-15}));

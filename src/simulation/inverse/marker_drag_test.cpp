@@ -32,7 +32,7 @@ Led lead_to(MarkerDrag& drag, RobotState& robot, const Vec3& wanted, int& pieces
 
 }  // namespace
 
-TEST_CASE("the tip goes where the hand is, in bounded pieces, and back again") {
+TEST_CASE("the tip follows the pointer in limited steps, and back again") {
     const Model model = made(bar(4));
     const InverseTask task = task_for(model, four);
     const Vec3 wanted = tip_under(model, task, {0.8, 1, 0.9, 1});
@@ -52,7 +52,7 @@ TEST_CASE("the tip goes where the hand is, in bounded pieces, and back again") {
     CHECK(norm(tip(model, robot) - rest) <= 1e-4);
 }
 
-TEST_CASE("out of reach it stops at the nearest point and reports the limits") {
+TEST_CASE("out of reach the tip stops at the nearest point and reports the limits") {
     const Model model = made(bar(1));
     Stepper stepper(model, tight);
     const InverseTask task = task_for(model, {{0.9, 1}});
@@ -67,7 +67,7 @@ TEST_CASE("out of reach it stops at the nearest point and reports the limits") {
     CHECK(led.error_m == near(norm(tip(model, robot) - Vec3{0, 0, 0.2}), {.relative = 1e-12}));
 }
 
-TEST_CASE("dragging takes over from sliders that drive by another kind") {
+TEST_CASE("dragging replaces inputs of another kind from the sliders") {
     const Model model = made(bar(1));
     const InverseTask task = task_for(model, {{0.7, 1}});
     const Vec3 wanted = tip_under(model, task, {0.85});

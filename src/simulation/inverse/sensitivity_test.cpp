@@ -47,7 +47,7 @@ struct Pulled {
 
 }  // namespace
 
-TEST_CASE("combinations of changes that have been solved for take no further solution") {
+TEST_CASE("combinations of solved directions need no further solution") {
     Pulled bar;
     Sensitivity known = bar.sensitivity(), fresh = bar.sensitivity();
     const Eigen::Vector3d a(1, 0.2, 0), b(0.1, 0, -1);
@@ -77,7 +77,7 @@ TEST_CASE("Broyden updates also apply to stored products") {
     CHECK(at.multiply_transposed(miss).dot(across) == near(straight, {.relative = 1e-3, .absolute = 1e-6}));
 }
 
-TEST_CASE("the state that is expected is off by the square of the step, and a step from it ends where it would have") {
+TEST_CASE("the predicted state's error is quadratic in the step, and the step from it ends at the same state") {
     Pulled bar;
     Sensitivity at = bar.sensitivity();
     const auto off = [&](double size) {
@@ -95,7 +95,7 @@ TEST_CASE("the state that is expected is off by the square of the step, and a st
     CHECK(half < 0.3 * whole);
 }
 
-TEST_CASE("an expected state far from any equilibrium has no effect") {
+TEST_CASE("a predicted state far from equilibrium has no effect") {
     Pulled bar;
     State wild = bar.robot.now.state;
     wild.x *= 1.5;

@@ -17,9 +17,9 @@ using namespace pliant::sim::inverse::testing;
 namespace {
 
 /// Cancels after so many samples.
-class Impatient final : public Progress {
+class CancelAfterSamples final : public Progress {
 public:
-    explicit Impatient(int samples) : left_(samples) {}
+    explicit CancelAfterSamples(int samples) : left_(samples) {}
     void advance(std::string_view, double) override { --left_; }
     [[nodiscard]] bool cancelled() const override { return left_ <= 0; }
 
@@ -40,7 +40,7 @@ void check_same(const Workspace& a, const Workspace& b) {
 
 }  // namespace
 
-TEST_CASE("every sample is the equilibrium of its inputs, and the sheets cover all ends of the ranges") {
+TEST_CASE("every sample is the equilibrium of its inputs, and the sheets include all ends of the ranges") {
     const Model model = made(bar(3));
     const InverseTask task = task_for(model, {{0.85, 1}, {0.85, 1}, {0.9, 1}});
     Progress silent;
@@ -75,7 +75,7 @@ TEST_CASE("a resumed search gives the same bits") {
         kept[k] = piece;
         return {};
     };
-    Impatient impatient(20);
+    CancelAfterSamples impatient(20);
     const auto stopped = find_workspace(model, tight, task, options, known, keep, impatient);
     REQUIRE(stopped);
     CHECK(stopped->cancelled);

@@ -22,7 +22,7 @@ Description driven() {
 
 }  // namespace
 
-TEST_CASE("what a solver knows of the pattern changes nothing but the time") {
+TEST_CASE("a known pattern from a solver changes nothing but the time") {
     const Case c(driven());
     const FactoredLaplacian laplacian(c.system);
     const State state = disturbed(c.system, 0.5, 2e3);
@@ -39,7 +39,7 @@ TEST_CASE("what a solver knows of the pattern changes nothing but the time") {
     CHECK((*y - w).norm() < 1e-9 * w.norm());
 }
 
-TEST_CASE("a pattern that does not couple what touches is not used") {
+TEST_CASE("a known pattern without the contact couplings is not used") {
     Case c(touching_blocks());
     const Settled at = pressed(c.system);
     const FactoredLaplacian laplacian(c.system);
@@ -51,7 +51,7 @@ TEST_CASE("a pattern that does not couple what touches is not used") {
     CHECK((known->multiply(v) - alone.multiply(v)).norm() <= 1e-13 * alone.multiply(v).norm());
 }
 
-TEST_CASE("on two levels products with a solution are those of the exact one to six digits and more") {
+TEST_CASE("on two levels products with a solution agree with exact ones to six digits") {
     const Case c(driven());
     const FactoredLaplacian laplacian(c.system);
     const State state = settle(c.system, 3, 0.1, 1e-8).state;
@@ -74,7 +74,7 @@ TEST_CASE("on two levels products with a solution are those of the exact one to 
     }
 }
 
-TEST_CASE("where fewer digits are wanted, by a factor or on two levels, gradients have no fewer than six") {
+TEST_CASE("with fewer digits wanted, by factor or on two levels, gradients still have six") {
     const Case c(driven());
     const FactoredLaplacian laplacian(c.system);
     const State state = settle(c.system, 3, 0.1, 1e-8).state;
@@ -101,7 +101,7 @@ TEST_CASE("where fewer digits are wanted, by a factor or on two levels, gradient
     }
 }
 
-TEST_CASE("cables that do nearly the same are told apart") {
+TEST_CASE("cables with nearly equal effect are distinguished") {
     Description d = driven();
     d.chambers[0].target = {ChamberTarget::Kind::pressure_Pa, 0};
     d.cables.push_back(d.cables[0]);

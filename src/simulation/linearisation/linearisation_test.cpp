@@ -29,7 +29,7 @@ void check(Linearisation at, std::string_view what) {
 
 }  // namespace
 
-TEST_CASE("every law, of either order, with a cable and a chamber") {
+TEST_CASE("products and solutions for every law, both orders, with a cable and a chamber") {
     for (const int order : {1, 2}) {
         for (const auto& [name, law] : laws) {
             Description d = block(order, law);
@@ -41,7 +41,7 @@ TEST_CASE("every law, of either order, with a cable and a chamber") {
     }
 }
 
-TEST_CASE("a cable by length, slack, by tension, with friction") {
+TEST_CASE("solutions for a cable by length, slack, by tension, with friction") {
     Description d = plain();
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
     {
@@ -71,7 +71,7 @@ TEST_CASE("a cable by length, slack, by tension, with friction") {
     }
 }
 
-TEST_CASE("the wanted length of a cable with friction is the true one") {
+TEST_CASE("the derivative by the length of a cable with friction is by its true length") {
     Description d = plain();
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
     d.cables[0].friction = 0.4;
@@ -96,7 +96,7 @@ TEST_CASE("the wanted length of a cable with friction is the true one") {
     CHECK(by_hand < 0.99);
 }
 
-TEST_CASE("a chamber by volume, by pressure, with sealed gas") {
+TEST_CASE("solutions for a chamber by volume, by pressure, with sealed gas") {
     for (const int order : {1, 2}) {
         Description d = block(order, material::neo_hookean(1e6, 0.4));
         for (const auto& [kind, value] :
@@ -110,7 +110,7 @@ TEST_CASE("a chamber by volume, by pressure, with sealed gas") {
     }
 }
 
-TEST_CASE("pressure on a patch with a free rim, and on one whose rim is held") {
+TEST_CASE("solutions for pressure on a patch with a free rim, and with a held rim") {
     for (const int order : {1, 2}) {
         Description d = plain(order);
         d.pressures = {patch(d.mesh, -1)};
@@ -134,7 +134,7 @@ TEST_CASE("pressure on a patch with a free rim, and on one whose rim is held") {
     }
 }
 
-TEST_CASE("rollers, also those that move and those that two supports share") {
+TEST_CASE("solutions for rollers, moving ones and ones shared by two supports") {
     Description d = plain();
     d.supports.push_back(
         {"roller", end_of(d.mesh), {0.02 * edge, 0, 0.01 * edge}, ramp(0, 1), {0.1, {1, 1, 0}, {}}, {{0, 1, 1}}});
@@ -154,7 +154,7 @@ TEST_CASE("rollers, also those that move and those that two supports share") {
     check(c.at(state, controls), "rollers");
 }
 
-TEST_CASE("springs, plates, loads and gravity") {
+TEST_CASE("solutions for springs, plates, loads and gravity") {
     Description d = plain();
     const Cable path = flexor(d.mesh, {});
     d.springs = {{"coil", path.points, 300, 0.8 * 3 * edge},
@@ -169,7 +169,7 @@ TEST_CASE("springs, plates, loads and gravity") {
     check(c.at(disturbed(c.system, 0, 0), c.system.controls(0.7)), "springs, plates, loads");
 }
 
-TEST_CASE("the thesis' gap elements, whose force is not the gradient of the length") {
+TEST_CASE("solutions for gap elements, whose force is not the gradient of the length") {
     for (const int order : {1, 2}) {
         const auto region = [](Vec3 c) { return c.z > edge / 2 && c.x > edge && c.x < 2 * edge ? 1 : 0; };
         Description d;
@@ -187,7 +187,7 @@ TEST_CASE("the thesis' gap elements, whose force is not the gradient of the leng
     }
 }
 
-TEST_CASE("motion in time") {
+TEST_CASE("solutions for a step in time") {
     Description d = block(1, material::neo_hookean(1e6, 0.4));
     d.supports.push_back({"grip", end_of(d.mesh), {0.1 * edge, 0, 0.2 * edge}});
     const Case c(std::move(d));
@@ -207,7 +207,7 @@ TEST_CASE("motion in time") {
     check(c.at(state, controls), "inertia");
 }
 
-TEST_CASE("contact with an obstacle that moves and with itself, with friction as it is lagged") {
+TEST_CASE("solutions for contact with a moving obstacle and self-contact, with lagged friction") {
     Case c(touching_blocks());
     const auto [state, controls, settled] = pressed(c.system);
     REQUIRE(controls.friction->pairs().size() > 5);
@@ -217,7 +217,7 @@ TEST_CASE("contact with an obstacle that moves and with itself, with friction as
     check(c.at(state, controls), "contact");
 }
 
-TEST_CASE("solutions where the equilibrium is unstable") {
+TEST_CASE("solutions exist where the equilibrium is unstable") {
     // Past the largest pressure of a chamber the tangent is indefinite; and a column that is pressed far beyond
     // buckling.
     Description d = block(1, material::neo_hookean(1e6, 0.4));
@@ -263,7 +263,7 @@ TEST_CASE("redundant cables share their load; conflicting targets are an error")
           "cable \"left\", cable \"right\" have the same effect but different targets, which cannot be met at once");
 }
 
-TEST_CASE("a cable between held points moves nothing") {
+TEST_CASE("a cable between held points has no effect") {
     Description d = plain();
     const std::vector<int> clamp = d.supports[0].nodes;
     d.cables = {{"idle", {{{clamp[0]}, {1.0}, {}}, {{clamp[1]}, {1.0}, {}}}, {CableTarget::Kind::length_ratio, 1}}};

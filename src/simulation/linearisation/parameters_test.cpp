@@ -66,7 +66,7 @@ double worst_error(Case& c, State state, const ControlsOf& controls_of, std::set
 
 }  // namespace
 
-TEST_CASE("every law's numbers and density, of either order") {
+TEST_CASE("derivatives by every law's constants and by density, both orders") {
     double worst = 0;
     std::set<Kind> seen;
     for (const int order : {1, 2}) {
@@ -89,7 +89,7 @@ TEST_CASE("every law's numbers and density, of either order") {
     MESSAGE("laws: ", worst);
 }
 
-TEST_CASE("springs, loads, supports, gas, friction of a cable") {
+TEST_CASE("derivatives by numbers of springs, loads, supports, gas and cable friction") {
     Description d = block(1, material::neo_hookean(1e6, 0.4));
     d.chambers[0].target = {ChamberTarget::Kind::gas_ratio, 1.2};
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.95})};
@@ -125,7 +125,7 @@ TEST_CASE("springs, loads, supports, gas, friction of a cable") {
         CHECK(seen.contains(kind));
 }
 
-TEST_CASE("contact and its friction") {
+TEST_CASE("derivatives by contact stiffness and friction") {
     Case c(touching_blocks());
     const Settled at = pressed(c.system);
     State start = at.state;
@@ -142,7 +142,7 @@ TEST_CASE("contact and its friction") {
         CHECK(seen.contains(kind));
 }
 
-TEST_CASE("the weights of gaps that a cable closes") {
+TEST_CASE("derivatives by the weights of gaps that a cable closes") {
     Description d = plain();
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
     d.mesh.region_names = {"solid", "gap", "wide gap"};
@@ -160,7 +160,7 @@ TEST_CASE("the weights of gaps that a cable closes") {
     CHECK(seen.contains(Kind::gap_weight));
 }
 
-TEST_CASE("a density and damping in motion") {
+TEST_CASE("derivatives by density and damping in dynamics") {
     Description d = plain(2);
     d.gravity_m_s2 = {0, 3, -9.81};
     Case c(std::move(d));
@@ -184,7 +184,7 @@ TEST_CASE("a density and damping in motion") {
     CHECK(seen.contains(Kind::stiffness_damping));
 }
 
-TEST_CASE("every number has a name of its own, a unit and its value") {
+TEST_CASE("every number has a unique name, a unit and its value") {
     Description d = block(1, material::corotated(1e6, 0.4));
     d.pressures = {patch(d.mesh, -1)};
     Case c(std::move(d));

@@ -121,7 +121,7 @@ void try_robots(unsigned count, const std::function<test::RandomProgram(unsigned
 
 }  // namespace
 
-TEST_CASE("random robots, as far as their programs lead") {
+TEST_CASE("linearisations of random robots, along their programs") {
     try_robots(wanted_robots(12), [](unsigned seed) {
         test::RandomProgram p = test::random_program(seed);
         p.robot = with_more(std::move(p.robot), seed);
@@ -129,6 +129,6 @@ TEST_CASE("random robots, as far as their programs lead") {
     });
 }
 
-TEST_CASE("random bodies that nothing holds, with objects over a ground") {
+TEST_CASE("linearisations of random free bodies with objects over a ground") {
     try_robots(wanted_robots(8), [](unsigned seed) { return test::random_free_program(seed); });
 }

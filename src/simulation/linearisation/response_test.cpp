@@ -48,7 +48,7 @@ State state_of(const Step& step, const Equilibrium& system) {
 
 }  // namespace
 
-TEST_CASE("what the tip and the tension do with a cable's length and a chamber's volume, as simulations show it") {
+TEST_CASE("derivatives of tip and tension by cable length and chamber volume agree with simulations") {
     const auto model = Model::create(arm(shortened, air));
     REQUIRE(model);
     const Equilibrium system(*model);

@@ -53,7 +53,7 @@ const ControlsOf at_70_percent = [](Equilibrium& system) { return system.control
 
 }  // namespace
 
-TEST_CASE("every law, of either order, heavy, with a plate, springs and actuators") {
+TEST_CASE("derivatives by rest positions for every law, both orders, with weight, plate, springs and actuators") {
     double worst = 0;
     for (const int order : {1, 2}) {
         for (const auto& [name, law] : laws) {
@@ -74,7 +74,7 @@ TEST_CASE("every law, of either order, heavy, with a plate, springs and actuator
     MESSAGE("rest positions: ", worst);
 }
 
-TEST_CASE("supports that turn, rollers that two supports share, pressure on a patch") {
+TEST_CASE("derivatives by rest positions with turning supports, shared rollers and pressure on a patch") {
     Description d = plain();
     d.supports[0].turn = {0.2, {1, 2, 0}, {0, 0, edge}};
     d.supports.push_back(
@@ -92,7 +92,7 @@ TEST_CASE("supports that turn, rollers that two supports share, pressure on a pa
     CHECK(worst_error(c, disturbed(c.system, 0.5, 0), at_70_percent) < 1e-7);
 }
 
-TEST_CASE("a shape in motion") {
+TEST_CASE("derivatives by rest positions for a step in time") {
     Description d = plain(2);
     d.gravity_m_s2 = {0, 3, -9.81};
     Case c(std::move(d));
@@ -107,7 +107,7 @@ TEST_CASE("a shape in motion") {
     CHECK(error < 1e-7);
 }
 
-TEST_CASE("gap elements, of two gaps that one cable closes, of either order") {
+TEST_CASE("derivatives by rest positions with two gaps that one cable closes, both orders") {
     for (const int order : {1, 2}) {
         Description d = plain(order);
         d.materials.push_back({"gap", gap_law(1e6), 0});
@@ -123,7 +123,7 @@ TEST_CASE("gap elements, of two gaps that one cable closes, of either order") {
     }
 }
 
-TEST_CASE("where the tip goes with the shape, against simulations of robots of another shape") {
+TEST_CASE("the derivative of the tip by rest positions agrees with simulations of other shapes") {
     // The length is wanted as a ratio, so it changes with the shape too.
     Description d = hollow_block(1);
     d.chambers.clear();

@@ -129,7 +129,7 @@ auto difference_by(const Law& law, std::size_t k, const Function& f) {
 
 }  // namespace
 
-TEST_CASE("the stress changes with every constant, and with E and nu, as it does between two laws") {
+TEST_CASE("derivatives of stress by every constant, and by E and nu, agree with finite differences") {
     for (const auto& [name, law] : laws) {
         CAPTURE(name);
         const std::vector<LawParameter> all = parameters(law);
@@ -149,7 +149,7 @@ TEST_CASE("the stress changes with every constant, and with E and nu, as it does
     }
 }
 
-TEST_CASE("the moduli change with every constant as they do between two laws") {
+TEST_CASE("derivatives of the moduli by every constant agree with finite differences") {
     for (const auto& [name, law] : laws) {
         CAPTURE(name);
         const std::vector<LawParameter> all = parameters(law);
@@ -165,7 +165,7 @@ TEST_CASE("the moduli change with every constant as they do between two laws") {
     }
 }
 
-TEST_CASE("a law's parameters are its own numbers, and E and nu those that it was made with") {
+TEST_CASE("a law's parameters are its constants, and the E and nu that it was made from") {
     const std::vector<LawParameter> all = parameters(Law(corotated(12e6, 0.45)));
     REQUIRE(all.size() == 4);
     CHECK(all[2].name == "youngs_modulus");
@@ -180,7 +180,7 @@ TEST_CASE("a law's parameters are its own numbers, and E and nu those that it wa
     CHECK(std::get<Ogden>(with_parameter(ogden, 3, 5)).alpha[1] == 5);
 }
 
-TEST_CASE("a rotation of the deformed body rotates the stress and leaves the energy") {
+TEST_CASE("rotating the deformed body rotates the stress and keeps the energy (objectivity)") {
     const Matrix3 Q = some_rotation();
     for (const auto& [name, law] : laws) {
         CAPTURE(name);
@@ -219,7 +219,7 @@ TEST_CASE("small strains follow Hooke's law with the given E and nu") {
     }
 }
 
-TEST_CASE("a rotation of the body before it is deformed changes nothing: the laws are isotropic") {
+TEST_CASE("rotating the body before deformation changes nothing (isotropy)") {
     const Matrix3 Q = some_rotation();
     for (const auto& [name, law] : laws) {
         CAPTURE(name);
@@ -231,7 +231,7 @@ TEST_CASE("a rotation of the body before it is deformed changes nothing: the law
     }
 }
 
-TEST_CASE("linear, and it alone, takes a rotation for a strain; turned with its body and its space it is isotropic") {
+TEST_CASE("only the linear law takes rotations for strains; rotated with its frame it is isotropic") {
     for (const auto& [name, law] : laws) {
         CAPTURE(name);
         CHECK(is_objective(law) == (stress(law, some_rotation()).norm() < 1e-12 * scale(law)));
@@ -314,7 +314,7 @@ Matrix3 stretched(const Law& law, double l, bool both) {
 
 }  // namespace
 
-TEST_CASE("nearly incompressible bodies follow the closed forms of tension, compression, balloon and shear") {
+TEST_CASE("nearly incompressible bodies follow the closed forms of tension, equibiaxial stretch and shear") {
     for (const ClosedForm& form : closed_forms) {
         CAPTURE(form.name);
         for (const double l : {0.6, 0.9, 1.2, 1.7, 2.5}) {
@@ -332,7 +332,7 @@ TEST_CASE("nearly incompressible bodies follow the closed forms of tension, comp
     }
 }
 
-TEST_CASE("corotated: closed forms for a bar that keeps its width, and for a change of volume") {
+TEST_CASE("corotated follows closed forms for a bar of constant width and for a volume change") {
     const Corotated law{2e6, 5e6};
     // Pascal: where l is 1 the stress is 0, of terms of 1e6 to 1e7 Pa.
     for (const double l : {0.6, 1.0, 1.8}) {
@@ -346,7 +346,7 @@ TEST_CASE("corotated: closed forms for a bar that keeps its width, and for a cha
     }
 }
 
-TEST_CASE("ogden with exponents 2 and -2 is mooney-rivlin, also where stretches are equal or nearly so") {
+TEST_CASE("ogden with exponents 2 and -2 equals mooney-rivlin, also at equal and nearly equal stretches") {
     const Law ogden = Ogden{2, {1.4e6, 0.6e6}, {2.0, -2.0}, 18e6};
     const Law mooney = MooneyRivlin{0.7e6, 0.3e6, 18e6};
     std::vector<Matrix3> list = deformations();
@@ -366,7 +366,7 @@ TEST_CASE("ogden with exponents 2 and -2 is mooney-rivlin, also where stretches 
     }
 }
 
-TEST_CASE("shape parameters of the thesis' example, 12 and 45 MPa") {
+TEST_CASE("the thesis' example of 12 and 45 MPa has its shape parameters") {
     CHECK(shape_parameter_of_thesis(45.0 / 12) == near(7.08, {.relative = 1e-3}));
     CHECK(shape_parameter_small_strain(45.0 / 12) == near(5.125, {.relative = 1e-12}));
 }

@@ -18,7 +18,7 @@ Matrix3 stretched() {
 
 }  // namespace
 
-TEST_CASE("the stress of a mixture of one kind is the mean of both") {
+TEST_CASE("the stress of a mixture of two materials of one law is the weighted mean") {
     const std::pair<Law, Law> pairs[] = {{neo_hookean(1e6, 0.45), neo_hookean(5e6, 0.3)},
                                          {st_venant_kirchhoff(1e6, 0.45), st_venant_kirchhoff(5e6, 0.3)},
                                          {corotated(1e6, 0.4), corotated(5e6, 0.3)},
@@ -35,7 +35,7 @@ TEST_CASE("the stress of a mixture of one kind is the mean of both") {
     }
 }
 
-TEST_CASE("a mixture of two kinds is neo-Hookean with the mean moduli") {
+TEST_CASE("a mixture of two laws is neo-Hookean with the mean moduli") {
     const Law soft = neo_hookean(1e6, 0.45), hard = Ogden{1, {2e6}, {3}, 1e8};
     const Law mix = mixed(soft, hard, 0.25);
     REQUIRE(std::holds_alternative<NeoHookean>(mix));

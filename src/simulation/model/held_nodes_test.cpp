@@ -85,7 +85,7 @@ void check_uniaxial(const Description& d, Solver solver, double stretch) {
 
 }  // namespace
 
-TEST_CASE("an eighth of a block on three planes of symmetry stretches as the law says, with every solver") {
+TEST_CASE("an eighth of a block with three planes of symmetry stretches as the law says, with every solver") {
     constexpr double stretch = 1.4;
     for (const int order : {1, 2}) {
         for (const Solver solver : {Solver::newton, Solver::quasi_newton, Solver::anderson}) {
@@ -96,12 +96,12 @@ TEST_CASE("an eighth of a block on three planes of symmetry stretches as the law
     }
 }
 
-TEST_CASE("directions need not be axes: the same block turned in space gives the same force") {
+TEST_CASE("held directions need not be axes: the rotated block gives the same force") {
     const Eigen::Matrix3d R = Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
     check_uniaxial(turned(eighth(2, 1.3), R), Solver::newton, 1.3);
 }
 
-TEST_CASE("half of a bent beam with a plane of symmetry is half of the whole beam") {
+TEST_CASE("half a bent beam with a plane of symmetry equals half of the whole beam") {
     const auto beam = [](bool half) {
         Description d;
         const double width = half ? 0.5 * side : side;
@@ -131,7 +131,7 @@ TEST_CASE("half of a bent beam with a plane of symmetry is half of the whole bea
     CHECK(norm(half.steps.back().markers[0].position_m - tip) < 1e-6 * side);
 }
 
-TEST_CASE("a body that slides in a slot is held by friction-free walls alone, and moves where it is pushed") {
+TEST_CASE("a body in a frictionless slot slides along it until a spring balances the load") {
     // Held in y and z everywhere on one face, free along x but for a spring: the spring must balance the load.
     Description d = eighth(1, 1);
     d.supports = {{"slot", plane_nodes(d.mesh, 1, 0), {}}};

@@ -128,14 +128,14 @@ const std::array<double, 3> poisson_ratios = {0.3, 0.45, 0.49};
 
 }  // namespace
 
-TEST_CASE("two-material bar: neo-Hooke") {
+TEST_CASE("two-material bar, neo-Hookean: agrees with CalculiX") {
     for (const int order : {1, 2}) {
         for (const double nu : poisson_ratios)
             check_bar(order, material::neo_hookean(45e6, nu), material::neo_hookean(12e6, nu), 0.3);
     }
 }
 
-TEST_CASE("two-material bar: every other law that CalculiX knows") {
+TEST_CASE("two-material bar, every other law that CalculiX has: agrees with CalculiX") {
     const double K = material::bulk_modulus(4e6, 0.45);
     const material::MooneyRivlin mooney{1.2e6, 0.8e6, K};
     const material::Yeoh yeoh{2e6, -0.3e6, 0.5e6, K};
@@ -146,27 +146,27 @@ TEST_CASE("two-material bar: every other law that CalculiX knows") {
     }
 }
 
-TEST_CASE("bent beam") {
+TEST_CASE("bent beam: agrees with CalculiX") {
     for (const int order : {1, 2}) {
         for (const double nu : poisson_ratios) check_beam(order, nu);
     }
 }
 
-TEST_CASE("cable finger, linear tets") {
+TEST_CASE("cable finger, linear tets: agrees with CalculiX") {
     for (const double nu : poisson_ratios) check_finger(1, nu);
 }
 
-TEST_CASE("cable finger, quadratic tets") {
+TEST_CASE("cable finger, quadratic tets: agrees with CalculiX") {
     for (const double nu : poisson_ratios) check_finger(2, nu);
 }
 
-TEST_CASE("inflated chamber") {
+TEST_CASE("inflated chamber: agrees with CalculiX") {
     for (const int order : {1, 2}) {
         for (const double nu : poisson_ratios) check_chamber(order, nu);
     }
 }
 
-TEST_CASE("a cable through points inside tets, gravity, and a grip that turns") {
+TEST_CASE("a cable through points inside tets, gravity and a rotated grip: agree with CalculiX") {
     for (const int order : {1, 2}) {
         CAPTURE(order);
         Description d = comparison::bar(order, material::neo_hookean(5e6, 0.45), material::neo_hookean(2e6, 0.4), 0);
@@ -185,7 +185,7 @@ TEST_CASE("a cable through points inside tets, gravity, and a grip that turns") 
     }
 }
 
-TEST_CASE("decks name what CalculiX lacks, and what to set instead") {
+TEST_CASE("exporting names what CalculiX lacks, and what to set instead") {
     Description d =
         comparison::cable_finger(1, material::neo_hookean(5e6, 0.45), {CableTarget::Kind::length_ratio, 0.9});
     const auto refused = calculix::deck(d);

@@ -55,7 +55,7 @@ void check(const reference::NamedMesh& named, double nu, double ratio, double te
 
 }  // namespace
 
-TEST_CASE("cable finger, linear tets: tension and tip within 0.1 %") {
+TEST_CASE("cable finger, linear tets: tension and tip agree with CalculiX within 0.1 %") {
     const auto named = reference::load_tet(reference::data_folder() + "/fem/finger_p1_8563.tet", mm);
     int rows = 0;
     for (const auto& row : reference::load_csv(reference::data_folder() + "/fem/ccx_finger_cable.csv")) {
@@ -68,14 +68,14 @@ TEST_CASE("cable finger, linear tets: tension and tip within 0.1 %") {
     CHECK(rows == 5);
 }
 
-TEST_CASE("cable finger, linear tets: five digits of an independent solver with the same length constraint") {
+TEST_CASE("cable finger, linear tets: agrees to five digits with an independent solver") {
     const auto named = reference::load_tet(reference::data_folder() + "/fem/finger_p1_8563.tet", mm);
     check(named, 0.45, 0.95, 36.59042, {-8.51257, 0, 27.24588}, 2e-5, 1e-7);
     check(named, 0.45, 0.80, 132.22907, {-74.04073, 0, 59.79902}, 2e-5, 1e-7);
     check(named, 0.45, 0.70, 184.60587, {-106.59362, 0, 37.41395}, 2e-5, 1e-7);
 }
 
-TEST_CASE("cable finger: the quasi-Newton solver reaches the same answer") {
+TEST_CASE("cable finger: the quasi-Newton solver gives the same answer") {
     const auto named = reference::load_tet(reference::data_folder() + "/fem/finger_p1_8563.tet", mm);
     check(named, 0.45, 0.95, 36.59042, {-8.51257, 0, 27.24588}, 1e-3, 1e-5, Solver::quasi_newton);
 }

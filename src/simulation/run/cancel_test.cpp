@@ -33,7 +33,7 @@ Trajectory inflated(Progress& progress) {
 
 }  // namespace
 
-TEST_CASE("whenever it is cancelled, it keeps the steps before, as they are in a whole run") {
+TEST_CASE("a program cancelled at any time keeps its finished steps, equal to those of a whole run") {
     Asked whole(1 << 30);
     const Trajectory all = inflated(whole);
     REQUIRE_MESSAGE(all.converged, all.message);

@@ -80,7 +80,7 @@ double largest(const std::vector<double>& values) {
 
 }  // namespace
 
-TEST_CASE("the wall of a chamber: volume, gradient and second gradient") {
+TEST_CASE("the wall of a chamber: volume, gradient and Hessian agree with finite differences") {
     for (const int order : {1, 2}) {
         const Description d = hollow_block(order);
         std::vector<double> rest;
@@ -102,7 +102,7 @@ TEST_CASE("the wall of a chamber: volume, gradient and second gradient") {
     }
 }
 
-TEST_CASE("an open wall: symmetric and skew part together are the derivative of the follower force") {
+TEST_CASE("an open wall: symmetric and skew parts sum to the derivative of the follower force") {
     const Description d = hollow_block(2);
     Wall wall = d.chambers[0].wall;
     wall.faces.resize(wall.faces.size() / 3);
@@ -118,7 +118,7 @@ TEST_CASE("an open wall: symmetric and skew part together are the derivative of 
     CHECK(largest(skew) > 1e-2 * largest(expected));
 }
 
-TEST_CASE("volume, pressure and gas drive the same chamber to the same place") {
+TEST_CASE("driving a chamber by volume, pressure or gas reaches the same state") {
     for (const int order : {1, 2}) {
         Description d = hollow_block(order);
         d.chambers[0].target = {ChamberTarget::Kind::volume_ratio, 1.6};
@@ -157,7 +157,7 @@ TEST_CASE("every solver inflates and deflates a chamber") {
     }
 }
 
-TEST_CASE("a sealed chamber stiffens the block that holds it") {
+TEST_CASE("a sealed chamber stiffens the block around it") {
     // Push at the far end: the chamber shrinks, its gas pushes back.
     Description d = hollow_block(2);
     d.supports.push_back(
@@ -175,7 +175,7 @@ TEST_CASE("a sealed chamber stiffens the block that holds it") {
     CHECK(std::fabs(sealed.steps.back().supports[1].force_N.x) > std::fabs(open.steps.back().supports[1].force_N.x));
 }
 
-TEST_CASE("a pressure on the outer surface follows it, and its sum is what the support carries") {
+TEST_CASE("a pressure on the outer surface follows it, and its sum is the support's force") {
     Description d = hollow_block(2);
     d.chambers.clear();
     std::vector<mesh::Face> faces;
@@ -205,7 +205,7 @@ TEST_CASE("a pressure on the outer surface follows it, and its sum is what the s
     CHECK(strong.steps.back().supports[0].force_N.x > 0.05 * strong.steps.back().supports[0].force_N.z);
 }
 
-TEST_CASE("suction on an arch, a patch with a free rim, is followed as far as it is asked for") {
+TEST_CASE("suction on a patch with a free rim of an arch converges up to its target") {
     // The symmetric part of its tangent is indefinite. With the projected tangent instead, Newton's method needed ten
     // to sixty iterations a step of the program, and stopped before half of this suction was reached.
     constexpr double span = 0.1, rise = 0.02, thick = 0.003;
@@ -241,7 +241,7 @@ TEST_CASE("suction on an arch, a patch with a free rim, is followed as far as it
     CHECK(result.steps.back().markers[0].position_m.z == near(0.1040, {.relative = 0.01}));
 }
 
-TEST_CASE("a chamber that is sucked empty stops the run, which says so and keeps the last good step") {
+TEST_CASE("a chamber that collapses stops the run with a message, and the last good step is kept") {
     Description d = hollow_block(1);
     d.chambers[0].target = {ChamberTarget::Kind::pressure_Pa, -1e6, {}};
     const Trajectory result = solve(d, {.steps = 10});
@@ -250,7 +250,7 @@ TEST_CASE("a chamber that is sucked empty stops the run, which says so and keeps
     for (const Step& step : result.steps) CHECK(step.chambers[0].volume_m3 > 0);
 }
 
-TEST_CASE("an open wall is no chamber") {
+TEST_CASE("a chamber with an open wall is refused") {
     Description d = hollow_block(1);
     d.chambers[0].wall.faces.pop_back();
     const auto model = Model::create(std::move(d));

@@ -115,7 +115,7 @@ std::vector<Problem> problems_with_a_memory() {
 
 }  // namespace
 
-TEST_CASE("velocities, contact, friction and the slack of cables are kept") {
+TEST_CASE("a checkpoint keeps velocities, contact, friction and slack of cables") {
     for (const Problem& p : problems_with_a_memory()) {
         const Trajectory never_stopped = run_silently(p.model, p.program);
         REQUIRE_MESSAGE(never_stopped.converged, never_stopped.message);
@@ -128,7 +128,7 @@ TEST_CASE("velocities, contact, friction and the slack of cables are kept") {
     }
 }
 
-TEST_CASE("a random program that is stopped after any step and gone on with gives the same bits") {
+TEST_CASE("a random program resumed after any step gives the same bits") {
     int compared = 0;
     for (unsigned seed = 1; seed <= 5; ++seed) {
         sim::test::RandomProgram made = sim::test::random_program(seed);
@@ -147,7 +147,7 @@ TEST_CASE("a random program that is stopped after any step and gone on with give
     CHECK(compared >= 2);
 }
 
-TEST_CASE("with every solver, of linear and quadratic elements, and after every step") {
+TEST_CASE("resuming gives the same bits with every solver, both orders and after every step") {
     for (const int order : {1, 2}) {
         for (const Solver solver : {Solver::newton, Solver::quasi_newton, Solver::anderson}) {
             CAPTURE(order);
@@ -163,7 +163,7 @@ TEST_CASE("with every solver, of linear and quadratic elements, and after every 
     }
 }
 
-TEST_CASE("a step from a copy of a state gives the same bits, whatever was solved in between") {
+TEST_CASE("a step from a copied state gives the same bits, whatever was solved in between") {
     const Problem p = blown_up(1);
     Progress silent;
     Stepper stepper(p.model, stepper_options(p.program));
@@ -182,7 +182,7 @@ TEST_CASE("a step from a copy of a state gives the same bits, whatever was solve
     CHECK(state_bytes(p.model, again) == state_bytes(p.model, robot));
 }
 
-TEST_CASE("steps come to the sink as they are made, the rest state first") {
+TEST_CASE("the callback gets every step as it is made, the rest state first") {
     const Problem p = blown_up(1);
     std::vector<int> seen;
     RunOptions options;
@@ -192,7 +192,7 @@ TEST_CASE("steps come to the sink as they are made, the rest state first") {
     CHECK(result.steps.size() == seen.size());
 }
 
-TEST_CASE("what is no checkpoint of this run is refused in one line") {
+TEST_CASE("an invalid checkpoint, or one of another run, is refused in one line") {
     const Problem p = blown_up(1);
     const pliant::test::Folder folder;
     const auto path = folder / "run";
@@ -224,7 +224,7 @@ TEST_CASE("what is no checkpoint of this run is refused in one line") {
     CHECK_FALSE(Checkpoint::create(folder.path(), "test", 1));
 }
 
-TEST_CASE("a checkpoint with any number changed is refused, or gone on with, and never crashes") {
+TEST_CASE("a checkpoint with any number changed is refused or used, without a crash") {
     const Problem p = blown_up(1);
     const pliant::test::Folder folder;
     const auto path = folder / "run";

@@ -44,7 +44,7 @@ double frequency_Hz() {
 
 }  // namespace
 
-TEST_CASE("the mass matrix moves as the whole body does") {
+TEST_CASE("the mass matrix gives a moving body its momentum and kinetic energy") {
     for (const int order : {1, 2}) {
         const Description d = beam(order, 0);
         const auto elements = Elements::create(d);
@@ -65,7 +65,7 @@ TEST_CASE("the mass matrix moves as the whole body does") {
     }
 }
 
-TEST_CASE("a beam let go under gravity swings at its natural frequency and gains no energy") {
+TEST_CASE("a beam released under gravity swings at its natural frequency and gains no energy") {
     const double period = 1 / frequency_Hz();
     const Description d = beam(2, 0.5);  // little gravity: small motion
     const int steps = 120;
@@ -126,7 +126,7 @@ TEST_CASE("a free swing at large amplitude gains no energy, and damping brings i
     }
 }
 
-TEST_CASE("stiffness damping acts on deformation alone: a body that its support carries at constant speed feels none") {
+TEST_CASE("stiffness damping acts on deformation only, not on a body that its support moves at constant speed") {
     constexpr double way = 0.5, duration = 1;
     Description d = beam(2, 0);
     d.supports[0].move_m = {way, 0, way};

@@ -52,7 +52,7 @@ bool says(const std::optional<std::string>& text, std::string_view part) {
 
 }  // namespace
 
-TEST_CASE("a face holds a robot, and so do three nodes that are not on a line") {
+TEST_CASE("a held face leaves no free motion, nor do three held nodes that are not on a line") {
     CHECK_FALSE(free_motion(bar([](Vec3 p) { return p.x < 1e-9; })));
     CHECK_FALSE(free_motion(bar([](Vec3 p) { return p.x < 1e-9 && p.y + p.z < 0.0101; }, 1)));
     // Two lines that are apart, in two supports.
@@ -62,7 +62,7 @@ TEST_CASE("a face holds a robot, and so do three nodes that are not on a line") 
     CHECK_FALSE(free_motion(d));
 }
 
-TEST_CASE("a support of one node or of a line leaves a turn, and it is said which") {
+TEST_CASE("a support of one node or one line leaves a free rotation, which is named") {
     const auto point = free_motion(bar([](Vec3 p) { return norm(p - Vec3{0, 0.005, 0.01}) < 1e-9; }));
     REQUIRE(point);
     CHECK_MESSAGE(says(point, "body \"bar\" can turn freely about the point (0, 5, 10) mm"), *point);
@@ -72,7 +72,7 @@ TEST_CASE("a support of one node or of a line leaves a turn, and it is said whic
     CHECK_MESSAGE(says(line, ", 0) mm and (0, "), *line);
 }
 
-TEST_CASE("bodies that share an edge or a corner are a hinge, those that share a face are not") {
+TEST_CASE("bodies that share an edge or a corner form a hinge, those that share a face do not") {
     CHECK_FALSE(free_motion(two_blocks([](Vec3) { return true; })));
     const auto edge = free_motion(two_blocks([](Vec3 p) { return p.z < 1e-9; }));
     REQUIRE(edge);
@@ -84,17 +84,17 @@ TEST_CASE("bodies that share an edge or a corner are a hinge, those that share a
     CHECK_FALSE(free_motion(two_blocks([](Vec3 p) { return p.z < 1e-9 || (p.z > 0.01 - 1e-9 && p.y < 1e-9); })));
 }
 
-TEST_CASE("a rigid plate over both bodies of a hinge holds it") {
+TEST_CASE("a rigid plate over both bodies locks their hinge") {
     Description d = two_blocks([](Vec3 p) { return p.z < 1e-9; });
     d.plates = {{"splint", reference::nodes_where(d.mesh, [](Vec3 p) { return p.y < 1e-9 && p.x > 0.004; })}};
     CHECK_FALSE(free_motion(d));
 }
 
-TEST_CASE("a body that is joined to nothing is not called a hinge") {
+TEST_CASE("a body joined to nothing is not called a hinge") {
     CHECK_FALSE(free_motion(two_blocks([](Vec3) { return false; })));
 }
 
-TEST_CASE("rollers hold the directions that they name, and springs what would change their length") {
+TEST_CASE("rollers hold their directions, and springs resist changes of their length") {
     const auto plane = [](const Description& d, std::size_t axis) {
         Support support{"plane", reference::nodes_where(d.mesh, [=](Vec3 p) { return p[axis] < 1e-9; }), {}};
         Vec3 direction;

@@ -37,7 +37,7 @@ Description pressed_cube(double friction, double push_N) {
 
 }  // namespace
 
-TEST_CASE("what friction holds does not creep, in however many steps") {
+TEST_CASE("a cube held by friction does not creep, in any number of steps") {
     const Trajectory t = solve(pressed_cube(0.5, 0.3), {.steps = 60, .tolerance = 1e-7});
     REQUIRE_MESSAGE(t.converged, t.message);
     // Held by the rubber alone the top would go far; held by friction it goes a part of the slip, and then stays.
@@ -51,7 +51,7 @@ TEST_CASE("what friction holds does not creep, in however many steps") {
     CHECK(drift < 1e-3 * 1e-5);  // of the slip
 }
 
-TEST_CASE("the anchor is as far back as the slip that counts as sticking, and no further") {
+TEST_CASE("when the load reverses, friction reverses within twice the slip that counts as sticking") {
     // Pushed hard enough to slide, then let go: friction turns round within twice the slip.
     Description d = pressed_cube(0.2, 1.2);
     d.loads[0].share = Curve{{0, 0.1, 0.5, 1}, {0, 0, 1, 0}};

@@ -180,7 +180,7 @@ std::vector<PrincipalForm> nearly_incompressible() {
 
 }  // namespace
 
-TEST_CASE("the integral formula is the closed one for neo-Hooke") {
+TEST_CASE("thick sphere: the integral formula equals the closed form for neo-Hookean") {
     // p = mu/2 (1/b^4 + 4/b - 1/a^4 - 4/a) with the hoop stretches a and b.
     const auto form = nearly_incompressible().front();
     const double a = 1.5;
@@ -189,7 +189,7 @@ TEST_CASE("the integral formula is the closed one for neo-Hooke") {
     CHECK(sphere_pressure(form, a) == near(4e5 / 2 * (half(b) - half(a)), {.relative = 1e-9}));
 }
 
-TEST_CASE("thick sphere: the pressure of a given cavity converges to the formula") {
+TEST_CASE("thick sphere: the pressure at a given cavity converges to the formula") {
     const double stretch = 1.4;
     for (const PrincipalForm& form : nearly_incompressible()) {
         const double expected = sphere_pressure(form, stretch);
@@ -201,7 +201,7 @@ TEST_CASE("thick sphere: the pressure of a given cavity converges to the formula
     }
 }
 
-TEST_CASE("thick tube: the radius under the formula's pressure is the formula's") {
+TEST_CASE("thick tube: under the formula's pressure the radius converges to the formula's") {
     const double stretch = 1.4;
     for (const PrincipalForm& form : nearly_incompressible()) {
         const double pressure = tube_pressure(form, stretch);

@@ -60,7 +60,7 @@ double end(int steps, const Dynamics& dynamics) {
 
 }  // namespace
 
-TEST_CASE("the error of both formulas falls with the square of the step") {
+TEST_CASE("the error of both integrators is quadratic in the time step") {
     for (const Integrator integrator : {Integrator::bdf2, Integrator::energy_conserving}) {
         CAPTURE(static_cast<int>(integrator));
         const Dynamics dynamics{{0, 2e-3}, integrator, 0};
@@ -70,7 +70,7 @@ TEST_CASE("the error of both formulas falls with the square of the step") {
     }
 }
 
-TEST_CASE("over fifty periods a beam keeps its energy and its frequency") {
+TEST_CASE("energy-conserving: over fifty periods a beam keeps its energy and its frequency") {
     const char* wanted = std::getenv("PLIANT_SWINGS");
     const int periods = wanted != nullptr ? std::atoi(wanted) : 50;
     const double period = 1 / frequency_Hz();
@@ -105,7 +105,7 @@ TEST_CASE("over fifty periods a beam keeps its energy and its frequency") {
     CHECK(energy(damped.steps.back()) < -0.2 * largest_kinetic);
 }
 
-TEST_CASE("steps by their error come as near as it says, at the same instants, and take more where it is small") {
+TEST_CASE("error-controlled steps keep the tolerance, reach the given instants, and are more when it is small") {
     const Description d = beam(1, 6, 30, true);
     const Trajectory fine = solve(d, program(800, 0.2, Dynamics{{}, Integrator::energy_conserving, 0}));
     int before = 0;
@@ -130,7 +130,7 @@ TEST_CASE("steps by their error come as near as it says, at the same instants, a
     }
 }
 
-TEST_CASE("a step that is off by too much is refused and taken again, and says so") {
+TEST_CASE("a step with too large an error is repeated smaller, and the run counts it") {
     // Nothing happens until a force comes at once: the step that had grown is too long for it.
     Description d = beam(1, 6, 0, true);
     const auto end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > length - 1e-9; });
@@ -151,7 +151,7 @@ TEST_CASE("a step that is off by too much is refused and taken again, and says s
     CHECK(stuck.message.find("more than time_tolerance") != std::string::npos);
 }
 
-TEST_CASE("a support that moves does not make what it holds ring") {
+TEST_CASE("a moving support does not excite vibration in the body it holds") {
     Description d = beam(1, 6, 0, true);
     d.supports[0].move_m = {0, 0.02, 0};
     d.supports[0].share = Curve{{0, 0.2}, {0, 1}};

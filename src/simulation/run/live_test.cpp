@@ -62,7 +62,7 @@ Vec3 tip(const Live& live) {
 
 }  // namespace
 
-TEST_CASE("a cable pulled by hand brings the tip where the program brings it, and back") {
+TEST_CASE("a cable pulled interactively moves the tip as the program does, and back") {
     const Program program{.steps = 10, .tolerance = 1e-6};
     const Description d = bar({CableTarget::Kind::length_ratio, 0.85});
     const Trajectory expected = testing::solve(d, program);
@@ -83,7 +83,7 @@ TEST_CASE("a cable pulled by hand brings the tip where the program brings it, an
     CHECK(norm(tip(live) - expected.steps.front().markers.front().position_m) < 1e-5 * side);
 }
 
-TEST_CASE("the time of the program moves what is not steered") {
+TEST_CASE("inputs that are not driven follow the program's time") {
     Description d = bar({CableTarget::Kind::length_ratio, 1});
     d.gravity_m_s2 = {0, 0, -50};
     const Program program{.steps = 5, .tolerance = 1e-6};
@@ -95,7 +95,7 @@ TEST_CASE("the time of the program moves what is not steered") {
     CHECK(norm(tip(live) - expected.steps.back().markers.front().position_m) < 1e-5 * side);
 }
 
-TEST_CASE("a chamber blown up by hand has the pressure of the program") {
+TEST_CASE("a chamber inflated interactively has the pressure of the program") {
     Description d = hollow_block(1);
     d.chambers[0].target = {ChamberTarget::Kind::volume_ratio, 1.3};
     const Program program{.steps = 6, .tolerance = 1e-6};
@@ -107,7 +107,7 @@ TEST_CASE("a chamber blown up by hand has the pressure of the program") {
           near(expected.steps.back().chambers[0].pressure_Pa, {.relative = 1e-5}));
 }
 
-TEST_CASE("a spring pulls the body as a dead load of its force does, and lets go of it") {
+TEST_CASE("interactive control: a pull on the body acts as a dead load of its force, and can be released") {
     Description d = bar({CableTarget::Kind::tension_N, 0});
     const Program program{.steps = 5, .tolerance = 1e-7};
     const Model model = made(d);

@@ -75,7 +75,7 @@ void press(Description& d, contact::Obstacle obstacle, double distance_m, double
 
 }  // namespace
 
-TEST_CASE("pressed by a plane or by a block, a body resists as if its side were moved to where they are") {
+TEST_CASE("a body pressed by a plane or a block resists as if its face were moved there") {
     // 10 mm high, without sideways strain, pressed down by 0.3 mm; the distance of contact is a third of that.
     const auto bare = [] {
         Description d = block(5 * mm, 10 * mm, 2, 4, 0.0);
@@ -101,7 +101,7 @@ TEST_CASE("pressed by a plane or by a block, a body resists as if its side were 
     }
 }
 
-TEST_CASE("a rigid ball on an elastic block presses as Hertz says, whatever the reach of contact") {
+TEST_CASE("a rigid ball on an elastic block presses as Hertz says, whatever the contact reach") {
     // Hertz for a half-space; for a layer of finite depth h on which it is bonded to the ground, the first terms of
     // Dimitriadis et al. 2002 in chi = sqrt(R delta)/h.
     constexpr double radius = 10 * mm, pressed = 0.4 * mm, gap = 0.3 * mm, nu = 0.3, depth = 30 * mm;
@@ -122,7 +122,7 @@ TEST_CASE("a rigid ball on an elastic block presses as Hertz says, whatever the 
     CHECK(forces[0] == near(forces[1], {.relative = 0.03}));
 }
 
-TEST_CASE("a reach far smaller than a step of the obstacle is no obstacle to the step") {
+TEST_CASE("a contact reach much smaller than an obstacle's step does not slow the step") {
     Description d = block(5 * mm, 10 * mm, 3, 4, 0.3);
     press(d, {"ball", ball({0, 0, 6 * mm + 0.2 * mm}, 6 * mm, 4)}, 0.002 * mm, 1.2 * mm);
     const Trajectory result = solve(d, {.steps = 3});

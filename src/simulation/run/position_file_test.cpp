@@ -11,7 +11,7 @@
 using namespace pliant;
 using namespace pliant::sim;
 
-TEST_CASE("what is kept is there as long as something refers to it") {
+TEST_CASE("stored positions stay readable as long as something refers to them") {
     NodePositions last;
     {
         auto file = PositionFile::make(1000, 500);
@@ -27,12 +27,12 @@ TEST_CASE("what is kept is there as long as something refers to it") {
     CHECK(last.size() == 500);
 }
 
-TEST_CASE("where no file can be made there is none") {
+TEST_CASE("if no file can be made there is no position file") {
     const test::Variable nowhere("TMPDIR", "/nowhere");
     CHECK(PositionFile::make(10, 10) == nullptr);
 }
 
-TEST_CASE("a run that keeps its positions on disk gives the same bits") {
+TEST_CASE("a run that stores its positions on disk gives the same bits") {
     Description d = testing::hollow_block(1);
     d.chambers[0].target = {ChamberTarget::Kind::volume_ratio, 1.2, {}};
     const auto model = Model::create(std::move(d));

@@ -54,7 +54,7 @@ Cable flexor(const mesh::TetMesh& mesh, CableTarget target) {
 
 }  // namespace
 
-TEST_CASE("uniaxial stretch of one linear element layer follows the closed form") {
+TEST_CASE("uniaxial stretch of one layer of linear elements agrees with the closed form") {
     // A cube that may contract sideways: P11 of neo-Hooke with the lateral stretch that makes P22 zero.
     const double E = 1e6;
     const double nu = 0.3;
@@ -91,7 +91,7 @@ TEST_CASE("uniaxial stretch of one linear element layer follows the closed form"
     }
 }
 
-TEST_CASE("supports carry loads and gravity exactly") {
+TEST_CASE("support forces balance loads and gravity exactly") {
     Description d = bar(2);
     std::vector<mesh::Face> faces;
     for (const mesh::Face& f : mesh::boundary_faces(d.mesh)) {
@@ -110,7 +110,7 @@ TEST_CASE("supports carry loads and gravity exactly") {
     CHECK(force.z == near(-0.03 + weight, {.relative = 1e-6}));
 }
 
-TEST_CASE("supports that all turn about one axis carry the bar round without straining it") {
+TEST_CASE("supports that all rotate about one axis rotate the bar without strain") {
     // 150 degrees about a slanted axis off the bar, then a shift: the answer is the rigid motion itself.
     const Turn turn{5 * M_PI / 6, {1, 1, 0.5}, {0.01, -0.02, 0.005}};
     const Vec3 move{0.002, 0, -0.001};
@@ -139,7 +139,7 @@ TEST_CASE("supports that all turn about one axis carry the bar round without str
     }
 }
 
-TEST_CASE("a bar twisted by a quarter turn has turned by half of that in the middle") {
+TEST_CASE("a bar twisted by a quarter turn is twisted by half of that in the middle") {
     Description d = bar(2);
     const auto far_end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; });
     d.supports.push_back({"hand", far_end, {}, ramp(0, 1), {M_PI / 2, {1, 0, 0}, {0, side / 2, side / 2}}});
@@ -163,7 +163,7 @@ TEST_CASE("a rotation about no axis is refused") {
     CHECK(model.error().message == "fixed \"clamp\": the axis of its rotation must not be zero");
 }
 
-TEST_CASE("every solver finds the same bent bar under a cable, and no step turns a tet inside out") {
+TEST_CASE("every solver gives the same bent bar under a cable, and no step inverts a tet") {
     std::vector<double> tensions;
     for (const Solver solver : {Solver::newton, Solver::quasi_newton, Solver::anderson, Solver::local_global}) {
         for (const int order : {1, 2}) {
@@ -209,7 +209,7 @@ TEST_CASE("the thesis' shape blend bends under a cable and under a load, with ea
     CHECK(tensions[5] == near(tensions[1], {.relative = 1e-2}));
 }
 
-TEST_CASE("a given tension and the length it leads to belong together") {
+TEST_CASE("a given tension and its cable length give each other") {
     Description by_length = bar(2);
     by_length.cables = {flexor(by_length.mesh, {CableTarget::Kind::length_ratio, 0.92})};
     const Step length_step = solve(by_length, {.steps = 4, .tolerance = 1e-8}).steps.back();
@@ -223,7 +223,7 @@ TEST_CASE("a given tension and the length it leads to belong together") {
     CHECK(shortening_step.cables[0].tension_N == near(length_step.cables[0].tension_N, {.relative = 1e-6}));
 }
 
-TEST_CASE("a cable only pulls: pushed towards it, the bar leaves it slack") {
+TEST_CASE("a cable only pulls: a bar pushed towards it leaves it slack") {
     Description d = bar(1);
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.99})};
     d.supports.push_back(
@@ -234,7 +234,7 @@ TEST_CASE("a cable only pulls: pushed towards it, the bar leaves it slack") {
     CHECK(result.steps.back().cables[0].length_ratio < 0.95);
 }
 
-TEST_CASE("two cables against each other: only those that are needed pull") {
+TEST_CASE("of two cables along one path only the shorter one pulls") {
     Description d = bar(1);
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9}),
                 flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.95})};
@@ -267,7 +267,7 @@ TEST_CASE("rigid targets: the thesis' iteration never raises the energy") {
     }
 }
 
-TEST_CASE("a program that cannot finish says where and keeps what converged") {
+TEST_CASE("a program that cannot finish names the step and keeps the converged ones") {
     // The layer next to the clamp is half a `side` thick; moved by a whole one it would turn inside out half-way.
     for (const double free_from : {3 * side, 5 * side}) {  // with free nodes, and with none at all
         Description d = bar(1);
@@ -281,7 +281,7 @@ TEST_CASE("a program that cannot finish says where and keeps what converged") {
     }
 }
 
-TEST_CASE("a step that does not converge in its iterations is halved") {
+TEST_CASE("a step that needs more than its iterations is halved") {
     Description d = bar(1);
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.7})};
     const Trajectory result = solve(d, {.steps = 1, .tolerance = 1e-6, .solver = Solver::newton, .iteration_limit = 4});
@@ -303,7 +303,7 @@ TEST_CASE("the same input gives the same bits on any number of threads") {
     }
 }
 
-TEST_CASE("a cable's gradient and second gradient agree with differences") {
+TEST_CASE("a cable's gradient and Hessian agree with finite differences") {
     Description d = bar(1);
     const Cable cable = flexor(d.mesh, {});
     const auto model = Model::create(std::move(d));
@@ -323,7 +323,7 @@ TEST_CASE("a cable's gradient and second gradient agree with differences") {
           near((path.length(span_of(plus)) - path.length(span_of(minus))) / (2 * h), {.relative = 1e-7}));
 }
 
-TEST_CASE("wrong models are refused with a reason") {
+TEST_CASE("invalid models are refused with a reason") {
     const auto message = [](Description d) {
         const auto model = Model::create(std::move(d));
         return model ? std::string() : model.error().message;
@@ -342,7 +342,7 @@ TEST_CASE("wrong models are refused with a reason") {
     CHECK(message(missing).find("99999") != std::string::npos);
 }
 
-TEST_CASE("fields of a uniform stretch") {
+TEST_CASE("fields of a uniform stretch: J and stretch are exact, stress and energy above zero") {
     Description d = bar(2);
     auto model = Model::create(std::move(d));
     REQUIRE(model);
@@ -357,7 +357,7 @@ TEST_CASE("fields of a uniform stretch") {
     }
 }
 
-TEST_CASE("the tension of a cable with friction drops by exp(-mu theta), as round a bollard") {
+TEST_CASE("the tension of a cable with friction falls by exp(-mu theta), as round a bollard") {
     // A quarter of a circle in 90 chords that turn by 1 degree each, between two straight ends.
     Cable cable{"rope", {}, {}};
     std::vector<double> x;
@@ -377,7 +377,7 @@ TEST_CASE("the tension of a cable with friction drops by exp(-mu theta), as roun
     CHECK(path.tension_shares(x, -0.3, true).back() == near(std::exp(0.3 * turned), {.relative = 1e-9}));
 }
 
-TEST_CASE("friction: the same length takes more tension, and letting go takes less") {
+TEST_CASE("with friction the same length needs more tension when pulling, and less when releasing") {
     const auto tensions = [](double friction) {
         Description d = bar(2);
         CableTarget target{CableTarget::Kind::length_ratio, 0.85};
@@ -396,7 +396,7 @@ TEST_CASE("friction: the same length takes more tension, and letting go takes le
     CHECK(let_go < 0.97 * let_go_free);
 }
 
-TEST_CASE("what rounding pulls at a body without load is balance, a load of a nanonewton is not") {
+TEST_CASE("rounding forces on an unloaded body count as balance, a load of a nanonewton does not") {
     for (const int order : {1, 2}) {
         Description d = bar(order);
         const auto tip = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; });
@@ -412,7 +412,7 @@ TEST_CASE("what rounding pulls at a body without load is balance, a load of a na
     }
 }
 
-TEST_CASE("target shapes that hold nothing are given up after as many iterations as one attempt may take") {
+TEST_CASE("target shapes without stiffness stop after one attempt's iterations") {
     Description d = bar(1, material::ShapeBlend{1e6, 1e-9});
     const auto end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; });
     d.supports.push_back({"end", end, {0, 0, 0}});

@@ -78,7 +78,7 @@ double first_unstable(const Trajectory& result, double largest_share) {
 
 }  // namespace
 
-TEST_CASE("a straight column is called unstable from Euler's load on") {
+TEST_CASE("a straight column is reported as unstable from Euler's load on") {
     // The load shortens it a little, which the formula leaves out: P/EA = 0.5 % at the critical load, and the clamp
     // hinders the sides; steps are 2.5 % of the load.
     Program program;
@@ -91,7 +91,7 @@ TEST_CASE("a straight column is called unstable from Euler's load on") {
     CHECK_MESSAGE(share < 1.06, said(result));
 }
 
-TEST_CASE("below Euler's load a column is not called unstable") {
+TEST_CASE("below Euler's load a column is not reported as unstable") {
     Program program;
     program.steps = 8;
     const Trajectory result = testing::solve(column(0.95 * critical_load()), program);
@@ -99,7 +99,7 @@ TEST_CASE("below Euler's load a column is not called unstable") {
     CHECK_MESSAGE(result.warnings.empty(), said(result));
 }
 
-TEST_CASE("an imperfection takes the column to the side, as far as the elastica") {
+TEST_CASE("with an imperfection the column buckles sideways as far as the elastica") {
     // An inextensible cantilever whose end has turned by 40 degrees carries 1.063 times Euler's load with its tip
     // 0.422 of its length off the axis, and by 60 degrees 1.152 times with 0.593 (Timoshenko and Gere 1961, table 2-4).
     Program program;
@@ -114,7 +114,7 @@ TEST_CASE("an imperfection takes the column to the side, as far as the elastica"
     CHECK_MESSAGE(aside == near(0.593, {.relative = 0.05}), aside);
 }
 
-TEST_CASE("a column held by a cable's length is judged on what the cable leaves") {
+TEST_CASE("a column shortened by a guided cable along its axis is not reported as unstable") {
     // Pulled to a fixed length by a cable along its axis it is under a load that is not given but follows; sideways the
     // cable keeps the line to its end, so that it does not buckle as under a dead load: a guide in the middle of every
     // tenth of it makes it stable at any length.
@@ -132,7 +132,7 @@ TEST_CASE("a column held by a cable's length is judged on what the cable leaves"
     CHECK_MESSAGE(result.warnings.empty(), said(result));
 }
 
-TEST_CASE("an arch that snaps through is said to jump, and one that is driven by a motion is not") {
+TEST_CASE("an arch that snaps through under a load is reported; one driven by a displacement is not") {
     // Two bars that lean against each other, as a shallow roof (von Mises' truss), with soft hinges: under a load it
     // snaps, moved by the top it goes through smoothly.
     Description d;

@@ -45,7 +45,7 @@ std::size_t mentions(const std::vector<std::string>& warnings, const std::string
 
 }  // namespace
 
-TEST_CASE("without contact the first step at which surfaces have crossed is named, with the place") {
+TEST_CASE("without contact the first step with crossing surfaces is named, with the place") {
     // Ten steps of 0.35 mm. The base bends, so that the lower prong's end is at 1.82 mm where the upper one's is at
     // 1.9 after six of them, and at 1.77 where it is at 1.55 after seven.
     for (const int order : {1, 2}) {
@@ -68,7 +68,7 @@ TEST_CASE("without contact the first step at which surfaces have crossed is name
     }
 }
 
-TEST_CASE("with contact nothing crosses, the lower prong gives way, and no warning is given") {
+TEST_CASE("with contact nothing crosses, the lower prong bends, and there is no warning") {
     Description d = fork(3.5 * mm);
     add_contact(d);
     const Trajectory result = solve(d, {.steps = 10});
@@ -81,7 +81,7 @@ TEST_CASE("with contact nothing crosses, the lower prong gives way, and no warni
     CHECK(-result.steps.back().supports[1].force_N.z > -1.03 * free.steps.back().supports[1].force_N.z);
 }
 
-TEST_CASE("contact changes no bit of a motion in which nothing touches") {
+TEST_CASE("contact does not change a bit of a motion in which nothing touches") {
     Description with = fork(1.5 * mm, 2);
     add_contact(with);
     const Trajectory plain = solve(fork(1.5 * mm, 2), {.steps = 4}), touching = solve(with, {.steps = 4});
@@ -94,7 +94,7 @@ TEST_CASE("contact changes no bit of a motion in which nothing touches") {
     }
 }
 
-TEST_CASE("contact that waits changes no bit before the robot meets itself, and holds it apart from then on") {
+TEST_CASE("contact on demand changes no bit before the robot meets itself, and holds it apart afterwards") {
     Description waits = fork(3.5 * mm), always = fork(3.5 * mm);
     add_contact(waits);
     add_contact(always);
@@ -112,7 +112,7 @@ TEST_CASE("contact that waits changes no bit before the robot meets itself, and 
     CHECK(push(found) / push(touching) == near(1, {.relative = 1e-6}));
 }
 
-TEST_CASE("contact that waits acts on a robot that is steered by hand, and not any more after it was put to rest") {
+TEST_CASE("contact on demand acts in interactive control, and ends when the robot is put to rest") {
     Description d = fork(3.5 * mm);
     add_contact(d);
     d.contact->self_when_met = true;
@@ -132,7 +132,7 @@ TEST_CASE("contact that waits acts on a robot that is steered by hand, and not a
     CHECK_FALSE(live.describe().met);
 }
 
-TEST_CASE("bodies that cross at rest have no contact that waits for them to meet") {
+TEST_CASE("bodies that cross at rest get no contact on demand") {
     Description d = fork(1 * mm);
     for (Vec3& p : d.mesh.points)
         if (p.x > 13 * mm && p.z < 2.1 * mm) p += {0, 0.2 * mm, p.x - 13 * mm};
@@ -144,7 +144,7 @@ TEST_CASE("bodies that cross at rest have no contact that waits for them to meet
     CHECK_FALSE(result.steps.back().met);
 }
 
-TEST_CASE("steered by hand, a state in which surfaces have crossed says so, and one further back does not") {
+TEST_CASE("interactive control warns of a state with crossing surfaces, and not after going back") {
     const auto model = Model::create(fork(3.5 * mm));
     REQUIRE(model);
     Live live(*model, {.steps = 10});
@@ -159,7 +159,7 @@ TEST_CASE("steered by hand, a state in which surfaces have crossed says so, and 
     CHECK(warnings_of(live.describe()).empty());
 }
 
-TEST_CASE("bodies that overlap at rest: it is told") {
+TEST_CASE("bodies that overlap at rest give a warning") {
     Description d = fork(1 * mm);
     // The lower prong's end stands through the upper prong from the beginning.
     for (Vec3& p : d.mesh.points)
@@ -172,7 +172,7 @@ TEST_CASE("bodies that overlap at rest: it is told") {
     CHECK(asked->contact(false) != nullptr);
 }
 
-TEST_CASE("steps on looser terms are counted, and the worst of them is named") {
+TEST_CASE("steps accepted above the tolerance are counted, and the worst one is named") {
     Trajectory t;
     t.steps.resize(5);
     for (int k = 0; k < 5; ++k) t.steps[static_cast<std::size_t>(k)].index = k;

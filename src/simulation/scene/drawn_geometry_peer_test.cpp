@@ -58,14 +58,14 @@ constexpr double same = 1e-5, same_chamber = 1e-3;
 
 }  // namespace
 
-TEST_CASE("a closed cavity that a point names is inflated alike") {
+TEST_CASE("a closed cavity named by a point inflates the same as in CalculiX") {
     check_same(head +
                    body("{ difference = [{ box = [[0, 0, 0], [40, 12, 12]] }, { box = [[6, 3, 3], [36, 9, 10]] }] }") +
                    "[[chamber]]\nname = \"air\"\ninside = [20, 6, 6]\ntarget = { pressure = \"50 kPa\" }\n",
                same_chamber);
 }
 
-TEST_CASE("a notched bar bends alike under a cable that crosses its notches") {
+TEST_CASE("a notched bar bends the same as in CalculiX under a cable across its notches") {
     const std::string notches =
         "{ repeat = 3, step = [10, 0, 0], of = { prism = [[9.8, 6], [10.2, 6], [12, 12], [8, 12]], plane = \"xz\", "
         "from = "

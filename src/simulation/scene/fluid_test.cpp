@@ -75,7 +75,7 @@ const std::string down = "gravity = [0, 0, -9.81]\n";
 
 }  // namespace
 
-TEST_CASE("a floating block draws as much water as it weighs, at equilibrium and in time") {
+TEST_CASE("a floating block displaces water of its weight, at equilibrium and in dynamics") {
     // 600/1000 of 20 mm; pressed together by a thousandth of that by the water.
     const sim::Trajectory still = run(block("density = \"1000 kg/m^3\"\nlevel = 10\n", "steps = 5\n" + down));
     const auto middle = [](const sim::Step& step) {
@@ -90,7 +90,7 @@ TEST_CASE("a floating block draws as much water as it weighs, at equilibrium and
     CHECK(floats.steps.back().kinetic_energy_J < 1e-9);
 }
 
-TEST_CASE("what is as heavy as the fluid hangs in it, and what is lighter pulls at its cord with the difference") {
+TEST_CASE("an object lighter than the displaced fluid rises, and a held one pulls with the difference") {
     const sim::Trajectory hangs = run(world(
         "density = \"1000 kg/m^3\"\n", "geometry = { sphere = { center = [0, 0, 0], radius = 10 } }\nmass = \"1 g\"\n",
         "duration = \"0.02 s\"\ntime_step = \"1 ms\"\n" + down));
@@ -123,7 +123,7 @@ steps = 2
     CHECK(held.steps.back().supports[0].force_N.z == near(-(1000 - 200) * 18e-6 * g, {.relative = 0.01}));
 }
 
-TEST_CASE("a ball sinks as fast as the law of drag lets it, and so does a plate") {
+TEST_CASE("a ball and a plate sink with the speed that the drag law gives") {
     const double radius = 10e-3, drag = 0.5;
     const sim::Trajectory ball =
         run(world(fmt::format("density = \"1000 kg/m^3\"\ndrag_normal = {}\n", drag),
@@ -143,7 +143,7 @@ TEST_CASE("a ball sinks as fast as the law of drag lets it, and so does a plate"
     CHECK(speed(plate) == near(std::sqrt(1000 * 4e-3 * g / (0.5 * 1000 * 2 * 0.9)), {.relative = 0.005}));
 }
 
-TEST_CASE("a current carries along, and skin friction brakes what slides edge-on") {
+TEST_CASE("a current carries bodies, and skin friction slows what slides edge-on") {
     const sim::Trajectory carried =
         run(world("density = \"1000 kg/m^3\"\ndrag_normal = 2\ncurrent = [0.3, 0, 0]\n",
                   "geometry = { box = [[0, 0, 0], [20, 20, 20]] }\ndensity = \"1000 kg/m^3\"\n",
@@ -162,7 +162,7 @@ TEST_CASE("a current carries along, and skin friction brakes what slides edge-on
     CHECK(slides.steps.back().objects[0].position_m.x - 0.02 == near(std::log(1 + q * 0.2) / q, {.relative = 0.005}));
 }
 
-TEST_CASE("a fluid at rest only takes energy, from a soft body with large steps and conserving ones too") {
+TEST_CASE("a fluid at rest never adds energy to a soft body, with large steps and both integrators") {
     for (const char* integrator : {"bdf2", "energy-conserving"}) {
         for (const double step : {0.002, 0.02}) {
             const sim::Trajectory result = run(
@@ -184,7 +184,7 @@ TEST_CASE("a fluid at rest only takes energy, from a soft body with large steps 
     }
 }
 
-TEST_CASE("mistakes in a fluid are told in one line") {
+TEST_CASE("mistakes in a fluid give one line each") {
     using robot::testing::check_problem;
     check_problem(block("level = 10\n", "steps = 1\n" + down), "density");
     check_problem(block("density = \"0 kg/m^3\"\n", "steps = 1\n" + down), "density: must be above zero");

@@ -93,7 +93,7 @@ angular_velocity = [0, 0, {}]
     CHECK(norm(end.force_N) == 0);
 }
 
-TEST_CASE("a ball rolls down a slope with five sevenths of what a block slides with") {
+TEST_CASE("a rolling ball accelerates down a slope with five sevenths of a sliding block's acceleration") {
     const double angle = 0.1, T = 0.3, radius = 10e-3;
     const Run r = run(world(slope(0.8) + R"(
 [[object]]
@@ -111,7 +111,7 @@ density = "1000 kg/m^3"
     CHECK(std::remainder(turned - way / radius, 2 * std::numbers::pi) == near(0, {.absolute = 0.02 * way / radius}));
 }
 
-TEST_CASE("a block on a slope stays below the angle of friction, and slides above it") {
+TEST_CASE("a block on a slope rests below the friction angle, and slides above it") {
     const double angle = 0.3;
     const auto slid = [&](double friction, double T) {
         const Run r = run(world(slope(friction) + R"(
@@ -132,7 +132,7 @@ density = "1000 kg/m^3"
     }
 }
 
-TEST_CASE("a sliding block stops where friction has taken its energy, and stays there") {
+TEST_CASE("a sliding block stops where friction has used up its energy, and stays there") {
     const double v = 0.3, friction = 0.4;
     const Run r = run(world(slope(friction) + fmt::format(R"(
 [[object]]
@@ -149,7 +149,7 @@ velocity = [{}, 0, 0]
     CHECK(std::abs(r.last().position_m.x - r.object(200).position_m.x) < 1e-6);
 }
 
-TEST_CASE("what stands on an object is carried by it, and what it pushes pushes back") {
+TEST_CASE("an object carries what stands on it, and pushed objects push back") {
     // Two blocks on each other under gravity come to rest; the lower one carries both.
     const Run r = run(world(slope(0.5) + R"(
 [[object]]
@@ -170,7 +170,7 @@ mass = "5 g"
     CHECK(norm(r.result.steps.back().contacts[0].force_N) == 0);  // on the robot, which touches nothing
 }
 
-TEST_CASE("energy only falls where a block bounces, tumbles and slides") {
+TEST_CASE("the energy of a bouncing, tumbling and sliding block only falls") {
     const char* wanted = std::getenv("PLIANT_BOUNCING_STEPS");
     const std::size_t steps = wanted != nullptr ? std::strtoul(wanted, nullptr, 10) : 400;
     const Run r = run(world(slope(0.3) + R"(
@@ -230,7 +230,7 @@ box = [[-1, -1, -1], [21, 21, 30]]
 
 }  // namespace
 
-TEST_CASE("a soft body that nothing holds falls, lands and stands in time") {
+TEST_CASE("a free soft body falls, lands and comes to rest in dynamics") {
     const Run r = run(soft_cube(5, "duration = \"0.4 s\"\ntime_step = \"0.002 s\"\ngravity = [0, 0, -9.81]\n"));
     const auto height = [&](std::size_t k) { return r.result.steps[k].markers[0].position_m.z; };
     const double T = 0.03;  // before it lands after 0.032 s
@@ -240,7 +240,7 @@ TEST_CASE("a soft body that nothing holds falls, lands and stands in time") {
     CHECK(height(200) == near(10e-3, {.absolute = 0.2e-3}));
 }
 
-TEST_CASE("at equilibrium the ground carries a body that nothing else holds, and friction holds it on a slope") {
+TEST_CASE("at equilibrium the ground carries a free body, and friction holds it on a slope") {
     const Run r = run(soft_cube(0, "steps = 5\ngravity = [0.2, 0, -9.81]\n"));
     const Vec3 force = r.result.steps.back().contacts[0].force_N;
     CHECK(force.z == near(8e-3 * g, {.relative = 1e-3}));
@@ -253,7 +253,7 @@ TEST_CASE("at equilibrium the ground carries a body that nothing else holds, and
     CHECK(above.result.steps.back().markers[0].position_m.z == near(10e-3, {.absolute = 0.2e-3}));
 }
 
-TEST_CASE("a weight at a point pulls as a load does") {
+TEST_CASE("a point mass pulls as a load of its weight does") {
     const auto tip = [](const std::string& more, const std::string& program) {
         const Run r = run(R"(
 name = "beam"
@@ -277,7 +277,7 @@ marker = [{ name = "tip", point = [60, 5, 5] }]
     CHECK(5e-3 - hung == near(5e-3 - pulled, {.relative = 0.03}));
 }
 
-TEST_CASE("a state with objects goes on from bytes with the same bits, on any number of threads") {
+TEST_CASE("a state with objects continues from its bytes with the same bits, on any number of threads") {
     const std::string text = world(slope(0.5) + R"(
 [[object]]
 name = "block"
@@ -309,7 +309,7 @@ friction = 0.2
     }
 }
 
-TEST_CASE("impossible scenes are reported in one line") {
+TEST_CASE("impossible scenes give one line each") {
     using robot::testing::check_problem;
     const std::string still = "steps = 1\n";
     const auto object = [&](const std::string& keys) { return world("[[object]]\nname = \"it\"\n" + keys, still); };

@@ -134,7 +134,7 @@ void write_3mf(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("notches that a cable crosses are filled by asking for it, as if they were drawn") {
+TEST_CASE("notches that a cable crosses are filled on request, as if the gaps were drawn") {
     const std::string path = "[[0, 5, 9], [40, 5, 9]]";
     const Built filled = built_of(notched(cable("flexor", path, "fill_notches = true")));
     REQUIRE(filled.robot.gaps.size() == 1);
@@ -163,7 +163,7 @@ TEST_CASE("notches that a cable crosses are filled by asking for it, as if they 
     CHECK(1e9 * mesh::signed_volume((*printed)[0].surface_m) == near(4000 - 2 * notch_mm3, {.relative = 1e-12}));
 }
 
-TEST_CASE("two cables share the notches that both cross; each closes them along itself") {
+TEST_CASE("two cables share the notches that both cross, and each closes them along its own path") {
     const Built built = built_of(notched(cable("left", "[[0, 3, 9], [40, 3, 9]]", "fill_notches = true") +
                                          cable("right", "[[0, 7, 9], [22, 7, 9]]", "fill_notches = true")));
     CHECK(built.model.mesh().region_names.size() == 3);
@@ -173,7 +173,7 @@ TEST_CASE("two cables share the notches that both cross; each closes them along 
     CHECK(growths[2].material == growths[0].material);
 }
 
-TEST_CASE("gap elements take the weight of their gap, else that of their cable") {
+TEST_CASE("gap elements take the weight of their gap, otherwise that of their cable") {
     const std::string path = "[[0, 5, 9], [40, 5, 9]]";
     const auto weight_Pa = [](const Built& built) { return built.model.description().growths.front().weight_Pa; };
     const double usual = weight_Pa(built_of(notched(cable("flexor", path, "fill_notches = true"))));
@@ -189,7 +189,7 @@ TEST_CASE("gap elements take the weight of their gap, else that of their cable")
     check_problem(length, "act with model = \"gap-elements\" only");
 }
 
-TEST_CASE("air elements bend a robot as far as air does; their weight is checked") {
+TEST_CASE("air elements bend a robot nearly as far as air does; their weight is checked") {
     const auto hollow = [](const std::string& rest) {
         return head + body("bar", "geometry = { box = [[0, 0, 0], [30, 10, 10]] }") +
                "[[chamber]]\nname = \"air\"\ngeometry = { box = [[4, 2, 2], [26, 8, 5]] }\n"
@@ -207,7 +207,7 @@ TEST_CASE("air elements bend a robot as far as air does; their weight is checked
     check_problem(hollow("weight = 1\n"), "act with model = \"elements\" only");
 }
 
-TEST_CASE("fill_notches says what it cannot do") {
+TEST_CASE("fill_notches reports what it cannot do") {
     const std::string flexor = "[[0, 5, 9], [40, 5, 9]]";
     check_problem(notched(cable("flexor", "[[0, 5, 2], [40, 5, 2]]", "fill_notches = true")), "finds none");
     std::string length = notched(cable("flexor", flexor, "fill_notches = true"));
@@ -222,7 +222,7 @@ TEST_CASE("fill_notches says what it cannot do") {
                   "is drawn as a [[gap]] or a chamber already");
 }
 
-TEST_CASE("materials of a 3MF file become bodies that share a face, in the file's own unit") {
+TEST_CASE("materials of a 3MF file become bodies with a common face, in the file's own unit") {
     const Folder folder;
     const std::string path = folder.file("two.3mf");
     write_3mf(path);
@@ -270,7 +270,7 @@ TEST_CASE("a body from STEP touches an STL body and a drawn one; a drawn chamber
                   "has no solid \"lid\"");
 }
 
-TEST_CASE("an error of the mesher is told at the body that it is about, and else of the robot file") {
+TEST_CASE("an error of the mesher names the body concerned, otherwise the robot file") {
     const auto problem_of = [](const std::string& bodies) {
         const Result<Robot> robot = parse_robot(head + bodies, "bar.toml", {"mesh.size=0.8 mm"});
         REQUIRE(robot);
@@ -305,8 +305,7 @@ void add_box(mesh::TriMesh& soup, const Vec3& low, const Vec3& high, bool outwar
 
 }  // namespace
 
-TEST_CASE(
-    "a surface with jittered corners and a cavity that looks outwards makes a body; its chamber may be inverted") {
+TEST_CASE("an STL body with jittered corners and an inverted cavity is meshed; its chamber may be inverted too") {
     const Folder folder;
     mesh::TriMesh bar;
     add_box(bar, {0, 0, 0}, {40, 10, 10}, true);

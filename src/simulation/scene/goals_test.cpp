@@ -52,7 +52,7 @@ const std::string reach = "[[goal]]\nname = \"reach\"\nmarker = \"tip\"\n";
 
 }  // namespace
 
-TEST_CASE("goals and ranges become SI, tied to markers and actuators") {
+TEST_CASE("goals and ranges are converted to SI, and refer to markers and actuators") {
     const auto built = testing::build(parse_robot(
         body + reach + "path = [[38, 5, 9], [37, 5, 11]]\ntolerance = \"0.2 mm\"\nweight = 3\ntimes = [0.5, 1]\n",
         "bar.toml"));
@@ -92,7 +92,7 @@ TEST_CASE("a path is read from a table, in the unit that its columns name") {
     CHECK(test::holds(flat.error().message, "there is no column \"z\""));
 }
 
-TEST_CASE("slips in goals and ranges are named, with their line") {
+TEST_CASE("mistakes in goals and ranges are named, with their line") {
     check_problem(body + "[[goal]]\nname = \"a\"\nmarker = \"tipp\"\npoint = [1, 2, 3]\n",
                   "bar.toml:32: goal[0].marker: there is no marker \"tipp\"; there is \"tip\" and \"middle\"");
     check_problem(test::replaced(body, "[0.8, 1.0]", "[1.0, 0.8]"), "range: is empty");
@@ -114,7 +114,7 @@ TEST_CASE("slips in goals and ranges are named, with their line") {
                   "there is no obstacle \"ball\"");
 }
 
-TEST_CASE("a program of waypoints stands on the robot file and leads where it says") {
+TEST_CASE("a program of waypoints builds on the robot file and reaches its lengths") {
     const test::Folder folder("goals");
     const std::filesystem::path file = folder.path() / "bar.toml";
     std::ofstream(file) << body;

@@ -60,7 +60,7 @@ const std::string open_places = "at the end the equilibrium leaves open";
 
 }  // namespace
 
-TEST_CASE("a cube of 100 g that three fingers hold creeps by less than 0.1 mm in 10 s") {
+TEST_CASE("a cube of 100 g held by three fingers creeps by less than 0.1 mm in 10 s") {
     const sim::Trajectory t = run(R"(
 name = "grip"
 length_unit = "mm"
@@ -91,7 +91,7 @@ key = [{ time = "0.3 s", left = 1, right = 1, table = 0 }, { time = "0.6 s", tab
     CHECK(std::abs(height(216) - height(16)) < 0.1e-3);
 }
 
-TEST_CASE("several robots in one scene: each stands for itself, and one that stands on another is carried by it") {
+TEST_CASE("several robots in one scene stand separately, and one that stands on another is carried by it") {
     const sim::Trajectory beside = run(on_ground(cube("left", 0, 0) + cube("right", 30, 0), 0.5, still));
     const sim::Step& end = beside.steps.back();
     CHECK(end.contacts[0].force_N.z == near(16e-3 * g, {.relative = 1e-3}));
@@ -109,7 +109,7 @@ TEST_CASE("several robots in one scene: each stands for itself, and one that sta
     CHECK(last.smallest_distance_m > -0.1e-3);  // the ground is inset by less than the contact distance
 }
 
-TEST_CASE("what contact, friction and gravity leave open is said in one line, and nothing where they hold") {
+TEST_CASE("motions not held by contact, friction and gravity are named in one line; none if all are held") {
     const auto open = [&](double friction, const std::string& more = "") {
         return warning(run(on_ground(cube("cube", 0, 0) + more, friction, still)), open_places);
     };

@@ -69,7 +69,7 @@ TEST_CASE("a beam sags under a force at a point, along a line and on nodes as Eu
     CHECK(both == near(0.5 * (tip + F * a * a * (3 * length - a) / (6 * EI)), {.relative = 0.02}));
 }
 
-TEST_CASE("force and moment of a load along an edge arrive at the clamp") {
+TEST_CASE("a load along an edge gives its force and moment") {
     const auto built =
         robot::testing::build(robot::parse_robot(beam("[[load]]\nname = \"edge\"\nline = [[20, 10, 10], [90, 10, "
                                                       "10]]\nforce = [\"1 mN\", \"2 mN\", \"-3 mN\"]\n"),
@@ -88,7 +88,7 @@ TEST_CASE("force and moment of a load along an edge arrive at the clamp") {
     }
 }
 
-TEST_CASE("a torque on a plate bends a beam to an arc, a quarter of a circle too") {
+TEST_CASE("a torque on a plate bends a beam to an arc, up to a quarter of a circle") {
     const double angle = std::numbers::pi / 2, torque = EI * angle / length;
     const sim::Trajectory result = run(
         beam(end_plate + fmt::format("[[load]]\nname = \"bend\"\nplate = \"end\"\ntorque = [\"0 N mm\", \"{} N mm\", "
@@ -116,7 +116,7 @@ TEST_CASE("a torque on a plate twists a bar as Saint-Venant says") {
     CHECK(turned(2) - turned(1) == near(torque * 0.06 / GJ, {.relative = 0.02}));
 }
 
-TEST_CASE("a torque and a force speed up an object as its inertia and mass say") {
+TEST_CASE("a torque and a force accelerate an object as its inertia and mass say") {
     const sim::Trajectory result = run(beam(R"(
 [contact]
 distance = "0.2 mm"
@@ -138,7 +138,7 @@ force = ["30 mN", "0 N", "0 N"]
     CHECK(end.position_m.x - 0.01 == near(0.03 / 6e-3 * T * T / 6, {.relative = 2e-3}));
 }
 
-TEST_CASE("a mass with inertia swings about the axis of a bar as a torsion pendulum") {
+TEST_CASE("a mass with inertia on a bar swings as a torsion pendulum") {
     const std::string twist = end_plate +
                               "[[load]]\nname = \"twist\"\nplate = \"end\"\ntorque = [\"0.5 N mm\", \"0 N mm\", "
                               "\"0 N mm\"]\n";
@@ -169,7 +169,7 @@ TEST_CASE("a mass with inertia swings about the axis of a bar as a torsion pendu
     CHECK(static_cast<double>(lowest) == near(100, {.absolute = 2}));
 }
 
-TEST_CASE("a thing that is glued on beside its center hangs with its moment") {
+TEST_CASE("a mass glued on beside the beam's end bends it by its weight and moment") {
     const std::string glued = R"(
 [[mass]]
 name = "arm"
@@ -186,7 +186,7 @@ radius = "8 mm"
     CHECK(found - own == near(F * std::pow(length, 3) / (3 * EI) + M * length * length / (2 * EI), {.relative = 0.02}));
 }
 
-TEST_CASE("mistakes in loads and masses are told in one line") {
+TEST_CASE("mistakes in loads and masses give one line each") {
     using robot::testing::check_problem;
     const auto load = [](const std::string& keys) { return beam("[[load]]\nname = \"it\"\n" + keys); };
     const std::string force = "force = [\"0 N\", \"0 N\", \"1 N\"]\n";

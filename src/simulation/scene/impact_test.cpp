@@ -78,7 +78,7 @@ double rebound(double fall, double c) {
 
 }  // namespace
 
-TEST_CASE("a dropped ball bounces as high as its damping lets it, where steps go by their error") {
+TEST_CASE("a dropped ball bounces as high as its damping allows, with error-controlled steps") {
     for (const double damping : {0.0, 3.0}) {
         const sim::Trajectory result =
             run(world(ball, fmt::format("duration = \"0.2 s\"\ntime_step = \"2 ms\"\ntime_tolerance = \"0.2 um\"\n"
@@ -94,7 +94,7 @@ TEST_CASE("a dropped ball bounces as high as its damping lets it, where steps go
     }
 }
 
-TEST_CASE("a ball that bounces comes to rest, and stays there") {
+TEST_CASE("a bouncing ball comes to rest and stays there") {
     const sim::Trajectory result =
         run(world(ball,
                   "duration = \"0.8 s\"\ntime_step = \"2 ms\"\nintegrator = \"energy-conserving\"\n"
@@ -108,7 +108,7 @@ TEST_CASE("a ball that bounces comes to rest, and stays there") {
     }
 }
 
-TEST_CASE("energy never grows where a block bounces, tumbles and slides with conserving steps") {
+TEST_CASE("energy never grows while a block bounces, tumbles and slides with energy-conserving steps") {
     const char* wanted = std::getenv("PLIANT_BOUNCING_STEPS");
     const std::size_t steps = wanted != nullptr ? std::strtoul(wanted, nullptr, 10) : 600;
     const sim::Trajectory result = run(world(
@@ -129,7 +129,7 @@ TEST_CASE("energy never grows where a block bounces, tumbles and slides with con
     CHECK(energy(result.steps.back()) < lowest + 2e-3 * scale);
 }
 
-TEST_CASE("an object that spins free of all keeps its energy, its momentum and how fast it turns") {
+TEST_CASE("a freely spinning object keeps its energy, and its centre falls on a parabola") {
     const sim::Trajectory result = run(
         world("name = \"top\"\ngeometry = { box = [[0, 0, 600], [20, 14, 610]] }\ndensity = \"1000 kg/m^3\"\n"
               "velocity = [0, 0, 1]\nangular_velocity = [20, 30, 5]\n",
@@ -141,7 +141,7 @@ TEST_CASE("an object that spins free of all keeps its energy, its momentum and h
     CHECK(height(result.steps.back()) == near(605e-3 + T - 0.5 * g * T * T, {.absolute = 1e-6}));
 }
 
-TEST_CASE("mistakes in steps in time are told in one line") {
+TEST_CASE("mistakes in time steps give one line each") {
     using robot::testing::check_problem;
     const auto text = [](const std::string& program) { return world(ball, program); };
     check_problem(text("steps = 2\nintegrator = \"energy-conserving\"\n"),

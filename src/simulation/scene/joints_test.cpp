@@ -85,7 +85,7 @@ const std::string about_y = "axis = [0, 1, 0]";
 
 }  // namespace
 
-TEST_CASE("a bar that hangs from a hinge swings with the period of a physical pendulum") {
+TEST_CASE("a bar on a hinge swings with the period of a physical pendulum") {
     const double inertia = bar_inertia + bar_kg * bar_m * bar_m / 4;
     const double period = 2 * pi * std::sqrt(inertia / (bar_kg * g * bar_m / 2));
     const double spin = 0.5;  // 0.04 rad at most
@@ -125,7 +125,7 @@ TEST_CASE("a double pendulum keeps its energy") {
     CHECK(off < 0.01 * scale);
 }
 
-TEST_CASE("a motor that holds a bar level carries its weight and its torque") {
+TEST_CASE("a motor that holds a bar level reports the bar's weight and its torque") {
     const Run r = run(
         world(bar("bar", false) + joint("motor", "world", "bar", 0, 0, about_y + "\nangle = \"0 deg\""), at_rest()));
     CHECK(r.joint().force_N.z == near(bar_kg * g, {.relative = 1e-3}));
@@ -135,7 +135,7 @@ TEST_CASE("a motor that holds a bar level carries its weight and its torque") {
     CHECK(std::fabs(r.joint().coordinate) < 1e-3);
 }
 
-TEST_CASE("a hinge with a spring sinks until its torque balances the weight, and a limit stops it") {
+TEST_CASE("a hinge with a spring turns until its torque balances the weight, and a limit stops it") {
     const double stiffness = 0.02;
     const std::string springy = about_y + fmt::format("\nstiffness = \"{} N*m/rad\"", stiffness);
     const Run r = run(world(bar("bar", false) + joint("hinge", "world", "bar", 0, 0, springy), at_rest()));
@@ -147,7 +147,7 @@ TEST_CASE("a hinge with a spring sinks until its torque balances the weight, and
     CHECK(stopped.joint().coordinate == near(5 * pi / 180, {.absolute = 1e-3}));
 }
 
-TEST_CASE("a slider sinks on its spring, carries torque across, and is pushed by a force") {
+TEST_CASE("a slider sinks on its spring, transmits torque, and is moved by a force") {
     const double stiffness = 100;
     const Run r = run(
         world(bar("bar", false) + joint("slider", "world", "bar", 0, 0, "axis = [0, 0, 1]\nstiffness = \"0.1 N/mm\""),
@@ -164,7 +164,7 @@ TEST_CASE("a slider sinks on its spring, carries torque across, and is pushed by
     CHECK(pushed.joint().effort == near(force, {.relative = 1e-6}));
 }
 
-TEST_CASE("two boxes that are glued fly as one") {
+TEST_CASE("two boxes glued together move as one") {
     const auto box = [](const std::string& name, double low, double high, double vy) {
         return fmt::format(
             "[[object]]\nname = \"{}\"\ngeometry = {{ box = [[{}, -5, -3], [{}, 5, 3]] }}\ndensity = \"1000 "
@@ -184,7 +184,7 @@ TEST_CASE("two boxes that are glued fly as one") {
     for (std::size_t k = 0; k < 4; ++k) CHECK(left.rotation[k] == near(one.rotation[k], {.absolute = 5e-3}));
 }
 
-TEST_CASE("a motor follows its angle over whole turns") {
+TEST_CASE("a motor follows its angle over several turns") {
     const Run r =
         run(world(bar("bar", false) + joint("motor", "world", "bar", 0, 0, "axis = [0, 0, 1]\nangle = \"720 deg\""),
                   in_time(1, 0.01, false)));
@@ -195,13 +195,13 @@ TEST_CASE("a motor follows its angle over whole turns") {
     }
 }
 
-TEST_CASE("a ball joint holds a point and nothing else") {
+TEST_CASE("a ball joint transmits a force and no torque") {
     const Run r = run(world(bar("bar", true) + joint("ball", "world", "bar", 0, 0), at_rest()));
     CHECK(r.joint().force_N.z == near(bar_kg * g, {.relative = 1e-3}));
     CHECK(norm(r.joint().torque_Nm) < 1e-9);
 }
 
-TEST_CASE("a cable that pulls on a hinged link turns it until its torque is balanced") {
+TEST_CASE("a cable turns a hinged link until the torques balance") {
     const double stiffness = 0.05;
     const Run r = run(world(
         bar("bar", false) +
@@ -249,7 +249,7 @@ struct Flexibility {
 
 }  // namespace
 
-TEST_CASE("a soft beam with a rigid block glued to its end sinks and swings as Euler, Bernoulli and Timoshenko say") {
+TEST_CASE("a soft beam with a rigid block glued to its end sinks and swings as Timoshenko beam theory says") {
     const Flexibility f;
     const double m = 1e-3, c = 5e-3;
     {
@@ -280,7 +280,7 @@ TEST_CASE("a soft beam with a rigid block glued to its end sinks and swings as E
     CHECK(turns[2] - turns[0] == near(period, {.relative = 0.03}));
 }
 
-TEST_CASE("joints give the same bits on any number of threads, and from bytes") {
+TEST_CASE("joints give the same bits on any number of threads, and after reading from bytes") {
     const auto built = robot::testing::build(robot::parse_robot(
         world(bar("upper", false) + bar("lower", false, 100, "angular_velocity = [0, 30, 0]") +
                   joint("motor", "world", "upper", 0, 0, about_y + "\ntorque = \"0.02 N*m\"\ndamping = 1e-4") +
@@ -308,7 +308,7 @@ TEST_CASE("joints give the same bits on any number of threads, and from bytes") 
     }
 }
 
-TEST_CASE("slips in joints are told in one line") {
+TEST_CASE("mistakes in joints give one line each") {
     using robot::testing::check_problem;
     const auto check = [&](const std::string& keys, const std::string& wanted) {
         check_problem(world(bar("bar", false) + "[[joint]]\nname = \"it\"\n" + keys, at_rest()), wanted);

@@ -36,7 +36,7 @@ void check_problem(const std::string& table, const std::string& wanted, const st
 
 }  // namespace
 
-TEST_CASE("mooney-rivlin, with the Poisson ratio of small strains") {
+TEST_CASE("mooney-rivlin is read, with the Poisson ratio at small strain") {
     const auto m = material_of(
         "[material.soft]\nlaw = \"mooney-rivlin\"\nc10 = \"0.3 MPa\"\nc01 = \"100 kPa\"\n"
         "poisson_ratio = 0.49");
@@ -47,7 +47,7 @@ TEST_CASE("mooney-rivlin, with the Poisson ratio of small strains") {
     CHECK(m.youngs_modulus_Pa == near(8e5 * 2 * 1.49, {.relative = 1e-12}));  // E = 2 mu (1 + nu), mu = 2 (c10 + c01)
 }
 
-TEST_CASE("yeoh, with a bulk modulus; c20 and c30 may be missing") {
+TEST_CASE("yeoh is read with a bulk modulus; c20 and c30 may be missing") {
     const auto m = material_of(
         "[material.soft]\nlaw = \"yeoh\"\nc10 = \"0.11 MPa\"\nc20 = \"0.02 MPa\"\n"
         "bulk_modulus = \"10 MPa\"");
@@ -57,7 +57,7 @@ TEST_CASE("yeoh, with a bulk modulus; c20 and c30 may be missing") {
     CHECK(law.bulk_Pa == near(1e7, {.relative = 1e-12}));
 }
 
-TEST_CASE("ogden, corotated and linear") {
+TEST_CASE("ogden, corotated and linear are read") {
     const auto m = material_of("[material.soft]\nlaw = \"ogden\"\nmu = [\"0.6 MPa\", \"-10 kPa\"]\nalpha = [1.3, -2]");
     const auto law = std::get<material::Ogden>(m.law);
     CHECK(law.terms == 2);
@@ -70,7 +70,7 @@ TEST_CASE("ogden, corotated and linear") {
     CHECK(std::holds_alternative<material::Linear>(l.law));
 }
 
-TEST_CASE("shape-blend takes a shape parameter from rigid to extremely soft, and nothing beyond") {
+TEST_CASE("shape-blend takes a shape parameter from rigid to extremely soft, and refuses others") {
     const std::string soft = "[material.soft]\nlaw = \"shape-blend\"\nyoungs_modulus = \"12 MPa\"\n";
     const auto a_of = [&](const std::string& more) {
         return std::get<material::ShapeBlend>(material_of(soft + more).law).a;
@@ -93,7 +93,7 @@ TEST_CASE("shape-blend takes a shape parameter from rigid to extremely soft, and
     check_problem(soft + "shape_parameter = \"small-strain\"\nstiffest = \"12 GPa\"", "takes R_omega 1500");
 }
 
-TEST_CASE("shape-blend takes R_omega from two moduli, by the name of a map") {
+TEST_CASE("shape-blend computes R_omega from two moduli, by the name of a map") {
     const std::string soft = "[material.soft]\nlaw = \"shape-blend\"\nyoungs_modulus = \"12 MPa\"\n";
     const auto by = [&](const std::string& name) {
         return std::get<material::ShapeBlend>(
@@ -125,7 +125,7 @@ TEST_CASE("shape-blend takes R_omega from two moduli, by the name of a map") {
     check_problem("[material.soft]\nyoungs_modulus = \"1 MPa\"\nstiffest = \"45 MPa\"", "unknown key");
 }
 
-TEST_CASE("constants that do not fit their law") {
+TEST_CASE("constants that do not fit their law are refused") {
     check_problem("[material.soft]\nlaw = \"mooney-rivlin\"\nyoungs_modulus = \"1 MPa\"",
                   "does not determine the constants of \"mooney-rivlin\"");
     check_problem("[material.soft]\nlaw = \"mooney-rivlin\"\nc10 = \"0.1 MPa\"\nc01 = \"-0.2 MPa\"",
@@ -150,7 +150,7 @@ TEST_CASE("a body may name a material of the library") {
     check_problem("[material.soft]\nyoungs_modulus = \"1 MPa\"", "and the library", "unobtainium");
 }
 
-TEST_CASE("a material may build on the library") {
+TEST_CASE("a material may start from one of the library") {
     const auto m =
         material_of("[material.soft]\nbase = \"elastosil-m4601\"\nc10 = \"0.2 MPa\"\ndensity = \"2 g/cm^3\"");
     const auto law = std::get<material::Yeoh>(m.law);
@@ -174,7 +174,7 @@ TEST_CASE("a material may build on the library") {
     check_problem("[material.soft]\nbase = \"ninjaflex\"\ntitle = \"mine\"", "unknown key");
 }
 
-TEST_CASE("every material of the library is sound, stable in its range, and in the reference") {
+TEST_CASE("every library material is valid, stable in its range, and in the reference") {
     const Result<std::string> page = read_file("docs/reference/materials.md");
     REQUIRE(page);
     CHECK(library_files().size() >= 14);
@@ -205,7 +205,7 @@ TEST_CASE("every material of the library is sound, stable in its range, and in t
     }
 }
 
-TEST_CASE("the list of materials names all, one line each, and JSON holds constants in Pa") {
+TEST_CASE("the list of materials has one line each, and JSON has constants in Pa") {
     const std::string text = library_text();
     CHECK(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) == library_files().size() + 1);
     const auto elastosil = library_material("elastosil-m4601");

@@ -100,7 +100,7 @@ double value_on(const sim::Model& model, const Program& program) {
 
 }  // namespace
 
-TEST_CASE("whatever follows from a number of the drawing is in the gradient by it") {
+TEST_CASE("derivatives by a number of the drawing include everything that follows from it") {
     double worst = 0;
     for (const int order : {1, 2}) {
         const Case c(order);
@@ -135,7 +135,7 @@ TEST_CASE("whatever follows from a number of the drawing is in the gradient by i
     MESSAGE("largest error " << worst);
 }
 
-TEST_CASE("a support that stays where the shape does not is told, and friction has no such derivative") {
+TEST_CASE("a number has no derivative if it changes which nodes are held, nor over friction or dynamics") {
     const std::string fixed = "box = [[0, 0, 0], [0, 10, \"= height\"]]";
     Case c(1);
     c.text.replace(c.text.find(fixed), fixed.size(), "box = [[0, 0, 0], [0, 10, 12]]");

@@ -50,7 +50,7 @@ sim::Step last_step(const Built& built) {
 
 }  // namespace
 
-TEST_CASE("rollers and planes of symmetry hold single directions: a block thins as it is drawn out") {
+TEST_CASE("rollers and symmetry planes hold single directions: a stretched block becomes thinner") {
     const sim::Step last = last_step(build(eighth));
     const Vec3 corner = last.markers[0].position_m;
     CHECK(corner.x == near(0.012, {.relative = 1e-9}));
@@ -61,7 +61,7 @@ TEST_CASE("rollers and planes of symmetry hold single directions: a block thins 
     CHECK(std::fabs(last.supports[3].force_N.y) < 1e-12);  // a roller has no force across
 }
 
-TEST_CASE("directions are named where they are wrong") {
+TEST_CASE("invalid directions are refused with their line") {
     check_problem(replaced(eighth, "directions = [\"y\"]", "directions = [\"w\"]"),
                   "bar.toml:8: fixed[1].directions: is \"normal\" or a list");
     check_problem(replaced(eighth, "directions = [\"y\"]", "directions = []"), "is \"normal\" or a list");
@@ -89,7 +89,7 @@ TEST_CASE("a spring holds a block against a load") {
     check_problem(replaced(sprung, "anchor", "free_length = \"-1 mm\"\nanchor"), "must not be negative");
 }
 
-TEST_CASE("a load acts on the outer faces that any selector catches") {
+TEST_CASE("a load acts on the outer faces that its selector chooses") {
     const std::string pull = "[[load]]\nname = \"pull\"\nforce = [\"0.1 N\", \"0 N\", \"0 N\"]\n";
     const auto nodes = [&](const std::string& place) {
         return build(eighth + pull + place).model.description().loads.at(0).nodes;
@@ -104,7 +104,7 @@ TEST_CASE("a load acts on the outer faces that any selector catches") {
     check_problem(eighth + pull + "surface = \"nowhere.stl\"\n", "there is no file");
 }
 
-TEST_CASE("a mesh file and a surface file are scaled, mirrored, turned, moved and repeated") {
+TEST_CASE("mesh and surface files can be scaled, mirrored, rotated, moved and repeated") {
     const test::Folder folder("placed");
     const Built once = build(eighth);
     mesh::TetMesh unit = mesh::scaled(once.model.mesh(), 100);  // a cube of side 1 in the file's unit
@@ -136,7 +136,7 @@ TEST_CASE("a mesh file and a surface file are scaled, mirrored, turned, moved an
               .find("a shape is placed by translate, rotate and repeat") != std::string::npos);
 }
 
-TEST_CASE("surfaces of chambers and obstacles are placed, too") {
+TEST_CASE("surfaces of chambers and obstacles can be placed too") {
     const test::Folder folder("placed");
     REQUIRE(mesh::write_stl(folder.path() / "cube.stl", mesh::test::cube()));
     const std::string text = head + R"(mesh = { size = "4 mm", order = 1 }

@@ -25,7 +25,7 @@ sim::Trajectory run(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("the tripod lies on the ground under its own weight, and contact carries it") {
+TEST_CASE("the tripod rests on the ground, and the contact force equals its weight") {
     const sim::Trajectory lies = run(fmt::format(R"(
 name = "tripod"
 length_unit = "mm"

@@ -70,14 +70,14 @@ void check_pull(const sim::Trajectory& result) {
 
 }  // namespace
 
-TEST_CASE("finger.vtk, linear and quadratic, 0 to 50 mm") {
+TEST_CASE("finger.vtk, linear and quadratic, is pulled by 0 to 50 mm") {
     const auto linear = robot::testing::build(robot::parse_robot(finger("finger.vtk", 1, 25), "finger.toml"));
     CHECK(linear.model.description().supports[0].nodes.size() == 20);
     check_pull(robot::testing::run(linear));
     check_pull(simulate(finger("finger.vtk", 2, 25)));
 }
 
-TEST_CASE("finger_7k.vtk, linear, 0 to 50 mm") {
+TEST_CASE("finger_7k.vtk, linear, is pulled by 0 to 50 mm") {
     check_pull(simulate(finger("finger_7k.vtk", 1, 25)));
 }
 
@@ -116,7 +116,7 @@ steps = {2}
 
 }  // namespace
 
-TEST_CASE("with self-contact the finger goes to 75 mm of pull, where its flanks have long met") {
+TEST_CASE("with self-contact the finger is pulled by 75 mm, well past the touching of its flanks") {
     std::string text = finger("finger_7k.vtk", 1, 30) + "[contact]\n";
     text.replace(text.find("50 mm"), 5, "75 mm");
     const sim::Trajectory result = simulate(text);
@@ -134,7 +134,7 @@ TEST_CASE("with self-contact the finger goes to 75 mm of pull, where its flanks 
     CHECK(result.steps[10].self_contact_N == 0);
 }
 
-TEST_CASE("the pneunet grows by 300 %, past the largest pressure that it can hold") {
+TEST_CASE("the pneunet inflates to 4.5 times its volume, past its largest pressure") {
     const sim::Trajectory grown = simulate(pneunet("volume_ratio = 4.5", 30));
     REQUIRE_MESSAGE(grown.converged, grown.message);
     CHECK(grown.iterations.size() < 800);  // a solver that crawls along its folds takes thousands
@@ -150,7 +150,7 @@ TEST_CASE("the pneunet grows by 300 %, past the largest pressure that it can hol
     CHECK(pressed.steps.back().chambers[0].pressure_Pa > 0.9 * highest);
 }
 
-TEST_CASE("a mesh full of slivers inflates by 146 %") {
+TEST_CASE("a mesh with many slivers inflates by 146 %") {
     const std::string folder = std::getenv("PLIANT_REFERENCE_DATA");
     const sim::Trajectory result = simulate(fmt::format(R"(
 name = "bellows"
@@ -172,7 +172,7 @@ steps = 20
     for (const sim::Step& step : result.steps) CHECK(step.min_J > 0);
 }
 
-TEST_CASE("pulled by 60 mm the coarse finger presses on itself; without contact it passes through itself and says so") {
+TEST_CASE("pulled by 60 mm the coarse finger touches itself; without contact it crosses, with a warning") {
     std::string text = finger("finger.vtk", 1, 24);
     text.replace(text.find("50 mm"), 5, "60 mm");
     const sim::Trajectory touching = simulate(text), always = simulate(text + "[contact]\n");

@@ -69,7 +69,7 @@ std::string with(const std::string& line, const std::string& replacement) {
 
 }  // namespace
 
-TEST_CASE("a good robot file is read and built") {
+TEST_CASE("a valid robot file is read and built") {
     const Result<Robot> robot = parse_robot(good, "bar.toml");
     REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
     CHECK(robot->materials.size() == 2);
@@ -102,14 +102,14 @@ TEST_CASE("--set changes the number of gaps and the target") {
     CHECK(robot->cables[0].target.value == 0.9);
 }
 
-TEST_CASE("--set reaches tables that the file leaves out") {
+TEST_CASE("--set may create a table that the file does not have") {
     const Result<Robot> robot = parse_robot(with("[program]\nsteps = 3\n", ""), "bar.toml", {"program.steps=7"});
     REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
     CHECK(robot->program.steps == 7);
     CHECK(problem(good, {"progam.steps=7"}) == "bar.toml: progam: unknown key; did you mean \"program\"?");
 }
 
-TEST_CASE("slips in the text are named with their line") {
+TEST_CASE("mistakes in the text are named with their line") {
     check_problem(with("geometry = { box", "geometri = { box"),
                   "bar.toml:23: body[1].geometri: unknown key; did you mean \"geometry\"?");
     check_problem(with("\"1 MPa\"", "1000000"),
@@ -127,7 +127,7 @@ TEST_CASE("slips in the text are named with their line") {
     check_problem(with("name = \"right\"", "name = \"left\""), "two bodies named \"left\"");
 }
 
-TEST_CASE("a graded bar gives way like its grades in a row") {
+TEST_CASE("a graded bar stretches as its layers in series") {
     // Without sideways strain, u = F / A int dx / E: with E rising straight from 1 to 5 MPa, ln 5 / 4 of what 1 MPa
     // gives.
     const testing::Built bar = testing::build(parse_robot(R"(name = "bar"
@@ -167,7 +167,7 @@ steps = 1
     CHECK(found == near(0.025 / 25e-6 / 1e6 * 0.04 * std::log(5.0) / 4, {.relative = 0.01}));
 }
 
-TEST_CASE("blends and exposures are read, and their slips named") {
+TEST_CASE("blends and exposures are read, and mistakes in them are named") {
     const auto body = [](const std::string& lines) {
         return with("material = \"soft\"\n", "material = \"soft\"\n" + lines + "\n");
     };
@@ -189,7 +189,7 @@ TEST_CASE("blends and exposures are read, and their slips named") {
                   "two numbers or more from 0 to 1");
 }
 
-TEST_CASE("shapes that make no sense are refused") {
+TEST_CASE("invalid shapes are refused") {
     check_problem(with("{ box = [[20, 0, 0], [40, 10, 10]] }", "{ box = [[40, 0, 0], [20, 10, 10]] }"),
                   "must be above the first");
     check_problem(with("{ box = [[20, 0, 0], [40, 10, 10]] }", "{ sphere = { center = [30, 5, 5], radius = 0 } }"),
@@ -204,7 +204,7 @@ TEST_CASE("shapes that make no sense are refused") {
     check_problem(with("\"= gaps\"", "5000"), "1 to 1000 are possible");
 }
 
-TEST_CASE("bodies a rounding error apart are joined, unless the file says otherwise") {
+TEST_CASE("bodies apart by a rounding error are joined, unless the file says otherwise") {
     const std::string apart = with("[[20, 0, 0], [40", "[[20.005, 0, 0], [40");
     CHECK(problem(apart).empty());  // a thousandth of the mesh size is 0.006 mm
     CHECK(problem(apart, {"mesh.close_gaps=0 mm"}).find("connected to nothing that is fixed") != std::string::npos);
@@ -212,7 +212,7 @@ TEST_CASE("bodies a rounding error apart are joined, unless the file says otherw
     CHECK(problem(apart, {"mesh.close_gaps=-1 mm"}).find("must not be below zero") != std::string::npos);
 }
 
-TEST_CASE("what does not fit the robot is refused with its line") {
+TEST_CASE("values that do not fit the robot are refused with their line") {
     check_problem(with("geometry = { box = [[20,", "geometry = { box = [[-1,-1,-1],[50, 50, 50]] } #"),
                   "body \"left\" is empty: all of it belongs to later ones");
     check_problem(with("points = [[0, 5, 8], [40, 5, 8]]", "points = [[0, 5, 8], [40, 5, 30]]"),
@@ -321,7 +321,7 @@ TEST_CASE("a drawn chamber is cut out of the body and closed by its wall") {
     CHECK(step.chambers[0].pressure_Pa > 0);
 }
 
-TEST_CASE("a cavity of the bodies is named by a point inside it, and needs no second drawing") {
+TEST_CASE("a cavity can be named by a point inside it") {
     const std::string hollow = with("geometry = { box = [[20, 0, 0], [40, 10, 10]] }",
                                     "geometry = { difference = [{ box = [[20, 0, 0], [40, 10, 10]] }, { box = [[24, 3, "
                                     "3], [36, 7, 7]] }] }");
@@ -339,7 +339,7 @@ TEST_CASE("a cavity of the bodies is named by a point inside it, and needs no se
                   "inside = [x, y, z]");
 }
 
-TEST_CASE("a cavity with a mouth is closed by a cap, and its mouth must be held") {
+TEST_CASE("a cavity with an opening is closed by a cap, and its rim must be held") {
     const std::string pot =
         with("geometry = { box = [[20, 0, 0], [40, 10, 10]] }",
              "geometry = { difference = [{ box = [[20, 0, 0], [40, 10, 10]] }, { box = [[24, 3, 3], "
@@ -354,7 +354,7 @@ TEST_CASE("a cavity with a mouth is closed by a cap, and its mouth must be held"
     CHECK(last_step(built).chambers[0].volume_m3 == near(336e-9, {.relative = 0.01}));
 }
 
-TEST_CASE("a chamber takes one target of four") {
+TEST_CASE("a chamber takes one of four targets") {
     using Kind = sim::ChamberTarget::Kind;
     const auto target = [](const std::string& text) {
         const Result<Robot> robot = parse_robot(chamber(room, text), "bar.toml");
@@ -378,7 +378,7 @@ TEST_CASE("a chamber takes one target of four") {
     check_problem(good + "[[chamber]]\nname = \"air\"\n" + room + "\n", "\"target\" is missing");
 }
 
-TEST_CASE("targets have an offset, in the unit of what they drive, from the first instant on") {
+TEST_CASE("targets have an offset in their own unit, which acts from the first instant") {
     const auto robot = parse_robot(chamber(room, "pressure = \"40 kPa\", offset = \"-2 kPa\""), "bar.toml",
                                    {"cable.flexor.target.offset=0.5 mm"});
     REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
@@ -396,7 +396,7 @@ TEST_CASE("targets have an offset, in the unit of what they drive, from the firs
     check_problem(chamber(room, "volume_ratio = 1.2, offset = \"1 kPa\""), "unknown unit \"kPa\"");
 }
 
-TEST_CASE("air that is not there, or not shut in, is refused") {
+TEST_CASE("chambers without air, or not closed, are refused") {
     check_problem(chamber("", "volume_ratio = 1.2"), "chamber[0]: takes one of geometry");
     check_problem(chamber(room + "\nsurface = \"air.stl\"", "volume_ratio = 1.2"), "takes one of geometry");
     check_problem(chamber("surface = \"nowhere.stl\"", "volume_ratio = 1.2"), "there is no file nowhere.stl");
@@ -416,7 +416,7 @@ TEST_CASE("air that is not there, or not shut in, is refused") {
     check_problem(turning, "let its mouth lie in a [[fixed]] without move or rotate");
 }
 
-TEST_CASE("a pressure load presses on the faces in its box") {
+TEST_CASE("a pressure load acts on the faces in its box") {
     const std::string load = "[[load]]\nname = \"push\"\nbox = [[40, 0, 0], [40, 10, 10]]\n";
     const Built built = build(good + load + "pressure = \"2 kPa\"\n", {"cable.flexor.target.length_ratio=1"});
     CHECK(built.robot.loads[0].pressure_Pa == near(2e3, {.relative = 1e-12}));
@@ -431,7 +431,7 @@ TEST_CASE("a pressure load presses on the faces in its box") {
     check_problem(good + load + "pressure = \"2 N\"\n", "unknown unit \"N\"");
 }
 
-TEST_CASE("a support turns by degrees about an axis through a point in the file's unit") {
+TEST_CASE("a support rotates in degrees, about an axis through a point in the file's unit") {
     const std::string box = "box = [[0, 0, 0], [0, 10, 10]]";
     const Built built = build(with(box, box + "\nrotate = { angle = 90, axis = [2, 0, 0], center = [0, 5, 5] }"));
     const sim::Support& clamp = built.model.description().supports[0];
@@ -449,7 +449,7 @@ TEST_CASE("a support turns by degrees about an axis through a point in the file'
                   "did you mean \"center\"?");
 }
 
-TEST_CASE("keys drive what they name, in seconds; the rest goes straight to its end") {
+TEST_CASE("keys set what they name, with times in seconds; everything else ramps to its target") {
     const std::string keys = R"(duration = "4 s"
 [[program.key]]
 time = "1 s"
@@ -486,7 +486,7 @@ TEST_CASE("a program without duration ends with its last key") {
     CHECK(robot->cables[0].target.at(0) == near(0.99, {.relative = 1e-12}));  // a key at time 0 says where it starts
 }
 
-TEST_CASE("slips in keys are named") {
+TEST_CASE("mistakes in keys are named") {
     const auto key = [](const std::string& lines) { return good + "[[program.key]]\n" + lines + "\n"; };
     check_problem(key("time = \"1 s\"\nflexxor = 0.9"),
                   "program.key[0].flexxor: unknown key; did you mean \"flexor\"?");
@@ -509,7 +509,7 @@ TEST_CASE("slips in keys are named") {
     check_problem(key("time = \"1 s\"\nair = 0") + sealed, "0 is not possible; it must be above zero");
 }
 
-TEST_CASE("bodies of a mesh file are regions, or the part of a region in a box") {
+TEST_CASE("bodies of a mesh file are regions, or parts of them in a box") {
     const MeshFile file;
     const Built whole = build(file.robot(region("all", "soft", "region = \"all\"")));
     const double total = mesh::volume(whole.model.mesh());
@@ -548,7 +548,7 @@ TEST_CASE("bodies of a mesh file are regions, or the part of a region in a box")
                   "body[1].box: unknown key");
 }
 
-TEST_CASE("the drawing itself, handed over as a robot, is told to be one; a robot file with a slip is not") {
+TEST_CASE("a geometry file given as a robot is recognised as one; a robot file with a mistake is not") {
     const pliant::test::Folder folder("robot_drawing");
     const auto message = [&](const std::string& name, const std::string& content) {
         std::ofstream(folder / name, std::ios::binary) << content;
@@ -565,7 +565,7 @@ TEST_CASE("the drawing itself, handed over as a robot, is told to be one; a robo
     CHECK(message("robot.toml", "# \u00e9l\u00e9phant\nname = \n").find("not valid TOML") != std::string::npos);
 }
 
-TEST_CASE("a guide point a little outside the mesh is carried and counted, one that is farther is refused") {
+TEST_CASE("a guide point just outside the mesh is carried and counted, one farther away is refused") {
     const std::string outside = with("points = [[0, 5, 8], [40, 5, 8]]", "points = [[0, 5, 8], [40.4, 5, 8]]");
     const Built built = build(outside);
     const auto& notes = built.model.description().notes;
@@ -578,13 +578,13 @@ TEST_CASE("a guide point a little outside the mesh is carried and counted, one t
     CHECK(build(good).model.description().notes.empty());
 }
 
-TEST_CASE("a support on a line is refused at rest, a pendulum in time is not") {
+TEST_CASE("a support along a line is refused at rest, and allowed as a pendulum in dynamics") {
     const std::string hinge = with("box = [[0, 0, 0], [0, 10, 10]]", "box = [[0, 0, 0], [0, 10, 0]]");
     check_problem(hinge, "bar.toml: body \"left\" can turn freely about the line through (0, ");
     CHECK(problem(hinge, {"program.time_step=0.01 s"}).find("turn freely") == std::string::npos);
 }
 
-TEST_CASE("an imperfection is a length") {
+TEST_CASE("an imperfection is read as a length") {
     const Result<Robot> robot = parse_robot(good, "bar.toml", {"program.imperfection=0.1 mm"});
     REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
     CHECK(robot->program.imperfection_m == near(1e-4, {.relative = 1e-12}));

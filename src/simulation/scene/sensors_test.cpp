@@ -98,7 +98,7 @@ friction = 0.5
 
 }  // namespace
 
-TEST_CASE("a bent beam: its backbone reads the curvature, and a line beside it the strain") {
+TEST_CASE("a bent beam: its backbone sensor reads the curvature, a strain sensor beside it the strain") {
     const double angle = 0.5, EI = E * std::pow(edge, 4) / 12;
     const sim::Trajectory result =
         run(beam(torque(0, -EI * angle / length) + "[[sensor]]\nname = \"spine\"\nkind = \"backbone\"\n" +
@@ -116,7 +116,7 @@ TEST_CASE("a bent beam: its backbone reads the curvature, and a line beside it t
     CHECK(std::abs(reading(rest, "skin", "strain")) < 1e-12);
 }
 
-TEST_CASE("a twisted bar: its backbone reads the twist that Saint-Venant gives, and no bend") {
+TEST_CASE("a twisted bar: its backbone sensor reads Saint-Venant's twist, and no curvature") {
     const double moment = 3e-3, GJ = E / 2 * 0.140577 * std::pow(edge, 4);
     const sim::Trajectory result =
         run(beam(torque(moment, 0) + "[[sensor]]\nname = \"spine\"\nkind = \"backbone\"\n" + along(20, 80, 10, 5)),
@@ -127,7 +127,7 @@ TEST_CASE("a twisted bar: its backbone reads the twist that Saint-Venant gives, 
     CHECK(std::abs(reading(end, "spine", "bend")) < 0.02 * moment * 0.06 / GJ);
 }
 
-TEST_CASE("a line that is curved as drawn has the curvature of its circle, without twist") {
+TEST_CASE("a sensor line drawn as an arc reads its curvature, without twist") {
     std::string points;
     for (int k = 0; k <= 8; ++k) {
         const double a = 0.1 * k;  // of a circle of 4.5 mm about (50, 5, 9.5)
@@ -140,7 +140,7 @@ TEST_CASE("a line that is curved as drawn has the curvature of its circle, witho
     CHECK(std::abs(reading(rest, "arc", "twist")) < 1e-12);
 }
 
-TEST_CASE("a falling sensor of motion reads nothing, one that rests the weight, and both in their own axes") {
+TEST_CASE("a motion sensor reads nothing in free fall and gravity at rest, in its own axes") {
     const auto sensors = [](double low) {
         return fmt::format(R"(
 [[sensor]]
@@ -169,7 +169,7 @@ axes = [[0, 0, 1], [1, 0, 0]]
     CHECK(std::abs(reading(rests.steps.back(), "turned", "acceleration_z")) < 0.01 * g);
 }
 
-TEST_CASE("a sensor of motion on a spinning object reads its turning and what holds it on its circle") {
+TEST_CASE("a motion sensor on a spinning object reads its rotation and centripetal acceleration") {
     const double w = 5;
     const sim::Trajectory result = run(cube(0, R"(
 [[object]]
@@ -198,7 +198,7 @@ point = [10, 10, 10]
     CHECK(reading(end, "apart", "distance") == near(std::sqrt(0.1 * 0.1 + 0.095 * 0.095), {.relative = 1e-3}));
 }
 
-TEST_CASE("the patch that a body stands on carries its weight on its area") {
+TEST_CASE("a contact sensor under a body reads its weight over its area") {
     const sim::Trajectory result = run(cube(0, R"(
 [[sensor]]
 name = "sole"
@@ -220,7 +220,7 @@ plane = { point = [0, 0, 20], normal = [0, 0, 1] }
     CHECK(reading(end, "top", "area") == 0);
 }
 
-TEST_CASE("sensors of cables and chambers read what these report, and a step keeps them in its bytes") {
+TEST_CASE("sensors of cables and chambers read the reported values, and are stored with the step") {
     const sim::Trajectory result = run(beam(R"(
 [[cable]]
 name = "flexor"
@@ -254,7 +254,7 @@ chamber = "air"
     CHECK(read->step.sensors.size() == 3);
 }
 
-TEST_CASE("mistakes in sensors are told in one line") {
+TEST_CASE("mistakes in sensors give one line each") {
     using robot::testing::check_problem;
     const auto sensor = [](const std::string& keys) { return beam("[[sensor]]\nname = \"it\"\n" + keys); };
     check_problem(sensor("kind = \"strane\"\n"), "did you mean \"strain\"");

@@ -119,7 +119,7 @@ TEST_CASE("motions and forces rotate with a body rotated as a whole") {
     }
 }
 
-TEST_CASE("an old stiffness, turned with a bent body, stands in for the new one; as it was, it does not") {
+TEST_CASE("an old stiffness rotated with a bent body replaces the new one; without rotation it does not") {
     for (const int order : {1, 2}) {
         Bar body(order);
         BodyRotation& turn = body.turn;

@@ -48,6 +48,6 @@ TEST_CASE("a node on an edge is nested in the edge's free ends, a corner in itse
     });
 }
 
-TEST_CASE("linear tets have nothing between their corners") {
+TEST_CASE("linear tets have no nesting in corners") {
     CHECK_FALSE(nest_in_corners(clamped(1)));
 }

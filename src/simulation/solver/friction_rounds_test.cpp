@@ -62,7 +62,7 @@ Settled settle(const Model& model, double tolerance, int rounds) {
 
 }  // namespace
 
-TEST_CASE("what friction leaves over decides: settled within the tolerance, loose within ten of it, else not at all") {
+TEST_CASE("remaining friction error: converged within the tolerance, loose within ten times it, failed beyond") {
     const Model model = dragging_bar();
     int settled = 0, loose = 0, refused = 0;
     for (const int rounds : {1, 2, 3, 4, 6, 30}) {

@@ -53,15 +53,15 @@ Description hollow_block(ChamberTarget target) {
 }
 
 /// A solver that fails, or makes little progress.
-class Hindered final : public Curvature {
+class StallingSolver final : public Curvature {
 public:
-    Hindered(const FactoredLaplacian& laplacian, bool creeps, int& asked)
-        : laplacian_(&laplacian), creeps_(creeps), asked_(&asked) {}
+    StallingSolver(const FactoredLaplacian& laplacian, bool slow, int& asked)
+        : laplacian_(&laplacian), slow_(slow), asked_(&asked) {}
     [[nodiscard]] Solver solver() const override { return Solver::newton; }
     [[nodiscard]] int default_iteration_limit() const override { return 1000; }
     [[nodiscard]] bool refresh(const State&, const Controls&, TangentChoice, Errors) override {
         ++*asked_;
-        return creeps_;
+        return slow_;
     }
     void solve(Eigen::MatrixXd& columns) override {
         laplacian_->solve(columns);
@@ -70,22 +70,22 @@ public:
 
 private:
     const FactoredLaplacian* laplacian_;
-    bool creeps_;
+    bool slow_;
     int* asked_;
 };
 
 }  // namespace
 
-TEST_CASE("where the first solver stalls the next one finishes the step, and the first begins again afterwards") {
+TEST_CASE("if the first solver stalls the next one finishes the step, and the next step starts with the first") {
     const auto model = Model::create(pushed_bar());
     REQUIRE(model);
     const Equilibrium system(*model);
     const FactoredLaplacian laplacian(system);
     const Controls controls = system.controls(0.2);
     Progress silent;
-    for (const bool creeps : {false, true}) {
+    for (const bool slow : {false, true}) {
         int asked = 0;
-        SolverChain chain({{Solver::newton, [&] { return std::make_unique<Hindered>(laplacian, creeps, asked); }},
+        SolverChain chain({{Solver::newton, [&] { return std::make_unique<StallingSolver>(laplacian, slow, asked); }},
                            {Solver::quasi_newton, [&] { return make_quasi_newton(laplacian); }}});
         int before = 0;
         for (int round = 0; round < 2; ++round) {
@@ -97,26 +97,26 @@ TEST_CASE("where the first solver stalls the next one finishes the step, and the
             REQUIRE_MESSAGE(outcome.converged, outcome.reason);
             CHECK(outcome.solver == Solver::quasi_newton);
             CHECK(outcome.evaluation.residual <= 1e-6);
-            CHECK(asked - before == (creeps ? 30 : 3));  // once with each tangent, or until patience ends
+            CHECK(asked - before == (slow ? 30 : 3));  // once with each tangent, or until patience ends
             before = asked;
             const auto first_of = [&](Solver solver) {
                 return std::ranges::find(outcome.history, solver, &IterationRecord::solver);
             };
             CHECK(first_of(Solver::newton) == outcome.history.begin());
             CHECK(first_of(Solver::quasi_newton)->iteration == 0);
-            CHECK(outcome.history.back().iteration + (creeps ? 30 : 1) == outcome.iterations);
+            CHECK(outcome.history.back().iteration + (slow ? 30 : 1) == outcome.iterations);
         }
     }
 }
 
-TEST_CASE("if all solvers fail all reasons are given, and each has its budget") {
+TEST_CASE("if all solvers fail all reasons are given, and each has used its own iterations") {
     const auto model = Model::create(pushed_bar());
     REQUIRE(model);
     const Equilibrium system(*model);
     const FactoredLaplacian laplacian(system);
     const Controls controls = system.controls(0.2);
     int asked = 0;
-    SolverChain chain({{Solver::newton, [&] { return std::make_unique<Hindered>(laplacian, false, asked); }},
+    SolverChain chain({{Solver::newton, [&] { return std::make_unique<StallingSolver>(laplacian, false, asked); }},
                        {Solver::local_global, [&] { return make_local_global(laplacian); }}});
     State state = system.rest();
     system.place_supports(controls, state.x);
@@ -129,7 +129,7 @@ TEST_CASE("if all solvers fail all reasons are given, and each has its budget") 
     CHECK(outcome.reason.find("; with local-global: no convergence in 100 iterations") != std::string::npos);
 }
 
-TEST_CASE("a solver that was asked for by name stays alone") {
+TEST_CASE("a solver chosen by name is used alone") {
     const Trajectory result =
         solve(pulled_bar(0.7), {.steps = 1, .tolerance = 1e-6, .solver = Solver::newton, .iteration_limit = 4});
     REQUIRE_MESSAGE(result.converged, result.message);
@@ -138,7 +138,7 @@ TEST_CASE("a solver that was asked for by name stays alone") {
     CHECK(result.steps.back().solver == Solver::newton);
 }
 
-TEST_CASE("auto: a step for which the iterations of its solver do not suffice is finished by the other, not halved") {
+TEST_CASE("auto: a step that needs more iterations is finished by the other solver, not halved") {
     Description d = pulled_bar(0.95);
     d.materials = {{"A", material::shape_blend(1e6, 0.3), 1000}};  // no energy: quasi-newton, then anderson
     const Trajectory alone = solve(d, {.steps = 1, .tolerance = 1e-5, .solver = Solver::quasi_newton});
@@ -153,7 +153,7 @@ TEST_CASE("auto: a step for which the iterations of its solver do not suffice is
     CHECK(helped.steps.back().cables[0].tension_N == near(alone.steps.back().cables[0].tension_N, {.relative = 1e-3}));
 }
 
-TEST_CASE("every iteration is recorded as the state that it led to") {
+TEST_CASE("every iteration is recorded with the state it led to") {
     for (const Solver solver : {Solver::newton, Solver::anderson}) {
         const Trajectory result = solve(pulled_bar(0.9), {.steps = 3, .tolerance = 1e-6, .solver = solver});
         REQUIRE_MESSAGE(result.converged, result.message);
@@ -184,7 +184,7 @@ TEST_CASE("every iteration is recorded as the state that it led to") {
     }
 }
 
-TEST_CASE("Anderson's mixing needs a fraction of the plain iterations, with a cable and with a chamber") {
+TEST_CASE("Anderson mixing needs a fraction of the plain iterations, with a cable and with a chamber") {
     const auto iterations = [](const Description& d, Solver solver) {
         const Trajectory result = solve(d, {.steps = 3, .tolerance = 1e-5, .solver = solver});
         REQUIRE_MESSAGE(result.converged, result.message);
@@ -201,7 +201,7 @@ TEST_CASE("Anderson's mixing needs a fraction of the plain iterations, with a ca
     }
 }
 
-TEST_CASE("Anderson's mixing is the inverse of what it has learned, and the plain step where caution is asked for") {
+TEST_CASE("Anderson mixing inverts the pairs it has learned; the projected tangent gives the plain step") {
     const auto model = Model::create(pushed_bar());
     REQUIRE(model);
     const Equilibrium system(*model);
@@ -239,7 +239,7 @@ TEST_CASE("Anderson's mixing is the inverse of what it has learned, and the plai
     CHECK((plain - inverse).norm() == 0);
 }
 
-TEST_CASE("a pressure beyond a chamber's largest: the message names the limit, and volume passes it") {
+TEST_CASE("a pressure beyond a chamber's largest names that limit in its message; driven by volume it passes") {
     const Trajectory by_volume =
         solve(hollow_block({ChamberTarget::Kind::volume_ratio, 12}), {.steps = 60, .tolerance = 1e-5});
     REQUIRE_MESSAGE(by_volume.converged, by_volume.message);
@@ -258,7 +258,7 @@ TEST_CASE("a pressure beyond a chamber's largest: the message names the limit, a
     CHECK(1e3 * std::stod(by_pressure.message.substr(at + words.size())) == near(largest, {.relative = 5e-3}));
 }
 
-TEST_CASE("a program that stops for another reason is not said to have met a limit of pressure") {
+TEST_CASE("a program that stops for another reason does not name a pressure limit") {
     Description d = hollow_block({ChamberTarget::Kind::pressure_Pa, 3000});
     const Trajectory result = solve(d, {.steps = 2, .tolerance = 1e-9, .iteration_limit = 1});
     CHECK_FALSE(result.converged);

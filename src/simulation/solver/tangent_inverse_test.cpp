@@ -64,7 +64,7 @@ struct Bent {
 
 }  // namespace
 
-TEST_CASE("two levels and the factor solve the tangent of a bent body alike, linear and quadratic") {
+TEST_CASE("two levels and the factor give the same solutions for a bent body, linear and quadratic") {
     for (const int order : {1, 2}) {
         const Bent b(pushed({0.06, 0.01, 0.01}, order == 1 ? 24 : 12, order == 1 ? 4 : 2, order, 1), 0.05, true);
         Eigen::MatrixXd columns(b.positions.size(), 2);
@@ -86,7 +86,7 @@ TEST_CASE("two levels and the factor solve the tangent of a bent body alike, lin
     }
 }
 
-TEST_CASE("the corners of quadratic tets are a second level as good as the factor, in few iterations") {
+TEST_CASE("the corners of quadratic tets as second level give the factor's solutions, in few iterations") {
     const Bent b(pushed({0.06, 0.01, 0.01}, 18, 3, 2, 1), 0.05, true);
     Eigen::MatrixXd columns(b.positions.size(), 2);
     columns.col(0) = b.out_of_balance;
@@ -108,7 +108,7 @@ TEST_CASE("the corners of quadratic tets are a second level as good as the facto
     }
 }
 
-TEST_CASE("a tangent with negative directions is refused or found out by both") {
+TEST_CASE("a tangent with negative directions is refused or found by factor and two levels") {
     const Bent b(pushed({0.06, 0.01, 0.01}, 24, 4, 1, 1), 0.02, false);
     const auto factor = make_direct_inverse(linalg::analyse(b.layout.pattern), true);
     REQUIRE_FALSE(factor->set(b.values, b.positions, TangentInverse::Effort::all));
@@ -118,7 +118,7 @@ TEST_CASE("a tangent with negative directions is refused or found out by both") 
         CHECK(two->solve(column, 1e-3) == TangentInverse::Outcome::indefinite);
 }
 
-TEST_CASE("a bulky body takes two levels, and gets to where its forces are in balance") {
+TEST_CASE("a bulky body is solved on two levels, and converges to equilibrium") {
     Description d = pushed({0.02, 0.02, 0.02}, 18, 18, 1, 20);
     const auto model = Model::create(d);
     REQUIRE(model);
