@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <CLI/Formatter.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,24 @@ Result<const CLI::App*> command_below(const CLI::App& app, const std::string& pa
                        nearest.empty() ? "pliant --help lists them" : "did you mean \"" + path + nearest + "\"?");
 }
 
-Status help(const CLI::App& app, const std::vector<std::string>& words) {
+/// What the help says, for programs: name, text, options and commands.
+nlohmann::ordered_json json_of(const CLI::App& command, const std::string& name) {
+    nlohmann::ordered_json json = {{"command", name}, {"text", command.get_description()}};
+    json["options"] = json["commands"] = nlohmann::ordered_json::array();
+    for (const CLI::Option* option : command.get_options()) {
+        json["options"].push_back({{"name", option->get_name(option->get_positional())},
+                                   {"text", option->get_description()},
+                                   {"required", option->get_required()},
+                                   {"takes_a_value", option->get_items_expected_max() > 0}});
+    }
+    for (const CLI::App* below : command.get_subcommands([](const CLI::App*) { return true; })) {
+        if (!below->get_group().empty())
+            json["commands"].push_back({{"name", below->get_name()}, {"text", below->get_description()}});
+    }
+    return json;
+}
+
+Status help(const CLI::App& app, const std::vector<std::string>& words, bool as_json) {
     const CLI::App* command = &app;
     std::string path, full = app.get_name();
     for (const std::string& word : words) {
@@ -32,6 +50,10 @@ Status help(const CLI::App& app, const std::vector<std::string>& words) {
         command = *below;
         path += word + " ";
         full += " " + word;
+    }
+    if (as_json) {
+        fmt::print("{}\n", json_of(*command, full).dump(1));
+        return {};
     }
     // Not command->help(), which prints the help of the running command.
     fmt::print("{}", command->get_formatter()->make_help(command, full, CLI::AppFormatMode::Normal));
@@ -44,8 +66,10 @@ void add_help(CLI::App& app, int& status) {
     auto words = std::make_shared<std::vector<std::string>>();
     CLI::App* command = app.add_subcommand("help", "print the help of a command");
     command->add_option("command", *words, "the command, as in: pliant help calibrate tensile");
+    auto json = std::make_shared<bool>(false);
+    command->add_flag("--json", *json, "print the result as JSON");
     command->footer("Example: pliant help slice");
-    on_call(*command, status, [words, &app] { return help(app, *words); });
+    on_call(*command, status, [words, json, &app] { return help(app, *words, *json); });
 }
 
 }  // namespace pliant::app

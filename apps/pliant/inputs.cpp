@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 
 #include "base/core/config.hpp"
 #include "base/core/files.hpp"
 #include "base/core/text.hpp"
+#include "geometry/open/open_geometry.hpp"
 #include "presentation/studio/examples.hpp"
 #include "robot/file/robot_file.hpp"
 
@@ -43,13 +45,26 @@ FileKind kind_of_toml(const fs::path& file) {
     return printers > robots ? FileKind::printer : FileKind::robot;
 }
 
-/// "an STL", by its file extension.
+bool is_zip(const fs::path& file) {
+    std::array<char, 2> head{};
+    std::ifstream(file, std::ios::binary).read(head.data(), head.size());
+    return head == std::array<char, 2>{'P', 'K'};
+}
+
+/// For a name whose ending says nothing, or another thing than what is in the file.
+FileKind kind_by_content(const fs::path& file) {
+    if (is_zip(file)) return FileKind::unknown;  // a damaged job: its own message says more
+    if (const FileKind kind = kind_of_toml(file); kind != FileKind::unknown) return kind;
+    return mesh::open_geometry(file) ? FileKind::geometry : FileKind::unknown;
+}
+
+/// "an STL file", by its file extension.
 std::string_view geometry_name(const std::string& file) {
-    constexpr std::array<std::pair<std::string_view, std::string_view>, 12> names{{{".stl", "an STL"},
-                                                                                   {".obj", "an OBJ"},
-                                                                                   {".ply", "a PLY"},
-                                                                                   {".off", "an OFF"},
-                                                                                   {".3mf", "a 3MF"},
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 12> names{{{".stl", "an STL file"},
+                                                                                   {".obj", "an OBJ file"},
+                                                                                   {".ply", "a PLY file"},
+                                                                                   {".off", "an OFF file"},
+                                                                                   {".3mf", "a 3MF file"},
                                                                                    {".step", "a STEP file"},
                                                                                    {".stp", "a STEP file"},
                                                                                    {".vtk", "a VTK mesh"},
@@ -85,6 +100,8 @@ std::string text_of(FileKind kind, const std::string& file, FileKind needed) {
     if (kind == FileKind::printer)
         return fmt::format("{}: is a printer file; a job is needed here, which pliant slice makes with --printer {}",
                            file, file);
+    if (kind == FileKind::robot && lower_extension(file) != ".toml")
+        return fmt::format("{}: is a robot file; a job is needed here: rename it to {}.toml and slice it", file, stem);
     if (kind == FileKind::robot)
         return fmt::format(
             "{}: is a robot file; a job is needed here: pliant slice {} --printer PRINTER.toml -o {}.zip", file, file,
@@ -122,11 +139,14 @@ FileKind kind_of(const fs::path& file) {
     const std::string extension = lower_extension(file);
     if (extension == ".toml") return kind_of_toml(file);
     if (one_of(extension, geometry)) return FileKind::geometry;
-    return job::Archive::open(file) ? FileKind::job : FileKind::unknown;
+    return job::Archive::open(file) ? FileKind::job : kind_by_content(file);
 }
 
 Status expect(FileKind needed, const std::string& file) {
     const FileKind kind = kind_of(file);
+    std::error_code ignored;
+    if (kind == FileKind::unknown && needed == FileKind::job && fs::is_regular_file(file, ignored) && !is_zip(file))
+        return input_error("{}: is not a zip archive, so it is no job; pliant slice makes one", file);
     if (kind == FileKind::unknown || kind == needed) return {};
     return input_error("{}", text_of(kind, file, needed));
 }

@@ -7,6 +7,7 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,13 +19,23 @@
 
 namespace {
 
+/// The only name that begins with the word, or the nearest one; "": none is near.
+std::string meant(const std::string& word, const std::vector<std::string>& names) {
+    std::vector<std::string> longer;
+    std::copy_if(names.begin(), names.end(), std::back_inserter(longer),
+                 [&](const std::string& name) { return word.size() > 1 && name.starts_with(word); });
+    return longer.size() == 1 ? longer.front() : pliant::nearest_name(word, names);
+}
+
 /// For a first word that is neither a command nor an option.
 int refuse(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
         names.push_back(command->get_name());
-    const std::string nearest = pliant::nearest_name(word, names);
-    fmt::print(stderr, "pliant: there is no {} \"{}\"; {}\n", word.starts_with('-') ? "option" : "command", word,
+    const bool option = word.starts_with('-');
+    const std::string nearest =
+        option ? pliant::nearest_name(word, std::vector<std::string>{"--help", "--version"}) : meant(word, names);
+    fmt::print(stderr, "pliant: there is no {} \"{}\"; {}\n", option ? "option" : "command", word,
                nearest.empty() ? "pliant --help lists them" : "did you mean \"" + nearest + "\"?");
     return pliant::app::exit_bad_input;
 }
@@ -103,6 +114,10 @@ int pliant::app::run_program(const std::vector<std::string>& words) {
             return exit_bad_input;
         }
         if (app.get_subcommands().empty() && !app.remaining().empty()) return refuse(app, app.remaining().front());
+        if (words.empty()) {  // the help says more than that a command is missing
+            fmt::print(stderr, "{}", app.help());
+            return exit_bad_input;
+        }
         return app.exit(error) == 0 ? exit_done : exit_bad_input;
     }
     return status;

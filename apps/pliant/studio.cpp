@@ -7,10 +7,12 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "base/core/process.hpp"
 #include "command.hpp"
+#include "inputs.hpp"
 #include "presentation/studio/access.hpp"
 #include "presentation/studio/server.hpp"
 #include "presentation/studio/token_file.hpp"
@@ -56,7 +58,9 @@ std::string host_name(const std::string& address) {
 /// A token generated for this run is printed as part of the address; one from a file is not, because others might read
 /// it.
 void tell(const Options& options, const std::string& address) {
-    if (options.output.quiet) {
+    if (options.output.json) {
+        fmt::print("{}\n", nlohmann::json{{"address", address}}.dump());
+    } else if (options.output.quiet) {
         fmt::print("{}\n", address);
     } else {
         fmt::print("Pliant studio: {}\n", address);
@@ -80,6 +84,8 @@ Result<std::string> choose_token(const Options& options) {
 Result<int> run_studio(const Options& options) {
     if (!options.webcam.empty() && studio::origin_of(options.webcam).empty())
         return input_error("--webcam {}: an address is needed, as in http://camera:8080/stream", options.webcam);
+    if (kind_of(options.file) == FileKind::geometry)
+        return input_error("{}: is geometry; start pliant studio without it, and drop it onto the page", options.file);
     // Blocked before any thread is created, so that all threads leave them to sigwait.
     sigset_t signals;
     sigemptyset(&signals);
@@ -122,7 +128,7 @@ void add_studio(CLI::App& app, int& status) {
     command->add_option("--webcam", options->webcam,
                         "address of a picture or MJPEG stream of the machine, as in http://camera:8080/stream");
     command->add_flag("--open", options->open, "open the page in the browser of the desktop");
-    add_output_options(*command, options->output, false);
+    add_output_options(*command, options->output, true);
     command->footer("Example: pliant studio examples/cable_gripper/gripper.toml");
     on_call(*command, status, [options] { return run_studio(*options); });
 }

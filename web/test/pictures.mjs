@@ -17,8 +17,11 @@ async function simulate(page) {
   await settled(page);
   await page.getByTestId('field').selectOption({ label: 'Von Mises stress' });
   await page.getByRole('button', { name: 'Skip' }).click();
-  for (const ratio of ['0.94', '0.88', '0.82', '0.76']) {
-    await page.getByTestId('number-flexor').fill(ratio);
+  await page.getByTestId('fine').click(); // only exact states: their curves are lines
+  await page.waitForTimeout(300);
+  await settled(page);
+  for (let ratio = 0.98; ratio > 0.755; ratio -= 0.02) {
+    await page.getByTestId('number-flexor').fill(ratio.toFixed(2));
     await page.keyboard.press('Enter');
     await page.waitForTimeout(300);
     await settled(page);

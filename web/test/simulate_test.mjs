@@ -332,6 +332,14 @@ test('two robots are shown side by side, and the same inputs move both', async (
     undefined,
     long,
   );
+  // Colours of both have one range, which follows both.
+  await page.getByTestId('field').selectOption('von_mises');
+  await page.waitForFunction(() => document.querySelectorAll('.field-legend .ticks *').length > 1, undefined, long);
+  await page.getByTestId('number-flexor').fill('0.7');
+  await page.getByTestId('number-flexor').press('Enter');
+  await page.waitForSelector('[data-testid=beside][data-state=arrived]', long);
+  await settled(page);
+  await page.getByTestId('field').selectOption('material');
   const widths = await page.evaluate(() => [...document.querySelectorAll('.views canvas')].map((c) => c.clientWidth));
   assert.ok(widths.length === 2 && Math.abs(widths[0] - widths[1]) < 3, `${widths}`);
   await page.getByTestId('compare-leave').click();

@@ -94,6 +94,10 @@ test('projector focus and size: a pattern is shown only on request, and the meas
   await next(page, 1);
   const lit = () => existsSync(join(folder, 'light', 'shown.png'));
   assert.ok(!lit(), 'nothing is lit unasked');
+  await page.getByTestId('pattern-square').fill('wide');
+  await page.getByTestId('pattern-wrong').waitFor();
+  assert.ok(await page.getByTestId('pattern-show').isDisabled());
+  await page.getByTestId('pattern-square').fill('8');
   await page.getByTestId('pattern-show').click();
   await page.waitForFunction(() => / is on/.test(document.querySelector('[data-testid=pattern-state]').textContent));
   for (let k = 0; k < 100 && !lit(); ++k) await pause(100);
@@ -103,6 +107,8 @@ test('projector focus and size: a pattern is shown only on request, and the meas
   assert.ok(!lit(), 'dark when asked for');
   await next(page, 2);
   const span = await page.evaluate(async () => (await fetch('/api/printer/measured', { method: 'POST', body: JSON.stringify({ name: 'mine.toml' }) })).json());
+  await page.getByTestId('measured-x').fill('broad');
+  assert.ok(await page.getByTestId('wizard-next').isDisabled(), 'a word is no width');
   await page.getByTestId('measured-x').fill((span.x_px * 0.05).toFixed(3));
   await page.getByTestId('measured-y').fill((span.y_px * 0.05).toFixed(3));
   await page.getByTestId('pixel-found').waitFor();
@@ -163,6 +169,7 @@ test('axes on the virtual printer: home, jog and swap; the emergency stop stays 
   assert.ok(await page.getByTestId('emergency').isVisible());
   await page.waitForFunction(() => /Operational/.test(document.querySelector('[data-testid=axes-state]').textContent), undefined, { timeout: 60_000 });
   await next(page, 4);
+  assert.match(await page.getByTestId('wizard').innerText(), /Axes and swap of mine.toml have been tested/);
   await page.getByTestId('axes-leave').click();
   assert.deepEqual(wrong, []);
 });

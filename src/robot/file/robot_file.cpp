@@ -85,7 +85,9 @@ bool is_geometry(const fs::path& file) {
     if (kind == mesh::GeometryKind::unknown) return false;
     if (kind == mesh::GeometryKind::step || kind == mesh::GeometryKind::threemf) return true;
     // Text-based mesh formats are excluded: a robot file with an error may look like one.
-    return bytes->find('\0') != std::string::npos || bytes->starts_with("solid ") || bytes->starts_with("ply\n");
+    if (bytes->starts_with("solid ") || bytes->starts_with("ply\n")) return true;
+    // Any bytes could begin a binary STL: it is one if it can be read.
+    return bytes->find('\0') != std::string::npos && mesh::open_geometry(file).has_value();
 }
 
 }  // namespace

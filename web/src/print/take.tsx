@@ -267,7 +267,7 @@ export function TakeMachine() {
       {j ? (
         <>
           <p>
-            <b>{j.manifest.name}</b>, {counted(j.manifest.layers.length, 'layer')}, for the {j.printer}
+            <b>{j.manifest.name}</b>, {counted(j.manifest.layers.length, 'layer')}, for {j.printer}
             {j.plan && `: ${clock(j.plan.seconds.total)}, ${counted(j.plan.swaps, 'swap')}`}.
           </p>
           <div class="cards">

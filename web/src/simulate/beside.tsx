@@ -20,6 +20,14 @@ const problem = signal('');
 /// Range of each view, so that a colour means the same value in both.
 export const ranges = signal<[[number, number] | null, [number, number] | null]>([null, null]);
 
+/// Writes only what has changed: the colours depend on both ranges, and the range of a view on its colours.
+export function tellRange(which: 0 | 1, low: number, high: number) {
+  const both: typeof ranges.value = [...ranges.peek()];
+  if (both[which]?.[0] === low && both[which]?.[1] === high) return;
+  both[which] = [low, high];
+  ranges.value = both;
+}
+
 async function loadScene() {
   const loaded = readPacket<SceneHead>(await (await api('/api/compare/scene')).arrayBuffer());
   const bytes = await (await api('/api/compare/frame')).arrayBuffer();
@@ -113,7 +121,7 @@ export function CanvasBeside({ options }: { options: () => ViewOptions }) {
       return; // the first view has shown the reason
     }
     made.mayGrab = () => false;
-    made.onData = (low, high) => (ranges.value = [ranges.peek()[0], [low, high]]);
+    made.onData = (low, high) => tellRange(1, low, high);
     let following = false;
     const follow = () => {
       const first = theView.peek();
@@ -184,7 +192,7 @@ export function Compared() {
           <tr>
             <th>Quantity</th>
             <th>{one.robot}</th>
-            <th>{other.robot === one.robot ? title.value : other.robot}</th>
+            <th>{other.robot === one.robot ? title.value.replace(/_/g, ' ') : other.robot}</th>
             <th>
               <span class="unseen">Unit</span>
             </th>

@@ -1,10 +1,13 @@
-// Exports the states since rest as a film, as shown in the view: WebM recorded by the browser, or GIF encoded here.
+// Exports the states since rest as a film, as shown in the view: WebM encoded by the browser, or GIF encoded here.
 import { signal } from '@preact/signals';
 import { cssColour } from '../theme';
+import type { Frame } from '../types';
 import { animatedGif, type Picture } from './gif';
 import { frames } from './tracks';
 import { theView } from './the_view';
+import type { RobotView } from './view';
 import { shownFrame } from './view_state';
+import { type EncodedFrame, webmFile } from './webm';
 
 /// Recorded share; null: not recording.
 export const filming = signal<number | null>(null);
@@ -15,42 +18,11 @@ export function stopFilming() {
   stopped = true;
 }
 
+const pause_ms = 1200; // on the last state
 const framesPerSecond = 25;
 const shortest_ms = 2000; // a film of few states is slowed down
 
-/// WebM. Null if there is nothing to show, it was cancelled, or the browser cannot record.
-export async function film(): Promise<Blob | null> {
-  const canvas = theView.peek()?.renderer.domElement;
-  const all = frames.slice();
-  if (!canvas || all.length < 2 || !('MediaRecorder' in window) || filming.peek() !== null) return null;
-  stopped = false;
-  const recorder = new MediaRecorder(canvas.captureStream(framesPerSecond), { mimeType: 'video/webm', videoBitsPerSecond: 12e6 });
-  const parts: Blob[] = [];
-  recorder.ondataavailable = (e) => parts.push(e.data);
-  const ended = new Promise<void>((resolve) => (recorder.onstop = () => resolve()));
-  const each_ms = Math.max(1000 / framesPerSecond, shortest_ms / all.length);
-  recorder.start();
-  try {
-    for (const [k, frame] of all.entries()) {
-      if (stopped) break;
-      shownFrame.value = frame;
-      filming.value = k / all.length;
-      await new Promise((next) => setTimeout(next, each_ms));
-    }
-  } finally {
-    recorder.stop();
-    await ended;
-    shownFrame.value = null;
-    filming.value = null;
-  }
-  return stopped ? null : new Blob(parts, { type: 'video/webm' });
-}
-
-const gifWidth = 640;
-const mostPictures = 80;
-const pause_ms = 1200; // on the last state
-
-/// On the stage's background: GIF has no partial transparency.
+/// The stage's background: the view's own picture is transparent there.
 function background(context: CanvasRenderingContext2D, width: number, height: number) {
   const fill = context.createLinearGradient(0, 0, 0, height);
   fill.addColorStop(0, cssColour('--stage-top'));
@@ -58,6 +30,114 @@ function background(context: CanvasRenderingContext2D, width: number, height: nu
   context.fillStyle = fill;
   context.fillRect(0, 0, width, height);
 }
+
+/// A canvas for states, as wide as given and as high as the view asks for.
+function pictureOf(view: RobotView, width: number) {
+  const shown = view.renderer.domElement;
+  const height = Math.max(2, Math.round((width * shown.height) / shown.width) & ~1);
+  const canvas = Object.assign(document.createElement('canvas'), { width, height });
+  const context = canvas.getContext('2d', { willReadFrequently: true })!;
+  context.imageSmoothingQuality = 'high';
+  const draw = (frame: Frame) => {
+    view.show(frame);
+    background(context, width, height);
+    context.drawImage(shown, 0, 0, width, height);
+  };
+  return { canvas, context, draw };
+}
+
+type Drawing = ReturnType<typeof pictureOf>;
+
+/// The view shows again what it showed.
+function finish(view: RobotView) {
+  filming.value = null;
+  const now = shownFrame.peek() ?? frames.at(-1);
+  if (now) view.setFrame(now);
+}
+
+/// What is filmed: the states, and the last one again until the end. Milliseconds from the beginning.
+function timesOf(count: number): { each_ms: number; duration_ms: number } {
+  const each_ms = Math.max(1000 / framesPerSecond, shortest_ms / count);
+  return { each_ms, duration_ms: (count - 1) * each_ms + pause_ms };
+}
+
+const bitsPerSecond = 12e6;
+
+/// Every state is a frame, however slow the computer is. Null: cancelled.
+async function encoded(picture: Drawing, all: Frame[]): Promise<Blob | null> {
+  const { width, height } = picture.canvas;
+  const { each_ms, duration_ms } = timesOf(all.length);
+  const done: EncodedFrame[] = [];
+  let wrong: Error | null = null;
+  const encoder = new VideoEncoder({
+    output: (chunk) => {
+      const data = new Uint8Array(chunk.byteLength);
+      chunk.copyTo(data);
+      done.push({ data, time_ms: chunk.timestamp / 1000, key: chunk.type === 'key' });
+    },
+    error: (e) => (wrong = e),
+  });
+  encoder.configure({ codec: 'vp8', width, height, bitrate: bitsPerSecond, framerate: 1000 / each_ms });
+  const add = (k: number, time_ms: number) => {
+    const frame = new VideoFrame(picture.canvas, { timestamp: Math.round(1000 * time_ms) });
+    encoder.encode(frame, { keyFrame: k % 100 === 0 });
+    frame.close();
+  };
+  try {
+    for (const [k, state] of all.entries()) {
+      if (stopped || wrong) break;
+      picture.draw(state);
+      add(k, k * each_ms);
+      filming.value = k / all.length;
+      await new Promise((next) => setTimeout(next, 0)); // keeps the page responsive, so that it can be cancelled
+    }
+    if (stopped) return null;
+    add(all.length, duration_ms); // players end with the last frame
+    await encoder.flush();
+  } finally {
+    if (encoder.state !== 'closed') encoder.close();
+  }
+  if (wrong) throw wrong;
+  return new Blob([webmFile(done, width, height, duration_ms)], { type: 'video/webm' });
+}
+
+/// Where the browser's encoder may not be used, as on a page from another computer: recorded as it is shown.
+async function recorded(picture: Drawing, all: Frame[]): Promise<Blob | null> {
+  const recorder = new MediaRecorder(picture.canvas.captureStream(framesPerSecond), { mimeType: 'video/webm', videoBitsPerSecond: bitsPerSecond });
+  const parts: Blob[] = [];
+  recorder.ondataavailable = (e) => parts.push(e.data);
+  const ended = new Promise<void>((resolve) => (recorder.onstop = () => resolve()));
+  const { each_ms } = timesOf(all.length);
+  recorder.start();
+  for (const [k, state] of [...all, all[all.length - 1]].entries()) {
+    if (stopped) break;
+    picture.draw(state);
+    filming.value = k / (all.length + 1);
+    await new Promise((next) => setTimeout(next, k + 1 < all.length ? each_ms : pause_ms / 2));
+  }
+  recorder.stop();
+  await ended;
+  return stopped ? null : new Blob(parts, { type: 'video/webm' });
+}
+
+/// WebM. Null if there is nothing to show, it was cancelled, or the browser cannot record.
+export async function film(): Promise<Blob | null> {
+  const view = theView.peek();
+  const all = frames.slice();
+  const encodes = 'VideoEncoder' in window;
+  if (!view || all.length < 2 || !(encodes || 'MediaRecorder' in window) || filming.peek() !== null) return null;
+  stopped = false;
+  filming.value = 0;
+  try {
+    const picture = pictureOf(view, view.renderer.domElement.width & ~1); // encoders want even sizes
+    return await (encodes ? encoded(picture, all) : recorded(picture, all));
+  } finally {
+    finish(view);
+  }
+}
+
+const gifWidth = 640;
+const mostPictures = 80;
 
 /// At most `most` of the states, including the first and the last.
 function thinned<T>(all: T[], most: number): T[] {
@@ -71,18 +151,13 @@ export async function gif(): Promise<Blob | null> {
   const all = thinned(frames.slice(), mostPictures);
   if (!view || all.length < 2 || filming.peek() !== null) return null;
   stopped = false;
-  const canvas = view.renderer.domElement;
-  const width = Math.min(gifWidth, canvas.width);
-  const height = Math.max(1, Math.round((width * canvas.height) / canvas.width));
-  const context = Object.assign(document.createElement('canvas'), { width, height }).getContext('2d', { willReadFrequently: true })!;
-  context.imageSmoothingQuality = 'high';
+  const { canvas, context, draw } = pictureOf(view, Math.min(gifWidth, view.renderer.domElement.width));
+  const { width, height } = canvas;
   const pictures: Picture[] = [];
   try {
     for (const [k, frame] of all.entries()) {
       filming.value = (0.9 * k) / all.length;
-      view.show(frame);
-      background(context, width, height);
-      context.drawImage(canvas, 0, 0, width, height);
+      draw(frame);
       pictures.push(context.getImageData(0, 0, width, height));
       await new Promise((next) => setTimeout(next, 0)); // keeps the page responsive, so that it can be cancelled
       if (stopped) return null;
@@ -92,8 +167,6 @@ export async function gif(): Promise<Blob | null> {
     const each_ms = Math.max(1000 / framesPerSecond, shortest_ms / pictures.length);
     return new Blob([animatedGif(pictures, width, height, each_ms, pause_ms)], { type: 'image/gif' });
   } finally {
-    filming.value = null;
-    const now = shownFrame.peek() ?? frames.at(-1);
-    if (now) view.setFrame(now);
+    finish(view);
   }
 }

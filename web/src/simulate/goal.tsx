@@ -152,6 +152,9 @@ export function Ranges() {
   );
 }
 
+/// Less than a nanometre is noise of the solver.
+const awayText = (mm: number) => (mm < 1e-6 ? '0 mm away' : `${+mm.toPrecision(2)} mm away`);
+
 function Waypoint({ at }: { at: WaypointFound }) {
   const kinds = Object.fromEntries((scene.value?.head.actuators ?? []).map((a) => [a.name, a.kind]));
   const values = Object.entries(at.inputs);
@@ -160,7 +163,7 @@ function Waypoint({ at }: { at: WaypointFound }) {
       <div class="row">
         <span>
           <span class={`lamp ${at.reached ? (isLinear() ? 'warn' : 'good') : 'bad'}`} /> {at.index}: {isLinear() && '≈ '}
-          {at.reached ? 'reached' : 'nearest point'}, {+at.error_mm.toPrecision(2)} mm away
+          {at.reached ? 'reached' : 'nearest point'}, {awayText(at.error_mm)}
         </span>
         <button class="small" disabled={!mayDrive.value} onClick={() => driveTo(Object.fromEntries(values.map(([name, value]) => [name, { kind: kinds[name], value }])))} data-testid={`go-${at.index}`}>
           Go there

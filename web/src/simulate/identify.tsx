@@ -1,5 +1,6 @@
 // Identifies parameters of the robot from a table of measurements.
 import { effect, signal } from '@preact/signals';
+import { enlarged } from '../print/enlarged';
 import { api, mayDrive, say, scene } from '../store';
 import { apply, pinNow, text } from './editor';
 import { begin, type IdentifyFound, result, resultNumber, Search } from './search';
@@ -114,6 +115,14 @@ function Errors({ of, errors }: { of: string; errors: IdentifyFound['fitted'] })
   );
 }
 
+function FoundPlot({ address }: { address: string }) {
+  return (
+    <button class="enlarge" aria-label="Enlarge the plot" onClick={() => (enlarged.value = { address, title: 'Measured and simulated' })} data-testid="enlarge-plot">
+      <img class="found-plot" src={address} alt="Measured values, and simulated ones before and after" />
+    </button>
+  );
+}
+
 function Found() {
   if (result.value.kind !== 'identify') return null;
   const found = result.value.found as IdentifyFound;
@@ -173,7 +182,7 @@ function Found() {
         Use these values
       </button>
       {Array.from({ length: found.plots }, (_, k) => (
-        <img class="found-plot" key={k} src={`/api/search/plots/${k}?result=${resultNumber.value}`} alt="Measured values, and simulated ones before and after" />
+        <FoundPlot key={k} address={`/api/search/plots/${k}?result=${resultNumber.value}`} />
       ))}
     </div>
   );

@@ -29,7 +29,7 @@ import {
 } from '../store';
 import type { Accuracy } from '../types';
 import { Actuators } from './actuators';
-import { CanvasBeside, Compare, Compared, comparing, ranges } from './beside';
+import { CanvasBeside, Compare, Compared, comparing, ranges, tellRange } from './beside';
 import { Build, draft, placed, takePlace } from './build';
 import { Editor, Materials, pinNow, text } from './editor';
 import { film, filming, gif, stopFilming } from './film';
@@ -103,7 +103,7 @@ function Canvas() {
         if (last) sendInput(last);
       });
     };
-    made.onData = (low, high) => comparing.peek() && (ranges.value = [[low, high], ranges.peek()[1]]);
+    made.onData = (low, high) => comparing.peek() && tellRange(0, low, high);
     made.onRange = (low, high) => (look.fieldRange.value = [low, high]);
     made.onPick = (pick, rest, inward) => {
       if (look.measuring.peek()) return takePick(pick), true;
@@ -591,11 +591,13 @@ export function Simulate() {
           {comparing.value && <CanvasBeside options={options} />}
         </div>
         <SectionHandle />
-        <LookBar />
-        <div class="stage-right">
-          <Pin />
-          <Compare />
-          <Export />
+        <div class="stage-top">
+          <LookBar />
+          <div class="stage-right">
+            <Pin />
+            <Compare />
+            <Export />
+          </div>
         </div>
         <Legend />
         <ViewCube />

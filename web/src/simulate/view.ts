@@ -490,7 +490,12 @@ export class RobotView {
       if (v < low) low = v;
       if (v > high) high = v;
     }
-    if (!(high > low)) high = low + Math.max(1e-9, Math.abs(low) * 1e-6);
+    // Differences this small, in the legend's unit, are the solver's noise, as at rest: one colour, not a pattern.
+    const [noise, least] = [1e-6 / scale, 0.01 / scale];
+    if (!(high - low > noise)) {
+      if (Math.abs(low) <= noise) low = 0;
+      high = low + least;
+    }
     this.onData(low * scale, high * scale);
     if (range) [low, high] = [range[0] / scale, range[1] / scale];
     this.onRange(low * scale, high * scale);

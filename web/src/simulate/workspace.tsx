@@ -42,6 +42,11 @@ export function samplesOf(count: number, places: number, inBetween: number): num
   return sheets + inBetween;
 }
 
+function rangeText(low: number, high: number): string {
+  const [from, to] = [low.toFixed(1), high.toFixed(1)];
+  return from === to ? from : `${from} to ${to}`;
+}
+
 function Found() {
   const f = found.value;
   if (!f) return null;
@@ -69,7 +74,7 @@ function Found() {
               </th>
               {[0, 1, 2].map((k) => (
                 <td key={k}>
-                  {box.low_mm[k].toFixed(1)} to {box.high_mm[k].toFixed(1)}
+                  {rangeText(box.low_mm[k], box.high_mm[k])}
                 </td>
               ))}
             </tr>
@@ -100,10 +105,12 @@ export function Workspace() {
         Samples per range
         <NumberField value={side.value} range={{ from: 2, to: 60 }} unit="" step={1} label="Samples along each actuator's range" testId="workspace-side" onValue={(v) => void (side.value = Math.round(v))} />
       </label>
-      <label class="row">
-        Samples in between
-        <NumberField value={between.value} range={{ from: 0, to: 2000 }} unit="" step={1} label="Samples spread in between" testId="workspace-between" onValue={(v) => void (between.value = Math.round(v))} />
-      </label>
+      {used.length > 1 && (
+        <label class="row">
+          Samples in between
+          <NumberField value={between.value} range={{ from: 0, to: 2000 }} unit="" step={1} label="Samples spread in between" testId="workspace-between" onValue={(v) => void (between.value = Math.round(v))} />
+        </label>
+      )}
       <p class="quiet" data-testid="workspace-count">{counted(count, 'sample')} will be solved.</p>
       <Search
         kind="workspace"

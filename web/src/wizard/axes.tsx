@@ -1,4 +1,5 @@
 // Axes and swap: home, jog, limits, and a test swap, on the virtual printer or the machine.
+import { signal } from '@preact/signals';
 import { useState } from 'preact/hooks';
 import { counted } from '../counted';
 import { ByHand } from '../print/print';
@@ -12,6 +13,10 @@ import { device, file, projectorAt, setup } from './state';
 import { saveTest, sliceTest } from './test_job';
 import type { Step } from './wizard';
 
+/// Moves of vats that were requested since the machine was connected.
+const moved = signal(0);
+const swapMoves = () => ((info.value?.machine?.vats.length ?? 0) > 1 ? 3 : 2);
+
 const connected = () => Boolean(info.value?.machine && now.value);
 
 function Connect() {
@@ -20,6 +25,7 @@ function Connect() {
   const [busy, setBusy] = useState(false);
   const begin = async (real: boolean) => {
     setBusy(true);
+    moved.value = 0;
     let wrong = await sliceTest(swapRobot(setup.value!), { 'any-vat': true });
     if (!wrong && real) wrong = await saveTest('axes_test');
     if (!wrong) {
@@ -103,11 +109,10 @@ function Jog() {
 }
 
 function Swap() {
-  const [tried, setTried] = useState(0);
   const vats = info.value?.machine?.vats ?? [];
   const slot = connected() ? now.value!.machine.slot : 0;
   const ready = connected() && maySteer.value && flags.value.ready;
-  const fetch = (to: number) => void host('printer/vat', { slot: to }).then((done) => done && setTried((n) => n + 1));
+  const fetch = (to: number) => void host('printer/vat', { slot: to }).then((done) => done && (moved.value += 1));
   return (
     <>
       <p>Fetch one vat, swap it for the other, then return it: one complete swap. Watch the hooks.</p>
@@ -125,7 +130,7 @@ function Swap() {
           Return the vat
         </button>
       </div>
-      {tried > 0 && <p class="quiet">{counted(tried, 'move')} requested, 3 make a complete swap.</p>}
+      {moved.value > 0 && <p class="quiet">{moved.value < swapMoves() ? `${counted(moved.value, 'move')} requested, ${swapMoves()} make a complete swap.` : 'That was a complete swap.'}</p>}
     </>
   );
 }
@@ -134,7 +139,15 @@ function Ready() {
   return (
     <>
       <p>
-        Axes and swap of <b>{file.value}</b> have been tested.
+        {moved.value >= swapMoves() ? (
+          <>
+            Axes and swap of <b>{file.value}</b> have been tested.
+          </>
+        ) : (
+          <>
+            The axes of <b>{file.value}</b> are homed; a complete swap has not been tested yet.
+          </>
+        )}
       </p>
       {connected() && (
         <button disabled={!mayDrive.value} onClick={() => post('/api/print/leave')} data-testid="axes-leave">

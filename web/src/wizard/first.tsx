@@ -12,6 +12,10 @@ import type { Step } from './wizard';
 /// Revision of the job when slicing was requested.
 const before = signal(0);
 
+/// Revision of a job of another part that was chosen all the same.
+const accepted = signal(-1);
+const ofAnother = () => Boolean(scene.value && job.value && job.value.manifest.name !== scene.value.head.robot && job.value.revision !== accepted.value);
+
 function go(to: Section) {
   section.value = to;
   location.hash = to;
@@ -65,9 +69,14 @@ export const firstSteps = (): Step[] => {
               {job.value.plan && `, ${clock(job.value.plan.seconds.total)}`}, {job.value.issues.length === 0 ? 'no issues found' : counted(job.value.issues.length, 'issue')}.
             </p>
           )}
+          {job.value && ofAnother() && (
+            <button onClick={() => (accepted.value = job.value!.revision)} data-testid="first-use-job">
+              Print this job instead
+            </button>
+          )}
         </>
       ),
-      lacks: () => (job.value ? '' : 'slice the robot'),
+      lacks: () => (!job.value ? 'slice the robot' : ofAnother() ? 'the current job is of another part: slice the robot' : ''),
     },
     {
       name: 'Print',

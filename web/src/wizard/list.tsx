@@ -1,4 +1,5 @@
 // The list of wizards.
+import { Icon } from '../icons';
 import { mayDrive } from '../store';
 import { open, titles, type WizardName } from './state';
 
@@ -20,6 +21,7 @@ export function Wizards() {
             <button class="item" disabled={!mayDrive.value} onClick={() => open(name)} data-testid={`wizard-${name}`}>
               <b>{titles[name]}</b>
               <span class="quiet">{about[name]}</span>
+              <Icon name="right" />
             </button>
           </li>
         ))}

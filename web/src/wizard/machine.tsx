@@ -1,6 +1,7 @@
 // Machine setup: a printer file based on a built-in one, the connected board, axes, vats.
 import { signal } from '@preact/signals';
 import { useEffect, useState } from 'preact/hooks';
+import { counted } from '../counted';
 import { Icon } from '../icons';
 import { printer } from '../make/order';
 import { api, mayDrive, post, say, section } from '../store';
@@ -22,6 +23,11 @@ const from = signal('tower');
 const fileName = signal('my_printer.toml');
 const title = signal('');
 const stores: Record<string, string> = { tower: 'tower of vats', wall: 'wall of vats', table: 'turntable or conveyor', none: 'one vat' };
+
+function factsOf(p: BuiltIn): string[] {
+  const store = p.store === 'none' ? stores.none : `${stores[p.store]}, ${counted(p.vats, 'vat')}`;
+  return [store, `${p.size_mm.map((v) => v.toFixed(0)).join(' × ')} mm`, `pixel ${p.pixel_um.toFixed(0)} µm`, p.dialect.replace(/^m/, 'M')];
+}
 
 function Choose() {
   const [list, setList] = useState<BuiltIn[]>([]);
@@ -45,8 +51,10 @@ function Choose() {
             <input type="radio" name="from" checked={from.value === p.name} onChange={() => (from.value = p.name)} data-testid={`from-${p.name}`} />
             <span>
               <b>{p.title}</b>
-              <span class="quiet">
-                {stores[p.store]}, {p.vats} {p.vats === 1 ? 'vat' : 'vats'} · {p.size_mm.map((v) => v.toFixed(0)).join(' × ')} mm · pixel {p.pixel_um.toFixed(0)} µm · {p.dialect}
+              <span class="quiet facts">
+                {factsOf(p).map((fact) => (
+                  <span>{fact}</span>
+                ))}
               </span>
             </span>
           </label>
@@ -178,6 +186,10 @@ function Port() {
 const axisTexts = signal<Record<string, string>>({});
 const axisFields = ['min', 'max', 'speed', 'acceleration', 'homing_speed'] as const;
 type AxisField = (typeof axisFields)[number];
+function unitOf(a: AxisSetup, f: AxisField): string {
+  const length = a.rotary ? '°' : 'mm';
+  return f === 'min' || f === 'max' ? length : f === 'acceleration' ? `${length}/s²` : `${length}/s`;
+}
 const shownOf = (a: AxisSetup, f: AxisField) => axisTexts.value[`${a.name}.${f}`] ?? String(a[f]);
 
 /// Typed values that differ, as changes of the file.
@@ -216,17 +228,17 @@ export function AxesTable() {
                 {a.name} <span class="quiet">{a.letter}</span>
               </th>
               {axisFields.map((f) => (
-                <td>
+                <td data-head={heads[f]}>
                   <SetupNumber
                     label={`${a.name}: ${heads[f]}`}
                     value={shownOf(a, f)}
-                    unit={f === 'min' || f === 'max' ? (a.rotary ? '°' : 'mm') : f === 'acceleration' ? 'mm/s²' : 'mm/s'}
+                    unit={unitOf(a, f)}
                     testId={`axis-${a.name}-${f}`}
                     onValue={(text) => (axisTexts.value = { ...axisTexts.value, [`${a.name}.${f}`]: text })}
                   />
                 </td>
               ))}
-              <td>{a.home}</td>
+              <td data-head="homes to">{a.home}</td>
             </tr>
           ))}
         </tbody>

@@ -10,9 +10,19 @@ const lit = signal('');
 const seconds = signal('60');
 const square = signal('8');
 
+const number = (text: string) => Number(text.trim().replace(',', '.') || NaN);
+
+/// Why no pattern can be shown; "": it can.
+function patternWrong(): string {
+  const [edge, given] = [number(square.value), number(seconds.value)];
+  if (!(Number.isInteger(edge) && edge >= 1)) return 'The square size is a whole number of pixels, 1 or more.';
+  if (!(given > 0 && given <= 3600)) return 'The duration is above 0 s and at most 3600 s.';
+  return '';
+}
+
 async function show(pattern: string) {
-  const given = Number(seconds.value);
-  if (await post('/api/printer/pattern', { name: file.value, projector: projectorAt.value, pattern, square: Number(square.value) || 1, seconds: given })) {
+  const given = number(seconds.value);
+  if (await post('/api/printer/pattern', { name: file.value, projector: projectorAt.value, pattern, square: number(square.value), seconds: given })) {
     lit.value = pattern;
     setTimeout(() => lit.value === pattern && (lit.value = ''), 1000 * given);
   }
@@ -23,7 +33,8 @@ async function dark() {
 }
 
 function Pattern({ pattern, children }: { pattern: string; children?: preact.ComponentChildren }) {
-  const address = `/api/printer/pattern/${pattern}?name=${encodeURIComponent(file.value)}&square=${square.value || 1}`;
+  const address = `/api/printer/pattern/${pattern}?name=${encodeURIComponent(file.value)}&square=${Math.max(1, Math.round(number(square.value)) || 1)}`;
+  const why = patternWrong();
   return (
     <div class="pattern">
       <img src={address} alt={`Test pattern ${pattern}`} data-testid="pattern-picture" />
@@ -34,7 +45,7 @@ function Pattern({ pattern, children }: { pattern: string; children?: preact.Com
           <SetupNumber label="Duration" value={seconds.value} unit="s" onValue={(t) => (seconds.value = t)} testId="pattern-seconds" />
         </label>
         <div class="row left wrap">
-          <button class="primary" disabled={!mayDrive.value || !projectorAt.value} onClick={() => void show(pattern)} data-testid="pattern-show">
+          <button class="primary" disabled={!mayDrive.value || !projectorAt.value || why !== ''} onClick={() => void show(pattern)} data-testid="pattern-show">
             Show
           </button>
           <button disabled={!lit.value} onClick={() => void dark()} data-testid="pattern-dark">
@@ -44,6 +55,11 @@ function Pattern({ pattern, children }: { pattern: string; children?: preact.Com
             {lit.value ? `${lit.value} is on` : 'dark'}
           </span>
         </div>
+        {why && (
+          <p class="problems" role="alert" data-testid="pattern-wrong">
+            {why}
+          </p>
+        )}
       </div>
     </div>
   );
@@ -80,13 +96,26 @@ const found = signal<Measured | null>(null);
 const ask = (body: object) =>
   api('/api/printer/measured', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify({ name: file.value, ...body }) }).then((r) => r.json() as Promise<Measured>);
 
+function sizeText(found: number, before: number): string {
+  const percent = 100 * (found / before - 1);
+  if (Math.abs(percent) < 0.005) return 'as in the file';
+  return `with the value in the file, parts came out ${Math.abs(percent).toFixed(2)} % too ${percent > 0 ? 'large' : 'small'}`;
+}
+
+const typed = () => across.value.trim() !== '' || along.value.trim() !== '';
+function sizeLacks(): string {
+  if (!typed() || found.value?.pixel_um) return '';
+  const bad = [across.value, along.value].some((t) => !(number(t) > 0));
+  return bad ? 'width and height are lengths above 0, in mm' : 'computing…';
+}
+
 function Size() {
   const [usual, setUsual] = useState<Measured | null>(null);
   useEffect(() => {
     ask({}).then(setUsual).catch((e: Error) => say(e.message));
   }, [file.value]);
   useEffect(() => {
-    const [x, y] = [across.value, along.value].map((t) => Number(t.replace(',', '.')));
+    const [x, y] = [across.value, along.value].map(number);
     found.value = null;
     if (!(x > 0 && y > 0)) return;
     ask({ x_mm: x, y_mm: y }).then((m) => (found.value = m)).catch((e: Error) => say(e.message));
@@ -110,8 +139,8 @@ function Size() {
       )}
       {f?.pixel_um && (
         <p data-testid="pixel-found" data-um={f.pixel_um}>
-          One pixel is <b>{f.pixel_um.toFixed(3)} µm</b>: parts came out {(100 * (f.pixel_um / f.pixel_um_now - 1)).toFixed(2)} % too {f.pixel_um > f.pixel_um_now ? 'large' : 'small'}.
-          {Math.abs(f.off_percent!) > 0.2 && <span class="problems-inline"> Width and height of a pixel differ by {f.off_percent!.toFixed(2)} %: square the projector to the vat floor first.</span>}
+          One pixel is <b>{f.pixel_um.toFixed(3)} µm</b>: {sizeText(f.pixel_um, f.pixel_um_now)}.
+          {Math.abs(f.off_percent!) > 0.2 && <span class="problems-inline"> Width and height of a pixel differ by {Math.abs(f.off_percent!).toFixed(2)} %: square the projector to the vat floor first.</span>}
         </p>
       )}
     </Pattern>
@@ -141,7 +170,7 @@ export const projectorSteps = (): Step[] => [
     ),
     leave: async () => (await dark(), true),
   },
-  { name: 'Size', body: () => <Size />, leave: async (tell) => (await dark(), writeSize(tell)), next: found.value?.pixel_um ? 'Save and continue' : 'Leave as it is' },
+  { name: 'Size', body: () => <Size />, lacks: sizeLacks, leave: async (tell) => (await dark(), writeSize(tell)), next: typed() ? 'Save and continue' : 'Leave as it is' },
   {
     name: 'Ready',
     body: () => (
