@@ -16,10 +16,9 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::size_t grain = 4096;  // numbers per parallel piece
-constexpr int degree = 2;            // of the smoothing polynomial
-// The upper part of the spectrum that is smoothed, with a coarse level of groups and with one of corners.
-constexpr float smoothed_of_groups = 0.06F, smoothed_of_corners = 0.06F;
+constexpr std::size_t grain = 4096;     // numbers per parallel piece
+constexpr int degree = 2;               // of the smoothing polynomial
+constexpr float smoothed_part = 0.06F;  // lower end of the part of the spectrum that is smoothed, of its upper end
 constexpr int first_powers = 12, later_powers = 1;
 constexpr int powers_of_corners = 6;  // always the same number: results of earlier solves must not change them
 /// Cost of making a coarse level, in iterations (measured), and the number of iterations after which its quality shows.
@@ -65,7 +64,6 @@ struct TwoLevel::State {
           kind(of),
           matrix(std::move(rows)),
           space(std::move(level)),
-          smoothed_part(kind == Kind::groups ? smoothed_of_groups : smoothed_of_corners),
           safety(kind == Kind::groups ? safety_of_groups : safety_of_corners),
           coarse(space->pattern(), Precision::single_),
           inverse_diagonal(9 * static_cast<std::size_t>(pattern.nodes)),
@@ -111,7 +109,6 @@ struct TwoLevel::State {
     std::size_t columns = 1;
     BlockRows matrix;
     std::unique_ptr<CoarseLevel> space;
-    float smoothed_part;  ///< of the spectrum; the rest is left to the coarse level
     float safety;
     Cholesky coarse;
     AlignedArray<float> inverse_diagonal;

@@ -264,23 +264,8 @@ void Equilibrium::place_supports(const Controls& controls, Eigen::VectorXd& x) c
     model_->held().place(model_->description().supports, model_->mesh().points, controls.support_share, x);
 }
 
-double Equilibrium::drive_energy(const Drive& drive, std::size_t actuator, double g) const {
-    switch (drive.kind) {
-        case Drive::Kind::measure:
-            return 0;
-        case Drive::Kind::multiplier:
-            return drive.value * g;
-        case Drive::Kind::gas:
-            // Work of the ambient pressure and of the gas between rest and g, at constant temperature.
-            return model_->description().ambient_pressure_Pa * g -
-                   drive.value * std::log(g / actuators_[actuator].rest_measure());
-    }
-    return 0;
-}
-
 double Equilibrium::gas_compliance(const Drive& drive, double multiplier) const {
-    const double absolute = model_->description().ambient_pressure_Pa - multiplier;
-    return drive.value / (absolute * absolute);  // g = value / (p_ambient - m)
+    return sim::gas_compliance(drive, multiplier, model_->description().ambient_pressure_Pa);
 }
 
 Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) const {
@@ -373,17 +358,10 @@ void Equilibrium::fill_actuators(const State& state, const Controls& controls, E
     e.multiplier = state.multiplier;
     e.constraint_violation = Eigen::VectorXd::Zero(state.multiplier.size());
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
-        const auto i = static_cast<Eigen::Index>(a);
-        const Drive& drive = controls.drives[a];
-        const double g = actuators_[a].measure(view(state.x), controls.shares[a]);
-        e.energy_J += drive_energy(drive, a, g);
-        if (drive.kind == Drive::Kind::multiplier) e.multiplier[i] = drive.value;
-        if (drive.kind == Drive::Kind::gas)
-            e.multiplier[i] = model_->description().ambient_pressure_Pa - drive.value / g;
-        if (drive.kind != Drive::Kind::measure) continue;
-        e.constraint_violation[i] = (g - drive.value) / actuators_[a].rest_measure();
-        const bool slack = actuators_[a].only_pulls() && !(e.multiplier[i] > 0);
-        e.violation = std::max(e.violation, slack ? e.constraint_violation[i] : std::fabs(e.constraint_violation[i]));
+        const Actuator& one = actuators_[a];
+        const double g = one.measure(view(state.x), controls.shares[a]);
+        add_drive(controls.drives[a], a, {g, one.rest_measure(), one.only_pulls()},
+                  model_->description().ambient_pressure_Pa, e);
     }
 }
 

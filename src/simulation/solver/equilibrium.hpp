@@ -213,8 +213,6 @@ private:
     [[nodiscard]] Drive drive(std::size_t actuator, double target, double offset) const;
     [[nodiscard]] Drive drive_at(std::size_t actuator, double time) const;
     [[nodiscard]] bool rim_is_held(const Wall& wall) const;
-    /// Energy of an actuator with prescribed multiplier or gas, at measure g > 0.
-    [[nodiscard]] double drive_energy(const Drive& drive, std::size_t actuator, double g) const;
     [[nodiscard]] const contact::Contact* contact(const Controls& controls) const {
         return model_->contact(controls.met);
     }

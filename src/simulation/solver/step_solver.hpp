@@ -39,4 +39,10 @@ struct StepOutcome {
                                      const StepSettings& settings, State& state, const Progress& progress,
                                      std::optional<Evaluation> known = {});
 
+/// Record of an iteration that ended with this evaluation.
+[[nodiscard]] IterationRecord record(Solver solver, int iteration, const Evaluation& e, double alpha);
+/// Reasons for StepOutcome: the iterations were not enough; or no step of the line search was accepted.
+[[nodiscard]] std::string no_convergence(int iterations, double residual);
+[[nodiscard]] std::string no_step(Evaluation::Flaw obstacle, double residual);
+
 }  // namespace pliant::sim

@@ -137,6 +137,10 @@ private:
     int most_iterations_;
 };
 
+double pairs_of(const linalg::SymmetricPattern& pattern) {
+    return 2 * static_cast<double>(pattern.node_row.size()) - pattern.nodes;
+}
+
 }  // namespace
 
 std::unique_ptr<TangentInverse> make_direct_inverse(std::shared_ptr<const linalg::Analysis> analysis, bool exact) {
@@ -153,14 +157,6 @@ std::unique_ptr<TangentInverse> make_nested_inverse(const linalg::SymmetricPatte
     constexpr int most_iterations = 40;  // with more of them, a factor is faster
     return std::make_unique<TwoLevelInverse>(linalg::TwoLevel(pattern, std::move(corners)), most_iterations);
 }
-
-namespace {
-
-double pairs_of(const linalg::SymmetricPattern& pattern) {
-    return 2 * static_cast<double>(pattern.node_row.size()) - pattern.nodes;
-}
-
-}  // namespace
 
 bool nested_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work) {
     constexpr double even = 6000;  // as below

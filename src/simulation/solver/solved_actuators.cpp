@@ -1,0 +1,52 @@
+#include "simulation/solver/solved_actuators.hpp"
+
+#include <algorithm>
+
+#include "simulation/solver/drives.hpp"
+#include "simulation/solver/held_multipliers.hpp"
+
+namespace pliant::sim {
+
+SolvedActuators::SolvedActuators(const std::vector<Drive>& drives, const std::vector<bool>& only_pulls,
+                                 const std::vector<double>& rest_measures) {
+    for (std::size_t a = 0; a < drives.size(); ++a) {
+        if (drives[a].kind == Drive::Kind::multiplier) continue;
+        const auto actuator = static_cast<Eigen::Index>(a);
+        all_.push_back({actuator, only_pulls[a], drives[a].kind == Drive::Kind::measure, rest_measures[a]});
+        actuators_.push_back(actuator);
+        only_pull_.push_back(only_pulls[a]);
+    }
+    scale_.resize(count());
+    for (std::size_t k = 0; k < all_.size(); ++k) scale_[static_cast<Eigen::Index>(k)] = all_[k].rest_measure;
+}
+
+Eigen::VectorXd SolvedActuators::scaled(const Eigen::VectorXd& multiplier) const {
+    return multiplier(actuators_).cwiseProduct(scale_);
+}
+
+Eigen::VectorXd SolvedActuators::compliances(const std::vector<Drive>& drives, const Eigen::VectorXd& multiplier,
+                                             double ambient_pressure_Pa) const {
+    Eigen::VectorXd compliance = Eigen::VectorXd::Zero(count());
+    for (std::size_t k = 0; k < all_.size(); ++k) {
+        const Drive& drive = drives[static_cast<std::size_t>(all_[k].actuator)];
+        const double rest = all_[k].rest_measure;
+        if (drive.kind == Drive::Kind::gas)
+            compliance[static_cast<Eigen::Index>(k)] =
+                gas_compliance(drive, multiplier[all_[k].actuator], ambient_pressure_Pa) / (rest * rest);
+    }
+    return compliance;
+}
+
+Eigen::VectorXd SolvedActuators::change(const Eigen::MatrixXd& S, const Eigen::VectorXd& violation,
+                                        const Eigen::VectorXd& scaled_now) const {
+    return multipliers_that_hold(S, violation + S * scaled_now, only_pull_) - scaled_now;
+}
+
+void SolvedActuators::add(const Eigen::VectorXd& change, Eigen::VectorXd& multiplier) const {
+    multiplier(actuators_) += change.cwiseQuotient(scale_);
+    for (const Constraint& one : all_) {
+        if (one.only_pulls) multiplier[one.actuator] = std::max(multiplier[one.actuator], 0.0);
+    }
+}
+
+}  // namespace pliant::sim

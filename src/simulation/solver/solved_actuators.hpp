@@ -1,0 +1,49 @@
+// The actuators of a step whose multipliers are unknown: those with a prescribed measure, and sealed gas. What a step
+// does with them is the same on one machine and on many ranks (simulation/distributed).
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "simulation/solver/equilibrium.hpp"
+
+namespace pliant::sim {
+
+class SolvedActuators {
+public:
+    struct Constraint {
+        Eigen::Index actuator = 0;
+        bool only_pulls = false;      ///< a cable: it may be shorter than prescribed
+        bool drives_measure = false;  ///< false: sealed gas
+        double rest_measure = 0;
+    };
+
+    /// `only_pulls` and `rest_measures` are over all actuators.
+    SolvedActuators(const std::vector<Drive>& drives, const std::vector<bool>& only_pulls,
+                    const std::vector<double>& rest_measures);
+
+    [[nodiscard]] const std::vector<Constraint>& all() const { return all_; }
+    [[nodiscard]] const std::vector<Eigen::Index>& actuators() const { return actuators_; }
+    [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(all_.size()); }
+    [[nodiscard]] bool empty() const { return all_.empty(); }
+
+    /// (solved) multipliers times the measures at rest: energies, so that all are comparable.
+    [[nodiscard]] Eigen::VectorXd scaled(const Eigen::VectorXd& multiplier) const;
+    /// (solved) compliance of sealed gas in the same scale, in addition to that of the body.
+    [[nodiscard]] Eigen::VectorXd compliances(const std::vector<Drive>& drives, const Eigen::VectorXd& multiplier,
+                                              double ambient_pressure_Pa) const;
+    /// (solved) change of the scaled multipliers that removes the violation of the constraints. `S`: A^T H^-1 A with
+    /// the compliances on its diagonal; `violation`: what is left after the unconstrained step.
+    [[nodiscard]] Eigen::VectorXd change(const Eigen::MatrixXd& S, const Eigen::VectorXd& violation,
+                                         const Eigen::VectorXd& scaled_now) const;
+    /// Adds such a change to the multipliers of all actuators. Cables that would push become slack.
+    void add(const Eigen::VectorXd& change, Eigen::VectorXd& multiplier) const;
+
+private:
+    std::vector<Constraint> all_;
+    std::vector<Eigen::Index> actuators_;
+    std::vector<bool> only_pull_;
+    Eigen::VectorXd scale_;
+};
+
+}  // namespace pliant::sim
