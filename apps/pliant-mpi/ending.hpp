@@ -1,12 +1,12 @@
-// What a rank says when the job ends from outside: a node was lost, the time is over, somebody has cancelled it.
+// The message if the job is ended from outside: a node was lost, the time limit was reached, or it was cancelled.
 #pragma once
 
 #include <string>
 
 namespace pliant::app {
 
-/// From now on SIGTERM and SIGINT print this line and end the process with exit status 1. For the main thread; an empty
-/// text ends it silently.
+/// From now on SIGTERM and SIGINT print this line and end the process with exit status 1; silently if the text is
+/// empty. Called by the main thread.
 void say_at_end(const std::string& text);
 
 }  // namespace pliant::app

@@ -21,7 +21,7 @@ using namespace pliant;
 using sim::distributed::Preconditioner;
 
 constexpr const char* about =
-    "Pliant on many machines: one robot, of which each rank has a part. Start it by mpirun or srun.";
+    "Simulates one robot on many machines: each rank has a part of it. Start it with mpirun or srun.";
 
 void add_options(CLI::App& command, app::Options& options) {
     command.add_option("robot", options.robot, "robot file (TOML)")->required();
@@ -38,15 +38,15 @@ void add_options(CLI::App& command, app::Options& options) {
         ->check(CLI::Range(0, 100000));
     command
         .add_option("--checkpoint-every", options.checkpoint_every,
-                    "keep the run every so many steps, in FOLDER.checkpoint; 0: never (1)")
+                    "write a checkpoint every so many steps, to FOLDER.checkpoint; 0: never (1)")
         ->check(CLI::Range(0, 100000));
-    command.add_flag("--resume", options.resume, "go on from FOLDER.checkpoint, on any number of ranks");
+    command.add_flag("--resume", options.resume, "continue from FOLDER.checkpoint, on any number of ranks");
     command.add_flag("-q,--quiet", options.quiet, "print errors only");
     command.add_flag("--json", options.json, "print the summary as JSON");
     command.footer("Example: mpirun -n 4 pliant-mpi simulate examples/cable_gripper/gripper.toml -o out");
 }
 
-/// The same on all ranks; root tells people.
+/// Runs on all ranks; root prints.
 int run(const sim::distributed::Ranks& ranks, int argc, char** argv) {
     CLI::App app(about, "pliant-mpi");
     app.set_version_flag("--version", std::string(PLIANT_VERSION));
@@ -66,7 +66,7 @@ int run(const sim::distributed::Ranks& ranks, int argc, char** argv) {
     return status.error().cause == Cause::input ? app::exit_bad_input : app::exit_failed;
 }
 
-/// One rank cannot go on, and the others wait for it: all end.
+/// One rank cannot continue, and the others wait for it: ends all.
 int give_up(const char* why) {
     int rank = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -78,9 +78,9 @@ int give_up(const char* why) {
 
 }  // namespace
 
-// Only what breaks while an error is told can escape, and that ends the program in any case.
+// Only an exception while an error is printed can escape, and the program is ending then.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
-    // Errors come back as values, and signals do what they do to any program.
+    // Errors are returned as values, and signals have their usual effect.
     PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
     if (PetscInitializeNoArguments() != 0) return app::exit_failed;
     PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);

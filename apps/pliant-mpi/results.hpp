@@ -1,4 +1,4 @@
-// What `pliant-mpi simulate` writes at its end, in the formats of `pliant simulate`.
+// The results of `pliant-mpi simulate`, in the formats of `pliant simulate`.
 #pragma once
 
 #include <filesystem>
@@ -8,12 +8,12 @@
 
 namespace pliant::app {
 
-/// summary.json, steps.csv, markers.csv, iterations.csv and, from the folder `kept`, frames. Replaces `folder` whole,
-/// or leaves it.
+/// summary.json, steps.csv, markers.csv, iterations.csv and, from the folder `kept`, frames. Replaces the whole
+/// `folder`, or leaves it unchanged.
 [[nodiscard]] Status write_results(const std::filesystem::path& folder, const std::filesystem::path& kept,
                                    const report::Simulation& simulation);
 
-/// The last state, in a few lines.
+/// The last state in a few lines.
 void print_summary(const report::Simulation& simulation, int ranks);
 
 }  // namespace pliant::app

@@ -21,23 +21,23 @@
 #include "robot/file/robot_file.hpp"
 #include "simulation/distributed/abilities.hpp"
 #include "simulation/distributed/checkpoint.hpp"
+#include "simulation/distributed/distribute.hpp"
 #include "simulation/distributed/frames.hpp"
-#include "simulation/distributed/meeting.hpp"
 #include "simulation/distributed/run.hpp"
-#include "simulation/distributed/spread.hpp"
+#include "simulation/distributed/self_contact_check.hpp"
 #include "simulation/scene/build_description.hpp"
 
 namespace pliant::app {
 namespace {
 
 namespace fs = std::filesystem;
-using sim::distributed::Balance;
 using sim::distributed::Checkpoint;
+using sim::distributed::DistributedEquilibrium;
 using sim::distributed::Frames;
 using sim::distributed::Ranks;
 
-/// What root keeps of the robot after it is spread, for the results; nothing on the other ranks.
-struct Told {
+/// What root needs for the results after the robot is distributed; empty on other ranks.
+struct RobotData {
     std::string name;
     mesh::TetMesh mesh;
     std::vector<std::string> notes;
@@ -45,10 +45,10 @@ struct Told {
     std::optional<sim::ContactRules> contact;
 };
 
-/// What all ranks know before the robot is spread.
+/// Settings that all ranks need before the robot is distributed.
 struct Job {
     sim::Program program;
-    std::string origin;  ///< tells checkpoints apart
+    std::string origin;  ///< identifies the robot of a checkpoint
 };
 
 fs::path kept_folder(const Options& options) {
@@ -64,8 +64,8 @@ std::string digest_of(const Options& options, const std::string& text, const mes
     return digest.text();
 }
 
-/// On root: the robot, meshed and tied together.
-Result<sim::Description> read(const Options& options, Job& job, Told& told) {
+/// On root: reads and meshes the robot.
+Result<sim::Description> read(const Options& options, Job& job, RobotData& data) {
     std::vector<std::string> assignments = options.assignments;
     if (options.steps > 0) assignments.push_back(fmt::format("program.steps={}", options.steps));
     Result<robot::Robot> robot = robot::load_robot(options.robot, assignments);
@@ -77,16 +77,16 @@ Result<sim::Description> read(const Options& options, Job& job, Told& told) {
     Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, silent);
     if (!mesh) return tl::unexpected(mesh.error());
     job = {robot->program, digest_of(options, *text, *mesh)};
-    told.name = robot->name;
-    told.notes = mesh->notes;
+    data.name = robot->name;
+    data.notes = mesh->notes;
     Result<sim::Description> description = robot::build_description(*robot, std::move(*mesh));
     if (!description) return tl::unexpected(description.error());
     if (Status able = sim::distributed::check_able(*description, robot->program); !able)
         return input_error("{}: {}", options.robot, able.error().message);
-    told.mesh = description->mesh;
-    told.contact = description->contact;
-    told.notes.insert(told.notes.end(), description->notes.begin(), description->notes.end());
-    told.mesh_s = watch.read_s();
+    data.mesh = description->mesh;
+    data.contact = description->contact;
+    data.notes.insert(data.notes.end(), description->notes.begin(), description->notes.end());
+    data.mesh_s = watch.read_s();
     return description;
 }
 
@@ -99,20 +99,21 @@ void broadcast(const Ranks& ranks, Job& job) {
     ranks.broadcast(job.origin);
 }
 
-/// The folder in which a run is kept while it goes on. A new run begins with an empty one.
+/// The folder with frames and checkpoint during a run. A new run starts with an empty one.
 Status make_kept_folder(const Options& options, const sim::Description& description) {
     if (options.folder.empty()) return {};
     if (!may_replace_folder(options.folder, "summary.json"))
-        return input_error("{}: is there already, and holds no results; name another folder", options.folder);
+        return input_error("{}: exists and has no results in it; name another folder", options.folder);
     const fs::path kept = kept_folder(options);
     std::error_code code;
     if (options.resume && fs::exists(kept / "state.h5", code)) return {};
-    if (options.resume) return input_error("{}: no checkpoint is there", kept.string());
+    if (options.resume)
+        return input_error("{}: there is no checkpoint; run without --resume to start anew", kept.string());
     if (!may_replace_folder(kept, "frames"))
-        return input_error("{}: is there already, and is no checkpoint; move it away", kept.string());
+        return input_error("{}: exists and is no checkpoint; move it away", kept.string());
     fs::remove_all(kept, code);
     fs::create_directories(kept / "frames", code);
-    if (code) return failure("{}: cannot be made: {}", kept.string(), code.message());
+    if (code) return failure("{}: cannot be created: {}", kept.string(), code.message());
     return options.frames_every > 0 ? sim::distributed::write_frame_mesh(kept / "frames", description) : Status{};
 }
 
@@ -157,21 +158,21 @@ double peak_memory_MB(const Ranks& ranks) {
 }
 
 void print_work(const sim::distributed::RunResult& result, double memory_MB) {
-    const sim::distributed::LinearWork &work = result.work, &turning = result.turning;
+    const sim::distributed::LinearWork &work = result.work, &rotation = result.rotation;
     fmt::print("{} matrices: {:.2f} s to assemble, {:.2f} s to set up; {} solutions, {} iterations, {:.2f} s\n",
                work.matrices, work.assemble_s, work.set_up_s, work.solutions, work.iterations, work.solve_s);
-    fmt::print("steps that turn: {:.2f} s to set up; {} solutions, {} iterations, {:.2f} s; {:.0f} MB in all\n",
-               turning.set_up_s, turning.solutions, turning.iterations, turning.solve_s, memory_MB);
+    fmt::print("rotating steps: {:.2f} s to set up; {} solutions, {} iterations, {:.2f} s; {:.0f} MB in total\n",
+               rotation.set_up_s, rotation.solutions, rotation.iterations, rotation.solve_s, memory_MB);
 }
 
-/// On root.
-Result<int> tell(const Ranks& ranks, const Options& options, const Job& job, const Told& told,
-                 sim::distributed::RunResult result, double memory_MB) {
-    result.trajectory.warnings.insert(result.trajectory.warnings.begin(), told.notes.begin(), told.notes.end());
-    report::Simulation simulation{.robot = told.name, .mesh = told.mesh, .result = result.trajectory};
+/// On root: writes and prints the results.
+Result<int> report_results(const Ranks& ranks, const Options& options, const Job& job, const RobotData& data,
+                           sim::distributed::RunResult result, double memory_MB) {
+    result.trajectory.warnings.insert(result.trajectory.warnings.begin(), data.notes.begin(), data.notes.end());
+    report::Simulation simulation{.robot = data.name, .mesh = data.mesh, .result = result.trajectory};
     simulation.tolerance = job.program.tolerance;
     simulation.peak_memory_MB = memory_MB;
-    simulation.timing.mesh_s = told.mesh_s;
+    simulation.timing.mesh_s = data.mesh_s;
     if (!options.folder.empty()) {
         if (Status status = write_results(options.folder, kept_folder(options), simulation); !status)
             return tl::unexpected(status.error());
@@ -191,33 +192,36 @@ Result<int> tell(const Ranks& ranks, const Options& options, const Job& job, con
     return failure("{}: {}", options.robot, result.trajectory.message);
 }
 
-Result<int> solve(const Ranks& ranks, const Options& options, const Job& job, Told told, sim::Description description) {
-    Result<Balance> balance = sim::distributed::spread(ranks, std::move(description));
-    if (!balance) {
-        const Error& error = balance.error();
+Result<int> solve(const Ranks& ranks, const Options& options, const Job& job, RobotData data,
+                  sim::Description description) {
+    Result<DistributedEquilibrium> system = sim::distributed::distribute(ranks, std::move(description));
+    if (!system) {
+        const Error& error = system.error();
         return tl::unexpected(Error{error.cause, options.robot + ": " + error.message});
     }
-    Frames frames(*balance, kept_folder(options) / "frames");
-    const Checkpoint checkpoint(*balance, kept_folder(options), job.origin);
-    const sim::distributed::Meeting meeting(*balance, told.contact);
-    if (meeting.crosses_at_rest())
-        told.notes.push_back("the robot passes through itself already at rest: nothing looks whether it meets itself");
+    Frames frames(*system, kept_folder(options) / "frames");
+    const Checkpoint checkpoint(*system, kept_folder(options), job.origin);
+    const sim::distributed::SelfContactCheck self_contact(*system, data.contact);
+    if (self_contact.crosses_at_rest())
+        data.notes.push_back("the robot crosses itself at rest: self-contact is not detected");
     auto run = run_options(ranks, options, job, frames, checkpoint);
-    run.meets = [&meeting](const Eigen::VectorXd& from, const Eigen::VectorXd& to) { return meeting.meets(from, to); };
+    run.meets = [&self_contact](const Eigen::VectorXd& from, const Eigen::VectorXd& to) {
+        return self_contact.meets(from, to);
+    };
     if (options.resume) {
         Result<sim::distributed::RunState> begin = checkpoint.read(job.program);
         if (!begin) return tl::unexpected(begin.error());
         if (ranks.is_root() && !options.quiet && !options.json)
-            fmt::print("going on after step {} of {}\n", begin->step, job.program.steps);
+            fmt::print("resuming after step {} of {}\n", begin->step, job.program.steps);
         if (ranks.is_root()) say_at_end(at_end(options, begin->step, job.program.steps));
         run.begin = std::move(*begin);
     }
-    Result<sim::distributed::RunResult> result = sim::distributed::run(*balance, job.program, std::move(run));
+    Result<sim::distributed::RunResult> result = sim::distributed::run(*system, job.program, std::move(run));
     if (!result) return tl::unexpected(result.error());
     const double memory_MB = peak_memory_MB(ranks);
     Result<int> status = exit_done;
     const bool converged = result->trajectory.converged;
-    if (ranks.is_root()) status = tell(ranks, options, job, told, std::move(*result), memory_MB);
+    if (ranks.is_root()) status = report_results(ranks, options, job, data, std::move(*result), memory_MB);
     if (Status all = ranks.agree(status ? Status{} : tl::unexpected(status.error())); !all)
         return tl::unexpected(all.error());
     return converged ? exit_done : exit_failed;
@@ -227,22 +231,22 @@ Result<int> solve(const Ranks& ranks, const Options& options, const Job& job, To
 
 Result<int> simulate(const Ranks& ranks, const Options& options) {
     if (options.resume && options.folder.empty())
-        return input_error("--resume needs --output: the checkpoint stands beside that folder");
+        return input_error("--resume needs --output: the checkpoint is beside that folder");
     say_at_end(ranks.is_root() ? at_end(options, 0, 0) : "");
     Job job;
-    Told told;
+    RobotData data;
     sim::Description description;
     Status status{};
     if (ranks.is_root()) {
-        Result<sim::Description> read_one = read(options, job, told);
+        Result<sim::Description> read_one = read(options, job, data);
         if (read_one) description = std::move(*read_one);
         status = read_one ? make_kept_folder(options, description) : Status(tl::unexpected(read_one.error()));
     }
     if (status = ranks.agree(status); !status) return tl::unexpected(status.error());
     broadcast(ranks, job);
     Result<int> result = exit_failed;
-    // One thread for each rank: mpirun and srun say how many ranks share a machine.
-    on_own_core([&] { result = solve(ranks, options, job, std::move(told), std::move(description)); });
+    // One thread per rank: mpirun and srun determine how many ranks share a machine.
+    on_own_core([&] { result = solve(ranks, options, job, std::move(data), std::move(description)); });
     return result;
 }
 

@@ -10,7 +10,7 @@
 
 namespace pliant::app {
 
-/// Exit status: as of pliant.
+/// Exit status, as that of pliant.
 enum Exit { exit_done = 0, exit_failed = 1, exit_bad_input = 2 };
 
 struct Options {
@@ -26,7 +26,7 @@ struct Options {
     bool json = false;
 };
 
-/// Collective. The exit status; errors are for root to tell.
+/// Returns the exit status; root prints errors. Collective.
 [[nodiscard]] Result<int> simulate(const sim::distributed::Ranks& ranks, const Options& options);
 
 }  // namespace pliant::app

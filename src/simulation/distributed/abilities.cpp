@@ -6,7 +6,7 @@ namespace pliant::sim::distributed {
 namespace {
 
 tl::unexpected<Error> refused(const std::string& key, const std::string& what) {
-    return input_error("{}: pliant-mpi does not know {}; pliant simulate does", key, what);
+    return input_error("{}: pliant-mpi does not support {}; pliant simulate does", key, what);
 }
 
 std::string named(const char* kind, const std::string& name) {
@@ -33,7 +33,7 @@ Status check_able(const Description& d, const Program& program) {
     if (program.dynamics) return refused("program.time_step", "motion in time");
     if (program.solver != Solver::automatic && program.solver != Solver::newton)
         return refused("program.solver = \"" + std::string(name(program.solver)) + "\"", "solvers other than newton");
-    if (program.imperfection_m > 0) return refused("program.imperfection", "how to leave unstable equilibria");
+    if (program.imperfection_m > 0) return refused("program.imperfection", "leaving unstable equilibria");
     if (!d.objects.empty()) return refused(named("object", d.objects.front().name), "free bodies");
     if (d.contact && !d.contact->obstacles.empty())
         return refused(named("obstacle", d.contact->obstacles.front().body.name), "contact");

@@ -1,4 +1,4 @@
-// What a robot may not ask of many ranks.
+// What pliant-mpi does not support.
 #pragma once
 
 #include "base/core/error.hpp"
@@ -6,7 +6,7 @@
 
 namespace pliant::sim::distributed {
 
-/// An error names the first key that pliant-mpi does not know what to do with.
+/// An error names the first key that is not supported.
 [[nodiscard]] Status check_able(const Description& description, const Program& program);
 
 }  // namespace pliant::sim::distributed

@@ -24,7 +24,7 @@ std::vector<double> numbers_of(const Eigen::VectorXd& v) {
     return {v.data(), v.data() + v.size()};
 }
 
-/// Records one after the other, each after its length.
+/// Records in sequence, each preceded by its length.
 std::string bytes_of(const Trajectory& all) {
     std::string bytes;
     std::size_t first = 0;
@@ -56,7 +56,7 @@ Status read_steps(const std::string& bytes, Trajectory& into) {
     return {};
 }
 
-/// Without its positions.
+/// Reads a moment except its positions.
 Status take(const Json& json, std::size_t actuators, Moment& moment) {
     const Json along = json.value("along", Json()), list = json.value("multiplier", Json());
     const bool good = along.is_number() && list.is_array() && list.size() == actuators &&
@@ -68,15 +68,16 @@ Status take(const Json& json, std::size_t actuators, Moment& moment) {
     return {};
 }
 
-/// All but the positions.
+/// Reads a run except the positions.
 Status take(const Json& json, const std::string& steps, const std::string& origin, const Program& program,
             std::size_t actuators, RunState& run) {
     if (!json.is_object() || json.value("format", Json()) != format_name)
-        return input_error("not a checkpoint that pliant-mpi has written, or damaged");
+        return input_error("not a checkpoint of pliant-mpi, or damaged");
     if (json.value("version", Json()) != version)
         return input_error("a checkpoint of another version; this Pliant reads version {}", version);
     if (json.value("origin", Json()) != origin)
-        return input_error("a checkpoint of another robot file or mesh, or the file or what --set changes has changed");
+        return input_error(
+            "the checkpoint belongs to another robot file, mesh or --set; run without --resume to start anew");
     for (const char* key : {"step", "setup_s", "solve_s"})
         if (!json.value(key, Json()).is_number()) return input_error("its {} is damaged", key);
     run.step = json["step"].get<int>();
@@ -94,16 +95,16 @@ Status take(const Json& json, const std::string& steps, const std::string& origi
 
 }  // namespace
 
-Checkpoint::Checkpoint(const Balance& balance, std::filesystem::path folder, std::string origin)
-    : balance_(balance),
+Checkpoint::Checkpoint(const DistributedEquilibrium& system, std::filesystem::path folder, std::string origin)
+    : system_(system),
       folder_(std::move(folder)),
       origin_(std::move(origin)),
-      nodes_(balance.ranks(),
-             std::span(balance.share().node_in_file).first(static_cast<std::size_t>(balance.share().owned)),
-             balance.share().whole.nodes) {}
+      nodes_(system.ranks(),
+             std::span(system.share().node_in_file).first(static_cast<std::size_t>(system.share().owned)),
+             system.share().whole.nodes) {}
 
 std::vector<double> Checkpoint::sorted(const Eigen::VectorXd& x) const {
-    return nodes_.sorted({x.data(), static_cast<std::size_t>(balance_.nodes().owned())}, 3);
+    return nodes_.sorted({x.data(), static_cast<std::size_t>(system_.nodes().owned())}, 3);
 }
 
 Status Checkpoint::keep(const RunState& run) const {
@@ -119,7 +120,7 @@ Status Checkpoint::keep(const RunState& run) const {
     for (const Moment& before : run.past)
         json["past"].push_back({{"along", before.along}, {"multiplier", numbers_of(before.state.multiplier)}});
     const std::filesystem::path aside = file().string() + ".partial";
-    Result<H5File> out = H5File::create(&balance_.ranks(), aside);
+    Result<H5File> out = H5File::create(&system_.ranks(), aside);
     if (!out) return tl::unexpected(out.error());
     const Rows rows{nodes_.total(), nodes_.first(), nodes_.rows()};
     out->write("x", rows, 3, sorted(run.now.state.x));
@@ -129,32 +130,32 @@ Status Checkpoint::keep(const RunState& run) const {
     out->write_bytes("steps", bytes_of(run.so_far));
     if (Status status = out->close(); !status) return status;
     std::error_code code;
-    if (balance_.ranks().is_root()) std::filesystem::rename(aside, file(), code);
-    return balance_.ranks().agree(code ? Status(failure("{}: cannot be written: {}", file().string(), code.message()))
-                                       : Status{});
+    if (system_.ranks().is_root()) std::filesystem::rename(aside, file(), code);
+    return system_.ranks().agree(code ? Status(failure("{}: cannot be written: {}", file().string(), code.message()))
+                                      : Status{});
 }
 
 Result<RunState> Checkpoint::read(const Program& program) const {
     std::error_code code;
     const Status there =
-        std::filesystem::exists(file(), code) ? Status{} : input_error("{}: no checkpoint is there", folder_.string());
-    if (Status status = balance_.ranks().agree(there); !status) return tl::unexpected(status.error());
-    Result<H5File> in = H5File::open(balance_.ranks(), file());
+        std::filesystem::exists(file(), code) ? Status{} : input_error("{}: there is no checkpoint", folder_.string());
+    if (Status status = system_.ranks().agree(there); !status) return tl::unexpected(status.error());
+    Result<H5File> in = H5File::open(system_.ranks(), file());
     if (!in) return tl::unexpected(in.error());
     const Result<std::string> text = in->read_bytes("run");
     if (!text) return tl::unexpected(text.error());
     const Result<std::string> steps = in->read_bytes("steps");
     if (!steps) return tl::unexpected(steps.error());
     RunState run;
-    Status status = take(Json::parse(*text, nullptr, false), *steps, origin_, program, balance_.actuator_count(), run);
+    Status status = take(Json::parse(*text, nullptr, false), *steps, origin_, program, system_.actuator_count(), run);
     if (!status) status = input_error("{}: {}", file().string(), status.error().message);
-    if (status = balance_.ranks().agree(status); !status) return tl::unexpected(status.error());
+    if (status = system_.ranks().agree(status); !status) return tl::unexpected(status.error());
     const Rows rows{nodes_.total(), nodes_.first(), nodes_.rows()};
     const auto place = [&](const std::string& name, State& state) -> Status {
         const Result<std::vector<double>> x = in->read(name, rows, 3);
         if (!x) return tl::unexpected(x.error());
         const std::vector<double> own = nodes_.given_back(*x, 3);
-        state.x = balance_.nodes().spread(
+        state.x = system_.nodes().with_ghosts(
             Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size())));
         return {};
     };

@@ -1,5 +1,5 @@
-// What ranks have of the nodes or tets of a robot, in the order of the whole mesh: for files that do not tell how many
-// ranks have written them.
+// Reorders data of nodes or tets from the ranks' order into that of the whole mesh, and back: files do not depend on
+// the number of ranks.
 #pragma once
 
 #include <petscvec.h>
@@ -15,18 +15,18 @@ namespace pliant::sim::distributed {
 /// All functions are collective.
 class FileOrder {
 public:
-    /// `numbers`: of the things that belong to this rank, in the whole mesh, which has `total`. Each belongs to one
-    /// rank.
+    /// `numbers`: indices in the whole mesh, which has `total` of them, of the nodes or tets that this rank owns. Each
+    /// is owned by one rank.
     FileOrder(const Ranks& ranks, std::span<const int> numbers, int total);
 
     [[nodiscard]] int total() const { return total_; }
-    /// Of the whole list, this rank reads and writes the rows from first() on.
+    /// Of the whole table, this rank reads and writes the rows from first() on.
     [[nodiscard]] int first() const { return first_; }
     [[nodiscard]] int rows() const { return rows_; }
 
-    /// (own things, width) -> (rows, width).
+    /// (owned, width) -> (rows, width).
     [[nodiscard]] std::vector<double> sorted(std::span<const double> own, int width) const;
-    /// (rows, width) -> (own things, width).
+    /// (rows, width) -> (owned, width).
     [[nodiscard]] std::vector<double> given_back(std::span<const double> sorted, int width) const;
 
 private:

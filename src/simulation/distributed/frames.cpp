@@ -17,7 +17,7 @@ std::string file_name(int step) {
     return fmt::format("{:04}.h5", step);
 }
 
-/// Of text between tags.
+/// Escapes text for XML.
 std::string escaped(const std::string& text) {
     std::string out;
     for (const char c : text) {
@@ -60,25 +60,25 @@ Status write_frame_mesh(const std::filesystem::path& folder, const Description& 
     return file->close();
 }
 
-Frames::Frames(const Balance& balance, std::filesystem::path folder)
-    : balance_(balance),
+Frames::Frames(const DistributedEquilibrium& system, std::filesystem::path folder)
+    : system_(system),
       folder_(std::move(folder)),
-      nodes_(balance.ranks(),
-             std::span(balance.share().node_in_file).first(static_cast<std::size_t>(balance.share().owned)),
-             balance.share().whole.nodes),
-      tets_(balance.ranks(), balance.share().tet_in_file, balance.share().whole.tets) {}
+      nodes_(system.ranks(),
+             std::span(system.share().node_in_file).first(static_cast<std::size_t>(system.share().owned)),
+             system.share().whole.nodes),
+      tets_(system.ranks(), system.share().tet_in_file, system.share().whole.tets) {}
 
 Status Frames::write(int step, const Eigen::VectorXd& x) {
-    const auto own = static_cast<std::size_t>(balance_.nodes().owned());
+    const auto own = static_cast<std::size_t>(system_.nodes().owned());
     std::vector<double> points(own), displacement(own);
     for (std::size_t k = 0; k < own; ++k) {
         points[k] = mm_per_m * x[static_cast<Eigen::Index>(k)];
-        displacement[k] = points[k] - mm_per_m * balance_.part().mesh.points[k / 3][k % 3];
+        displacement[k] = points[k] - mm_per_m * system_.part().mesh.points[k / 3][k % 3];
     }
-    Fields fields = fields_of(balance_.elements(), {x.data(), static_cast<std::size_t>(x.size())});
+    Fields fields = fields_of(system_.elements(), {x.data(), static_cast<std::size_t>(x.size())});
     for (double& value : fields.von_mises_Pa) value *= 1e-3;
     for (double& value : fields.energy_density_Pa) value *= 1e-3;
-    Result<H5File> file = H5File::create(&balance_.ranks(), folder_ / file_name(step));
+    Result<H5File> file = H5File::create(&system_.ranks(), folder_ / file_name(step));
     if (!file) return tl::unexpected(file.error());
     const auto put = [&](const char* name, const FileOrder& order, int width, std::span<const double> values) {
         const std::vector<double> sorted = order.sorted(values, width);

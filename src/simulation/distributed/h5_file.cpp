@@ -16,7 +16,7 @@ public:
     ~Id() {
         if (id_ >= 0) close_(id_);
     }
-    operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor): it is one
+    operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor): used as one
 
 private:
     hid_t id_;
@@ -24,7 +24,7 @@ private:
 };
 
 Id access(const Ranks* ranks) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what goes wrong is said in one line
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are reported in one line by agree()
     Id list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
     if (ranks != nullptr) H5Pset_fapl_mpio(list, ranks->comm(), MPI_INFO_NULL);
     return list;

@@ -1,4 +1,4 @@
-// The tangent of a robot that is spread over ranks as a matrix of PETSc, and systems with it.
+// The tangent of a distributed robot as a PETSc matrix, and the solution of linear systems with it.
 #pragma once
 
 #include <petscksp.h>
@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/core/aligned_array.hpp"
-#include "simulation/distributed/balance.hpp"
-#include "simulation/distributed/known_pattern.hpp"
+#include "simulation/distributed/distributed_equilibrium.hpp"
 #include "simulation/distributed/linear_work.hpp"
+#include "simulation/distributed/local_pattern.hpp"
 #include "simulation/distributed/petsc.hpp"
 
 namespace pliant::sim::distributed {
@@ -19,20 +19,19 @@ enum class Preconditioner {
     hypre  ///< BoomerAMG
 };
 
-/// All functions are collective. Conjugate gradients where the tangent is symmetric, else GMRES; what PETSC_OPTIONS
-/// says goes before all that is chosen here.
+/// Conjugate gradients if the tangent is symmetric, else GMRES. PETSC_OPTIONS takes precedence over all choices here.
+/// All functions are collective.
 class LinearSolver {
 public:
-    /// `balance` and `known` must outlive it.
-    LinearSolver(const Balance& balance, const KnownPattern& known, Preconditioner preconditioner);
+    /// `system` and `local` must outlive it.
+    LinearSolver(const DistributedEquilibrium& system, const LocalPattern& local, Preconditioner preconditioner);
 
-    /// Takes the tangent of a state, or that of which every part is made positive semi-definite.
-    void take(const State& state, bool project);
-    /// x (3 owned) <- tangent^-1 b, to `error` of the norm of b. `b` and the result have nothing along what is held.
-    /// False: the tangent is not positive definite, or x is no solution for another reason.
+    /// Assembles the tangent of a state or, with `project`, the sum of its positive semi-definite parts.
+    void set_tangent(const State& state, bool project);
+    /// x (3 owned) <- tangent^-1 b, with a residual of `error` times the norm of b. `b` and x have no components along
+    /// held directions. False: the tangent is not positive definite, or the solver failed for another reason.
     [[nodiscard]] bool solve(const Eigen::VectorXd& b, double error, Eigen::VectorXd& x);
-    /// (3 owned) the forces of the tangent at hand, held nodes taking part, for a motion of this rank's known nodes
-    /// (3n).
+    /// (3 owned) the current tangent, including held nodes, times a motion of the local nodes (3n).
     [[nodiscard]] Eigen::VectorXd forces_of(const Eigen::VectorXd& motion) const;
 
     [[nodiscard]] const LinearWork& work() const { return work_; }
@@ -45,20 +44,20 @@ private:
     [[nodiscard]] KSPConvergedReason solve_by(KSP ksp, const Eigen::VectorXd& b, double error, Eigen::VectorXd& x);
     void set_options();
 
-    const Balance& balance_;
-    const KnownPattern& known_;
+    const DistributedEquilibrium& system_;
+    const LocalPattern& local_;
     Preconditioner preconditioner_;
-    std::vector<const Eigen::Matrix3d*> may_move_;  ///< (known nodes), null where a node is free or fixed
+    std::vector<const Eigen::Matrix3d*> may_move_;  ///< (local nodes) of rollers, else null
     AlignedArray<double> values_;
     double held_stiffness_ = 1;
     Owned<Mat, MatDestroy> matrix_;
     Owned<KSP, KSPDestroy> ksp_;
     Owned<Vec, VecDestroy> right_, solution_;
-    Owned<KSP, KSPDestroy> sturdy_;  ///< GMRES with the same preconditioner, for where conjugate gradients break down
-    Eigen::VectorXd places_;         ///< (3 owned) where the matrix at hand was taken
-    bool projected_ = false;         ///< it is a projection
-    bool aged_ = true;               ///< the aggregates are of an earlier matrix, or there are none
-    double first_cost_ = 0;          ///< iterations for each digit of the first solution with the aggregates at hand
+    Owned<KSP, KSPDestroy> gmres_;  ///< with the same preconditioner, if conjugate gradients break down
+    Eigen::VectorXd places_;        ///< (3 owned) positions of the current matrix
+    bool projected_ = false;        ///< the current matrix is a projection
+    bool reused_ = true;            ///< the preconditioner is that of an earlier matrix
+    double first_cost_ = 0;         ///< iterations per digit of the first solution with the current preconditioner
     double last_cost_ = 0;
     LinearWork work_;
 };

@@ -1,4 +1,4 @@
-// What linear systems have cost.
+// Cost of linear systems.
 #pragma once
 
 namespace pliant::sim::distributed {

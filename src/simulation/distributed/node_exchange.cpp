@@ -7,7 +7,7 @@
 namespace pliant::sim::distributed {
 namespace {
 
-/// Lends an array to a vector of PETSc for as long as it lives.
+/// Lends an array to a PETSc vector during its own lifetime.
 class Lent {
 public:
     Lent(Vec vector, const double* array) : vector_(vector) { must(VecPlaceArray(vector, array)); }
@@ -22,31 +22,31 @@ private:
 }  // namespace
 
 NodeExchange::NodeExchange(const Ranks& ranks, const Share& share)
-    : ranks_(ranks), known_(static_cast<Eigen::Index>(share.number.size())), owned_(share.owned) {
+    : ranks_(ranks), local_(static_cast<Eigen::Index>(share.number.size())), owned_(share.owned) {
     must(VecCreateMPIWithArray(ranks.comm(), 3, static_cast<PetscInt>(owned()), PETSC_DECIDE, nullptr, on_all_.fill()));
-    must(VecCreateSeqWithArray(PETSC_COMM_SELF, 3, static_cast<PetscInt>(known()), nullptr, on_own_.fill()));
+    must(VecCreateSeqWithArray(PETSC_COMM_SELF, 3, static_cast<PetscInt>(local()), nullptr, on_own_.fill()));
     Owned<IS, ISDestroy> numbers;
-    must(ISCreateBlock(ranks.comm(), 3, static_cast<PetscInt>(known_), share.number.data(), PETSC_COPY_VALUES,
+    must(ISCreateBlock(ranks.comm(), 3, static_cast<PetscInt>(local_), share.number.data(), PETSC_COPY_VALUES,
                        numbers.fill()));
     must(VecScatterCreate(on_all_.get(), numbers.get(), on_own_.get(), nullptr, way_.fill()));
 }
 
-Eigen::VectorXd NodeExchange::add_up(const Eigen::VectorXd& known) const {
+Eigen::VectorXd NodeExchange::add_up(const Eigen::VectorXd& local) const {
     Eigen::VectorXd sums = Eigen::VectorXd::Zero(owned());
-    const Lent from(on_own_.get(), known.data());
+    const Lent from(on_own_.get(), local.data());
     const Lent to(on_all_.get(), sums.data());
     must(VecScatterBegin(way_.get(), on_own_.get(), on_all_.get(), ADD_VALUES, SCATTER_REVERSE));
     must(VecScatterEnd(way_.get(), on_own_.get(), on_all_.get(), ADD_VALUES, SCATTER_REVERSE));
     return sums;
 }
 
-Eigen::VectorXd NodeExchange::spread(const Eigen::VectorXd& owned) const {
-    Eigen::VectorXd known(this->known());
+Eigen::VectorXd NodeExchange::with_ghosts(const Eigen::VectorXd& owned) const {
+    Eigen::VectorXd local(this->local());
     const Lent from(on_all_.get(), owned.data());
-    const Lent to(on_own_.get(), known.data());
+    const Lent to(on_own_.get(), local.data());
     must(VecScatterBegin(way_.get(), on_all_.get(), on_own_.get(), INSERT_VALUES, SCATTER_FORWARD));
     must(VecScatterEnd(way_.get(), on_all_.get(), on_own_.get(), INSERT_VALUES, SCATTER_FORWARD));
-    return known;
+    return local;
 }
 
 double NodeExchange::dot(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {

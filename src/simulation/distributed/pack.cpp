@@ -9,7 +9,7 @@
 namespace pliant::sim::distributed {
 namespace {
 
-/// Bytes of what is plain memory; the rest member by member, by `members`.
+/// Plain data as bytes, everything else member by member with `members`.
 class Writer {
 public:
     template <class... T>
@@ -157,7 +157,7 @@ template <class Archive>
 void members(Archive& a, Whole& v) {
     a(v.nodes, v.tets, v.volume_m3, v.farthest_m, v.stiffest_Pa, v.pressure_skews);
 }
-/// What a share has of a description; the rest abilities.cpp refuses.
+/// The parts of a description that a share has; the others are refused by check_able().
 template <class Archive>
 void members(Archive& a, Description& v) {
     a(v.mesh, v.materials, v.material_of_region, v.material_of_tet, v.supports, v.loads, v.pressures, v.cables,
@@ -165,7 +165,7 @@ void members(Archive& a, Description& v) {
 }
 template <class Archive>
 void members(Archive& a, Share& v) {
-    a(v.whole, v.part, v.owned, v.number, v.node_in_file, v.tet_in_file, v.fixed, v.watched);
+    a(v.whole, v.part, v.owned, v.number, v.node_in_file, v.tet_in_file, v.fixed, v.contact_nodes);
 }
 
 }  // namespace

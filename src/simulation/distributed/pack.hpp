@@ -1,5 +1,5 @@
-// A share as bytes, for the way to its rank. All ranks run the same program on the same kind of machine: numbers are
-// written as they lie in memory.
+// A share as bytes, to be sent to its rank. All ranks run the same program on the same kind of machine, so numbers are
+// written as they are in memory.
 #pragma once
 
 #include <string>

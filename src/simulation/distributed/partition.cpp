@@ -14,9 +14,9 @@ namespace {
 
 static_assert(sizeof(PetscInt) == sizeof(int));
 
-/// Neighbours of each corner of the mesh, without itself.
+/// Neighbours of each corner of the mesh.
 struct Graph {
-    std::vector<int> corner;  ///< (nodes of the mesh) which of the graph it is, or -1
+    std::vector<int> corner;  ///< (nodes of the mesh) index in the graph, or -1
     linalg::Lists neighbours;
     [[nodiscard]] int size() const { return neighbours.count(); }
 };
@@ -55,7 +55,7 @@ Graph graph_of(const mesh::TetMesh& mesh) {
     return graph;
 }
 
-/// Evenly many rows of a list for each rank; where they begin (ranks + 1).
+/// First row of each rank (ranks + 1) if all have equally many.
 std::vector<int> even_rows(int rows, int ranks) {
     std::vector<int> first(static_cast<std::size_t>(ranks) + 1);
     for (int r = 0; r <= ranks; ++r)
@@ -63,7 +63,7 @@ std::vector<int> even_rows(int rows, int ranks) {
     return first;
 }
 
-/// Root's list, cut at `first`, as memory that PETSc may keep.
+/// This rank's part of root's list, in memory that PETSc takes over.
 PetscInt* scattered(const Ranks& ranks, const std::vector<int>& list, const std::vector<int>& first) {
     std::vector<int> counts(static_cast<std::size_t>(ranks.count()));
     for (std::size_t r = 0; r < counts.size(); ++r) counts[r] = first[r + 1] - first[r];
@@ -74,7 +74,7 @@ PetscInt* scattered(const Ranks& ranks, const std::vector<int>& list, const std:
     return piece;
 }
 
-/// The rows of the graph that this rank looks at while it is cut.
+/// This rank's rows of the graph, for the partitioner.
 Mat spread_graph(const Ranks& ranks, const Graph& graph, const std::vector<int>& first_row) {
     std::vector<int> first_item(first_row.size(), 0);
     if (ranks.is_root())
@@ -92,7 +92,7 @@ Mat spread_graph(const Ranks& ranks, const Graph& graph, const std::vector<int>&
     return matrix;
 }
 
-/// (corners) on root.
+/// (corners) rank of each, on root.
 std::vector<int> cut(const Ranks& ranks, const Graph& graph) {
     int rows = graph.size();
     must(MPI_Bcast(&rows, 1, MPI_INT, 0, ranks.comm()));
@@ -124,7 +124,7 @@ std::vector<int> node_owners(const Ranks& ranks, const mesh::TetMesh& mesh) {
     const Graph graph = ranks.is_root() ? graph_of(mesh) : Graph{};
     const std::vector<int> of_corner = cut(ranks, graph);
     if (!ranks.is_root()) return {};
-    std::vector<int> owner(mesh.points.size(), 0);  // what no tet uses is root's
+    std::vector<int> owner(mesh.points.size(), 0);  // nodes without tets are root's
     for (std::size_t n = 0; n < owner.size(); ++n)
         if (graph.corner[n] >= 0) owner[n] = of_corner[static_cast<std::size_t>(graph.corner[n])];
     for (std::size_t t = 0; mesh.order == 2 && t < mesh.tet_count(); ++t) {

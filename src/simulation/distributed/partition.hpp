@@ -1,4 +1,4 @@
-// Which rank a node belongs to.
+// Which rank owns a node.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace pliant::sim::distributed {
 
-/// (nodes) rank of each, on root; empty on all others. As many nodes for each rank as can be, and as few tets between
-/// nodes of two ranks: by PT-Scotch, or what -mat_partitioning_type in PETSC_OPTIONS names. A node in the middle of an
-/// edge goes with one of its ends. `mesh` counts on root alone.
+/// (nodes) rank of each, on root; empty on all others. Ranks own equally many nodes, with few edges between those of
+/// different ranks: by PT-Scotch, or what -mat_partitioning_type in PETSC_OPTIONS names. A node in the middle of an
+/// edge belongs to the rank of one of its ends. `mesh` is used on root alone.
 [[nodiscard]] std::vector<int> node_owners(const Ranks& ranks, const mesh::TetMesh& mesh);
 
 }  // namespace pliant::sim::distributed

@@ -1,4 +1,4 @@
-// PETSc's objects with owners, and its errors.
+// Ownership of PETSc objects, and PETSc's errors.
 #pragma once
 
 #include <petscsys.h>
@@ -8,18 +8,17 @@
 
 namespace pliant::sim::distributed {
 
-/// A library gave out: no memory, no disk, no partner. Mostly on one rank alone, while the others wait for it, so that
-/// nobody up the stack has an answer: the program ends all ranks with this line. The one exception of this room.
+/// A library failed: no memory, no disk, no connection. This mostly happens on one rank while the others wait for it,
+/// so that no caller can handle it: the program ends all ranks with this line. The only exception in this folder.
 class LibraryFailure : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-/// Throws LibraryFailure where a call into PETSc or MPI did not succeed. Their handlers have said no more before than
-/// what the program has let them.
+/// Throws LibraryFailure if a call of PETSc or MPI failed.
 void must(int code);
 
-/// Destroys a PETSc object at the end of its life.
+/// Owns a PETSc object.
 template <class T, PetscErrorCode (*destroy)(T*)>
 class Owned {
 public:
@@ -35,7 +34,7 @@ public:
         if (object_ != nullptr) destroy(&object_);
     }
     [[nodiscard]] T get() const { return object_; }
-    /// Where a function of PETSc writes a new one.
+    /// For functions of PETSc that create an object.
     [[nodiscard]] T* fill() {
         if (object_ != nullptr) destroy(&object_);
         object_ = nullptr;
@@ -44,6 +43,15 @@ public:
 
 private:
     T object_ = nullptr;
+};
+
+/// Names the work during its own lifetime in the tables of -log_view.
+class LogStage {
+public:
+    explicit LogStage(const char* name);
+    LogStage(const LogStage&) = delete;
+    LogStage& operator=(const LogStage&) = delete;
+    ~LogStage();
 };
 
 }  // namespace pliant::sim::distributed

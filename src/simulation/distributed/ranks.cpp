@@ -11,7 +11,7 @@
 namespace pliant::sim::distributed {
 namespace {
 
-/// MPI counts in int.
+/// MPI's counts are int.
 constexpr std::size_t most_bytes = std::size_t{1} << 30U;
 constexpr int tag = 31;
 
@@ -19,7 +19,7 @@ int piece_of(std::size_t size, std::size_t begin) {
     return static_cast<int>(std::min(most_bytes, size - begin));
 }
 
-/// MPI's own waiting takes a whole core. What comes at once is not slept for.
+/// MPI waits busily and uses a whole core. Short waits do not sleep.
 void wait_asleep(MPI_Request& request) {
     constexpr int looks_awake = 2000;
     for (int done = 0, looks = 0; done == 0; ++looks) {

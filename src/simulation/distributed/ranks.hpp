@@ -1,4 +1,4 @@
-// The processes that solve one robot together: what they add up, agree on and send each other.
+// The processes that solve one robot together: sums, agreement on errors, and messages.
 #pragma once
 
 #include <mpi.h>
@@ -19,22 +19,22 @@ public:
     [[nodiscard]] MPI_Comm comm() const { return comm_; }
     [[nodiscard]] int own() const { return own_; }
     [[nodiscard]] int count() const { return count_; }
-    /// The one that reads the robot and tells people of it.
+    /// The rank that reads the robot and prints.
     [[nodiscard]] bool is_root() const { return own_ == 0; }
 
-    /// Each number becomes the sum over all ranks, the same bits on each.
+    /// Replaces each number by the sum over all ranks, with the same bits on each.
     void add_up(std::span<double> numbers) const;
     [[nodiscard]] double sum(double own) const;
     [[nodiscard]] double smallest(double own) const;
     [[nodiscard]] double largest(double own) const;
     [[nodiscard]] int largest(int own) const;
 
-    /// The error of the first rank that has one, on all; none where all went well. Ranks that wait sleep meanwhile,
-    /// so that one may work on all cores.
+    /// On all ranks, the error of the first rank that has one. Waiting ranks sleep, so that one of them may use all
+    /// cores.
     [[nodiscard]] Status agree(const Status& own) const;
-    /// Root's bytes on all ranks.
+    /// Root's bytes, to all ranks.
     void broadcast(std::string& bytes) const;
-    /// From root to one other rank; of any length. Not collective: called by the two.
+    /// From root to one other rank, of any length. Not collective: called by these two.
     void send(const std::string& bytes, int to) const;
     [[nodiscard]] std::string receive() const;
 

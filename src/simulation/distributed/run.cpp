@@ -14,56 +14,56 @@ namespace pliant::sim::distributed {
 namespace {
 
 constexpr double smallest_share = 1.0 / 64;  // of a step of the program
-constexpr double rounding = 1e-7;            // of the shortest piece
-// Errors of states to start from, as in stepper/prediction.cpp.
+constexpr double rounding = 1e-7;            // of the shortest substep
+// Errors of predicted states, as in stepper/prediction.cpp.
 constexpr double worst_start = 0.2, good_start = 0.03;
-constexpr double turning_error = 1e-4;
+constexpr double rotation_error = 1e-4;
 
-/// Positions of markers are sums over the ranks: each marker rides on the nodes of one.
-std::vector<Vec3> marker_positions(const Balance& balance, const Eigen::VectorXd& x) {
-    const auto& markers = balance.part().markers;
+/// Each marker belongs to one rank: positions are sums over the ranks.
+std::vector<Vec3> marker_positions(const DistributedEquilibrium& system, const Eigen::VectorXd& x) {
+    const auto& markers = system.part().markers;
     std::vector<double> sums(3 * markers.size(), 0.0);
     for (std::size_t m = 0; m < markers.size(); ++m) {
         const Vec3 place = position(markers[m].point, linalg::view(x));
         for (std::size_t c = 0; c < 3; ++c) sums[3 * m + c] = place[c];
     }
-    balance.ranks().add_up(sums);
+    system.ranks().add_up(sums);
     std::vector<Vec3> places;
     for (std::size_t m = 0; m < markers.size(); ++m) places.push_back({sums[3 * m], sums[3 * m + 1], sums[3 * m + 2]});
     return places;
 }
 
-/// What is recorded of a state, without positions.
-void describe(const Balance& balance, const State& state, const Controls& controls, const Evaluation& evaluation,
-              Step& step) {
-    const Description& d = balance.part();
+/// Fills in the record of a state, without positions.
+void describe(const DistributedEquilibrium& system, const State& state, const Controls& controls,
+              const Evaluation& evaluation, Step& step) {
+    const Description& d = system.part();
     step.residual = evaluation.residual;
     step.min_J = evaluation.min_J;
-    step.energy_J = balance.potential_energy(state, controls);
-    const std::vector<double> measures = balance.measures(state.x);
+    step.energy_J = system.potential_energy(state, controls);
+    const std::vector<double> measures = system.measures(state.x);
     for (std::size_t a = 0; a < d.cables.size() + d.chambers.size(); ++a) {
-        const double ratio = measures[a] / balance.rest_measure(a);
+        const double ratio = measures[a] / system.rest_measure(a);
         const double multiplier = evaluation.multiplier[static_cast<Eigen::Index>(a)];
         if (a < d.cables.size())
             step.cables.push_back({d.cables[a].name, ratio, measures[a], multiplier});
         else
             step.chambers.push_back({d.chambers[a - d.cables.size()].name, ratio, measures[a], 0 - multiplier});
     }
-    const std::vector<Vec3> reactions = balance.reactions(evaluation);
+    const std::vector<Vec3> reactions = system.reactions(evaluation);
     for (std::size_t s = 0; s < reactions.size(); ++s) step.supports.push_back({d.supports[s].name, reactions[s]});
-    const std::vector<Vec3> markers = marker_positions(balance, state.x);
+    const std::vector<Vec3> markers = marker_positions(system, state.x);
     for (std::size_t m = 0; m < markers.size(); ++m) step.markers.push_back({d.markers[m].name, markers[m]});
 }
 
 class Run {
 public:
-    Run(const Balance& balance, const Program& program, RunOptions options)
-        : balance_(balance),
+    Run(const DistributedEquilibrium& system, const Program& program, RunOptions options)
+        : system_(system),
           program_(program),
           options_(std::move(options)),
-          known_(known_pattern(balance)),
-          linear_(balance, known_, options_.preconditioner),
-          turning_(balance, known_) {}
+          local_(local_pattern(system)),
+          linear_(system, local_, options_.preconditioner),
+          rotation_(system, local_) {}
 
     Result<RunResult> run() {
         if (Status status = begin(); !status) return tl::unexpected(status.error());
@@ -74,7 +74,7 @@ public:
             if (Status status = keep(std::move(step)); !status) return tl::unexpected(status.error());
         }
         add_warnings(now_.so_far);
-        return RunResult{std::move(now_.so_far), linear_.work(), turning_.work()};
+        return RunResult{std::move(now_.so_far), linear_.work(), rotation_.work()};
     }
 
 private:
@@ -84,16 +84,16 @@ private:
             now_ = *std::exchange(options_.begin, std::nullopt);
             return {};
         }
-        now_.now = {0, balance_.rest()};
+        now_.now = {0, system_.rest()};
         now_.so_far.solver = name(Solver::newton);
         Step rest;
-        const Controls controls = balance_.controls(0);
-        describe(balance_, now_.now.state, controls, balance_.evaluate(now_.now.state, controls), rest);
+        const Controls controls = system_.controls(0);
+        describe(system_, now_.now.state, controls, system_.evaluate(now_.now.state, controls), rest);
         now_.so_far.setup_s += watch.read_s();
         return add(std::move(rest));
     }
 
-    /// False: stuck; the trajectory says why.
+    /// False: not converged; the trajectory says why.
     bool go_to(Step& step) {
         Stopwatch watch;
         step.time = program_.duration * static_cast<double>(step.index) / program_.steps;
@@ -117,15 +117,15 @@ private:
         return true;
     }
 
-    /// In one go to `along`.
+    /// In one step to `along`.
     StepOutcome go(double along, Step& step) {
-        const Controls controls = balance_.controls(along);
+        const Controls controls = system_.controls(along);
         State next = start(along, controls);
         StepOutcome outcome;
-        if (const Evaluation e = balance_.evaluate(next, controls); !e.possible())
+        if (const Evaluation e = system_.evaluate(next, controls); !e.possible())
             outcome.reason = fmt::format("the prescribed motion {}", name(e.flaw));
         else
-            outcome = solve_step(balance_, linear_, turning_, controls,
+            outcome = solve_step(system_, linear_, rotation_, controls,
                                  {program_.tolerance, program_.iteration_limit, 0}, next);
         step.iterations += outcome.iterations;
         for (IterationRecord record : outcome.history) {
@@ -137,7 +137,7 @@ private:
             met_ = true;
             outcome.converged = false;
             outcome.reason =
-                "the robot meets itself, and pliant-mpi does not know contact; pliant simulate does, or "
+                "the robot meets itself, and pliant-mpi does not support contact; pliant simulate does, or "
                 "[contact] with self = false lets it pass through itself";
         }
         if (!outcome.converged) return outcome;
@@ -145,23 +145,23 @@ private:
         now_.past.push_back(std::exchange(now_.now, {along, std::move(next)}));
         if (now_.past.size() > RotatingStep::most_past) now_.past.erase(now_.past.begin());
         if (along == program_.duration * static_cast<double>(step.index) / program_.steps)
-            describe(balance_, now_.now.state, controls, outcome.evaluation, step);
+            describe(system_, now_.now.state, controls, outcome.evaluation, step);
         return outcome;
     }
 
-    /// The state k back: 0 is the last one.
+    /// The k-th state back: 0 is the last one.
     [[nodiscard]] const Moment& moment(std::size_t k) const {
         return k == 0 ? now_.now : now_.past[now_.past.size() - k];
     }
 
-    /// On from the last four states or, if that ends far from equilibrium, from fewer, whichever is nearest; where none
-    /// is near, the last one with its supports where they are wanted.
+    /// Predicted from the last four states or, if that is far from equilibrium, from fewer, whichever is nearest. If
+    /// none is near: the last state, with its supports moved.
     State start(double along, const Controls& controls) {
         std::optional<State> best;
         double least = worst_start;
         for (std::size_t count = now_.past.size() + 1; count >= 2 && least > good_start; --count) {
             State next = onward(along, count, controls);
-            const Evaluation e = balance_.evaluate(next, controls);
+            const Evaluation e = system_.evaluate(next, controls);
             if (!e.possible() || !(e.error() < least)) continue;
             least = e.error();
             best = std::move(next);
@@ -169,17 +169,17 @@ private:
         return best ? *std::move(best) : follow_supports(controls);
     }
 
-    /// On along the polynomial through the last `count` states: the multipliers as they are, and for each tet how far
-    /// it has turned and grown.
+    /// Extrapolates the polynomial through the last `count` states: of the multipliers and, for each tet, of its
+    /// rotation and stretch.
     State onward(double along, std::size_t count, const Controls& controls) {
         std::vector<double> shares(count, 1.0);  // Lagrange's polynomials, the latest state first
         for (std::size_t k = 0; k < count; ++k)
             for (std::size_t other = 0; other < count; ++other)
                 if (other != k) shares[k] *= (along - moment(other).along) / (moment(k).along - moment(other).along);
         State next{now_.now.state.x, shares[0] * now_.now.state.multiplier};
-        balance_.place_supports(controls, next.x);
+        system_.place_supports(controls, next.x);
         RotatingStep rotating{.now = now_.now.state.x.data(), .end = next.x.data()};
-        double beyond = 0;  // the shares of all states before the turn in question
+        double beyond = 0;  // the sum of the shares of all states before this one
         for (std::size_t k = count - 1; k > 0; --k) {
             const State& before = moment(k).state;
             next.multiplier += shares[k] * before.multiplier;
@@ -187,23 +187,23 @@ private:
             rotating.past[k - 1] = before.x.data();
             rotating.weights[k - 1] = -beyond;
         }
-        next.x = turning_.rotate(rotating, turning_error);
-        for (std::size_t a = 0; a < balance_.part().cables.size(); ++a) {
+        next.x = rotation_.rotate(rotating, rotation_error);
+        for (std::size_t a = 0; a < system_.part().cables.size(); ++a) {
             double& tension = next.multiplier[static_cast<Eigen::Index>(a)];
             tension = std::max(tension, 0.0);
         }
         return next;
     }
 
-    /// What is free moves as the tangent at the last state says.
+    /// Moves the free nodes according to the tangent at the last state.
     State follow_supports(const Controls& controls) {
         State next = now_.now.state;
-        balance_.place_supports(controls, next.x);
+        system_.place_supports(controls, next.x);
         const Eigen::VectorXd motion = next.x - now_.now.state.x;
-        if (!(balance_.ranks().largest(motion.size() > 0 ? motion.cwiseAbs().maxCoeff() : 0.0) > 0)) return next;
-        linear_.take(now_.now.state, true);
+        if (!(system_.ranks().largest(motion.size() > 0 ? motion.cwiseAbs().maxCoeff() : 0.0) > 0)) return next;
+        linear_.set_tangent(now_.now.state, true);
         Eigen::VectorXd follows;
-        if (linear_.solve(-linear_.forces_of(motion), 1e-6, follows)) next.x += balance_.nodes().spread(follows);
+        if (linear_.solve(-linear_.forces_of(motion), 1e-6, follows)) next.x += system_.nodes().with_ghosts(follows);
         return next;
     }
 
@@ -219,20 +219,20 @@ private:
         return status;
     }
 
-    const Balance& balance_;
+    const DistributedEquilibrium& system_;
     const Program& program_;
     RunOptions options_;
-    const KnownPattern known_;
+    const LocalPattern local_;
     LinearSolver linear_;
-    Turning turning_;
+    StepRotation rotation_;
     RunState now_;
-    bool met_ = false;  ///< shorter steps do not help
+    bool met_ = false;  ///< then shorter steps do not help
 };
 
 }  // namespace
 
-Result<RunResult> run(const Balance& balance, const Program& program, RunOptions options) {
-    return Run(balance, program, std::move(options)).run();
+Result<RunResult> run(const DistributedEquilibrium& system, const Program& program, RunOptions options) {
+    return Run(system, program, std::move(options)).run();
 }
 
 }  // namespace pliant::sim::distributed

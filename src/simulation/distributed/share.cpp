@@ -11,8 +11,8 @@
 namespace pliant::sim::distributed {
 namespace {
 
-/// The rank to which most corners belong; of several the one that comes first, from another corner in each tet, so
-/// that no rank is preferred.
+/// The rank that owns most corners. Ties go to the first one, starting at another corner in each tet, so that no rank
+/// is preferred.
 int majority(const std::array<int, 4>& ranks, std::size_t tet) {
     int best = -1;
     std::ptrdiff_t most = 0;
@@ -27,7 +27,7 @@ int majority(const std::array<int, 4>& ranks, std::size_t tet) {
     return best;
 }
 
-/// A support, load, cable or pressure load as it is, without what only some ranks have.
+/// A copy of a support or load without its nodes.
 template <class T>
 T without(const T& whole, std::vector<int> T::*nodes) {
     T copy = whole;
@@ -44,7 +44,8 @@ Vec3 centre_of(const Wall& wall, const std::vector<Vec3>& rest) {
 
 }  // namespace
 
-Cutter::Cutter(const Description& description, const HeldNodes& held, const std::vector<int>& owner, int ranks)
+ShareBuilder::ShareBuilder(const Description& description, const HeldNodes& held, const std::vector<int>& owner,
+                           int ranks)
     : d_(description), owner_(owner), ranks_(ranks) {
     const mesh::TetMesh& mesh = d_.mesh;
     whole_.nodes = static_cast<int>(mesh.points.size());
@@ -58,10 +59,10 @@ Cutter::Cutter(const Description& description, const HeldNodes& held, const std:
     give_tets();
     number_nodes();
     find_fixed(held);
-    find_watched();
+    find_contact_nodes();
 }
 
-void Cutter::give_tets() {
+void ShareBuilder::give_tets() {
     tets_.resize(static_cast<std::size_t>(ranks_));
     for (std::size_t t = 0; t < d_.mesh.tet_count(); ++t) {
         const auto tet = d_.mesh.tet(t);
@@ -71,7 +72,7 @@ void Cutter::give_tets() {
     }
 }
 
-void Cutter::number_nodes() {
+void ShareBuilder::number_nodes() {
     nodes_.resize(static_cast<std::size_t>(ranks_));
     for (std::size_t n = 0; n < owner_.size(); ++n)
         nodes_[static_cast<std::size_t>(owner_[n])].push_back(static_cast<int>(n));
@@ -84,7 +85,7 @@ void Cutter::number_nodes() {
     }
 }
 
-void Cutter::find_fixed(const HeldNodes& held) {
+void ShareBuilder::find_fixed(const HeldNodes& held) {
     fixed_.assign(owner_.size(), 1);
     for (const int node : d_.mesh.nodes) fixed_[static_cast<std::size_t>(node)] = held.is_fixed(node) ? 1 : 0;
     for (const PressureLoad& load : d_.pressures) {
@@ -96,18 +97,18 @@ void Cutter::find_fixed(const HeldNodes& held) {
     }
 }
 
-void Cutter::find_watched() {
-    watched_.assign(owner_.size(), 0);
+void ShareBuilder::find_contact_nodes() {
+    contact_nodes_.assign(owner_.size(), 0);
     if (!d_.contact) return;
-    for (const int node : d_.contact->surface.points) watched_[static_cast<std::size_t>(node)] = 1;
+    for (const int node : d_.contact->surface.points) contact_nodes_[static_cast<std::size_t>(node)] = 1;
 }
 
-int Cutter::idle_ranks() const {
+int ShareBuilder::idle_ranks() const {
     return static_cast<int>(std::ranges::count_if(tets_, [](const auto& tets) { return tets.empty(); }));
 }
 
-/// The node's index in the share; it is added where it is new.
-int Cutter::local(int node, Share& share) {
+/// The index of a node in the share; new ones are added.
+int ShareBuilder::local(int node, Share& share) {
     int& index = local_[static_cast<std::size_t>(node)];
     if (index < 0) {
         index = static_cast<int>(share.node_in_file.size());
@@ -116,7 +117,7 @@ int Cutter::local(int node, Share& share) {
     return index;
 }
 
-void Cutter::add_mesh(int rank, Share& share) {
+void ShareBuilder::add_mesh(int rank, Share& share) {
     for (const int node : nodes_[static_cast<std::size_t>(rank)]) static_cast<void>(local(node, share));
     share.owned = static_cast<int>(share.node_in_file.size());
     mesh::TetMesh& mesh = share.part.mesh;
@@ -131,25 +132,25 @@ void Cutter::add_mesh(int rank, Share& share) {
     }
 }
 
-int Cutter::rank_of(const Attachment& point) const {
+int ShareBuilder::rank_of(const Attachment& point) const {
     return point.nodes.empty() ? -1 : owner_[static_cast<std::size_t>(point.nodes.front())];
 }
 
-/// That of the first point which is not fixed in space; the first rank where all are.
-int Cutter::rank_of(const std::vector<Attachment>& points) const {
+/// That of the first point that is not fixed in space; rank 0 if all are.
+int ShareBuilder::rank_of(const std::vector<Attachment>& points) const {
     const auto rides = std::ranges::find_if(points, [](const Attachment& point) { return !point.nodes.empty(); });
     return rides == points.end() ? 0 : rank_of(*rides);
 }
 
-void Cutter::localise(Attachment& point, Share& share) {
+void ShareBuilder::localise(Attachment& point, Share& share) {
     for (int& node : point.nodes) node = local(node, share);
 }
 
-Wall Cutter::part_of(const Wall& wall, int rank, Share& share) {
+Wall ShareBuilder::part_of(const Wall& wall, int rank, Share& share) {
     Wall part;
     std::vector<int> index(wall.points.size(), -1);
     for (const WallFace& face : wall.faces) {
-        int face_rank = 0;  // where all points are fixed in space
+        int face_rank = 0;  // if all points are fixed in space
         for (std::size_t i = 3; i-- > 0;)
             if (const int r = rank_of(wall.points[static_cast<std::size_t>(face[i])]); r >= 0) face_rank = r;
         if (face_rank != rank) continue;
@@ -169,8 +170,8 @@ Wall Cutter::part_of(const Wall& wall, int rank, Share& share) {
     return part;
 }
 
-/// Volumes of open parts add up to that of the whole only about one common centre, and a wall's centre is the mean of
-/// its points. A point that no face uses makes it that of the whole.
+/// Volumes of open parts add up to that of the whole only with respect to a common centre, and the centre of a wall is
+/// the mean of its points. An additional point, which no face uses, moves it to that of the whole.
 void move_centre(Wall& part, const Vec3& centre, const std::vector<Vec3>& rest) {
     if (part.faces.empty()) return;
     const auto count = static_cast<double>(part.points.size());
@@ -178,7 +179,7 @@ void move_centre(Wall& part, const Vec3& centre, const std::vector<Vec3>& rest) 
     part.points.push_back({{}, {}, (count + 1) * centre - count * own});
 }
 
-void Cutter::add_actuators(int rank, Share& share) {
+void ShareBuilder::add_actuators(int rank, Share& share) {
     for (const Cable& cable : d_.cables) {
         Cable own = cable;
         if (rank_of(cable.points) != rank) own.points.clear();
@@ -191,7 +192,7 @@ void Cutter::add_actuators(int rank, Share& share) {
         share.part.pressures.push_back({load.name, part_of(load.wall, rank, share), load.pressure_Pa, load.share});
 }
 
-void Cutter::add_loads(int rank, Share& share) {
+void ShareBuilder::add_loads(int rank, Share& share) {
     for (const Load& load : d_.loads) {
         Load own = without(load, &Load::nodes);
         own.shares.clear();
@@ -215,8 +216,8 @@ void Cutter::add_loads(int rank, Share& share) {
     }
 }
 
-/// Of all nodes that the share knows by now.
-void Cutter::add_supports(Share& share) {
+/// For the nodes that the share has so far: all its local ones.
+void ShareBuilder::add_supports(Share& share) {
     for (const Support& support : d_.supports) {
         Support own = without(support, &Support::nodes);
         for (const int node : support.nodes)
@@ -225,7 +226,7 @@ void Cutter::add_supports(Share& share) {
     }
 }
 
-Share Cutter::share_of(int rank) {
+Share ShareBuilder::share_of(int rank) {
     Share share;
     share.whole = whole_;
     Description& part = share.part;
@@ -243,7 +244,7 @@ Share Cutter::share_of(int rank) {
         part.mesh.points.push_back(d_.mesh.points[n]);
         share.number.push_back(number_[n]);
         share.fixed.push_back(fixed_[n]);
-        if (watched_[n] != 0 && local_[n] < share.owned) share.watched.push_back(local_[n]);
+        if (contact_nodes_[n] != 0 && local_[n] < share.owned) share.contact_nodes.push_back(local_[n]);
         local_[n] = -1;
     }
     for (std::size_t c = 0; c < d_.chambers.size(); ++c)

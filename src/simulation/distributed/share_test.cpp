@@ -85,10 +85,10 @@ std::vector<int> owners(const Description& d) {
 
 std::vector<Share> shares_of(const Description& d, const std::vector<int>& owner) {
     const HeldNodes held = *check(d);
-    Cutter cutter(d, held, owner, ranks);
-    CHECK(cutter.idle_ranks() == 0);
+    ShareBuilder builder(d, held, owner, ranks);
+    CHECK(builder.idle_ranks() == 0);
     std::vector<Share> shares;
-    for (int rank = 0; rank < ranks; ++rank) shares.push_back(unpacked(packed(cutter.share_of(rank))));
+    for (int rank = 0; rank < ranks; ++rank) shares.push_back(unpacked(packed(builder.share_of(rank))));
     return shares;
 }
 

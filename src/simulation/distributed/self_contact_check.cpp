@@ -1,4 +1,4 @@
-#include "simulation/distributed/meeting.hpp"
+#include "simulation/distributed/self_contact_check.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,19 +8,20 @@
 
 namespace pliant::sim::distributed {
 
-Meeting::Meeting(const Balance& balance, const std::optional<ContactRules>& rules) : balance_(balance) {
+SelfContactCheck::SelfContactCheck(const DistributedEquilibrium& system, const std::optional<ContactRules>& rules)
+    : system_(system) {
     const std::vector<int> nodes = gathered_numbers();
-    const std::vector<double> rest = gathered(balance.rest().x);
-    if (rules && balance.ranks().is_root()) make_surface(*rules, nodes, rest);
-    looks_ = balance.ranks().largest(surface_ != nullptr ? 1 : 0) > 0;
+    const std::vector<double> rest = gathered(system.rest().x);
+    if (rules && system.ranks().is_root()) make_surface(*rules, nodes, rest);
+    looks_ = system.ranks().largest(surface_ != nullptr ? 1 : 0) > 0;
 }
 
-/// On root, in the order of ranks: which node of the whole mesh each watched one is.
-std::vector<int> Meeting::gathered_numbers() {
-    const Share& share = balance_.share();
+/// On root: indices in the whole mesh of the contact nodes, rank by rank.
+std::vector<int> SelfContactCheck::gathered_numbers() {
+    const Share& share = system_.share();
     std::vector<int> own;
-    for (const int node : share.watched) own.push_back(share.node_in_file[static_cast<std::size_t>(node)]);
-    const Ranks& ranks = balance_.ranks();
+    for (const int node : share.contact_nodes) own.push_back(share.node_in_file[static_cast<std::size_t>(node)]);
+    const Ranks& ranks = system_.ranks();
     const auto count = static_cast<int>(own.size());
     counts_.resize(static_cast<std::size_t>(ranks.count()));
     must(MPI_Gather(&count, 1, MPI_INT, counts_.data(), 1, MPI_INT, 0, ranks.comm()));
@@ -33,9 +34,10 @@ std::vector<int> Meeting::gathered_numbers() {
     return all;
 }
 
-/// The surface with its nodes as they come.
-void Meeting::make_surface(const ContactRules& rules, const std::vector<int>& nodes, const std::vector<double>& rest) {
-    std::vector<std::pair<int, int>> place;  // (node, where it comes)
+/// The surface, with nodes in the order in which they are gathered.
+void SelfContactCheck::make_surface(const ContactRules& rules, const std::vector<int>& nodes,
+                                    const std::vector<double>& rest) {
+    std::vector<std::pair<int, int>> place;  // (node, index when gathered)
     for (std::size_t k = 0; k < nodes.size(); ++k) place.emplace_back(nodes[k], static_cast<int>(k));
     std::ranges::sort(place);
     std::vector<std::array<int, 3>> triangles = rules.surface.triangles;
@@ -44,23 +46,23 @@ void Meeting::make_surface(const ContactRules& rules, const std::vector<int>& no
     contact::Settings settings = rules.settings;
     settings.self = true;
     auto made = contact::Contact::create(contact::make_surface(triangles), {}, settings, rest);
-    if (!made) return;  // numbers that make no sense: they came from the robot's size, and a mesh has one
+    if (!made) return;  // cannot happen: the settings come from the size of the robot
     crosses_at_rest_ = made->crossing_at_rest().has_value();
     if (!crosses_at_rest_) surface_ = std::make_unique<const contact::Contact>(std::move(*made));
 }
 
-std::vector<double> Meeting::gathered(const Eigen::VectorXd& x) const {
+std::vector<double> SelfContactCheck::gathered(const Eigen::VectorXd& x) const {
     std::vector<double> own;
-    for (const int node : balance_.share().watched)
+    for (const int node : system_.share().contact_nodes)
         for (int c = 0; c < 3; ++c) own.push_back(x[3 * static_cast<Eigen::Index>(node) + c]);
-    const Ranks& ranks = balance_.ranks();
+    const Ranks& ranks = system_.ranks();
     std::vector<double> all(ranks.is_root() ? static_cast<std::size_t>(starts_.back()) : 0);
     must(MPI_Gatherv(own.data(), static_cast<int>(own.size()), MPI_DOUBLE, all.data(), counts_.data(), starts_.data(),
                      MPI_DOUBLE, 0, ranks.comm()));
     return all;
 }
 
-bool Meeting::meets(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
+bool SelfContactCheck::meets(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
     if (!looks_) return false;
     const std::vector<double> begin = gathered(from), end = gathered(to);
     int met = 0;
@@ -70,7 +72,7 @@ bool Meeting::meets(const Eigen::VectorXd& from, const Eigen::VectorXd& to) cons
         met = surface_->largest_step(begin, motion) < 1 ? 1 : 0;
         if (met == 0) surface_->note_clearance(end);
     }
-    return balance_.ranks().largest(met) > 0;
+    return system_.ranks().largest(met) > 0;
 }
 
 }  // namespace pliant::sim::distributed

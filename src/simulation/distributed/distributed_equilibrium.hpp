@@ -1,5 +1,5 @@
-// How far a robot that is spread over ranks is from equilibrium: Equilibrium (simulation/solver), of which each rank
-// has a share.
+// How far a robot that is distributed over ranks is from equilibrium: Equilibrium (simulation/solver), of which each
+// rank has a share.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,14 +15,14 @@
 
 namespace pliant::sim::distributed {
 
-/// Actuators are those of the whole robot, counted as in Equilibrium: cables, chambers, pressure loads. In State, x is
-/// over the nodes that this rank knows (3n) and multipliers are the same on all ranks; in Evaluation, out_of_balance is
-/// over its owned nodes (3 owned), all else is the same on all ranks. In Controls, external_N is what this rank adds to
-/// the forces on its known nodes. Functions that say so are collective.
-class Balance {
+/// Actuators are those of the whole robot, in the order of Equilibrium: cables, chambers, pressure loads. In State, x
+/// is over the local nodes (3n) and the multipliers are the same on all ranks; in Evaluation, out_of_balance is over
+/// the owned nodes (3 owned), everything else is the same on all ranks. In Controls, external_N is this rank's
+/// contribution to the forces on its local nodes. Functions that say so are collective.
+class DistributedEquilibrium {
 public:
-    /// An error is that of one rank alone: a tet that is flat. Collective.
-    [[nodiscard]] static Result<Balance> create(const Ranks& ranks, Share share);
+    /// Error: a flat tet, on any rank. Collective.
+    [[nodiscard]] static Result<DistributedEquilibrium> create(const Ranks& ranks, Share share);
 
     [[nodiscard]] Controls controls(double time) const;
     [[nodiscard]] State rest() const;
@@ -34,34 +34,34 @@ public:
     /// (actuators) lengths and volumes. Collective.
     [[nodiscard]] std::vector<double> measures(const Eigen::VectorXd& x) const;
     [[nodiscard]] double rest_measure(std::size_t actuator) const { return rest_measures_[actuator]; }
-    /// (3 owned) force of the unit of an actuator's multiplier over its measure at rest, on what is free. Collective.
+    [[nodiscard]] const std::vector<double>& rest_measures() const { return rest_measures_; }
+    /// (3 owned) force per unit of an actuator's multiplier, divided by its measure at rest, on free nodes. Collective.
     [[nodiscard]] Eigen::VectorXd measure_gradient(std::size_t actuator, const Eigen::VectorXd& x) const;
-    /// What a sealed chamber gives by for each unit of multiplier: -dg/dm.
-    [[nodiscard]] double gas_compliance(const Drive& drive, double multiplier) const;
     [[nodiscard]] bool is_cable(std::size_t actuator) const { return actuator < part().cables.size(); }
     [[nodiscard]] std::size_t actuator_count() const { return actuators_.size(); }
     /// (supports) the forces that they exert on the robot. Collective.
     [[nodiscard]] std::vector<Vec3> reactions(const Evaluation& evaluation) const;
 
-    /// Node lists that elements and actuators of this rank couple.
+    /// Groups of nodes that elements and actuators of this rank couple.
     [[nodiscard]] linalg::Lists cliques() const;
-    /// Adds this rank's share of the tangent, symmetric part, to a pattern over its known nodes, held ones too.
+    /// Adds this rank's share of the symmetric part of the tangent to a pattern over its local nodes, including held
+    /// ones.
     void add_tangent(const State& state, const linalg::SymmetricPattern& pattern, const BlockSums& sums,
                      std::span<double> values, bool project) const;
-    /// The same of the skew part. Precondition: has_skew().
+    /// The same for the skew part. Precondition: has_skew().
     void add_skew(const State& state, const linalg::SymmetricPattern& pattern, std::span<double> values) const;
-    /// Of a law without an energy, or of pressure on a patch with a free rim.
+    /// True for a law without an energy, and for pressure on a patch with a free rim.
     [[nodiscard]] bool has_skew() const { return !conservative_; }
     [[nodiscard]] bool conservative() const { return conservative_; }
     [[nodiscard]] double energy_rounding_J() const { return energy_rounding_; }
 
-    /// (nodes) that a support holds in some directions, of all that this rank knows: what they leave free.
+    /// A local node that a support holds in one or two directions.
     struct Roller {
         int node = 0;
-        Eigen::Matrix3d may_move;
+        Eigen::Matrix3d may_move;  ///< projector onto the directions in which it may move
     };
     [[nodiscard]] const std::vector<Roller>& rollers() const { return rollers_; }
-    /// Forces or motions (3 owned): none along what is held.
+    /// Removes the components of forces or motions (3 owned) along the directions that are held.
     void restrict_to_free(Eigen::VectorXd& owned) const;
 
     [[nodiscard]] const Share& share() const { return *share_; }
@@ -69,25 +69,22 @@ public:
     [[nodiscard]] const Elements& elements() const { return *elements_; }
     [[nodiscard]] const NodeExchange& nodes() const { return *nodes_; }
     [[nodiscard]] const Ranks& ranks() const { return nodes_->ranks(); }
-    /// (known nodes) 0, 1, 2, ...: the index of a pattern over all of them.
+    /// (local nodes) 0, 1, 2, ...: the index of a pattern over all of them.
     [[nodiscard]] const std::vector<int>& all_nodes() const { return all_nodes_; }
 
 private:
-    Balance() = default;
+    DistributedEquilibrium() = default;
     void add_actuators();
     void hold_nodes();
     void find_roundings();
-    [[nodiscard]] double drive_energy(const Drive& drive, std::size_t actuator, double g) const;
-    void fill_actuators(const State& state, const Controls& controls, const std::vector<double>& measures,
-                        Evaluation& e) const;
 
     std::unique_ptr<const Share> share_;
     std::unique_ptr<const Elements> elements_;
     std::unique_ptr<const NodeExchange> nodes_;
-    std::vector<std::optional<Actuator>> actuators_;  ///< this rank's part of each, where it has one
+    std::vector<std::optional<Actuator>> actuators_;  ///< this rank's part of each, if it has one
     std::vector<double> rest_measures_;
-    std::vector<Support> supports_;     ///< those that hold nodes here
-    std::vector<std::size_t> support_;  ///< of them, which of the robot
+    std::vector<Support> supports_;     ///< those that hold local nodes
+    std::vector<std::size_t> support_;  ///< their indices in the robot
     std::unique_ptr<const HeldNodes> held_;
     std::vector<Roller> rollers_;
     std::vector<int> all_nodes_;

@@ -1,4 +1,4 @@
-#include "simulation/distributed/spread.hpp"
+#include "simulation/distributed/distribute.hpp"
 
 #include <utility>
 
@@ -9,7 +9,7 @@
 namespace pliant::sim::distributed {
 namespace {
 
-/// By its number in the whole mesh, which its rank does not know where it finds it.
+/// On root, which knows the indices of tets in the whole mesh.
 Status check_flat(const mesh::TetMesh& mesh) {
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
         const auto point = [&](std::size_t k) { return mesh.points[static_cast<std::size_t>(mesh.tet(t)[k])]; };
@@ -21,7 +21,7 @@ Status check_flat(const mesh::TetMesh& mesh) {
     return {};
 }
 
-/// Which nodes are held, of a robot that is good.
+/// Checks the robot and finds the held nodes.
 Result<HeldNodes> checked(const Description& description) {
     Result<HeldNodes> held = check(description);
     if (!held) return held;
@@ -29,34 +29,36 @@ Result<HeldNodes> checked(const Description& description) {
     return held;
 }
 
-/// Root's own share; all others are on their way.
-Result<Share> cut_and_send(const Ranks& ranks, const Description& description, const HeldNodes& held,
-                           const std::vector<int>& owner) {
-    Cutter cutter(description, held, owner, ranks.count());
-    const Status enough = cutter.idle_ranks() == 0
-                              ? Status{}
-                              : input_error("{} tetrahedra are too few for {} ranks: {} would have none",
-                                            description.mesh.tet_count(), ranks.count(), cutter.idle_ranks());
+/// Sends the shares of the other ranks and returns root's own.
+Result<Share> build_and_send(const Ranks& ranks, const Description& description, const HeldNodes& held,
+                             const std::vector<int>& owner) {
+    ShareBuilder builder(description, held, owner, ranks.count());
+    const Status enough =
+        builder.idle_ranks() == 0
+            ? Status{}
+            : input_error(
+                  "{} tetrahedra are too few for {} ranks: {} would have none; start fewer ranks or use a finer mesh",
+                  description.mesh.tet_count(), ranks.count(), builder.idle_ranks());
     if (Status status = ranks.agree(enough); !status) return tl::unexpected(status.error());
-    for (int rank = 1; rank < ranks.count(); ++rank) ranks.send(packed(cutter.share_of(rank)), rank);
-    return cutter.share_of(0);
+    for (int rank = 1; rank < ranks.count(); ++rank) ranks.send(packed(builder.share_of(rank)), rank);
+    return builder.share_of(0);
 }
 
 }  // namespace
 
-Result<Balance> spread(const Ranks& ranks, Description description) {
+Result<DistributedEquilibrium> distribute(const Ranks& ranks, Description description) {
     Result<HeldNodes> held = ranks.is_root() ? checked(description) : HeldNodes::create({}, 0);
     if (Status status = ranks.agree(held ? Status{} : tl::unexpected(held.error())); !status)
         return tl::unexpected(status.error());
     const std::vector<int> owner = node_owners(ranks, description.mesh);
     if (ranks.is_root()) {
-        Result<Share> share = cut_and_send(ranks, description, *held, owner);
+        Result<Share> share = build_and_send(ranks, description, *held, owner);
         if (!share) return tl::unexpected(share.error());
         description = {};
-        return Balance::create(ranks, std::move(*share));
+        return DistributedEquilibrium::create(ranks, std::move(*share));
     }
     if (Status status = ranks.agree({}); !status) return tl::unexpected(status.error());
-    return Balance::create(ranks, unpacked(ranks.receive()));
+    return DistributedEquilibrium::create(ranks, unpacked(ranks.receive()));
 }
 
 }  // namespace pliant::sim::distributed

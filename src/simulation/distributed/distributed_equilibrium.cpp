@@ -1,4 +1,4 @@
-#include "simulation/distributed/balance.hpp"
+#include "simulation/distributed/distributed_equilibrium.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,45 +12,45 @@ namespace pliant::sim::distributed {
 
 using linalg::view;
 
-Result<Balance> Balance::create(const Ranks& ranks, Share share) {
-    Balance balance;
+Result<DistributedEquilibrium> DistributedEquilibrium::create(const Ranks& ranks, Share share) {
+    DistributedEquilibrium system;
     Result<Elements> elements = Elements::create(share.part);
     if (Status status = ranks.agree(elements ? Status{} : tl::unexpected(elements.error())); !status)
         return tl::unexpected(status.error());
-    balance.elements_ = std::make_unique<const Elements>(std::move(*elements));
-    balance.share_ = std::make_unique<const Share>(std::move(share));
-    balance.nodes_ = std::make_unique<const NodeExchange>(ranks, balance.share());
-    const Description& d = balance.part();
+    system.elements_ = std::make_unique<const Elements>(std::move(*elements));
+    system.share_ = std::make_unique<const Share>(std::move(share));
+    system.nodes_ = std::make_unique<const NodeExchange>(ranks, system.share());
+    const Description& d = system.part();
     const auto n = static_cast<Eigen::Index>(d.mesh.points.size());
-    balance.all_nodes_.resize(static_cast<std::size_t>(n));
-    std::iota(balance.all_nodes_.begin(), balance.all_nodes_.end(), 0);
-    balance.rest_.resize(3 * n);
-    balance.gravity_.resize(3 * n);
+    system.all_nodes_.resize(static_cast<std::size_t>(n));
+    std::iota(system.all_nodes_.begin(), system.all_nodes_.end(), 0);
+    system.rest_.resize(3 * n);
+    system.gravity_.resize(3 * n);
     for (Eigen::Index i = 0; i < n; ++i) {
-        balance.rest_.segment<3>(3 * i) = linalg::vector(d.mesh.points[static_cast<std::size_t>(i)]);
-        balance.gravity_.segment<3>(3 * i) =
-            balance.elements().node_mass_kg()[static_cast<std::size_t>(i)] * linalg::vector(d.gravity_m_s2);
+        system.rest_.segment<3>(3 * i) = linalg::vector(d.mesh.points[static_cast<std::size_t>(i)]);
+        system.gravity_.segment<3>(3 * i) =
+            system.elements().node_mass_kg()[static_cast<std::size_t>(i)] * linalg::vector(d.gravity_m_s2);
     }
-    balance.hold_nodes();
-    balance.add_actuators();
-    balance.find_roundings();
-    return balance;
+    system.hold_nodes();
+    system.add_actuators();
+    system.find_roundings();
+    return system;
 }
 
-void Balance::hold_nodes() {
+void DistributedEquilibrium::hold_nodes() {
     for (std::size_t s = 0; s < part().supports.size(); ++s) {
         if (part().supports[s].nodes.empty()) continue;
         supports_.push_back(part().supports[s]);
         support_.push_back(s);
     }
-    // The whole robot's supports were found good: so are those of some of its nodes.
+    // The supports of the whole robot were checked on root.
     held_ = std::make_unique<const HeldNodes>(*HeldNodes::create(supports_, static_cast<int>(all_nodes_.size())));
     for (const HeldNodes::Roller& roller : held_->rollers())
         if (share_->fixed[static_cast<std::size_t>(roller.node)] == 0)
             rollers_.push_back({roller.node, roller.may_move});
 }
 
-void Balance::add_actuators() {
+void DistributedEquilibrium::add_actuators() {
     const Description& d = part();
     const auto rest = view(std::as_const(rest_));
     const auto add_wall = [&](const Wall& wall) {
@@ -66,7 +66,7 @@ void Balance::add_actuators() {
     rest_measures_ = measures(rest_);
 }
 
-void Balance::find_roundings() {
+void DistributedEquilibrium::find_roundings() {
     const Whole& whole = share_->whole;
     const bool skews = std::ranges::any_of(whole.pressure_skews, [](char skew) { return skew != 0; });
     conservative_ = elements().has_energy() && !skews;
@@ -76,7 +76,7 @@ void Balance::find_roundings() {
     force_rounding_ = 1e-16 * whole.stiffest_Pa * whole.farthest_m * size * std::sqrt(whole.nodes);
 }
 
-Controls Balance::controls(double time) const {
+Controls DistributedEquilibrium::controls(double time) const {
     const Description& d = part();
     Controls controls;
     controls.time = time;
@@ -92,17 +92,17 @@ Controls Balance::controls(double time) const {
     return controls;
 }
 
-State Balance::rest() const {
+State DistributedEquilibrium::rest() const {
     return {rest_, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(actuators_.size()))};
 }
 
-void Balance::place_supports(const Controls& controls, Eigen::VectorXd& x) const {
+void DistributedEquilibrium::place_supports(const Controls& controls, Eigen::VectorXd& x) const {
     std::vector<double> shares;
     for (const std::size_t s : support_) shares.push_back(controls.support_share[s]);
     held_->place(supports_, part().mesh.points, shares, x);
 }
 
-std::vector<double> Balance::measures(const Eigen::VectorXd& x) const {
+std::vector<double> DistributedEquilibrium::measures(const Eigen::VectorXd& x) const {
     std::vector<double> sums(actuators_.size(), 0.0);
     for (std::size_t a = 0; a < sums.size(); ++a)
         if (actuators_[a]) sums[a] = actuators_[a]->measure(view(x));
@@ -110,41 +110,7 @@ std::vector<double> Balance::measures(const Eigen::VectorXd& x) const {
     return sums;
 }
 
-double Balance::drive_energy(const Drive& drive, std::size_t actuator, double g) const {
-    switch (drive.kind) {
-        case Drive::Kind::measure:
-            return 0;
-        case Drive::Kind::multiplier:
-            return drive.value * g;
-        case Drive::Kind::gas:
-            return part().ambient_pressure_Pa * g - drive.value * std::log(g / rest_measures_[actuator]);
-    }
-    return 0;
-}
-
-double Balance::gas_compliance(const Drive& drive, double multiplier) const {
-    const double absolute = part().ambient_pressure_Pa - multiplier;
-    return drive.value / (absolute * absolute);
-}
-
-void Balance::fill_actuators(const State& state, const Controls& controls, const std::vector<double>& measures,
-                             Evaluation& e) const {
-    e.multiplier = state.multiplier;
-    e.constraint_violation = Eigen::VectorXd::Zero(state.multiplier.size());
-    for (std::size_t a = 0; a < measures.size(); ++a) {
-        const auto i = static_cast<Eigen::Index>(a);
-        const Drive& drive = controls.drives[a];
-        e.energy_J += drive_energy(drive, a, measures[a]);
-        if (drive.kind == Drive::Kind::multiplier) e.multiplier[i] = drive.value;
-        if (drive.kind == Drive::Kind::gas) e.multiplier[i] = part().ambient_pressure_Pa - drive.value / measures[a];
-        if (drive.kind != Drive::Kind::measure) continue;
-        e.constraint_violation[i] = (measures[a] - drive.value) / rest_measures_[a];
-        const bool slack = is_cable(a) && !(e.multiplier[i] > 0);
-        e.violation = std::max(e.violation, slack ? e.constraint_violation[i] : std::fabs(e.constraint_violation[i]));
-    }
-}
-
-Evaluation Balance::evaluate(const State& state, const Controls& controls) const {
+Evaluation DistributedEquilibrium::evaluate(const State& state, const Controls& controls) const {
     Evaluation e;
     Eigen::VectorXd internal = Eigen::VectorXd::Zero(state.x.size());
     const Elements::Evaluation elastic = elements().evaluate(view(state.x), view(internal));
@@ -159,7 +125,10 @@ Evaluation Balance::evaluate(const State& state, const Controls& controls) const
         if (!(measures[a] > 0)) e.flaw = Evaluation::Flaw::collapsed;
     if (!e.possible()) return e;
     e.energy_J = ranks().sum(elastic.energy_J - controls.external_N.dot(state.x - rest_));
-    fill_actuators(state, controls, measures, e);
+    e.multiplier = state.multiplier;
+    e.constraint_violation = Eigen::VectorXd::Zero(state.multiplier.size());
+    for (std::size_t a = 0; a < measures.size(); ++a)
+        add_drive(controls.drives[a], a, {measures[a], rest_measures_[a], is_cable(a)}, part().ambient_pressure_Pa, e);
     Eigen::VectorXd driving = -controls.external_N;
     for (std::size_t a = 0; a < actuators_.size(); ++a)
         if (actuators_[a])
@@ -176,23 +145,23 @@ Evaluation Balance::evaluate(const State& state, const Controls& controls) const
     return e;
 }
 
-double Balance::potential_energy(const State& state, const Controls& controls) const {
+double DistributedEquilibrium::potential_energy(const State& state, const Controls& controls) const {
     return ranks().sum(elements().evaluate(view(state.x), {}).energy_J - controls.external_N.dot(state.x - rest_));
 }
 
-Eigen::VectorXd Balance::measure_gradient(std::size_t actuator, const Eigen::VectorXd& x) const {
-    Eigen::VectorXd known = Eigen::VectorXd::Zero(x.size());
-    if (actuators_[actuator]) actuators_[actuator]->add_gradient(view(x), 1 / rest_measures_[actuator], view(known));
-    Eigen::VectorXd owned = nodes().add_up(known);
+Eigen::VectorXd DistributedEquilibrium::measure_gradient(std::size_t actuator, const Eigen::VectorXd& x) const {
+    Eigen::VectorXd local = Eigen::VectorXd::Zero(x.size());
+    if (actuators_[actuator]) actuators_[actuator]->add_gradient(view(x), 1 / rest_measures_[actuator], view(local));
+    Eigen::VectorXd owned = nodes().add_up(local);
     restrict_to_free(owned);
     return owned;
 }
 
-std::vector<Vec3> Balance::reactions(const Evaluation& evaluation) const {
-    Eigen::VectorXd known = Eigen::VectorXd::Zero(nodes().known());
-    known.head(nodes().owned()) = evaluation.out_of_balance;
+std::vector<Vec3> DistributedEquilibrium::reactions(const Evaluation& evaluation) const {
+    Eigen::VectorXd local = Eigen::VectorXd::Zero(nodes().local());
+    local.head(nodes().owned()) = evaluation.out_of_balance;
     std::vector<double> sums(3 * part().supports.size(), 0.0);
-    const std::vector<Vec3> own = held_->reactions(supports_, known);
+    const std::vector<Vec3> own = held_->reactions(supports_, local);
     for (std::size_t k = 0; k < own.size(); ++k)
         for (std::size_t c = 0; c < 3; ++c) sums[3 * support_[k] + c] = own[k][c];
     ranks().add_up(sums);
@@ -202,15 +171,15 @@ std::vector<Vec3> Balance::reactions(const Evaluation& evaluation) const {
     return forces;
 }
 
-linalg::Lists Balance::cliques() const {
+linalg::Lists DistributedEquilibrium::cliques() const {
     linalg::Lists cliques = elements().cliques(all_nodes_);
     for (const auto& actuator : actuators_)
         if (actuator) actuator->append_cliques(all_nodes_, cliques);
     return cliques;
 }
 
-void Balance::add_tangent(const State& state, const linalg::SymmetricPattern& pattern, const BlockSums& sums,
-                          std::span<double> values, bool project) const {
+void DistributedEquilibrium::add_tangent(const State& state, const linalg::SymmetricPattern& pattern,
+                                         const BlockSums& sums, std::span<double> values, bool project) const {
     elements().add_tangent(view(state.x), sums, values, project);
     for (std::size_t a = 0; a < actuators_.size(); ++a) {
         const double multiplier = state.multiplier[static_cast<Eigen::Index>(a)];
@@ -219,7 +188,8 @@ void Balance::add_tangent(const State& state, const linalg::SymmetricPattern& pa
     }
 }
 
-void Balance::add_skew(const State& state, const linalg::SymmetricPattern& pattern, std::span<double> values) const {
+void DistributedEquilibrium::add_skew(const State& state, const linalg::SymmetricPattern& pattern,
+                                      std::span<double> values) const {
     elements().add_skew(view(state.x), all_nodes_, pattern, values);
     const std::size_t first = part().cables.size() + part().chambers.size();
     for (std::size_t k = 0; k < part().pressures.size(); ++k) {
@@ -229,7 +199,7 @@ void Balance::add_skew(const State& state, const linalg::SymmetricPattern& patte
     }
 }
 
-void Balance::restrict_to_free(Eigen::VectorXd& owned) const {
+void DistributedEquilibrium::restrict_to_free(Eigen::VectorXd& owned) const {
     for (Eigen::Index k = 0; 3 * k < owned.size(); ++k)
         if (share_->fixed[static_cast<std::size_t>(k)] != 0) owned.segment<3>(3 * k).setZero();
     for (const Roller& roller : rollers_)

@@ -1,4 +1,4 @@
-#include "simulation/distributed/turning.hpp"
+#include "simulation/distributed/step_rotation.hpp"
 
 #include <cmath>
 
@@ -9,22 +9,24 @@ namespace pliant::sim::distributed {
 
 using linalg::view;
 
-Turning::Turning(const Balance& balance, const KnownPattern& known) : balance_(balance), known_(known) {
+StepRotation::StepRotation(const DistributedEquilibrium& system, const LocalPattern& local)
+    : system_(system), local_(local) {
     Stopwatch watch;
-    std::vector<double> values(known.pattern.node_row.size(), 0.0);
-    balance.elements().add_laplacian(known.sums, values);
-    // It knows no directions: a node that is held in some of them is held a little in all.
-    for (const Balance::Roller& roller : balance.rollers())
-        values[static_cast<std::size_t>(known.pattern.node_start[static_cast<std::size_t>(roller.node)])] *=
+    const LogStage stage("rotate steps");
+    std::vector<double> values(local.pattern.node_row.size(), 0.0);
+    system.elements().add_laplacian(local.sums, values);
+    // The Laplacian has no directions: a node that is held in some is held partly in all.
+    for (const DistributedEquilibrium::Roller& roller : system.rollers())
+        values[static_cast<std::size_t>(local.pattern.node_start[static_cast<std::size_t>(roller.node)])] *=
             1 + (3 - roller.may_move.trace()) / 3;
-    matrix_ = make_matrix(balance, 1, [&](Mat matrix) { add_rows(matrix, values); });
+    matrix_ = make_matrix(system, 1, [&](Mat matrix) { add_rows(matrix, values); });
     must(MatSetOption(matrix_.get(), MAT_SPD, PETSC_TRUE));
-    const PetscInt own = balance.share().owned;
-    must(VecCreateMPIWithArray(balance.ranks().comm(), 1, own, PETSC_DECIDE, nullptr, right_.fill()));
-    must(VecCreateMPIWithArray(balance.ranks().comm(), 1, own, PETSC_DECIDE, nullptr, solution_.fill()));
-    must(KSPCreate(balance.ranks().comm(), ksp_.fill()));
+    const PetscInt own = system.share().owned;
+    must(VecCreateMPIWithArray(system.ranks().comm(), 1, own, PETSC_DECIDE, nullptr, right_.fill()));
+    must(VecCreateMPIWithArray(system.ranks().comm(), 1, own, PETSC_DECIDE, nullptr, solution_.fill()));
+    must(KSPCreate(system.ranks().comm(), ksp_.fill()));
     KSP ksp = ksp_.get();
-    must(KSPSetOptionsPrefix(ksp, "turning_"));
+    must(KSPSetOptionsPrefix(ksp, "rotation_"));
     must(KSPSetType(ksp, KSPCG));
     must(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
     PC pc = nullptr;
@@ -36,15 +38,15 @@ Turning::Turning(const Balance& balance, const KnownPattern& known) : balance_(b
     work_.set_up_s += watch.read_s();
 }
 
-void Turning::add_rows(Mat matrix, std::span<const double> values) const {
-    const Share& share = balance_.share();
+void StepRotation::add_rows(Mat matrix, std::span<const double> values) const {
+    const Share& share = system_.share();
     std::vector<PetscInt> columns;
     std::vector<double> row;
-    for (std::size_t i = 0; i + 1 < known_.row_start.size(); ++i) {
+    for (std::size_t i = 0; i + 1 < local_.row_start.size(); ++i) {
         columns.clear();
         row.clear();
-        for (int k = known_.row_start[i]; k < known_.row_start[i + 1]; ++k) {
-            const KnownPattern::Place& place = known_.places[static_cast<std::size_t>(k)];
+        for (int k = local_.row_start[i]; k < local_.row_start[i + 1]; ++k) {
+            const LocalPattern::Place& place = local_.places[static_cast<std::size_t>(k)];
             columns.push_back(share.number[static_cast<std::size_t>(place.column)]);
             row.push_back(values[static_cast<std::size_t>(place.slot)]);
         }
@@ -60,13 +62,14 @@ void Turning::add_rows(Mat matrix, std::span<const double> values) const {
                              share.number[static_cast<std::size_t>(node)], held, ADD_VALUES));
 }
 
-Eigen::VectorXd Turning::rotate(const RotatingStep& rotating, double error) {
+Eigen::VectorXd StepRotation::rotate(const RotatingStep& rotating, double error) {
     Stopwatch watch;
-    const Eigen::Index size = balance_.nodes().known();
+    const LogStage stage("rotate steps");
+    const Eigen::Index size = system_.nodes().local();
     Eigen::VectorXd turned = Eigen::VectorXd::Zero(size);
-    balance_.elements().add_rotation_term(rotating, view(turned));
-    Eigen::VectorXd forces = balance_.nodes().add_up(turned);
-    balance_.restrict_to_free(forces);
+    system_.elements().add_rotation_term(rotating, view(turned));
+    Eigen::VectorXd forces = system_.nodes().add_up(turned);
+    system_.restrict_to_free(forces);
     Eigen::VectorXd correction(forces.size());
     must(KSPSetTolerances(ksp_.get(), error, 1e-300, 1e10, PETSC_DEFAULT));
     for (Eigen::Index c = 0; c < 3; ++c) {
@@ -84,9 +87,9 @@ Eigen::VectorXd Turning::rotate(const RotatingStep& rotating, double error) {
         work_.iterations += iterations;
         ++work_.solutions;
     }
-    balance_.restrict_to_free(correction);
+    system_.restrict_to_free(correction);
     work_.solve_s += watch.read_s();
-    return Eigen::Map<const Eigen::VectorXd>(rotating.end, size) + balance_.nodes().spread(correction);
+    return Eigen::Map<const Eigen::VectorXd>(rotating.end, size) + system_.nodes().with_ghosts(correction);
 }
 
 }  // namespace pliant::sim::distributed
