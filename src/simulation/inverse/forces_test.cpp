@@ -46,7 +46,7 @@ void check_gradients(const Goal& goal, const std::vector<double>& values) {
     for (Eigen::Index i = 0; i < 2; ++i) shares[i] = space.share(i, values[static_cast<std::size_t>(i)]);
     RobotState robot = stepper.rest();
     REQUIRE(stepper.drive(robot, space.inputs(shares, 1), {}).arrived);
-    auto sensitivity = Sensitivity::create(stepper, space, robot, {false, false});
+    auto sensitivity = Sensitivity::create(stepper, space, robot);
     REQUIRE(sensitivity);
     sensitivity->use(rows.gradients(sensitivity->at(), 0, {}));
     for (Eigen::Index i = 0; i < 2; ++i) {

@@ -166,24 +166,29 @@ bool Seeker::linearise(Search& search) {
         slack_inputs.push_back(i);
         slack_cables.push_back(space_.input(at).actuator);
     }
-    const auto create = [&] {
-        ++work_.linearised;
-        if (sensitivity_) work_.solutions += sensitivity_->solutions();
-        sensitivity_.reset();
-        auto made = Sensitivity::create(*stepper_, space_, search.now.robot, pulled);
-        if (!made) return false;
-        sensitivity_.emplace(std::move(*made));
+    ++work_.linearised;
+    if (sensitivity_) work_.solutions += sensitivity_->solutions();
+    sensitivity_.reset();
+    auto made = Sensitivity::create(*stepper_, space_, search.now.robot);
+    if (!made) return false;
+    sensitivity_.emplace(std::move(*made));
+    const auto use_rows = [&] {
         sensitivity_->use(rows_.gradients(sensitivity_->at(), search.waypoint, search.price));
-        price_factor_ = search.price.factor;
-        return true;
     };
-    if (!create()) return false;
+    use_rows();
+    price_factor_ = search.price.factor;
     if (!slack_cables.empty()) {
         const Eigen::VectorXd by_tension = sensitivity_->by_tensions(search.residuals, slack_cables);
-        bool any = false;
-        for (std::size_t k = 0; k < slack_inputs.size(); ++k)
-            any |= pulled[slack_inputs[k]] = by_tension[static_cast<Eigen::Index>(k)] < 0;
-        if (any && !create()) return false;
+        std::vector<std::size_t> helpful;
+        for (std::size_t k = 0; k < slack_inputs.size(); ++k) {
+            if (!(by_tension[static_cast<Eigen::Index>(k)] < 0)) continue;
+            pulled[slack_inputs[k]] = true;
+            helpful.push_back(slack_cables[k]);
+        }
+        if (!helpful.empty()) {
+            sensitivity_->tighten(space_, helpful);
+            use_rows();
+        }
     }
     pulls_.assign(count, true);
     for (std::size_t i = 0; i < count; ++i)

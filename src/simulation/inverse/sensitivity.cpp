@@ -13,20 +13,20 @@ constexpr double already_solved = 1e-9;  // what remains of a unit direction aft
 
 }  // namespace
 
-Result<Sensitivity> Sensitivity::create(const Stepper& stepper, const InputSpace& space, const RobotState& robot,
-                                        const std::vector<bool>& pulled) {
-    State state = robot.now.state;
-    for (Eigen::Index i = 0; i < space.size(); ++i) {
-        double& tension = state.multiplier[static_cast<Eigen::Index>(space.input(i).actuator)];
-        if (pulled[static_cast<std::size_t>(i)]) tension = std::max(tension, std::numeric_limits<double>::min());
-    }
+Result<Sensitivity> Sensitivity::create(const Stepper& stepper, const InputSpace& space, const RobotState& robot) {
     constexpr double residual = 1e-5;  // the step is verified by a solve in any case
     const KnownPattern known = known_pattern(stepper.system(), stepper.laplacian(), robot.memory.get());
-    Result<Linearisation> at = Linearisation::create(stepper.system(), state, robot.controls, known, residual);
+    Result<Linearisation> at =
+        Linearisation::create(stepper.system(), robot.now.state, robot.controls, known, residual);
     if (!at) return tl::unexpected(at.error());
     Sensitivity made(std::move(*at));
     made.by_ = space.derivatives(made.at_);
     return made;
+}
+
+void Sensitivity::tighten(const InputSpace& space, const std::vector<std::size_t>& cables) {
+    at_.tighten(cables);
+    by_ = space.derivatives(at_);
 }
 
 void Sensitivity::use(RowGradients rows) {

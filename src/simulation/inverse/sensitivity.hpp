@@ -16,10 +16,10 @@ namespace pliant::sim::inverse {
 
 class Sensitivity {
 public:
-    /// Cables that are marked in `pulled` (inputs) are treated as taut although they are slack: as if they had just
-    /// become taut.
     [[nodiscard]] static Result<Sensitivity> create(const Stepper& stepper, const InputSpace& space,
-                                                    const RobotState& robot, const std::vector<bool>& pulled);
+                                                    const RobotState& robot);
+    /// Treats these cables as taut although they are slack: as if they had just become taut. use() must follow.
+    void tighten(const InputSpace& space, const std::vector<std::size_t>& cables);
 
     /// Sets the rows of residuals of a waypoint; the linearisation is kept, Broyden updates are discarded.
     void use(RowGradients rows);

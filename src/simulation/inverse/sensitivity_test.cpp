@@ -30,7 +30,7 @@ struct Pulled {
     }
 
     [[nodiscard]] Sensitivity sensitivity() {
-        auto made = Sensitivity::create(stepper, space, robot, {false, false, false});
+        auto made = Sensitivity::create(stepper, space, robot);
         REQUIRE(made);
         made->use(rows.gradients(made->at(), 0, {}));
         return std::move(*made);

@@ -117,6 +117,13 @@ SystemSolver::SystemSolver(const LinearSystem& system) : system_(&system) {
     compliance_ = row_.cwiseProduct(system.compliance).cwiseProduct(column_);
 }
 
+SystemSolver::SystemSolver(const LinearSystem& system, SystemSolver&& other) : SystemSolver(system) {
+    if (!other.exact_ || (other.way_ != Way::two_levels && other.way_ != Way::single_)) return;
+    taken_over_ = other.way_;
+    factor_ = std::move(other.factor_);
+    levels_ = std::move(other.levels_);
+}
+
 /// Factorises K if it is positive definite; else K with its diagonal increased as far as necessary. False: that fails
 /// too.
 bool SystemSolver::factorise() {
@@ -185,15 +192,28 @@ bool SystemSolver::take_schur_complement() {
     return take_schur_complement([&](Eigen::MatrixXd& columns) { return solve_body(columns); }, redundant);
 }
 
+/// K^-1 B and K^-1 C. A constraint that is the gradient of what its force acts on has the force's column; the
+/// constraint of a slack cable has none.
 template <class Solve>
-bool SystemSolver::take_schur_complement(const Solve& solve, double threshold) {
+bool SystemSolver::solve_columns(const Solve& solve) {
     from_forces_ = forces_;
     if (!solve(from_forces_)) return false;
     from_constraints_ = from_forces_;
-    if (system_->forces != system_->constraints) {
-        from_constraints_ = constraints_;
-        if (!solve(from_constraints_)) return false;
+    bool known = true;
+    for (Eigen::Index k = 0; k < forces_.cols(); ++k) {
+        if (system_->constraints.col(k).isZero(0))
+            from_constraints_.col(k).setZero();
+        else
+            known = known && system_->constraints.col(k) == system_->forces.col(k);
     }
+    if (known) return true;
+    from_constraints_ = constraints_;
+    return solve(from_constraints_);
+}
+
+template <class Solve>
+bool SystemSolver::take_schur_complement(const Solve& solve, double threshold) {
+    if (!solve_columns(solve)) return false;
     Eigen::MatrixXd S = -constraints_.transpose() * from_forces_;
     S.diagonal() += compliance_;
     schur_inverse_ = schur_null_ = Eigen::MatrixXd(S.rows(), 0);
@@ -224,17 +244,20 @@ void SystemSolver::begin() {
 
 bool SystemSolver::begin_quickly(Way way) {
     way_ = way;
-    if (way == Way::two_levels) {
-        levels_ = std::make_unique<linalg::TwoLevel>(system_->layout->pattern);
-        if (!levels_->set(system_->symmetric, view(system_->positions))) return false;
-    } else {
-        const bool definite = factor(linalg::Precision::single_).factorise(system_->symmetric);
-        factor_->release_work_space();
-        if (!definite) return false;
-    }
+    if (std::exchange(taken_over_, Way::none) != way && !make_quickly(way)) return false;
     exact_ = true;
     // Conjugate gradients detect by themselves that they do not converge.
     return take_schur_complement() && (levels_ || is_content() || is_far_from_singular());
+}
+
+bool SystemSolver::make_quickly(Way way) {
+    if (way == Way::two_levels) {
+        levels_ = std::make_unique<linalg::TwoLevel>(system_->layout->pattern);
+        return levels_->set(system_->symmetric, view(system_->positions));
+    }
+    const bool definite = factor(linalg::Precision::single_).factorise(system_->symmetric);
+    factor_->release_work_space();
+    return definite;
 }
 
 void SystemSolver::begin_surely() {

@@ -64,6 +64,9 @@ class SystemSolver {
 public:
     /// `system` must outlive it.
     explicit SystemSolver(const LinearSystem& system);
+    /// For a system that has the K and B of another one's: takes over what that one has made of them. The solutions are
+    /// those of a new solver, to the bit.
+    SystemSolver(const LinearSystem& system, SystemSolver&& other);
     ~SystemSolver();
 
     /// x with A x = b, or A^T x = b, to |b - A x| <= 10 |b| times the target residual, in balanced units; or, if x is
@@ -79,6 +82,9 @@ private:
     [[nodiscard]] Status prepare();
     void begin();
     [[nodiscard]] bool begin_quickly(Way way);
+    [[nodiscard]] bool make_quickly(Way way);
+    template <class Solve>
+    [[nodiscard]] bool solve_columns(const Solve& solve);
     void begin_surely();
     [[nodiscard]] linalg::Cholesky& factor(linalg::Precision precision);
     [[nodiscard]] bool factorise();
@@ -102,6 +108,7 @@ private:
 
     const LinearSystem* system_;
     Way way_ = Way::none;
+    Way taken_over_ = Way::none;  ///< how the factor or the levels that were taken over solve with K
     bool singular_ = false;
     bool exact_ = false;                        ///< the preconditioner is the inverse to rounding
     double stiffness_ = 1;                      ///< mean of the diagonal of K, N/m

@@ -152,17 +152,38 @@ void Linearisation::assemble(const KnownPattern& known) {
         Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
         actuator.add_gradient(view(state_.x), 1, view(full), controls_.shares[a]);
         A.forces.col(k) = system_->restrict_to_free(full);
-        if (slack_[a]) {
-            A.compliance[k] = 1;
-            continue;
-        }
-        full.setZero();
-        actuator.add_measure_gradient(view(state_.x), 1, view(full), controls_.shares[a]);
-        A.constraints.col(k) = system_->restrict_to_free(full);
-        if (controls_.drives[a].kind == Drive::Kind::gas)
-            A.compliance[k] =
-                -system_->gas_compliance(controls_.drives[a], state_.multiplier[static_cast<Eigen::Index>(a)]);
+        set_constraint(A, static_cast<std::size_t>(k));
     }
+}
+
+/// The row of the k-th unknown multiplier.
+void Linearisation::set_constraint(LinearSystem& A, std::size_t k) const {
+    const std::size_t a = solved_[k];
+    const auto at = static_cast<Eigen::Index>(k);
+    A.compliance[at] = slack_[a] ? 1 : 0;
+    if (slack_[a]) return;
+    Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
+    system_->actuators()[a].add_measure_gradient(view(state_.x), 1, view(full), controls_.shares[a]);
+    A.constraints.col(at) = system_->restrict_to_free(full);
+    if (controls_.drives[a].kind == Drive::Kind::gas)
+        A.compliance[at] =
+            -system_->gas_compliance(controls_.drives[a], state_.multiplier[static_cast<Eigen::Index>(a)]);
+}
+
+void Linearisation::tighten(const std::vector<std::size_t>& cables) {
+    auto tight = std::make_shared<LinearSystem>(*matrix_);
+    for (std::size_t k = 0; k < solved_.size(); ++k) {
+        const std::size_t a = solved_[k];
+        if (!slack_[a] || std::ranges::find(cables, a) == cables.end()) continue;
+        slack_[a] = false;
+        // So small that it adds nothing to K.
+        state_.multiplier[static_cast<Eigen::Index>(a)] = std::numeric_limits<double>::min();
+        set_constraint(*tight, k);
+    }
+    // A copy of this linearisation still needs a solver that it shares.
+    solver_ = solver_.use_count() == 1 ? std::make_shared<SystemSolver>(*tight, std::move(*solver_)) : nullptr;
+    matrix_ = std::move(tight);
+    whole_ = nullptr;
 }
 
 Eigen::VectorXd Linearisation::equations(const Equilibrium& system, const State& state,

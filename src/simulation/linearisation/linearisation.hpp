@@ -109,6 +109,9 @@ public:
     [[nodiscard]] const std::vector<std::size_t>& solved() const { return solved_; }
     /// True for a cable that is driven by length and slack.
     [[nodiscard]] bool is_slack(std::size_t actuator) const;
+    /// Treats slack cables as taut, as if they had just become so. Far cheaper than a new linearisation of that state,
+    /// and the same to the bit.
+    void tighten(const std::vector<std::size_t>& cables);
 
     /// F at another state and other controls, with the same slack cables; NaN if that state is impossible.
     [[nodiscard]] Eigen::VectorXd equations(const State& state, const Controls& controls) const {
@@ -157,6 +160,7 @@ private:
     Linearisation() = default;
     void find_unknowns();
     void assemble(const KnownPattern& known);
+    void set_constraint(LinearSystem& A, std::size_t k) const;
     [[nodiscard]] const Whole& whole();
     /// True if K is the tet stiffness plus parts with known nodes.
     [[nodiscard]] bool is_tets_and_more() const;

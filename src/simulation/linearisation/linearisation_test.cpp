@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <limits>
+
 #include "base/core/near.hpp"
 #include "simulation/actuators/attach.hpp"
 #include "simulation/elements/elements.hpp"
@@ -68,6 +70,47 @@ TEST_CASE("solutions for a cable by length, slack, by tension, with friction") {
         c.system.freeze_cable_friction(state.x, wanted, before, controls);
         REQUIRE(controls.shares[0].back() < 1);
         check(c.at(state, controls), "with friction");
+    }
+}
+
+TEST_CASE("a linearisation whose slack cables are tightened has the same bits as one in which they are taut") {
+    Description d = plain();
+    d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
+    for (const double height : {0.1, 0.5}) {
+        d.cables.push_back(
+            cable_through(d.mesh, {{0.2 * edge, 0.3 * edge, height * edge}, {2.8 * edge, 0.4 * edge, height * edge}},
+                          {CableTarget::Kind::length_ratio, 0.95}));
+    }
+    const Case c(std::move(d));
+    for (const double residual : {best_residual, gradient_residual}) {
+        CAPTURE(residual);
+        State state = c.system.rest();
+        state.multiplier << 0.5, 0, 0;
+        const auto made = [&] {
+            auto at = Linearisation::create(c.system, state, c.system.controls(1), {}, residual);
+            REQUIRE(at);
+            return std::move(*at);
+        };
+        Linearisation tightened = made();
+        REQUIRE(tightened.is_slack(1));
+        Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(tightened.size(), -1, 2);
+        const auto before = tightened.solve(b);
+        Linearisation copy = tightened;
+        tightened.tighten({1});  // shares its solver with the copy
+        CHECK_FALSE(tightened.is_slack(1));
+        CHECK(tightened.is_slack(2));
+        CHECK(*copy.solve(b) == *before);
+        Linearisation alone = made();
+        REQUIRE(alone.solve(b));
+        alone.tighten({1});  // takes its solver along
+        state.multiplier[1] = std::numeric_limits<double>::min();
+        Linearisation taut = made();
+        CHECK(*taut.solve(b) != *before);
+        for (Linearisation* at : {&tightened, &alone}) {
+            CHECK(at->multiply(b) == taut.multiply(b));
+            CHECK(*at->solve(b) == *taut.solve(b));
+            CHECK(*at->solve_transposed(b) == *taut.solve_transposed(b));
+        }
     }
 }
 
