@@ -14,13 +14,13 @@ namespace {
 
 using Entry = std::pair<std::string, std::string>;
 
-/// PLIANT_LIBRARIES is "Eigen 3.4.0|fmt 9.1.0|...", set by the build.
+/// PLIANT_LIBRARIES is "Eigen=3.4.0|fmt=9.1.0|...", set by the build.
 std::vector<Entry> libraries(std::string_view text) {
     std::vector<Entry> entries;
     while (!text.empty()) {
         const std::string_view entry = text.substr(0, text.find('|'));
-        const std::size_t space = entry.find(' ');
-        entries.emplace_back(entry.substr(0, space), entry.substr(space + 1));
+        const std::size_t sign = entry.find('=');
+        entries.emplace_back(entry.substr(0, sign), entry.substr(sign + 1));
         text.remove_prefix(std::min(entry.size() + 1, text.size()));
     }
     return entries;
