@@ -23,10 +23,11 @@ interface Project {
   folder: string;
 }
 
-/// A picture of a robot, drawn by the studio; a placeholder if there is none.
+/// A picture of a robot, drawn by the studio, or of a job; a sign if there is none.
 function Thumbnail({ of }: { of: string }) {
   return (
     <span class="thumb" aria-hidden="true">
+      <Icon name="layers" />
       <img src={`/api/thumbnail?${of}`} alt="" width={120} height={75} onError={(e) => (e.currentTarget.hidden = true)} />
     </span>
   );
@@ -66,7 +67,7 @@ function Open() {
           <div class="gallery">
             {project.files.map((name) => (
               <button class="item" key={name} onClick={() => (name.endsWith('.toml') ? unlessLost(`Opening ${name}`, () => void post('/api/open', { name })) : void post('/api/open', { name }))}>
-                {name.endsWith('.toml') ? <Thumbnail of={`file=${encodeURIComponent(name)}`} /> : <span class="thumb" aria-hidden="true"><Icon name="layers" /></span>}
+                <Thumbnail of={`file=${encodeURIComponent(name)}`} />
                 <span class="item-name">{name}</span>
               </button>
             ))}

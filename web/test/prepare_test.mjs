@@ -158,3 +158,19 @@ test('the first layers of a large job are shown while it is being sliced', async
   await page.getByTestId('slice').waitFor({ timeout: 60_000 });
   assert.deepEqual(wrong, []);
 });
+
+test('the colour of a resin is chosen on the page, and kept in the robot file and in the job', async (t) => {
+  const { page, wrong } = await withTable(t);
+  await page.getByTestId('group-exposure').locator('summary').click();
+  await page.getByTestId('colour-of-soft').fill('#12ab34');
+  await page.waitForFunction(() => window.pliant.scene.value?.head.materials[0].colour === '#12ab34', undefined, { timeout: 60_000 });
+  assert.match(await page.evaluate(() => window.pliant.robotText.value), /^colour = "#12ab34"$/m);
+  await slice(page);
+  assert.deepEqual(await page.evaluate(() => window.pliant.job.value.colours), ['#12ab34']);
+  assert.equal(JSON.parse(unzipped(await jobFile(page), 'manifest.json')).materials[0].colour, '#12ab34');
+  await page.getByTestId('section-simulate').click();
+  await page.getByTestId('tab-build').click();
+  await page.getByTestId('build-undo').click();
+  await page.waitForFunction(() => !/colour/.test(window.pliant.robotText.value), undefined, { timeout: 60_000 });
+  assert.deepEqual(wrong, []);
+});

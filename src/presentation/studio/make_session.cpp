@@ -20,6 +20,15 @@ std::string event(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+/// Of its materials: the chosen ones, else those of the palette.
+std::vector<std::string> colours_of(const job::Manifest& manifest) {
+    std::vector<std::string> colours;
+    for (const job::Material& material : manifest.materials)
+        colours.push_back(material.colour.empty() ? report::hex(report::palette(static_cast<int>(colours.size())))
+                                                  : material.colour);
+    return colours;
+}
+
 }  // namespace
 
 class MakeSession::Watch final : public Progress {
@@ -78,9 +87,7 @@ Status MakeSession::save(const std::filesystem::path& file) {
 Status MakeSession::adopt(const std::filesystem::path& file, std::vector<std::string> colours) {
     Result<operate::OpenJob> open = operate::open_job(file);
     if (!open) return tl::unexpected(open.error());
-    const std::size_t materials = open->archive.manifest().materials.size();
-    for (std::size_t m = colours.size(); m < materials; ++m)
-        colours.push_back(report::hex(report::palette(static_cast<int>(m))));
+    if (colours.empty()) colours = colours_of(open->archive.manifest());
     std::string news;
     {
         const std::lock_guard lock(mutex_);
@@ -132,8 +139,7 @@ Result<std::shared_ptr<OpenJob>> MakeSession::other(const std::filesystem::path&
     if (!open) return tl::unexpected(open.error());
     const std::lock_guard lock(mutex_);
     auto made = std::make_shared<OpenJob>(std::move(open->archive), std::move(open->printer), file, -(++others_));
-    for (std::size_t m = 0; m < made->archive.manifest().materials.size(); ++m)
-        made->colours.push_back(report::hex(report::palette(static_cast<int>(m))));
+    made->colours = colours_of(made->archive.manifest());
     return other_ = made;
 }
 

@@ -39,6 +39,24 @@ TEST_CASE("a robot becomes a job with its materials' colours; its file is delete
     CHECK_FALSE(fs::exists(scratch));
 }
 
+TEST_CASE("a chosen colour stays with the job that is opened again") {
+    const pliant::test::Folder folder;
+    Events events;
+    MakeSession session([&](const std::string& json) { events.add(json); }, "test");
+    SliceOrder order = slice_order();
+    order.robot_text = pliant::test::replaced(order.robot_text, "{ youngs", "{ colour = \"#12ab34\", youngs");
+    REQUIRE(session.slice(order).has_value());
+    REQUIRE(end_of_slicing(events) == "");
+    CHECK(session.job()->colours == std::vector<std::string>{"#12ab34"});
+    REQUIRE(session.save(folder / "a.zip").has_value());
+    MakeSession later([](const std::string&) {}, "test");
+    REQUIRE(later.open(folder / "a.zip").has_value());
+    CHECK(later.job()->colours == std::vector<std::string>{"#12ab34"});
+    const auto beside = later.other(folder / "a.zip");
+    REQUIRE(beside.has_value());
+    CHECK((*beside)->colours == std::vector<std::string>{"#12ab34"});
+}
+
 TEST_CASE("a job is saved under a new name only, and the session continues with that file") {
     const pliant::test::Folder folder;
     Events events;

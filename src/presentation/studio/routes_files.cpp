@@ -5,6 +5,7 @@
 #include "presentation/studio/examples.hpp"
 #include "presentation/studio/received_file.hpp"
 #include "presentation/studio/studio.hpp"
+#include "printing/job/job.hpp"
 
 namespace pliant::studio {
 namespace {
@@ -51,6 +52,15 @@ Response picture(Studio& studio, const std::string& text, const std::filesystem:
     return {200, "image/png", *png};
 }
 
+/// The one that the slicer put into it.
+Response picture_of_job(const std::filesystem::path& file) {
+    const Result<job::Archive> job = job::Archive::open(file);
+    if (!job) return error_response(404, job.error().message);
+    Result<std::string> png = job->file(job::thumbnail_file);
+    if (!png) return error_response(404, png.error().message);
+    return {200, "image/png", std::move(*png)};
+}
+
 Response thumbnail(Studio& studio, const Request& request) {
     const std::string example = asked_for(request, "example"), name = asked_for(request, "file");
     if (!example.empty()) {
@@ -60,7 +70,8 @@ Response thumbnail(Studio& studio, const Request& request) {
     }
     const Result<std::filesystem::path> path = studio.folder().resolve(name);
     if (!path) return error_response(path.error());
-    if (path->extension() != ".toml") return error_response(404, "there are pictures of robot files only");
+    if (path->extension() == ".zip") return picture_of_job(*path);
+    if (path->extension() != ".toml") return error_response(404, "there are pictures of robot files and jobs only");
     const Result<std::string> text = read_file(*path, largest_robot);
     return text ? picture(studio, *text, *path) : error_response(404, text.error().message);
 }
@@ -72,8 +83,8 @@ void add_file_routes(std::vector<Route>& routes) {
                       "a file of geometry for the folder, ?name= and replace=1 to write over another: read by its "
                       "reader, then put there; answers what it holds",
                       "application/json", true, receive, "application/octet-stream", true});
-    routes.push_back(
-        {"GET", "/api/thumbnail", "a small picture of a robot, ?example= or ?file=", "image/png", false, thumbnail});
+    routes.push_back({"GET", "/api/thumbnail", "a small picture of a robot or a job, ?example= or ?file=", "image/png",
+                      false, thumbnail});
 }
 
 }  // namespace pliant::studio

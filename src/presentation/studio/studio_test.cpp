@@ -11,6 +11,8 @@
 
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
+#include "presentation/studio/make_session.hpp"
+#include "presentation/studio/test_sessions.hpp"
 
 using namespace pliant;
 using namespace pliant::studio;
@@ -448,8 +450,15 @@ TEST_CASE("robots have thumbnails; invalid files have none") {
     CHECK(thumbnail("file", "bar.toml").body == mine.body);
     CHECK(thumbnail("example", "pneunet").status == 200);
     CHECK(thumbnail("example", "no such").status == 404);
-    for (const char* name : {"wrong.toml", "outside.toml", "none.toml", "../outside.stl"})
+    std::ofstream(project.base / "project" / "wrong.zip") << "PK no job";
+    for (const char* name : {"wrong.toml", "outside.toml", "none.toml", "../outside.stl", "wrong.zip", "none.zip"})
         CHECK_MESSAGE(thumbnail("file", name).status >= 400, name);
+    studio::test::Events events;
+    MakeSession session([&](const std::string& json) { events.add(json); }, "test");
+    REQUIRE(session.slice(studio::test::slice_order()).has_value());
+    REQUIRE(studio::test::end_of_slicing(events) == "");
+    REQUIRE(session.save(project.base / "project" / "bar.zip").has_value());
+    CHECK(thumbnail("file", "bar.zip").body == session.job()->archive.file(job::thumbnail_file).value());
 }
 
 TEST_CASE("a second robot is shown beside the first, and follows the same inputs") {

@@ -41,6 +41,7 @@ struct Material {
     double bottom_exposure_s = 0;       ///< of the first `bottom_layers`
     std::vector<MaterialPart> parts{};  ///< two or more drawn materials with the same resin and exposure; empty: a
                                         ///< single one
+    std::string colour{};               ///< "#rrggbb", in which it is shown; "": none was chosen
 };
 
 /// One image that is not blank.

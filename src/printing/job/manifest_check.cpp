@@ -16,6 +16,12 @@ bool is_amount(double value) {
     return std::isfinite(value) && value >= 0;
 }
 
+/// "#rrggbb"
+bool is_colour(std::string_view text) {
+    return text.size() == 7 && text[0] == '#' &&
+           text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string_view::npos;
+}
+
 Status check_material(const Material& m, std::size_t i, std::string_view where) {
     if (m.name.empty()) return input_error("{}: materials[{}].name: must not be empty", where, i);
     const std::pair<const char*, double> amounts[] = {{"model_volume_mm3", m.model_volume_mm3},
@@ -25,6 +31,8 @@ Status check_material(const Material& m, std::size_t i, std::string_view where) 
     for (const auto& [key, value] : amounts) {
         if (!is_amount(value)) return input_error("{}: materials[{}].{}: {} must be 0 or more", where, i, key, value);
     }
+    if (!m.colour.empty() && !is_colour(m.colour))
+        return input_error("{}: materials[{}].colour: '{}' must be like #rrggbb", where, i, m.colour);
     for (std::size_t p = 0; p < m.parts.size(); ++p) {
         const MaterialPart& part = m.parts[p];
         if (part.name.empty() || !is_amount(part.model_volume_mm3) || !is_amount(part.model_area_mm2))

@@ -99,6 +99,7 @@ Material read_material(const json& object, const std::string& path, std::string&
                       f.number("model_area_mm2"),
                       f.number("exposure_s"),
                       f.number("bottom_exposure_s")};
+    if (f.has("colour")) material.colour = f.text("colour");
     if (!f.has("parts")) return material;
     f.each("parts", [&](const json& entry, const std::string& entry_path) {
         Fields part(entry, entry_path + ".", problem);
@@ -195,6 +196,7 @@ Ordered material_json(const Material& material) {
                   {"model_area_mm2", material.model_area_mm2},
                   {"exposure_s", material.exposure_s},
                   {"bottom_exposure_s", material.bottom_exposure_s}};
+    if (!material.colour.empty()) entry["colour"] = material.colour;
     for (const MaterialPart& part : material.parts)
         entry["parts"].push_back({{"name", part.name},
                                   {"model_volume_mm3", part.model_volume_mm3},

@@ -58,6 +58,20 @@ TEST_CASE("a manifest is read back as written") {
     CHECK(back->warnings == m.warnings);
 }
 
+TEST_CASE("a material's colour is read back as written, and only where there is one") {
+    Manifest m = example();
+    CHECK(to_json(m).find("colour") == std::string::npos);
+    m.materials[1].colour = "#1a2B3c";
+    const auto back = manifest_from_json(to_json(m), "x");
+    REQUIRE(back.has_value());
+    CHECK(back->materials[0].colour.empty());
+    CHECK(back->materials[1].colour == "#1a2B3c");
+    for (const char* wrong : {"red", "#12345", "#12345g", "1a2b3c#", "#1a2b3c "}) {
+        m.materials[1].colour = wrong;
+        refuse(m, "materials[1].colour");
+    }
+}
+
 TEST_CASE("an inconsistent manifest is refused") {
     Manifest m = example();
     m.width_px = 0;

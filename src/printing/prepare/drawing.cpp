@@ -1,6 +1,7 @@
 #include "printing/prepare/drawing.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "base/core/text.hpp"
@@ -120,6 +121,14 @@ Status add_file(const std::string& input, Drawing& drawing) {
     return add_surface(std::get<mesh::SurfaceFile>(std::move(*geometry)), path, material, drawing);
 }
 
+/// "#rrggbb"; "": the material has no colour of its own.
+std::string colour_text(const robot::MaterialSpec& material) {
+    if (!material.colour) return "";
+    std::string text = "#";
+    for (const double channel : *material.colour) text += fmt::format("{:02x}", std::lround(255 * channel));
+    return text;
+}
+
 }  // namespace
 
 Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress) {
@@ -137,6 +146,8 @@ Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress) {
             add_resin(drawing, name, material.resin);
             drawing.exposure_of_material[name] = {spec.exposure_s, material.bottom_exposure_s};
         }
+        if (const std::string colour = colour_text(material); !colour.empty())
+            drawing.colour_of_material[name] = colour;
         drawing.warnings.insert(drawing.warnings.end(), body.notes.begin(), body.notes.end());
         drawing.bodies.push_back({name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
         if (spec.blend) drawing.bodies.back().blend = blend_of(robot, *spec.blend);

@@ -22,6 +22,7 @@ struct Drawing {
     std::vector<std::pair<std::string, std::string>> resin_of_material;
     std::map<std::string, std::pair<double, double>> exposure_of_material;  ///< seconds, of the first layers second; 0:
                                                                             ///< not given
+    std::map<std::string, std::string> colour_of_material{};                ///< "#rrggbb", of those that have one
     std::vector<std::string> warnings;
 };
 

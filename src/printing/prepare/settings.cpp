@@ -46,6 +46,8 @@ std::vector<job::Material> with_exposures(Drawing& drawing, const machine::Print
             entry.bottom_exposure_s = std::max(entry.bottom_exposure_s, entry.exposure_s);
             if (own->second.second > 0) entry.bottom_exposure_s = own->second.second;
         }
+        if (const auto own = drawing.colour_of_material.find(material); own != drawing.colour_of_material.end())
+            entry.colour = own->second;
         materials.push_back(std::move(entry));
     }
     return materials;

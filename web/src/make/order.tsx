@@ -144,6 +144,13 @@ function Group({ name, options, given, children }: { name: string; options: stri
   );
 }
 
+/// The colour in which a material is shown, here and in its job: a key of the robot file.
+function ColourOf({ material }: { material: string }) {
+  const colour = scene.value?.head.materials.find((x) => x.name === material)?.colour ?? '#888888';
+  const set = (value: string) => void post('/api/robot/set', { changes: [{ key: `material.${material}.colour`, value }] });
+  return <input type="color" class="colour" aria-label={`Colour of ${material}`} title="Colour in the views, here and in the job" value={colour} disabled={!mayDrive.value} onChange={(e) => set(e.currentTarget.value)} data-testid={`colour-of-${material}`} />;
+}
+
 function Materials({ materials }: { materials: string[] }) {
   const p = printerInfo.value;
   const resinOf = (m: string) => scene.value?.head.materials.find((x) => x.name === m)?.resin || m;
@@ -152,7 +159,7 @@ function Materials({ materials }: { materials: string[] }) {
     sliceError.value = '';
   };
   return (
-    <Group name="Resins and exposure" options={['exposure', 'resin']} given={Object.values(lights.value).some((l) => l.resin || l.time)}>
+    <Group name="Resins, colours and exposure" options={['exposure', 'resin']} given={Object.values(lights.value).some((l) => l.resin || l.time)}>
       <datalist id="resins">
         {p?.resins.map((r) => (
           <option value={r.name} />
@@ -163,7 +170,7 @@ function Materials({ materials }: { materials: string[] }) {
         return (
           <fieldset class="light-of" key={m}>
             <legend>
-              <span class="swatch" style={{ background: scene.value?.head.materials.find((x) => x.name === m)?.colour }} />
+              <ColourOf material={m} />
               {m}
             </legend>
             <label>
