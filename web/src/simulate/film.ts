@@ -1,5 +1,6 @@
 // Exports the states since rest as a film, as shown in the view: WebM encoded by the browser, or GIF encoded here.
 import { signal } from '@preact/signals';
+import { ArrayBufferTarget, Muxer } from 'webm-muxer';
 import { cssColour } from '../theme';
 import type { Frame } from '../types';
 import { animatedGif, type Picture } from './gif';
@@ -7,7 +8,6 @@ import { frames } from './tracks';
 import { theView } from './the_view';
 import type { RobotView } from './view';
 import { shownFrame } from './view_state';
-import { type EncodedFrame, webmFile } from './webm';
 
 /// Recorded share; null: not recording.
 export const filming = signal<number | null>(null);
@@ -67,14 +67,10 @@ const bitsPerSecond = 12e6;
 async function encoded(picture: Drawing, all: Frame[]): Promise<Blob | null> {
   const { width, height } = picture.canvas;
   const { each_ms, duration_ms } = timesOf(all.length);
-  const done: EncodedFrame[] = [];
+  const file = new Muxer({ target: new ArrayBufferTarget(), video: { codec: 'V_VP8', width, height, frameRate: 1000 / each_ms } });
   let wrong: Error | null = null;
   const encoder = new VideoEncoder({
-    output: (chunk) => {
-      const data = new Uint8Array(chunk.byteLength);
-      chunk.copyTo(data);
-      done.push({ data, time_ms: chunk.timestamp / 1000, key: chunk.type === 'key' });
-    },
+    output: (chunk, about) => file.addVideoChunk(chunk, about),
     error: (e) => (wrong = e),
   });
   encoder.configure({ codec: 'vp8', width, height, bitrate: bitsPerSecond, framerate: 1000 / each_ms });
@@ -98,7 +94,8 @@ async function encoded(picture: Drawing, all: Frame[]): Promise<Blob | null> {
     if (encoder.state !== 'closed') encoder.close();
   }
   if (wrong) throw wrong;
-  return new Blob([webmFile(done, width, height, duration_ms)], { type: 'video/webm' });
+  file.finalize();
+  return new Blob([file.target.buffer], { type: 'video/webm' });
 }
 
 /// Where the browser's encoder may not be used, as on a page from another computer: recorded as it is shown.
