@@ -196,12 +196,13 @@ void add_print_routes(std::vector<Route>& routes) {
     routes.push_back({"GET", "/api/print/verdict",
                       "of a complete print on the virtual printer: {\"passed\", \"reasons\"}; else null", json, false,
                       [](Studio& s, const Request&) { return json_response(s.print().verdict()); }});
-    routes.push_back(
-        {"GET", "/api/print/verdict/picture", "the cured block beside the drawing", "image/png", false,
-         [](Studio& s, const Request&) {
-             Result<std::string> png = s.print().verdict_picture();
-             return png ? Response{200, "image/png", std::move(*png)} : error_response(404, png.error().message);
-         }});
+    routes.push_back({"GET", "/api/print/verdict/picture",
+                      "the cured block beside the drawing; 204 without content if there is none", "image/png", false,
+                      [](Studio& s, const Request&) {
+                          Result<std::string> png = s.print().verdict_picture();
+                          // The machine may have been left since the page asked: that is no mistake of the page.
+                          return png ? Response{200, "image/png", std::move(*png)} : Response{204, "image/png", ""};
+                      }});
     routes.push_back({"GET", "/api/print/part", "the part as far as it is printed, a packet: ?revision= and ?from=",
                       "application/octet-stream", false, part});
     routes.push_back({"GET", "/api/print/image/{layer}/{material}", "an image of the job that is printed", "image/png",
