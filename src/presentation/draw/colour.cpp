@@ -45,6 +45,11 @@ std::string hex(const Colour& srgb) {
     return fmt::format("#{:02x}{:02x}{:02x}", byte(srgb.r), byte(srgb.g), byte(srgb.b));
 }
 
+Colour colour_of_hex(const std::string& text) {
+    const auto channel = [&](std::size_t at) { return std::stoi(text.substr(at, 2), nullptr, 16) / 255.0; };
+    return {channel(1), channel(3), channel(5)};
+}
+
 Colour palette(int index) {
     static constexpr std::array<Colour, 8> colours = {{{0.20, 0.45, 0.70},
                                                        {0.93, 0.58, 0.22},

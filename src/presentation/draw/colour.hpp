@@ -34,6 +34,8 @@ inline Colour mix(const Colour& a, const Colour& b, double t) {
 
 /// "#rrggbb" of an sRGB colour.
 [[nodiscard]] std::string hex(const Colour& srgb);
+/// The sRGB colour of "#rrggbb". Precondition: the text has this form.
+[[nodiscard]] Colour colour_of_hex(const std::string& text);
 
 /// sRGB colours that are distinguishable with the common colour vision deficiencies; they repeat after eight.
 [[nodiscard]] Colour palette(int index);

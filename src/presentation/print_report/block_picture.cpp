@@ -9,6 +9,7 @@
 #include "presentation/draw/canvas.hpp"
 #include "presentation/draw/raycast.hpp"
 #include "presentation/print_report/cured_block.hpp"
+#include "presentation/print_report/material_colours.hpp"
 
 namespace pliant::report {
 namespace {
@@ -145,10 +146,6 @@ private:
     Cells cells_;
 };
 
-Colour material_colour(int material) {
-    return palette(material);
-}
-
 Colour off_colour(int kind) {
     return kind == 0 ? surplus_colour : missing_colour;
 }
@@ -177,6 +174,8 @@ Result<Image> view_of(const Cells& cells, const Cells* shade, const Camera& came
 
 Result<std::string> block_picture(const CuredBlock& block, const job::Manifest& job,
                                   const machine::Projector& projector) {
+    const std::vector<Colour> colours = material_colours(job);
+    const auto material_colour = [&](int material) { return colours[static_cast<std::size_t>(material)]; };
     const Cells asked = Skin(block.asked, projector, material_colour).made();
     if (asked.place.positions.empty()) return input_error("{}: no layer is lit", job.name);
     const Cells cured = Skin(block.cured, projector, material_colour).made();

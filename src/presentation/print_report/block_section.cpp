@@ -7,6 +7,7 @@
 #include "base/core/counted.hpp"
 #include "presentation/draw/colour.hpp"
 #include "presentation/print_report/cured_block.hpp"
+#include "presentation/print_report/material_colours.hpp"
 #include "presentation/report/html.hpp"
 
 namespace pliant::report {
@@ -49,18 +50,19 @@ std::string tiles(const twin::Report& r) {
     return out + "</section>\n";
 }
 
-std::string materials(const twin::Report& r) {
+std::string materials(const twin::Report& r, const job::Manifest& job) {
+    const std::vector<Colour> colours = material_colours(job);
     std::string out =
         "<div class=\"scroll\"><table><thead><tr><th>material</th><th>drawn</th><th>requested by the "
         "images</th><th>cured"
         "</th><th>in another resin</th><th>missing</th><th>tolerance</th><th></th></tr></thead><tbody>\n";
-    int index = 0;
+    std::size_t index = 0;
     for (const twin::MaterialReport& m : r.materials) {
         out += fmt::format(
             "<tr><td><span class=\"swatch\" style=\"background:{}\"></span>{}</td><td>{}</td><td>{:.3f} "
             "mm³</td><td>{:.3f} "
             "mm³</td><td>{:.3f} mm³</td><td>{:.3f} mm³</td><td>{:.3f} mm³</td><td>{}</td></tr>\n",
-            hex(palette(index++)), html_escaped(m.name),
+            hex(colours[index++]), html_escaped(m.name),
             m.model_mm3 > 0 ? fmt::format("{:.3f} mm³", m.model_mm3) : std::string("–"), m.wanted_mm3, m.cured_mm3,
             m.foreign_mm3, m.missing_mm3, m.tolerance_mm3, m.passed ? "as drawn" : "<b>off</b>");
     }
@@ -104,14 +106,14 @@ std::string trapped(const twin::Report& r) {
 
 }  // namespace
 
-std::string block_section(const CuredBlock& block, const std::string& png) {
+std::string block_section(const CuredBlock& block, const job::Manifest& job, const std::string& png) {
     const twin::Report& r = block.report;
     return "<h2>What has cured</h2>\n" + verdict(r) +
            fmt::format(
                "<figure><img alt=\"Drawing and cured block\" src=\"data:image/png;base64,{}\"><figcaption>The "
                "drawing and the block of the virtual printer, platform below{}</figcaption></figure>\n",
                base64(png), block.off.runs().empty() ? "" : "; where they differ in colour, however little it is") +
-           tiles(r) + materials(r) + resins(r) + trapped(r) + list("What is wrong", r.reasons) +
+           tiles(r) + materials(r, job) + resins(r) + trapped(r) + list("What is wrong", r.reasons) +
            list("What was accepted", accepted(r)) + list("What broke on the way", r.log.mishaps);
 }
 

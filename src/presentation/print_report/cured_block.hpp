@@ -29,6 +29,6 @@ struct CuredBlock {
                                                 const machine::Projector& projector);
 
 /// The section of the report: verdict, picture (PNG), volumes, contamination, the first deviation.
-[[nodiscard]] std::string block_section(const CuredBlock& block, const std::string& png);
+[[nodiscard]] std::string block_section(const CuredBlock& block, const job::Manifest& job, const std::string& png);
 
 }  // namespace pliant::report

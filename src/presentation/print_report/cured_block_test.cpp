@@ -5,6 +5,7 @@
 
 #include "base/core/near.hpp"
 #include "base/core/test_text.hpp"
+#include "presentation/draw/colour.hpp"
 
 using namespace pliant;
 using namespace pliant::report;
@@ -87,10 +88,15 @@ TEST_CASE("a block printed as drawn has no deviation, and its section says so") 
     const auto png = block_picture(block, square_job(), small_tower().projector);
     REQUIRE(png);
     CHECK(png->substr(1, 3) == "PNG");
-    const std::string page = block_section(block, *png);
+    const std::string page = block_section(block, square_job(), *png);
     CHECK(holds(page, "pill good\">as drawn"));
     CHECK(holds(page, "<td>2.500 mm³</td>"));
     CHECK_FALSE(holds(page, "First deviation"));
+    CHECK(holds(page, hex(palette(0))));
+    job::Manifest coloured = square_job();
+    coloured.materials[0].colour = "#12ab34";
+    CHECK(block_picture(block, coloured, small_tower().projector).value() != *png);
+    CHECK(holds(block_section(block, coloured, *png), "background:#12ab34"));
 }
 
 TEST_CASE("a layer without exposure is missing in the picture, and the text names it") {
@@ -99,7 +105,8 @@ TEST_CASE("a layer without exposure is missing in the picture, and the text name
     CHECK(volume_mm3(block.cured, 0) == near(1.25, {.relative = 1e-12}));
     CHECK(volume_mm3(block.off, 0) == 0);
     CHECK(volume_mm3(block.off, 1) == near(1.25, {.relative = 1e-12}));
-    const std::string page = block_section(block, block_picture(block, square_job(), small_tower().projector).value());
+    const std::string page =
+        block_section(block, square_job(), block_picture(block, square_job(), small_tower().projector).value());
     CHECK(holds(page, "First deviation: layer 1: nothing cured at 100 um"));
     CHECK(holds(page, "<b>off</b>"));
 }

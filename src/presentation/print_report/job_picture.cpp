@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "presentation/draw/canvas.hpp"
+#include "presentation/print_report/material_colours.hpp"
 #include "printing/slice/run_image.hpp"
 
 namespace pliant::report {
@@ -33,6 +34,7 @@ struct Shot {
 /// Everything drawn of a job.
 struct Views {
     Extent extent;
+    std::vector<Colour> colours;            ///< of the materials
     std::vector<std::vector<Shot>> layers;  ///< those shown from above
     std::vector<int> numbers;               ///< their layer numbers
     /// Per layer, per material: brightness of every column, summed over the rows.
@@ -65,6 +67,7 @@ std::vector<std::int64_t> column_light(const slice::RunImage& image) {
 Result<Views> look(const job::Archive& archive, int most_shown) {
     const job::Manifest& m = archive.manifest();
     Views views;
+    views.colours = material_colours(m);
     const int count = static_cast<int>(m.layers.size()), shown_count = std::min(most_shown, count);
     for (int i = 0; i < shown_count; ++i) views.numbers.push_back(static_cast<int>((i + 0.5) * count / shown_count));
     for (int k = 0; k < count; ++k) {
@@ -100,10 +103,10 @@ Image paint(int width, int height, const ColourAt& colour_at) {
     return image;
 }
 
-Colour colour_of_layer(const std::vector<Shot>& shots, int row, int column) {
+Colour colour_of_layer(const std::vector<Colour>& colours, const std::vector<Shot>& shots, int row, int column) {
     for (const Shot& shot : shots) {
         if (const int value = shot.image.at(row, column); value > 0)
-            return mix(dark, palette(shot.material), value / 255.0);
+            return mix(dark, colours[static_cast<std::size_t>(shot.material)], value / 255.0);
     }
     return dark;
 }
@@ -118,7 +121,7 @@ Colour colour_of_front(const Views& views, int layer, int column) {
         most = materials[m][static_cast<std::size_t>(column)];
         owner = static_cast<int>(m);
     }
-    return owner < 0 ? dark : palette(owner);
+    return owner < 0 ? dark : views.colours[static_cast<std::size_t>(owner)];
 }
 
 void draw_front(Canvas& canvas, const Views& views, const job::Manifest& m) {
@@ -147,7 +150,8 @@ void draw_layers(Canvas& canvas, const Views& views, const job::Manifest& m) {
         const int y = 160 + static_cast<int>(i) * 205;
         canvas.image(paint(w, h,
                            [&](int px, int py) {
-                               return colour_of_layer(views.layers[i], e.top + static_cast<int>((py + 0.5) / scale),
+                               return colour_of_layer(views.colours, views.layers[i],
+                                                      e.top + static_cast<int>((py + 0.5) / scale),
                                                       e.left + static_cast<int>((px + 0.5) / scale));
                            }),
                      780, y);
@@ -173,7 +177,8 @@ void draw_sheet(Canvas& canvas, const Views& views, const job::Manifest& m) {
                   y = static_cast<int>(i) / sheet_columns * cell_h + 34;
         canvas.image(paint(w, h,
                            [&](int px, int py) {
-                               return colour_of_layer(views.layers[i], e.top + static_cast<int>((py + 0.5) / scale),
+                               return colour_of_layer(views.colours, views.layers[i],
+                                                      e.top + static_cast<int>((py + 0.5) / scale),
                                                       e.left + static_cast<int>((px + 0.5) / scale));
                            }),
                      x, y);
@@ -203,7 +208,7 @@ Result<std::string> job_picture(const job::Archive& archive) {
     for (std::size_t i = 0; i < m.materials.size(); ++i) {
         const std::string name = fmt::format("{} ({:.1f} mm³)", m.materials[i].name, m.materials[i].model_volume_mm3);
         const Font font{.size = 22, .colour = ink};
-        canvas.box({x, 82}, 20, 20, palette(static_cast<int>(i)), 3);
+        canvas.box({x, 82}, 20, 20, views->colours[i], 3);
         canvas.text({x + 30, 100}, name, font);
         x += 70 + canvas.text_width(name, font);
     }

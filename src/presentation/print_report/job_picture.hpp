@@ -8,8 +8,8 @@
 
 namespace pliant::report {
 
-/// A PNG file of 1600 x 1000 pixels. Materials have the colours of palette(), a pixel's brightness is its grey value.
-/// Cost: every image is decoded.
+/// A PNG file of 1600 x 1000 pixels. Materials have their colours (material_colours.hpp), a pixel's brightness is its
+/// grey value. Cost: every image is decoded.
 [[nodiscard]] Result<std::string> job_picture(const job::Archive& archive);
 
 /// 24 layers from above, evenly spaced from the platform up; same colours, size and cost.

@@ -10,6 +10,7 @@
 #include "base/core/files.hpp"
 #include "presentation/print_report/job_picture.hpp"
 #include "presentation/print_report/layer_plot.hpp"
+#include "presentation/print_report/material_colours.hpp"
 #include "presentation/print_report/plan_picture.hpp"
 #include "presentation/print_report/print_story.hpp"
 #include "presentation/report/assets.hpp"
@@ -47,8 +48,8 @@ struct Printed {
     std::vector<double> planned_at_s;  ///< of every layer's first exposure, counted from the first of all
 };
 
-std::string swatch(int material) {
-    return fmt::format("<span class=\"swatch\" style=\"background:{}\"></span>", hex(palette(material)));
+std::string swatch(const Colour& colour) {
+    return fmt::format("<span class=\"swatch\" style=\"background:{}\"></span>", hex(colour));
 }
 
 std::string figure(const std::string& png, std::string_view title) {
@@ -175,6 +176,7 @@ std::string happenings(const Printed& p) {
 
 std::string materials(const Printed& p) {
     const job::Manifest& m = p.archive.manifest();
+    const std::vector<Colour> colours = material_colours(m);
     const std::vector<Resin> resin = resin_of(p);
     std::string out =
         "<h2>Materials and resin</h2>\n<div class=\"scroll\"><table><thead><tr><th>material</th><th>resin</th>"
@@ -185,7 +187,7 @@ std::string materials(const Printed& p) {
         out += fmt::format(
             "<tr><td>{}{}</td><td>{}</td><td>{}</td><td>{:g} s</td><td>{:g} "
             "s</td><td>{:.3f} ml</td><td>{:.3f} ml</td></tr>\n",
-            swatch(static_cast<int>(k)), html_escaped(material.name), html_escaped(material.resin),
+            swatch(colours[k]), html_escaped(material.name), html_escaped(material.resin),
             vat < 0 ? "–" : fmt::format("{}", p.printer.vats[static_cast<std::size_t>(vat)].slot), material.exposure_s,
             material.bottom_exposure_s, resin[k].printed_ml, resin[k].all_ml);
     }
@@ -208,10 +210,11 @@ std::string plots(const Printed& p) {
     }
     std::string out = "<h2>Plan and print</h2>\n<section class=\"plots\">\n";
     out += layer_plot("When each layer had its first light", "min", {planned, happened}, layers);
+    const std::vector<Colour> colours = material_colours(m);
     std::vector<LayerLine> light;
     for (std::size_t k = 0; k < m.materials.size(); ++k) {
         LayerLine asked{m.materials[k].name + ", planned", "var(--faint)", {}, true};
-        LayerLine lit{m.materials[k].name + ", given", hex(palette(static_cast<int>(k))), {}, false};
+        LayerLine lit{m.materials[k].name + ", given", hex(colours[k]), {}, false};
         for (std::size_t l = 0; l < m.layers.size(); ++l) {
             const auto found = p.story.lights.find({static_cast<int>(l), static_cast<int>(k)});
             if (found == p.story.lights.end()) continue;
@@ -273,7 +276,7 @@ std::string settings_section(const Printed& p) {
 Result<std::string> block_of(const Printed& p) {
     if (!p.extras.block) return std::string();
     return block_picture(*p.extras.block, p.archive.manifest(), p.printer.projector).map([&](const std::string& png) {
-        return block_section(*p.extras.block, png);
+        return block_section(*p.extras.block, p.archive.manifest(), png);
     });
 }
 

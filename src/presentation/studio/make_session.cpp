@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
-#include "presentation/draw/colour.hpp"
+#include "presentation/print_report/material_colours.hpp"
 #include "presentation/studio/access.hpp"
 #include "presentation/studio/slice_robot.hpp"
 #include "printing/operate/job_file.hpp"
@@ -23,9 +23,7 @@ std::string event(const Json& json) {
 /// Of its materials: the chosen ones, else those of the palette.
 std::vector<std::string> colours_of(const job::Manifest& manifest) {
     std::vector<std::string> colours;
-    for (const job::Material& material : manifest.materials)
-        colours.push_back(material.colour.empty() ? report::hex(report::palette(static_cast<int>(colours.size())))
-                                                  : material.colour);
+    for (const report::Colour& colour : report::material_colours(manifest)) colours.push_back(report::hex(colour));
     return colours;
 }
 
