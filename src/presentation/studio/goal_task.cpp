@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "presentation/scene/actuator_kind.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/led_marker.hpp"
 #include "simulation/solver/equilibrium.hpp"
 
@@ -106,7 +107,7 @@ std::string goal_inputs_json(const Built& built) {
                         {"low", kind.per_unit * input.low},
                         {"high", kind.per_unit * input.high}});
     }
-    return list.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return dumped(list);
 }
 
 }  // namespace pliant::studio

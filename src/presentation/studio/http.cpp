@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "presentation/studio/dumped.hpp"
+
 namespace pliant::studio {
 
 Response json_response(std::string json) {
@@ -14,7 +16,7 @@ Response error_response(const Error& error) {
 
 Response error_response(int status, std::string_view text) {
     const nlohmann::json json = {{"error", text}};
-    return {status, "application/json", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)};
+    return {status, "application/json", dumped(json)};
 }
 
 }  // namespace pliant::studio

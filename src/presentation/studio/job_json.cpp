@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/print_session.hpp"
 #include "printing/job/manifest.hpp"
 #include "printing/plan/plan.hpp"
@@ -104,7 +105,7 @@ std::string job_json(const OpenJob& open, bool saved) {
     } else {
         json["plan_error"] = plan.error().message;
     }
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return dumped(json);
 }
 
 Response layer_image(OpenJob& open, const Request& request) {

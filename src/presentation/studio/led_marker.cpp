@@ -5,6 +5,7 @@
 
 #include "base/core/stopwatch.hpp"
 #include "presentation/scene/actuator_kind.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "simulation/inverse/follow.hpp"
 #include "simulation/scene/build_goals.hpp"
 
@@ -102,7 +103,7 @@ std::string LedMarker::json() const {
                                  {"reached", led_.reached},
                                  {"error_mm", 1e3 * led_.error_m},
                                  {"limits", limits}};
-    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return dumped(json);
 }
 
 }  // namespace pliant::studio

@@ -8,6 +8,7 @@
 #include "base/core/files.hpp"
 #include "presentation/print_report/material_colours.hpp"
 #include "presentation/studio/access.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/slice_robot.hpp"
 #include "printing/operate/job_file.hpp"
 
@@ -15,10 +16,6 @@ namespace pliant::studio {
 namespace {
 
 using Json = nlohmann::json;
-
-std::string event(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 /// Of its materials: the chosen ones, else those of the palette.
 std::vector<std::string> colours_of(const job::Manifest& manifest) {
@@ -36,7 +33,7 @@ public:
         const auto now = std::chrono::steady_clock::now();
         if (now - last_ < std::chrono::milliseconds(100)) return;
         last_ = now;
-        session_.tell_(event(
+        session_.tell_(dumped(
             {{"type", "slicing"}, {"stage", stage}, {"fraction", fraction}, {"layers", session_.under_way_.layers()}}));
     }
     [[nodiscard]] bool cancelled() const override { return session_.cancelled_; }
@@ -92,7 +89,7 @@ Status MakeSession::adopt(const std::filesystem::path& file, std::vector<std::st
         if (job_ && job_->file != file) before_ = job_;
         job_ = std::make_shared<OpenJob>(std::move(open->archive), std::move(open->printer), file, ++revision_);
         job_->colours = std::move(colours);
-        news = event({{"type", "job"}, {"revision", revision_}});
+        news = dumped({{"type", "job"}, {"revision", revision_}});
     }
     tell_(news);
     return {};
@@ -109,7 +106,7 @@ Status MakeSession::slice(SliceOrder order) {
 
 void MakeSession::work(const SliceOrder& order) {
     Watch watch(*this);
-    tell_(event({{"type", "slicing"}, {"stage", "read"}, {"fraction", 0}}));
+    tell_(dumped({{"type", "slicing"}, {"stage", "read"}, {"fraction", 0}}));
     std::error_code error;
     std::filesystem::create_directories(scratch_, error);
     std::filesystem::permissions(scratch_, std::filesystem::perms::owner_all, error);
@@ -118,10 +115,10 @@ void MakeSession::work(const SliceOrder& order) {
     Status status = colours ? adopt(file, std::move(*colours)) : Status(tl::unexpected(colours.error()));
     under_way_.clear();
     slicing_ = false;  // before the pages are told: they may start the next one at once
-    tell_(event({{"type", "slicing"},
-                 {"stage", ""},
-                 {"fraction", 1},
-                 {"error", status || status.error().cause == Cause::cancelled ? "" : status.error().message}}));
+    tell_(dumped({{"type", "slicing"},
+                  {"stage", ""},
+                  {"fraction", 1},
+                  {"error", status || status.error().cause == Cause::cancelled ? "" : status.error().message}}));
 }
 
 Result<std::shared_ptr<OpenJob>> MakeSession::other(const std::filesystem::path& file) {
@@ -153,7 +150,7 @@ std::shared_ptr<OpenJob> MakeSession::job() const {
 std::vector<std::string> MakeSession::news() const {
     const std::lock_guard lock(mutex_);
     // "No job" is news too: for a page that knew a job before the studio was restarted.
-    return {event({{"type", "job"}, {"revision", job_ ? revision_ : 0}})};
+    return {dumped({{"type", "job"}, {"revision", job_ ? revision_ : 0}})};
 }
 
 }  // namespace pliant::studio

@@ -156,7 +156,10 @@ TEST_CASE("an interrupted virtual print with a journal is resumed by the next st
     const std::string broken_off = read_file(b.order.journal).value();
     REQUIRE(b.session.take_twin(b.order, 10000).has_value());
     CHECK(b.about()["now"]["job"]["canResume"] == true);
-    CHECK(b.session.part(0, 0).size() > 200);  // the printed part is available again
+    // The printed part is available again, as soon as the session has looked at the machine.
+    for (int i = 0; i < 1000 && b.session.part(0, 0).size() <= 200; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    CHECK(b.session.part(0, 0).size() > 200);
     REQUIRE(b.session.ask("POST", "/api/job", R"({"command":"start","resume":true})").status == 204);
     CHECK(Json::parse(b.verdict())["passed"] == true);
     CHECK(b.session.discard().error().message == "there is no interrupted print");

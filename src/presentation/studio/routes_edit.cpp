@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/toml_edit.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/json_toml.hpp"
 #include "presentation/studio/studio.hpp"
 #include "robot/file/material_library.hpp"
@@ -59,7 +60,7 @@ Response materials(Studio&, const Request&) {
         if (material)
             list.push_back({{"name", file.name}, {"title", material->title}, {"hardness", material->hardness}});
     }
-    return json_response(list.dump(-1, ' ', false, Json::error_handler_t::replace));
+    return json_response(dumped(list));
 }
 
 }  // namespace

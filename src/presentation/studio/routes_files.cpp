@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
 #include "presentation/studio/received_file.hpp"
 #include "presentation/studio/studio.hpp"
@@ -27,7 +28,7 @@ std::string content_json(const std::string& name, const GeometryContent& content
                        {"text", content.text},
                        {"parts", content.parts},
                        {"notes", content.notes}};
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return dumped(json);
 }
 
 std::string asked_for(const Request& request, const char* key) {

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
 #include "presentation/studio/studio.hpp"
 
@@ -41,7 +42,7 @@ Response project(Studio& studio, const Request&) {
         {"version", studio.version()},      {"name", d.name},       {"folder", studio.folder().path().string()},
         {"files", studio.folder().files()}, {"examples", examples}, {"printers", printers},
         {"webcam", studio.webcam()}};
-    return json_response(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+    return json_response(dumped(json));
 }
 
 Response robot_text(Studio& studio, const Request&) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/goal_task.hpp"
 #include "presentation/studio/studio.hpp"
 #include "simulation/identify/unknown.hpp"
@@ -28,7 +29,7 @@ Response unknowns(Studio& studio, const Request&) {
     Json list = Json::array();
     for (const sim::identify::Unknown& one : sim::identify::possible_unknowns(built->robot))
         list.push_back({{"key", one.key}, {"unit", one.unit}, {"value", one.value}, {"shown", one.shown(one.value)}});
-    return json_response(list.dump(-1, ' ', false, Json::error_handler_t::replace));
+    return json_response(dumped(list));
 }
 
 Response begin_goal(Studio& studio, const Request& request) {

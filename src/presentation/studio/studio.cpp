@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/core/files.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
 #include "printing/machine/printer.hpp"
 #include "robot/file/robot_file.hpp"
@@ -21,13 +22,13 @@ constexpr std::string_view first_example = "cable_gripper";
 std::string document_event(const Studio::Document& d) {
     const nlohmann::json json = {{"type", "document"},    {"name", d.name},        {"unsaved", d.text != d.saved},
                                  {"undo", d.undo.size()}, {"redo", d.redo.size()}, {"accuracy", name(d.accuracy)}};
-    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return dumped(json);
 }
 
 /// "" if there is no second robot.
 std::string comparison_event(const std::string& title) {
     const nlohmann::json json = {{"type", "comparison"}, {"title", title}};
-    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return dumped(json);
 }
 
 /// Refuses a printer file, which is opened elsewhere.
@@ -334,8 +335,7 @@ void Studio::steer(const Message& message, SimulationSession& simulation, bool b
 void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_view text) {
     const auto refuse = [&](const std::string& why) {
         const nlohmann::json json = {{"type", "error"}, {"error", why}};
-        connection->send_text(
-            std::make_shared<const std::string>(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)));
+        connection->send_text(std::make_shared<const std::string>(dumped(json)));
     };
     const Result<Message> message = parse_message(text);
     if (!message) return refuse(message.error().message);

@@ -161,7 +161,7 @@ export async function gif(): Promise<Blob | null> {
     }
     filming.value = 0.95;
     await new Promise((next) => setTimeout(next, 20));
-    const each_ms = Math.max(1000 / framesPerSecond, shortest_ms / pictures.length);
+    const { each_ms } = timesOf(pictures.length);
     return new Blob([animatedGif(pictures, width, height, each_ms, pause_ms)], { type: 'image/gif' });
   } finally {
     finish(view);
