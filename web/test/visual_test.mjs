@@ -1,7 +1,6 @@
-// States of preparing and printing look as they were approved: web/test/approved holds them, at half size. A picture may
-// differ in a few pixels (fonts, rounding of the renderer), not in a thing that somebody would notice.
+// States of the page look as they were approved: web/test/approved holds them, at half size. A picture may differ in a few
+// pixels (fonts, rounding of the renderer), not in a thing that somebody would notice.
 //   PLIANT_APPROVE=1 ... node web/test/run.mjs visual    draws them anew: look at each before it is committed.
-// Simulate has no pictures here yet.
 import assert from 'node:assert/strict';
 import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -21,6 +20,9 @@ let studio;
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), 'pliant_visual_'));
   copyFileSync(example('tutorial/finger.toml'), join(folder, 'finger.toml'));
+  const text = readFileSync(join(folder, 'finger.toml'), 'utf8');
+  mkdirSync(join(folder, 'simulated')); // coarse: it is the page that is looked at
+  writeFileSync(join(folder, 'simulated', 'finger.toml'), text.replace('size = "4 mm"', 'size = "8 mm"').replace('steps = 20', 'steps = 4'));
   studio = await startStudio(['finger.toml'], folder);
   browser = await startBrowser();
 });
@@ -148,6 +150,43 @@ for (const [theme, width] of states) {
     await see('printed');
     await page.getByTestId('leave').click();
     await page.getByTestId('take-twin').waitFor();
+    assert.deepEqual(wrong.filter(Boolean), []);
+  });
+}
+
+for (const [theme, width] of [['light', 1440], ['dark', 390]]) {
+  test(`simulating and the wizards look like the approved pictures, ${theme}, ${width} px`, async (t) => {
+    const own = await startStudio(['finger.toml'], join(folder, 'simulated'));
+    t.after(() => own.stop());
+    const { page } = await openPage(browser, own.address, t, { colorScheme: theme, viewport: { width, height: 800 } });
+    await settled(page);
+    const wrong = [];
+    const see = async (name) => wrong.push(await look(page, `${name}_${theme}_${width}`));
+    await page.getByRole('button', { name: 'Skip' }).click();
+    await see('simulate');
+    await page.getByTestId('field').selectOption({ label: 'Von Mises stress' });
+    await page.getByTestId('fine').click();
+    await page.getByTestId('number-flexor').fill('0.85');
+    await page.keyboard.press('Enter');
+    await page.waitForTimeout(500);
+    await settled(page);
+    await see('simulate_bent');
+    for (const tab of ['build', 'goal', 'workspace', 'identify', 'sweep', 'plots', 'file']) {
+      await page.getByTestId(`tab-${tab}`).click();
+      await see(`simulate_${tab}`);
+    }
+    await page.getByTestId('tab-move').click();
+    await page.getByTestId('open').click();
+    await page.locator('.open-list .thumb img').first().waitFor();
+    await see('gallery');
+    await page.keyboard.press('Escape');
+    await page.getByTestId('section-print').click();
+    for (const wizard of ['machine', 'projector', 'exposure', 'axes', 'first']) {
+      await page.getByTestId(`wizard-${wizard}`).click();
+      await page.getByTestId('wizard').waitFor();
+      await see(`wizard_${wizard}`);
+      await page.getByTestId('wizard-close').click();
+    }
     assert.deepEqual(wrong.filter(Boolean), []);
   });
 }

@@ -118,19 +118,27 @@ void multiply_two(const RowBlocks& matrix, std::size_t begin, std::size_t end, c
     }
 }
 
-/// The same for SIMD registers that are too short for two.
+/// The same for SIMD registers that are too short for two; added up in the same order, so that the bits are the same.
 template <class Real>
 void multiply_each(const RowBlocks& matrix, std::size_t begin, std::size_t end, const Real* x, Real* y) {
     for (std::size_t i = begin; i < end; ++i) {
-        Column<Real> sums[2];
+        Column<Real> first[2], second[2], third[2];
         for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
             const std::size_t at = 9 * static_cast<std::size_t>(k);
             const Real* v = x + 6 * static_cast<std::size_t>(matrix.column[k]);
-            for (std::size_t c = 0; c < 6; ++c) sums[c % 2].add_product(matrix, at + c / 2 * 3, v[c]);
+            hwy::Prefetch(matrix.value + at + 9 * ahead);
+            if constexpr (sizeof(Real) > sizeof(float)) hwy::Prefetch(matrix.rest + at + 9 * ahead);
+            for (std::size_t which = 0; which < 2; ++which) {
+                first[which].add_product(matrix, at, v[which]);
+                second[which].add_product(matrix, at + 3, v[2 + which]);
+                third[which].add_product(matrix, at + 6, v[4 + which]);
+            }
         }
         for (std::size_t which = 0; which < 2; ++which) {
             Real three[3];
-            sums[which].store(three);
+            first[which].add(second[which]);
+            first[which].add(third[which]);
+            first[which].store(three);
             for (std::size_t r = 0; r < 3; ++r) y[6 * i + 2 * r + which] = three[r];
         }
     }

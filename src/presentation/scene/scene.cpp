@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/share.hpp"
-#include "presentation/draw/colour.hpp"
 #include "presentation/scene/actuator_kind.hpp"
 #include "simulation/run/describe.hpp"
 #include "simulation/run/fields.hpp"
@@ -97,10 +96,9 @@ bool is_field(const std::string& name) {
     return name == "J" || name == "von_mises" || name == "stretch" || name == "energy";
 }
 
-std::string colour_of(const robot::Robot& robot, std::size_t material) {
+report::Colour colour_of(const robot::Robot& robot, std::size_t material) {
     const auto& own = robot.materials[material].colour;
-    return report::hex(own ? report::Colour{(*own)[0], (*own)[1], (*own)[2]}
-                           : report::palette(static_cast<int>(material)));
+    return own ? report::Colour{(*own)[0], (*own)[1], (*own)[2]} : report::palette(static_cast<int>(material));
 }
 
 Scene::Scene(const robot::Robot& robot, const sim::Model& model) : robot_(robot), model_(model) {
@@ -161,7 +159,7 @@ std::string Scene::head() const {
     for (std::size_t m = 0; m < robot_.materials.size(); ++m) {
         const robot::MaterialSpec& spec = robot_.materials[m];
         materials.push_back({{"name", spec.name},
-                             {"colour", colour_of(robot_, m)},
+                             {"colour", report::hex(colour_of(robot_, m))},
                              {"law", law_text(spec)},
                              {"youngs_modulus_MPa", 1e-6 * spec.youngs_modulus_Pa},
                              {"poisson_ratio", spec.poisson_ratio},

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "presentation/draw/colour.hpp"
 #include "presentation/draw/obstacle.hpp"
 #include "presentation/draw/surface.hpp"
 #include "presentation/report/simulation.hpp"
@@ -58,7 +59,7 @@ private:
     std::vector<report::Obstacle> obstacles_;
 };
 
-/// The colour a material is drawn in: its own, or the palette's.
-[[nodiscard]] std::string colour_of(const robot::Robot& robot, std::size_t material);
+/// The sRGB colour a material is drawn in: its own, or the palette's.
+[[nodiscard]] report::Colour colour_of(const robot::Robot& robot, std::size_t material);
 
 }  // namespace pliant::view

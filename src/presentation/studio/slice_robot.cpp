@@ -12,7 +12,7 @@ namespace {
 std::string colour_of_material(const std::string& name, const robot::Robot& robot) {
     for (std::size_t m = 0; m < robot.materials.size(); ++m) {
         const std::string& known = robot.materials[m].name;
-        if (name == known || name.starts_with(known + " of ")) return view::colour_of(robot, m);
+        if (name == known || name.starts_with(known + " of ")) return report::hex(view::colour_of(robot, m));
     }
     return "";
 }

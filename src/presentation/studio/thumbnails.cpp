@@ -29,11 +29,6 @@ private:
     std::chrono::steady_clock::time_point end_ = std::chrono::steady_clock::now() + longest;
 };
 
-report::Colour colour_of(const robot::Robot& robot, int material) {
-    const auto& own = robot.materials[static_cast<std::size_t>(material)].colour;
-    return own ? report::Colour{(*own)[0], (*own)[1], (*own)[2]} : report::palette(material);
-}
-
 /// All bodies as one surface, with the material of each point.
 struct Drawn {
     mesh::TriMesh surface;
@@ -67,8 +62,10 @@ Result<std::string> draw_thumbnail(const std::string& text, const std::filesyste
     report::Scene scene;
     scene.surface = &surface;
     scene.body = report::pose(surface, drawn->surface.points);
-    for (const int point : surface.vertex_node)
-        scene.vertex_colours.push_back(colour_of(*robot, drawn->material[static_cast<std::size_t>(point)]));
+    for (const int point : surface.vertex_node) {
+        const int material = drawn->material[static_cast<std::size_t>(point)];
+        scene.vertex_colours.push_back(view::colour_of(*robot, static_cast<std::size_t>(material)));
+    }
     std::vector<Vec3> seen = drawn->surface.points;
     for (const robot::CableSpec& cable : robot->cables) {
         std::vector<Vec3> points;

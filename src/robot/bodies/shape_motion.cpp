@@ -1,13 +1,13 @@
 #include "robot/bodies/shape_motion.hpp"
 
 #include <Eigen/IterativeLinearSolvers>
-#include <Eigen/SVD>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include "base/linalg/dense.hpp"
 #include "geometry/shapes/surface_pieces.hpp"
 #include "robot/description/regions.hpp"
 
@@ -58,16 +58,15 @@ struct Freedom {
 };
 
 Freedom freedom_of(const Held& held) {
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(held.normals, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const auto [U, sigma, V] = linalg::svd(held.normals, linalg::SvdParts::square);
     constexpr double tangent = 1e-6;  // surfaces that meet at a smaller angle constrain only one direction
     Eigen::Index rank = 0;
-    for (; rank < svd.singularValues().size() && svd.singularValues()[rank] > tangent; ++rank) {
+    for (; rank < sigma.size() && sigma[rank] > tangent; ++rank) {
     }
     Freedom out;
-    const Eigen::MatrixXd v = svd.matrixV();
-    const Eigen::VectorXd along = svd.matrixU().transpose() * held.rates;
-    for (Eigen::Index k = 0; k < rank; ++k) out.given += along[k] / svd.singularValues()[k] * v.col(k);
-    out.free = v.rightCols(3 - rank);
+    const Eigen::VectorXd along = U.transpose() * held.rates;
+    for (Eigen::Index k = 0; k < rank; ++k) out.given += along[k] / sigma[k] * V.col(k);
+    out.free = V.rightCols(3 - rank);
     out.contradiction = (held.normals * out.given - held.rates).cwiseAbs().maxCoeff();
     return out;
 }

@@ -35,7 +35,7 @@ std::array<double, 4> beyond(const mesh::TetMesh& mesh, const mesh::TetLocator::
     Eigen::Matrix3d jacobian;
     for (int k = 0; k < 3; ++k) jacobian.col(k) = vector(column[static_cast<std::size_t>(k) + 1] - column[0]);
     const Eigen::Vector3d off = vector(point - mesh::curved_position(nodes, at.barycentric));
-    const Eigen::Vector3d d = jacobian.fullPivLu().solve(off);
+    const Eigen::Vector3d d = jacobian.inverse() * off;
     if (!d.allFinite() || d.cwiseAbs().maxCoeff() > 1 || std::fabs(d.sum()) > 1 ||
         (jacobian * d - off).norm() > 1e-9 * off.norm())
         return {};
@@ -136,7 +136,7 @@ std::optional<AffinePatch> fitted_patch(std::vector<int> nodes, std::span<const 
     }
     const Eigen::Map<const Eigen::VectorXd> kernel(importance.data(), n);
     const Eigen::Matrix4d M = moments.transpose() * kernel.asDiagonal() * moments;
-    const Eigen::Matrix4d inverse = M.fullPivLu().inverse();
+    const Eigen::Matrix4d inverse = M.ldlt().solve(Eigen::Matrix4d::Identity());
     const Eigen::MatrixXd basis = kernel.asDiagonal() * (moments * inverse);
     if (!basis.allFinite() || !((moments.transpose() * basis - Eigen::Matrix4d::Identity()).norm() < flat))
         return std::nullopt;
@@ -288,7 +288,7 @@ AttachmentSlope Attacher::slope_in_tet(const mesh::TetLocator::Location& at) con
         const Vec3 edge = column[k + 1] - column[0];
         jacobian.col(static_cast<Eigen::Index>(k)) << edge.x, edge.y, edge.z;
     }
-    const Eigen::Matrix3d inverse = jacobian.fullPivLu().inverse();
+    const Eigen::Matrix3d inverse = jacobian.inverse();
     const auto nodes = mesh_->tet(static_cast<std::size_t>(at.tet));
     AttachmentSlope slope{{nodes.begin(), nodes.end()}, std::vector<Vec3>(nodes.size())};
     const std::vector<double> here = mesh::shape_functions(mesh_->order, at.barycentric);

@@ -1,10 +1,11 @@
 #include "simulation/actuators/chamber_surface.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
+
+#include "base/linalg/dense.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -108,9 +109,7 @@ Eigen::MatrixXd symmetric_part(const FaceMatrix& blocks, Eigen::Index count, boo
             matrix.block<3, 3>(3 * i, 3 * j) = 0.5 * (blocks[row][column] + blocks[column][row].transpose());
         }
     }
-    if (!project) return matrix;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
-    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+    return project ? linalg::positive_part(matrix) : matrix;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 #include <unsupported/Eigen/NonLinearOptimization>
 
+#include "base/linalg/dense.hpp"
 #include "simulation/material/response.hpp"
 
 namespace pliant::calibrate {
@@ -93,7 +94,7 @@ VectorXd ogden_start(const TensileTest& test, const std::vector<double>& alpha, 
         for (Index k = 0; k < terms; ++k)
             A(i, k) = ogden_shape(test.stretch[static_cast<std::size_t>(i)], alpha[static_cast<std::size_t>(k)]);
     }
-    const VectorXd mu = A.colPivHouseholderQr().solve(VectorXd(map(test.stress_Pa) / scale));
+    const VectorXd mu = linalg::least_squares(A, map(test.stress_Pa) / scale);
     VectorXd x(2 * terms);
     for (Index k = 0; k < terms; ++k) {
         x[2 * k] = mu[k];
@@ -140,7 +141,7 @@ Result<Solution> fit_ogden(const TensileTest& test, int terms) {
 Solution fit_linear(const TensileTest& test, FitLaw law) {
     Solution solution;
     solution.J = linear_design(law, test.stretch);
-    solution.x = solution.J.colPivHouseholderQr().solve(VectorXd(map(test.stress_Pa)));
+    solution.x = linalg::least_squares(solution.J, map(test.stress_Pa));
     return solution;
 }
 
@@ -249,7 +250,7 @@ Result<Fit> fit(const TensileTest& test, const FitOptions& options) {
     // Columns of different scale (Pa, exponents) are normalised before the inverse is computed.
     const VectorXd length = solution.J.colwise().norm();
     const MatrixXd unit = solution.J * length.cwiseInverse().asDiagonal();
-    const MatrixXd C = (unit.transpose() * unit).completeOrthogonalDecomposition().pseudoInverse();
+    const MatrixXd C = linalg::pseudo_inverse(unit.transpose() * unit);
     for (std::size_t i = 0; i < names.size(); ++i) {
         const auto k = static_cast<Index>(i);
         const double half = student_t_95(freedom) * s * std::sqrt(std::max(0.0, C(k, k))) / length[k];

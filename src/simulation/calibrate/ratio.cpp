@@ -1,10 +1,11 @@
 #include "simulation/calibrate/ratio.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/linalg/dense.hpp"
 #include "simulation/peers/reference_problems.hpp"
 #include "simulation/run/simulate.hpp"
 
@@ -80,10 +81,9 @@ std::optional<std::array<double, 3>> quadratic(const std::vector<RatioRow>& rows
         A.row(i) << row.material_ratio * row.material_ratio, row.material_ratio, 1;
         b[i] = row.shape_parameter;
     }
-    const auto decomposition = A.colPivHouseholderQr();
-    if (decomposition.rank() < 3) return std::nullopt;
-    const Eigen::Vector3d c = decomposition.solve(b);
-    return std::array<double, 3>{c[0], c[1], c[2]};
+    const auto c = linalg::unique_least_squares(A, b);
+    if (!c) return std::nullopt;
+    return std::array<double, 3>{(*c)[0], (*c)[1], (*c)[2]};
 }
 
 }  // namespace

@@ -130,9 +130,9 @@ public:
     /// already touches. `dx`: (3 nodes).
     [[nodiscard]] double largest_step(std::span<const double> x, std::span<const double> dx) const;
 
-    /// Records the distances between all surfaces at x, if nothing is within its reach and the last states suggest that
-    /// this pays off: queries for nearby steps are then answered quickly.
-    void note_clearance(std::span<const double> x) const;
+    /// True if largest_step() is below 1. Much quicker where nothing comes near in a sequence of small steps: it
+    /// records the distances between all surfaces, and the next steps are compared with these.
+    [[nodiscard]] bool meets(std::span<const double> x, std::span<const double> dx) const;
 
     /// Friction with the normal forces and tangents of the pairs at `frozen`, for slip from `step_start`. `before`:
     /// friction of the step that ended there, whose slip is carried over where surfaces stick; null: there was none.
@@ -178,6 +178,9 @@ private:
     [[nodiscard]] std::shared_ptr<const Nearby> nearby(std::span<const double> x, std::span<const double> dx) const;
     /// True only if the cache proves that nothing is within its reach at x, nor comes too close along dx.
     [[nodiscard]] bool is_clear(std::span<const double> x, std::span<const double> dx) const;
+    /// Records the distances between all surfaces at x, if nothing is within its reach and the last states suggest that
+    /// this pays off: queries for nearby steps are then answered quickly.
+    void note_clearance(std::span<const double> x) const;
     void wait_for_clearance() const;
     [[nodiscard]] static Side make_side(Surface surface, std::span<const double> rest);
     void add_obstacles();

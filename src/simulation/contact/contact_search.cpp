@@ -524,6 +524,14 @@ double Contact::largest_step(std::span<const double> x, std::span<const double> 
     return std::accumulate(steps.begin(), steps.end(), free, [](double a, double b) { return std::min(a, b); });
 }
 
+bool Contact::meets(std::span<const double> x, std::span<const double> dx) const {
+    if (largest_plane_step(x, dx) < 1) return true;
+    if (is_clear(x, dx)) return false;
+    // Distances at the start answer for this step as well as for later ones; the search along the step is slower.
+    note_clearance(x);
+    return !is_clear(x, dx) && largest_step(x, dx) < 1;
+}
+
 double Contact::largest_plane_step(std::span<const double> x, std::span<const double> dx) const {
     double step = 1;
     visit_moving_sides([&](const Side& side) { shorten_to_planes(side, x, dx, step); });

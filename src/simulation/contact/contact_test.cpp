@@ -220,7 +220,9 @@ TEST_CASE("cached data change nothing: pairs and steps equal those of a new cont
             const Vec3 v = far * random_vector(random);
             dx.segment<3>(3 * i) << v.x, v.y, v.z;
         }
-        CHECK(contact.largest_step(span(x), span(dx)) == contact_of(body, usual).largest_step(span(x), span(dx)));
+        const double step = contact_of(body, usual).largest_step(span(x), span(dx));
+        CHECK(contact.largest_step(span(x), span(dx)) == step);
+        CHECK(contact.meets(span(x), span(dx)) == (step < 1));
         check_pairs(x + 0.3 * dx);
     }
     CHECK(pairs > 1000);

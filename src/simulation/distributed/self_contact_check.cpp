@@ -69,8 +69,7 @@ bool SelfContactCheck::meets(const Eigen::VectorXd& from, const Eigen::VectorXd&
     if (surface_) {
         std::vector<double> motion(begin.size());
         for (std::size_t k = 0; k < begin.size(); ++k) motion[k] = end[k] - begin[k];
-        met = surface_->largest_step(begin, motion) < 1 ? 1 : 0;
-        if (met == 0) surface_->note_clearance(end);
+        met = surface_->meets(begin, motion) ? 1 : 0;
     }
     return system_.ranks().largest(met) > 0;
 }

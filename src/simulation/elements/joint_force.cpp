@@ -1,12 +1,12 @@
 #include "simulation/elements/joint_force.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "base/linalg/dense.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/node_blocks.hpp"
 
@@ -244,10 +244,7 @@ void JointForce::add_hessian(std::span<const double> x, const JointDrive& drive,
         const Eigen::Map<const Eigen::VectorXd> g(q.gradient.data(), q.gradient.size());
         H += U.curvature * g * g.transpose() + U.slope * q.hessian;
     }
-    if (project) {
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(H);
-        H = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
-    }
+    if (project) H = linalg::positive_part(H);
     // H times the weights of each node, (3 rows, 3).
     std::vector<Eigen::MatrixXd> columns(nodes_.size(), Eigen::MatrixXd::Zero(H.rows(), 3));
     for (std::size_t b = 0; b < nodes_.size(); ++b) {

@@ -1,10 +1,11 @@
 #include "simulation/identify/confidence.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/linalg/dense.hpp"
 #include "simulation/calibrate/fit.hpp"
 
 namespace pliant::sim::identify {
@@ -59,22 +60,22 @@ Confidence confidence(const MatrixXd& J, const VectorXd& r, const std::vector<bo
         length[k] = column.norm();
         unit.col(k) = column / length[k];
     }
-    const Eigen::JacobiSVD<MatrixXd> svd(unit, Eigen::ComputeFullV);
+    const linalg::Svd svd = linalg::svd(unit, linalg::SvdParts::square_right);
     VectorXd inverse(size);
     bool singular = false;
     for (Index k = 0; k < size; ++k) {
-        const double value = k < svd.singularValues().size() ? svd.singularValues()[k] : 0;
+        const double value = k < svd.sigma.size() ? svd.sigma[k] : 0;
         inverse[k] = 1 / std::max(value, std::numeric_limits<double>::min());
-        if (value > rounding * svd.singularValues()[0]) continue;
+        if (value > rounding * svd.sigma[0]) continue;
         singular = true;
         std::vector<std::size_t> group;
         for (Index j = 0; j < size; ++j) {
-            if (std::fabs(svd.matrixV()(j, k)) > takes_part) group.push_back(known[static_cast<std::size_t>(j)]);
+            if (std::fabs(svd.V(j, k)) > takes_part) group.push_back(known[static_cast<std::size_t>(j)]);
         }
         add_group(group, result.mixed);
     }
     if (singular) return result;
-    const MatrixXd root = svd.matrixV() * inverse.asDiagonal();
+    const MatrixXd root = svd.V * inverse.asDiagonal();
     const MatrixXd C = root * root.transpose();
     const Telling telling = telling_rows(unit * length.asDiagonal(), r, negligible);
     const auto freedom = static_cast<int>(telling.rows - size);

@@ -1,10 +1,12 @@
 #include "simulation/identify/least_squares.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
+
+#include "base/linalg/dense.hpp"
 
 namespace pliant::sim::identify {
 namespace {
@@ -73,7 +75,7 @@ private:
             A.col(k).head(J_.rows()) = J_.col(j);
             A(J_.rows() + k, k) = std::sqrt(damping_) * scale_[j];
         }
-        return A.colPivHouseholderQr().solve(b);
+        return linalg::least_squares(A, b);
     }
 
     /// Unknowns that would cross a bound are fixed there and the others re-optimised; finally the whole step is scaled

@@ -1,9 +1,9 @@
 #include "simulation/model/held_nodes.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "base/linalg/dense.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/parts/description.hpp"
 
@@ -48,9 +48,7 @@ Status check_support(const Support& support, int node_count) {
 
 /// Projector onto what is orthogonal to the rows.
 Eigen::Matrix3d complement_of(const Eigen::Matrix<double, Eigen::Dynamic, 3>& rows) {
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(rows.transpose());
-    qr.setThreshold(same_direction);
-    const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(3, qr.rank());
+    const Eigen::MatrixXd q = linalg::column_basis(rows.transpose(), same_direction);
     return Eigen::Matrix3d::Identity() - q * q.transpose();
 }
 
@@ -163,7 +161,7 @@ void HeldNodes::move(const Wanted& wanted, Eigen::VectorXd& x) const {
             off.segment(row, rows.rows()) = rows * (wanted(static_cast<std::size_t>(s), shared.node) - place);
             row += rows.rows();
         }
-        place += shared.directions.completeOrthogonalDecomposition().solve(off);
+        place += linalg::shortest_least_squares(shared.directions, off);
     }
 }
 
@@ -173,9 +171,8 @@ void HeldNodes::visit_weights(const Eigen::VectorXd& weights, const TakeWeight& 
         for (const int node : alone_[s]) take(s, node, rows.transpose() * (rows * weights.segment<3>(3 * node)));
     }
     for (const Shared& shared : shared_) {
-        const Eigen::VectorXd along = Eigen::MatrixXd(shared.directions.transpose())
-                                          .completeOrthogonalDecomposition()
-                                          .solve(Eigen::VectorXd(weights.segment<3>(3 * shared.node)));
+        const Eigen::VectorXd along =
+            linalg::shortest_least_squares(shared.directions.transpose(), weights.segment<3>(3 * shared.node));
         Eigen::Index row = 0;
         for (const int s : shared.supports) {
             const Directions& rows = directions_[static_cast<std::size_t>(s)];
@@ -192,9 +189,8 @@ std::vector<Vec3> HeldNodes::reactions(std::span<const Support> supports, const 
         if (directions_[s].rows() < 3) sums[s] = directions_[s].transpose() * (directions_[s] * sums[s]);
     }
     for (const Shared& shared : shared_) {
-        const Eigen::VectorXd along = Eigen::MatrixXd(shared.directions.transpose())
-                                          .completeOrthogonalDecomposition()
-                                          .solve(Eigen::VectorXd(out_of_balance.segment<3>(3 * shared.node)));
+        const Eigen::VectorXd along =
+            linalg::shortest_least_squares(shared.directions.transpose(), out_of_balance.segment<3>(3 * shared.node));
         Eigen::Index row = 0;
         for (const int s : shared.supports) {
             const Directions& rows = directions_[static_cast<std::size_t>(s)];

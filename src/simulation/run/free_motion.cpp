@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/core/disjoint_sets.hpp"
+#include "base/linalg/dense.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/actuators/cable_path.hpp"
 
@@ -216,11 +217,11 @@ private:
         }
         add_rollers(square);
         add_springs(square);
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(square);
-        const double none = straight * straight * eigen.eigenvalues().maxCoeff();
+        const linalg::Eigenpairs eigen = linalg::symmetric_eigenpairs(square);
+        const double none = straight * straight * eigen.values.maxCoeff();
         Eigen::Index count = 0;
-        while (count < size && eigen.eigenvalues()[count] <= none) ++count;
-        return eigen.eigenvectors().leftCols(count);
+        while (count < size && eigen.values[count] <= none) ++count;
+        return eigen.vectors.leftCols(count);
     }
 
     /// The part of a node; the ground if it holds the node.
@@ -274,11 +275,10 @@ private:
                 ? std::string("a plate")
                 : fmt::format("body \"{}\"", mesh_.region_names[static_cast<std::size_t>(region->second)]);
         const Part& p = parts_[part];
-        const Eigen::JacobiSVD<Eigen::MatrixXd> svd(ways, Eigen::ComputeThinU);
-        const auto& s = svd.singularValues();
+        const auto [U, s, V] = linalg::svd(ways, linalg::SvdParts::thin_left);
         Eigen::Index rank = 0;
         while (rank < s.size() && s[rank] > 1e-6 * s[0]) ++rank;
-        const Twists basis = svd.matrixU().leftCols(rank);
+        const Twists basis = U.leftCols(rank);
         if (rank == 1) return fmt::format("{} {}", who, one_way(p, basis.col(0)));
         if (const auto point = common_point(p, basis))
             return fmt::format("{} can turn freely about the point {}, the only one that holds it; hold it by a face",
@@ -309,7 +309,7 @@ private:
             for (int c = 0; c < 3; ++c) A.block<3, 1>(3 * k, c) = turn.cross(Eigen::Vector3d::Unit(c));
             b.segment<3>(3 * k) = -basis.col(k).head<3>();
         }
-        const Eigen::Vector3d at = A.colPivHouseholderQr().solve(b);
+        const Eigen::Vector3d at = linalg::least_squares(A, b);
         if ((A * at - b).norm() > 1e-6) return {};
         return p.middle + p.size * vec3(at);
     }

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "base/core/counted.hpp"
+#include "base/linalg/dense.hpp"
 #include "base/linalg/sparse.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
@@ -166,10 +167,10 @@ private:
         for (std::size_t b = 0; b < bodies_.size(); ++b)
             scale.segment<6>(row(b)).setConstant(1 / std::sqrt(bodies_[b].mass_kg * tether()));
         const Eigen::MatrixXd relative = scale.asDiagonal() * stiffness() * scale.asDiagonal();
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (relative + relative.transpose()));
+        const auto [values, vectors] = linalg::symmetric_eigenpairs(0.5 * (relative + relative.transpose()));
         Eigen::Index count = 0;
-        while (count < eigen.eigenvalues().size() && eigen.eigenvalues()[count] < held) ++count;
-        return eigen.eigenvectors().leftCols(count);
+        while (count < values.size() && values[count] < held) ++count;
+        return vectors.leftCols(count);
     }
 
     /// A description of a body's part in these motions, (6, ways).
@@ -185,7 +186,7 @@ private:
     }
     [[nodiscard]] static Eigen::Index rank(const Eigen::MatrixXd& ways, double none) {
         if (ways.cols() == 0) return 0;
-        const Eigen::VectorXd sizes = Eigen::JacobiSVD<Eigen::MatrixXd>(ways).singularValues();
+        const Eigen::VectorXd sizes = linalg::svd(ways, linalg::SvdParts::values).sigma;
         return (sizes.array() > none).count();
     }
 

@@ -1,6 +1,6 @@
 #include "simulation/run/stability.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/core/parallel.hpp"
+#include "base/linalg/dense.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
 
@@ -143,8 +144,7 @@ Eigen::VectorXd Stability::metric_times(const Eigen::VectorXd& v) const {
 void Stability::keep_constraints(Eigen::VectorXd& v) const {
     if (fixed_.cols() == 0) return;
     const Eigen::MatrixXd S = fixed_.transpose() * answers_;
-    for (int twice = 0; twice < 2; ++twice)
-        v -= answers_ * S.completeOrthogonalDecomposition().solve(fixed_.transpose() * v);
+    for (int twice = 0; twice < 2; ++twice) v -= answers_ * linalg::shortest_least_squares(S, fixed_.transpose() * v);
 }
 
 /// Initialises with the softest motion of the last check, or a random one, projected for this state.
@@ -195,12 +195,10 @@ bool Stability::improve() {
         }
     }
     // The last change may be linearly dependent on the other two.
-    const Eigen::Index used =
-        count == 3 && Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(M).eigenvalues()[0] < 1e-8 ? 2 : count;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(K.topLeftCorner(used, used),
-                                                                          M.topLeftCorner(used, used));
-    if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()[0] < ratio_)) return false;
-    const Eigen::VectorXd share = eigen.eigenvectors().col(0);
+    const Eigen::Index used = count == 3 && linalg::symmetric_eigenpairs(M).values[0] < 1e-8 ? 2 : count;
+    const auto eigen = linalg::generalized_eigenpairs(K.topLeftCorner(used, used), M.topLeftCorner(used, used));
+    if (!eigen || !(eigen->values[0] < ratio_)) return false;
+    const Eigen::VectorXd share = eigen->vectors.col(0);
     const auto change = [&](const auto& list) {
         Eigen::VectorXd sum = share[1] * *list[1];
         if (used == 3) sum += share[2] * *list[2];
@@ -210,7 +208,7 @@ bool Stability::improve() {
     v_ = share[0] * v_ + p;
     Kv_ = share[0] * Kv_ + Kp;
     Mv_ = share[0] * Mv_ + Mp;
-    ratio_ = eigen.eigenvalues()[0];
+    ratio_ = eigen->values[0];
     const double length = std::sqrt(std::max(p.dot(Mp), 1e-300));
     p_ = p / length;
     Kp_ = Kp / length;

@@ -1,7 +1,8 @@
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <deque>
 
+#include "base/linalg/dense.hpp"
 #include "simulation/solver/curvature.hpp"
 
 namespace pliant::sim {
@@ -47,7 +48,7 @@ public:
         for (Eigen::Index k = 0; k < columns.cols(); ++k) {
             Eigen::VectorXd products(count);
             for (Eigen::Index j = 0; j < count; ++j) products[j] = at(j).plain.dot(columns.col(k)) / at(j).size;
-            const Eigen::VectorXd gamma = gram_.solve(products);
+            const Eigen::VectorXd gamma = gram_inverse_ * products;
             Eigen::VectorXd plain = columns.col(k);
             laplacian_->solve(plain);
             for (Eigen::Index j = 0; j < count; ++j) plain += gamma[j] / at(j).size * (at(j).step - at(j).plain);
@@ -81,13 +82,12 @@ private:
             for (Eigen::Index j = 0; j <= i; ++j)
                 gram(i, j) = gram(j, i) = at(i).plain.dot(at(j).change) / (at(i).size * at(j).size);
         }
-        gram_.setThreshold(1e-10);
-        gram_.compute(gram);
+        gram_inverse_ = linalg::pseudo_inverse(gram, 1e-10);
     }
 
     const FactoredLaplacian* laplacian_;
     std::deque<Past> steps_;
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> gram_;
+    Eigen::MatrixXd gram_inverse_;
     bool mixing_ = false;
 };
 

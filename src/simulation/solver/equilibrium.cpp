@@ -561,9 +561,7 @@ bool Equilibrium::meets_itself(const State& state, const Controls& now, const St
     const std::vector<double> end = with_obstacles(next.x, then.obstacles);
     std::vector<double> motion(x.size());
     for (std::size_t i = 0; i < x.size(); ++i) motion[i] = end[i] - x[i];
-    if (contact.largest_step(x, motion) < 1) return true;
-    contact.note_clearance(end);
-    return false;
+    return contact.meets(x, motion);
 }
 
 std::optional<Vec3> Equilibrium::crossing(const State& state, const Controls& controls) const {

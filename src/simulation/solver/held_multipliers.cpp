@@ -1,15 +1,16 @@
 #include "simulation/solver/held_multipliers.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "base/linalg/dense.hpp"
 
 namespace pliant::sim {
 namespace {
 
 /// Parallel cables make the matrix singular, and pressed patches unsymmetric: the shortest solution.
 Eigen::VectorXd solve_small(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right_side) {
-    return matrix.completeOrthogonalDecomposition().solve(right_side);
+    return linalg::shortest_least_squares(matrix, right_side);
 }
 
 }  // namespace
