@@ -33,7 +33,7 @@ after(async () => {
 });
 
 /// What changes from run to run, or from computer to computer: painted over.
-const changing = ['.log', '.webcam', '[data-testid=notify]', '.notice', '[data-testid=print-layer] ~ *', '.small-figures', '.picture', '.with-button', '.under'];
+const changing = ['.log', '.webcam', '[data-testid=notify]', '.notice', '[data-testid=print-layer] ~ *', '.small-figures', '.picture', '.with-button', '.under', '.u-wrap', '.status'];
 
 /// At half size, as bytes of a PNG; `other`: another PNG of the same size, for the share of pixels that differ from it.
 async function compared(page, shot, other) {
@@ -177,7 +177,7 @@ for (const [theme, width] of [['light', 1440], ['dark', 390]]) {
     }
     await page.getByTestId('tab-move').click();
     await page.getByTestId('open').click();
-    await page.locator('.open-list .thumb img').first().waitFor();
+    await page.waitForFunction(() => [...document.querySelectorAll('.open-list .thumb')].every((thumb) => thumb.getBoundingClientRect().top > window.innerHeight || thumb.querySelector('img')?.complete));
     await see('gallery');
     await page.keyboard.press('Escape');
     await page.getByTestId('section-print').click();
