@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+#include "base/linalg/simd_targets.hpp"
+
 using namespace pliant;
 using namespace pliant::linalg;
 
@@ -53,9 +55,7 @@ std::vector<std::vector<int>> random_cliques(int nodes, std::mt19937& random) {
     return cliques;
 }
 
-}  // namespace
-
-TEST_CASE("blocks and products are those of the matrix: 14 digits in double precision, 6 in single") {
+void check_blocks_and_products() {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> number(-1, 1);
     for (const int nodes : {1, 2, 9, 150}) {
@@ -95,4 +95,13 @@ TEST_CASE("blocks and products are those of the matrix: 14 digits in double prec
         for (int i = 0; i < 3 * nodes; ++i)
             CHECK(short_both_y.segment<2>(2 * i) == Eigen::Vector2f(short_y[i], short_other_y[i]));
     }
+}
+
+}  // namespace
+
+TEST_CASE("blocks and products are those of the matrix: 14 digits in double precision, 6 in single") {
+    on_each_simd_target([](const char* target) {
+        CAPTURE(target);
+        check_blocks_and_products();
+    });
 }
