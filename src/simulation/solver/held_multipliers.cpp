@@ -6,14 +6,6 @@
 #include "base/linalg/dense.hpp"
 
 namespace pliant::sim {
-namespace {
-
-/// Parallel cables make the matrix singular, and pressed patches unsymmetric: the shortest solution.
-Eigen::VectorXd solve_small(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right_side) {
-    return linalg::shortest_least_squares(matrix, right_side);
-}
-
-}  // namespace
 
 Eigen::VectorXd multipliers_that_hold(const Eigen::MatrixXd& S, const Eigen::VectorXd& b,
                                       const std::vector<bool>& only_pull) {
@@ -23,7 +15,9 @@ Eigen::VectorXd multipliers_that_hold(const Eigen::MatrixXd& S, const Eigen::Vec
     for (Eigen::Index i = 0; i < count; ++i) {
         if (!only_pull[static_cast<std::size_t>(i)]) active.push_back(i);
     }
-    if (!active.empty()) m(active) = solve_small(S(active, active), b(active));
+    // Parallel cables make the matrix singular, and pressed patches unsymmetric: the shortest solution.
+    const auto solved = [&] { return linalg::shortest_least_squares(S(active, active), b(active)); };
+    if (!active.empty()) m(active) = solved();
     const double rounding = 1e-13 * (b.cwiseAbs().maxCoeff() + 1e-300);
     for (Eigen::Index round = 0; round < 3 * count + 3; ++round) {
         const Eigen::VectorXd violation = b - S * m;
@@ -35,7 +29,7 @@ Eigen::VectorXd multipliers_that_hold(const Eigen::MatrixXd& S, const Eigen::Vec
         if (worst < 0) break;
         active.push_back(worst);
         while (!active.empty()) {
-            const Eigen::VectorXd wanted = solve_small(S(active, active), b(active));
+            const Eigen::VectorXd wanted = solved();
             double share = 1;  // of the way from m to wanted that keeps every tension positive
             for (std::size_t k = 0; k < active.size(); ++k) {
                 const double from = m[active[k]];
