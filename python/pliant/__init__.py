@@ -13,24 +13,26 @@ Robot files keep their own units; everything here is in SI units: metres, newton
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _pliant
-from ._pliant import StepResult
-from .batch import Batch
-from .controls import Drive, Inputs
 from .errors import Cancelled, Failure, InputError
-from .identification import Comparison, Estimate, FitError, Identification, identify
-from .linearisation import Change, Gradient, GuidePoint, Linearisation, Measure, Parameter
-from .model import Model, State
-from .notebook import Viewer, show
-from .objectives import ProgramGradient, gradient
-from .printing import CuredBlock, PrintPlan, Vat, VirtualPrint, check, plan, print_virtually, slice
-from .program import ProgramResult, ProgramStep
-from .results import Cable, Chamber, Fields, Joint, Object, Observation, Spring
-from .robot import Mesh, Robot
-from .steering import GoalResult, InverseResult, SteeredInput, Waypoint, Workspace, inverse, workspace
-from .studies import KeySensitivity, SobolIndex, StudyResult, study
+
+if TYPE_CHECKING:
+    from ._pliant import StepResult
+    from .batch import Batch
+    from .controls import Drive, Inputs
+    from .identification import Comparison, Estimate, FitError, Identification, identify
+    from .linearisation import Change, Gradient, GuidePoint, Linearisation, Measure, Parameter
+    from .model import Model, State
+    from .notebook import Viewer, show
+    from .objectives import ProgramGradient, gradient
+    from .printing import CuredBlock, PrintPlan, Vat, VirtualPrint, check, plan, print_virtually, slice
+    from .program import ProgramResult, ProgramStep
+    from .results import Cable, Chamber, Fields, Joint, Object, Observation, Spring
+    from .robot import Mesh, Robot
+    from .steering import GoalResult, InverseResult, SteeredInput, Waypoint, Workspace, inverse, workspace
+    from .studies import KeySensitivity, SobolIndex, StudyResult, study
 
 __version__ = _pliant.version()
 
@@ -57,10 +59,38 @@ def quantity(text: str, unit: str) -> float:
     return _pliant.quantity(text, unit)
 
 
-def __getattr__(name: str) -> Any:
-    """The parts that few need are imported when they are asked for."""
-    import importlib
+#: Names of each file, which is imported when the first of them is used: `import pliant` stays quick.
+_NAMES_OF = {
+    "_pliant": ("StepResult",),
+    "batch": ("Batch",),
+    "controls": ("Drive", "Inputs"),
+    "identification": ("Comparison", "Estimate", "FitError", "Identification", "identify"),
+    "linearisation": ("Change", "Gradient", "GuidePoint", "Linearisation", "Measure", "Parameter"),
+    "model": ("Model", "State"),
+    "notebook": ("Viewer", "show"),
+    "objectives": ("ProgramGradient", "gradient"),
+    "printing": ("CuredBlock", "PrintPlan", "Vat", "VirtualPrint", "check", "plan", "print_virtually", "slice"),
+    "program": ("ProgramResult", "ProgramStep"),
+    "results": ("Cable", "Chamber", "Fields", "Joint", "Object", "Observation", "Spring"),
+    "robot": ("Mesh", "Robot"),
+    "steering": ("GoalResult", "InverseResult", "SteeredInput", "Waypoint", "Workspace", "inverse", "workspace"),
+    "studies": ("KeySensitivity", "SobolIndex", "StudyResult", "study"),
+}
+_FILE_OF = {name: file for file, names in _NAMES_OF.items() for name in names}
+_FILES = {*_NAMES_OF, "envs", "plotting", "torch"}
 
-    if name in ("envs", "plotting", "torch"):
-        return importlib.import_module("." + name, __name__)
+
+def __getattr__(name: str) -> Any:
+    from importlib import import_module
+
+    if name in _FILE_OF:
+        found = getattr(import_module("." + _FILE_OF[name], __name__), name)
+        globals()[name] = found
+        return found
+    if name in _FILES:
+        return import_module("." + name, __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__, *_FILES})

@@ -6,15 +6,20 @@ import operator
 import os
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any, TypeVar, Union
+from typing import TYPE_CHECKING, Any, TypeVar, Union
 
 import numpy as np
-import numpy.typing as npt
 
 from .errors import InputError
 
-Array = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int32]
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    AnyArray = NDArray[Any]
+    Array = NDArray[np.float64]
+    IntArray = NDArray[np.int32]
+else:  # numpy.typing takes a tenth of the time to import all of this
+    AnyArray = Array = IntArray = np.ndarray
 PathLike = Union[str, "os.PathLike[str]"]
 #: Called with what is being done and which share of it is done; False cancels the work.
 Progress = Callable[[str, float], Any]
@@ -107,7 +112,7 @@ def texts(value: Any, what: str) -> list[str]:
     raise InputError(f"{what} must be a list of texts, not {_shown(value)}")
 
 
-def _array(value: Any, what: str) -> npt.NDArray[Any]:
+def _array(value: Any, what: str) -> AnyArray:
     try:
         array = np.asarray(value)
     except (ValueError, TypeError):

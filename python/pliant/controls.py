@@ -6,10 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, Union
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _check, _pliant
-from ._check import Array
+from ._check import AnyArray, Array
 from .errors import InputError
 
 
@@ -32,7 +31,7 @@ class Drive(NamedTuple):
 
 
 #: What :meth:`Model.step` and its like take: see :meth:`Model.inputs`.
-Controls = Union["Inputs", Mapping[str, Any], Sequence[float], npt.NDArray[Any], None]
+Controls = Union["Inputs", Mapping[str, Any], Sequence[float], AnyArray, None]
 
 
 class Inputs(Mapping[str, Drive]):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import html
 import json
-import webbrowser
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
@@ -58,6 +57,8 @@ class Viewer:
 
     def open(self, file: PathLike) -> None:
         """Writes the page and opens it in the browser."""
+        import webbrowser
+
         self.write(file)
         webbrowser.open(Path(file).absolute().as_uri())
 
