@@ -32,6 +32,19 @@ public:
     /// did not suffice, and the right-hand sides hold the solution so far.
     [[nodiscard]] Outcome solve(std::span<double> right_hand_sides, int columns, double tolerance, int limit);
 
+    /// Linear constraints C^T x = wanted on a solution.
+    struct Constraints {
+        std::span<const double> normals;  ///< C, (count, size), one after the other
+        std::span<const double> wanted;   ///< (count)
+    };
+    /// As solve(), for one right-hand side with constraints: A x + C y = b and C^T x = wanted; `multipliers` (count)
+    /// <- y. A need only be positive definite among the motions that the constraints leave free. Projected conjugate
+    /// gradients (Gould, Hribar and Nocedal 2001): the constraints hold to the last digit in every iteration, and the
+    /// error is relative to the whole motion, that of the constraints included. Unless solved, nothing is changed. Slow
+    /// also if the normals depend on each other.
+    [[nodiscard]] Outcome solve_constrained(std::span<double> right_hand_side, const Constraints& constraints,
+                                            std::span<double> multipliers, double tolerance, int limit);
+
     [[nodiscard]] int iterations() const;  ///< total of the last solve over all columns
 
 private:

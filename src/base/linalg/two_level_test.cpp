@@ -201,16 +201,80 @@ TEST_CASE("several right-hand sides of any size, zero included; after a time-out
     CHECK(error(p, hurried, exact) < 1);
 }
 
+namespace {
+
+/// Two constraints on the beam, with normals of very different size.
+struct Constrained {
+    explicit Constrained(const Problem& p) : normals(p.force.size(), 2), wanted(0.3e-6, -2e6) {
+        normals.col(0) = 1e-6 * Eigen::VectorXd::LinSpaced(p.force.size(), -1, 2).array().cos();
+        normals.col(1).setZero();
+        normals(p.force.size() - 1, 1) = 1e6;
+        normals(p.force.size() - 4, 1) = -2e6;
+    }
+    [[nodiscard]] TwoLevel::Constraints view() const {
+        return {{normals.data(), static_cast<std::size_t>(normals.size())}, {wanted.data(), 2}};
+    }
+    Eigen::MatrixXd normals;
+    Eigen::Vector2d wanted;
+};
+
+}  // namespace
+
+TEST_CASE("with constraints, the motion and the multipliers are those of block elimination") {
+    const Problem p = beam(24, 3);
+    const Constrained c(p);
+    Cholesky factor(p.pattern);
+    REQUIRE(factor.factorise(p.values));
+    Eigen::MatrixXd columns(p.force.size(), 3);
+    columns << p.force, c.normals;
+    factor.solve({columns.data(), static_cast<std::size_t>(columns.size())}, 3);
+    const Eigen::Matrix2d S = c.normals.transpose() * columns.rightCols(2);
+    const Eigen::Vector2d y = S.inverse() * (c.normals.transpose() * columns.col(0) - c.wanted);
+    const Eigen::VectorXd exact = columns.col(0) - columns.rightCols(2) * y;
+
+    TwoLevel levels(p.pattern);
+    REQUIRE(levels.set(p.values, p.positions));
+    Eigen::VectorXd x = p.force;
+    Eigen::Vector2d multipliers;
+    REQUIRE(levels.solve_constrained(p.whole(x), c.view(), {multipliers.data(), 2}, 1e-4, limit) == Outcome::solved);
+    CHECK(error(p, x, exact) < 3e-4);
+    for (const Eigen::Index k : {0, 1}) {
+        CHECK(std::fabs(c.normals.col(k).dot(x) - c.wanted[k]) < 1e-12 * c.normals.col(k).norm() * x.norm());
+        CHECK(std::fabs(multipliers[k] - y[k]) < 1e-3 * std::fabs(y[k]));
+    }
+}
+
+TEST_CASE("constraints that depend on each other, or say nothing, are refused, and nothing is changed") {
+    const Problem p = beam(12, 2);
+    TwoLevel levels(p.pattern);
+    REQUIRE(levels.set(p.values, p.positions));
+    Constrained c(p);
+    Eigen::Vector2d multipliers(7, 7);
+    for (const double factor : {-3.0, 0.0}) {
+        c.normals.col(1) = factor * c.normals.col(0);
+        Eigen::VectorXd x = p.force;
+        CHECK(levels.solve_constrained(p.whole(x), c.view(), {multipliers.data(), 2}, 1e-4, limit) == Outcome::slow);
+        CHECK(x == p.force);
+        CHECK(multipliers == Eigen::Vector2d(7, 7));
+    }
+}
+
 TEST_CASE("the same bits on any number of threads") {
     const Problem p = beam(64, 6);
-    Eigen::VectorXd first;
+    const Constrained c(p);
+    Eigen::VectorXd first, first_held;
     for (const std::size_t threads : {1, 2, 4}) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
         TwoLevel levels(p.pattern);
         REQUIRE(levels.set(p.values, p.positions));
         Eigen::VectorXd x = p.force;
         REQUIRE(levels.solve(p.whole(x), 1, 1e-4, limit) == Outcome::solved);
-        if (threads == 1) first = x;
+        Eigen::VectorXd held = p.force;
+        Eigen::Vector2d multipliers;
+        REQUIRE(levels.solve_constrained(p.whole(held), c.view(), {multipliers.data(), 2}, 1e-4, limit) ==
+                Outcome::solved);
+        if (threads == 1) first = x, first_held = held;
         CHECK(x == first);
+        CHECK(held == first_held);
     }
 }

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "base/linalg/analysis.hpp"
@@ -45,6 +46,17 @@ public:
                                        Errors errors) = 0;
     /// columns (3 free, k) <- H^-1 columns.
     virtual void solve(Eigen::MatrixXd& columns) = 0;
+    /// Motion and multipliers with H motion + normals multipliers = force and normals^T motion = wanted, for all
+    /// constraints at once: one system instead of one each. Empty: only solve() can do it.
+    struct Constrained {
+        Eigen::VectorXd motion, multipliers;
+    };
+    [[nodiscard]] virtual std::optional<Constrained> solve_constrained(const Eigen::VectorXd& force,
+                                                                       const Eigen::MatrixXd& normals,
+                                                                       const Eigen::VectorXd& wanted) {
+        (void)force, (void)normals, (void)wanted;
+        return std::nullopt;
+    }
     /// Retraction: the positions reached along the direction `motion` (3n); x + motion to first order.
     [[nodiscard]] virtual Eigen::VectorXd retract(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const {
         return x + motion;

@@ -137,6 +137,23 @@ public:
         for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = solve_with_skew(columns.col(k));
     }
 
+    [[nodiscard]] std::optional<Constrained> solve_constrained(const Eigen::VectorXd& force,
+                                                               const Eigen::MatrixXd& normals,
+                                                               const Eigen::VectorXd& wanted) override {
+        if (reused_ || system_->has_skew() || !inverse_->takes_constraints()) return std::nullopt;
+        using Outcome = TangentInverse::Outcome;
+        Constrained found;
+        for (;;) {
+            found.motion = force;
+            const Outcome outcome =
+                inverse_->solve_constrained(found.motion, {normals, wanted}, found.multipliers, enough_);
+            if (outcome == Outcome::solved) return found;
+            if (outcome == Outcome::slow || share_ >= 1 ||
+                !project(share_ == 0 ? smallest_share_of_projection : std::min(4 * share_, 1.0)))
+                return std::nullopt;
+        }
+    }
+
 private:
     /// The skew part needs the inverse of the exact tangent.
     [[nodiscard]] std::unique_ptr<TangentInverse> make_inverse() {

@@ -42,6 +42,28 @@ Eigen::VectorXd SolvedActuators::change(const Eigen::MatrixXd& S, const Eigen::V
     return multipliers_that_hold(S, violation + S * scaled_now, only_pull_) - scaled_now;
 }
 
+std::vector<bool> SolvedActuators::taut(const Eigen::VectorXd& scaled_now, const Eigen::VectorXd& violation) const {
+    std::vector<bool> taut(all_.size());
+    for (std::size_t k = 0; k < all_.size(); ++k) {
+        const auto at = static_cast<Eigen::Index>(k);
+        taut[k] = !all_[k].only_pulls || scaled_now[at] > 0 || violation[at] > 0;
+    }
+    return taut;
+}
+
+bool SolvedActuators::settle(std::vector<bool>& taut, const Eigen::VectorXd& scaled,
+                             const Eigen::VectorXd& violation) const {
+    constexpr double rounding = 1e-13;  // of a length, relative to that at rest
+    bool settled = true;
+    for (std::size_t k = 0; k < all_.size(); ++k) {
+        const auto at = static_cast<Eigen::Index>(k);
+        if (!all_[k].only_pulls || !(taut[k] ? scaled[at] < 0 : violation[at] > rounding)) continue;
+        taut[k] = !taut[k];
+        settled = false;
+    }
+    return settled;
+}
+
 void SolvedActuators::add(const Eigen::VectorXd& change, Eigen::VectorXd& multiplier) const {
     multiplier(actuators_) += change.cwiseQuotient(scale_);
     for (const Constraint& one : all_) {

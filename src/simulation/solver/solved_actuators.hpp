@@ -36,6 +36,13 @@ public:
     /// the compliances on its diagonal; `violation`: what is left after the unconstrained step.
     [[nodiscard]] Eigen::VectorXd change(const Eigen::MatrixXd& S, const Eigen::VectorXd& violation,
                                          const Eigen::VectorXd& scaled_now) const;
+    /// (solved) the constraints that are expected to hold as equations: all except cables that are slack and not longer
+    /// than prescribed.
+    [[nodiscard]] std::vector<bool> taut(const Eigen::VectorXd& scaled_now, const Eigen::VectorXd& violation) const;
+    /// Corrects them by what a solution with them leads to: cables that would push go slack, slack ones that would be
+    /// too long become taut. True if there were none.
+    [[nodiscard]] bool settle(std::vector<bool>& taut, const Eigen::VectorXd& scaled,
+                              const Eigen::VectorXd& violation) const;
     /// Adds such a change to the multipliers of all actuators. Cables that would push become slack.
     void add(const Eigen::VectorXd& change, Eigen::VectorXd& multiplier) const;
 

@@ -79,37 +79,78 @@ private:
         return gradients;
     }
 
+    /// Motion of the free nodes and change of the scaled multipliers of the solved actuators.
+    struct Move {
+        Eigen::VectorXd dx, change;
+    };
+
     [[nodiscard]] Direction find_direction() {
         const Eigen::VectorXd gradient = system_.restrict_to_free(evaluation_.out_of_balance);
         const Eigen::MatrixXd forces = gradients_of(&Actuator::add_gradient);
+        const Eigen::VectorXd now = solved_.scaled(state_.multiplier);
+        std::optional<Move> move;
+        if (!solved_.empty()) move = solve_constrained(gradient, forces, now);
+        if (!move) move = solve_by_columns(gradient, forces, now);
+
+        Direction direction{std::move(move->dx), state_.multiplier, 0};
+        solved_.add(move->change, direction.multiplier);
+        Eigen::VectorXd energy_gradient = gradient;
+        for (Eigen::Index k = 0; k < solved_.count(); ++k) {
+            if (solved_.all()[static_cast<std::size_t>(k)].drives_measure) energy_gradient -= forces.col(k) * now[k];
+        }
+        direction.slope_J = energy_gradient.dot(direction.dx);
+        return direction;
+    }
+
+    [[nodiscard]] Eigen::VectorXd compliances() const {
+        return solved_.compliances(controls_.drives, state_.multiplier,
+                                   system_.model().description().ambient_pressure_Pa);
+    }
+
+    /// One solution for the gradient and one for each solved actuator; then the multipliers that combine them.
+    [[nodiscard]] Move solve_by_columns(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& forces,
+                                        const Eigen::VectorXd& now) {
         const Eigen::MatrixXd A = by_gaps_ ? gradients_of(&Actuator::add_measure_gradient) : forces;
         Eigen::MatrixXd columns(gradient.size(), 1 + A.cols());
         columns.col(0) = gradient;
         columns.rightCols(A.cols()) = forces;
         curvature_.solve(columns);
+        Move move{-columns.col(0), Eigen::VectorXd::Zero(solved_.count())};
+        if (solved_.empty()) return move;
+        Eigen::MatrixXd S = A.transpose() * columns.rightCols(A.cols());
+        // Violation after the unconstrained step; then the correction of the current multipliers.
+        const Eigen::VectorXd violation =
+            evaluation_.constraint_violation(solved_.actuators()) - A.transpose() * columns.col(0);
+        S.diagonal() += compliances();
+        move.change = solved_.change(S, violation, now);
+        move.dx -= columns.rightCols(A.cols()) * move.change;
+        return move;
+    }
 
-        Direction direction;
-        direction.multiplier = state_.multiplier;
-        direction.dx = -columns.col(0);
-        Eigen::VectorXd energy_gradient = gradient;
-        if (!solved_.empty()) {
-            const Eigen::VectorXd now = solved_.scaled(state_.multiplier);
-            Eigen::MatrixXd S = A.transpose() * columns.rightCols(A.cols());
-            // Violation after the unconstrained step; then the correction of the current multipliers.
-            const Eigen::VectorXd violation =
-                evaluation_.constraint_violation(solved_.actuators()) - A.transpose() * columns.col(0);
-            S.diagonal() += solved_.compliances(controls_.drives, state_.multiplier,
-                                                system_.model().description().ambient_pressure_Pa);
-            const Eigen::VectorXd change = solved_.change(S, violation, now);
-            direction.dx -= columns.rightCols(A.cols()) * change;
-            solved_.add(change, direction.multiplier);
+    /// One solution with all constraints, where the curvature offers that. Cables that turn out to push become slack,
+    /// those that turn out too long are pulled, and it is repeated.
+    [[nodiscard]] std::optional<Move> solve_constrained(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& forces,
+                                                        const Eigen::VectorXd& now) {
+        if (by_gaps_ || compliances().any()) return std::nullopt;
+        const Eigen::VectorXd violation = evaluation_.constraint_violation(solved_.actuators());
+        std::vector<bool> holds = solved_.taut(now, violation);
+        for (Eigen::Index round = 0; round < 2 * solved_.count() + 2; ++round) {
+            std::vector<Eigen::Index> held;
+            Move move{{}, -now};  // slack cables lose their tension
             for (Eigen::Index k = 0; k < solved_.count(); ++k) {
-                if (solved_.all()[static_cast<std::size_t>(k)].drives_measure)
-                    energy_gradient -= forces.col(k) * now[k];
+                if (!holds[static_cast<std::size_t>(k)]) continue;
+                held.push_back(k);
+                move.change[k] = 0;
             }
+            if (held.empty()) return std::nullopt;
+            auto found = curvature_.solve_constrained(-gradient - forces * move.change, forces(Eigen::all, held),
+                                                      -violation(held));
+            if (!found) return std::nullopt;
+            move.dx = std::move(found->motion);
+            move.change(held) = found->multipliers;
+            if (solved_.settle(holds, now + move.change, violation + forces.transpose() * move.dx)) return move;
         }
-        direction.slope_J = energy_gradient.dot(direction.dx);
-        return direction;
+        return std::nullopt;
     }
 
     bool search(const Direction& direction) {

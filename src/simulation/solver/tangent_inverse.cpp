@@ -6,6 +6,7 @@
 
 #include "base/linalg/cholesky.hpp"
 #include "base/linalg/two_level.hpp"
+#include "base/linalg/vectors.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -112,15 +113,18 @@ public:
 
     [[nodiscard]] Outcome solve(Eigen::MatrixXd& columns, double error) override {
         const int count = static_cast<int>(columns.cols());
-        switch (levels_.solve(view(columns), count, std::max(error, least_error), most_iterations_)) {
-            case linalg::TwoLevel::Outcome::solved:
-                return Outcome::solved;
-            case linalg::TwoLevel::Outcome::indefinite:
-                return Outcome::indefinite;
-            case linalg::TwoLevel::Outcome::slow:
-                break;
-        }
-        return Outcome::slow;
+        return outcome_of(levels_.solve(view(columns), count, std::max(error, least_error), most_iterations_));
+    }
+
+    [[nodiscard]] bool takes_constraints() const override { return true; }
+    [[nodiscard]] Outcome solve_constrained(Eigen::VectorXd& column, const Constraints& constraints,
+                                            Eigen::VectorXd& multipliers, double error) override {
+        multipliers.resize(constraints.wanted.size());
+        return outcome_of(levels_.solve_constrained(
+            linalg::view(column),
+            {{constraints.normals.data(), static_cast<std::size_t>(constraints.normals.size())},
+             linalg::view(constraints.wanted)},
+            linalg::view(multipliers), std::max(error, least_error), most_iterations_));
     }
 
     [[nodiscard]] Memory memory() const override { return {}; }
@@ -133,6 +137,18 @@ public:
     [[nodiscard]] double factorisation_cost() const override { return 0; }
 
 private:
+    [[nodiscard]] static Outcome outcome_of(linalg::TwoLevel::Outcome outcome) {
+        switch (outcome) {
+            case linalg::TwoLevel::Outcome::solved:
+                return Outcome::solved;
+            case linalg::TwoLevel::Outcome::indefinite:
+                return Outcome::indefinite;
+            case linalg::TwoLevel::Outcome::slow:
+                break;
+        }
+        return Outcome::slow;
+    }
+
     linalg::TwoLevel levels_;
     int most_iterations_;
 };

@@ -25,6 +25,20 @@ public:
     /// columns (3 nodes, k) <- H^-1 columns, within `error` of each solution in the norm of H, but no tighter than
     /// 1e-3. Outcomes indefinite and slow: columns hold the last iterate, which is still a descent direction.
     [[nodiscard]] virtual Outcome solve(Eigen::MatrixXd& columns, double error) = 0;
+    /// Linear constraints on a solution: normals^T x = wanted. `normals` are (3 nodes, k).
+    struct Constraints {
+        const Eigen::MatrixXd& normals;
+        const Eigen::VectorXd& wanted;
+    };
+    /// True if solve_constrained() may be called.
+    [[nodiscard]] virtual bool takes_constraints() const { return false; }
+    /// H column + normals multipliers = column, with the constraints; H need only be positive definite among the
+    /// motions that they leave free.
+    [[nodiscard]] virtual Outcome solve_constrained(Eigen::VectorXd& column, const Constraints& constraints,
+                                                    Eigen::VectorXd& multipliers, double error) {
+        (void)column, (void)constraints, (void)multipliers, (void)error;
+        return Outcome::slow;
+    }
     /// State in addition to the factor: with it, a matrix that was set before gives the same solutions again.
     struct Memory {
         bool in_double = false;

@@ -3,10 +3,13 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "base/linalg/cholesky.hpp"
 #include "base/linalg/two_level.hpp"
+#include "base/linalg/vectors.hpp"
 #include "simulation/peers/reference_problems.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/solver/corner_nesting.hpp"
@@ -116,6 +119,51 @@ TEST_CASE("a tangent with negative directions is refused or found by factor and 
     Eigen::MatrixXd column = b.out_of_balance;
     if (two->set(b.values, b.positions, TangentInverse::Effort::usual))
         CHECK(two->solve(column, 1e-3) == TangentInverse::Outcome::indefinite);
+}
+
+TEST_CASE("a column beyond its buckling load is solved where constraints hold it upright") {
+    // Clamped at one end and shortened by 0.8 %: it buckles from 0.6 % on (Euler), the linear tets on its corners
+    // later.
+    Description d = pushed({0.06, 0.01, 0.01}, 6, 2, 2, 0);
+    Bent b(d, 1e9, false);
+    State state = b.system.rest();
+    constexpr double shortening = 0.014;
+    for (Eigen::Index i = 0; i < state.x.size(); ++i) state.x[i] *= i % 3 == 0 ? 1 - shortening : 1 + 0.45 * shortening;
+    const Controls controls = b.system.controls(1);
+    std::fill(b.values.begin(), b.values.end(), 0.0);
+    b.system.add_tangent(state, controls, b.layout, b.values, false);
+    const Eigen::Index size = b.positions.size();
+    Eigen::MatrixXd sideways = Eigen::MatrixXd::Zero(size, 2);  // the tip's mean motion
+    for (Eigen::Index i = 0; i < size; i += 3) {
+        if (b.positions[i] > 0.06 - 1e-5) sideways(i + 1, 0) = sideways(i + 2, 1) = 1;
+    }
+    const Eigen::VectorXd force = b.positions.array().sin();
+    const Eigen::Vector2d wanted(1e-4, -2e-4);
+
+    Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(size + 2, size + 2);
+    Eigen::VectorXd column(size);
+    for (Eigen::Index k = 0; k < size; ++k) {
+        const Eigen::VectorXd unit = Eigen::VectorXd::Unit(size, k);
+        column.setZero();
+        linalg::add_product(b.layout.pattern, b.values, linalg::view(unit), 1, linalg::view(column));
+        whole.col(k).head(size) = column;
+    }
+    const auto two = make_nested_inverse(b.layout.pattern, *nest_in_corners(b.model));
+    REQUIRE(two->set(b.values, b.positions, TangentInverse::Effort::usual));
+    Eigen::MatrixXd free = force;
+    CHECK(two->solve(free, 1e-3) == TangentInverse::Outcome::indefinite);
+    Eigen::VectorXd held = force, multipliers;
+    REQUIRE(two->takes_constraints());
+    REQUIRE(two->solve_constrained(held, {sideways, wanted}, multipliers, 1e-3) == TangentInverse::Outcome::solved);
+    CHECK((sideways.transpose() * held - wanted).norm() < 1e-9 * wanted.norm());
+
+    whole.topRightCorner(size, 2) = sideways;
+    whole.bottomLeftCorner(2, size) = sideways.transpose();
+    Eigen::VectorXd right(size + 2);
+    right << force, wanted;
+    const Eigen::VectorXd exact = whole.partialPivLu().solve(right);
+    CHECK((held - exact.head(size)).norm() < 1e-2 * exact.head(size).norm());
+    CHECK((multipliers - exact.tail(2)).norm() < 1e-2 * exact.tail(2).norm());
 }
 
 TEST_CASE("a bulky body is solved on two levels, and converges to equilibrium") {

@@ -1,0 +1,249 @@
+#include "base/linalg/smoothed_levels.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/core/parallel.hpp"
+#include "base/linalg/dense.hpp"
+
+namespace pliant::linalg {
+namespace {
+
+constexpr std::size_t grain = 4096;     // nodes per parallel piece
+constexpr int degree = 2;               // of the smoothing polynomial
+constexpr float smoothed_part = 0.06F;  // lower end of the part of the spectrum that is smoothed, of its upper end
+constexpr int first_powers = 12, later_powers = 1;
+constexpr int lanczos_steps = 6;
+constexpr float safety_of_powers = 1.15F, safety_of_lanczos = 1.05F;  // both approach from below
+
+/// A start vector with a component of every eigenvector: pseudo-random numbers.
+void fill_randomly(Interleaved<float>& v, std::size_t size) {
+    unsigned seed = 1;
+    for (std::size_t i = 0; i < size; ++i) {
+        seed = seed * 1664525U + 1013904223U;
+        v[i] = static_cast<float>(seed >> 8) / static_cast<float>(1U << 24) - 0.5F;
+    }
+}
+
+}  // namespace
+
+SmoothedLevels::SmoothedLevels(const SymmetricPattern& pattern, BlockRows matrix, std::unique_ptr<CoarseLevel> space,
+                               Kind kind)
+    : size_(static_cast<std::size_t>(pattern.size())),
+      kind_(kind),
+      matrix_(std::move(matrix)),
+      space_(std::move(space)),
+      coarse_(space_->pattern(), Precision::single_),
+      inverse_diagonal_(9 * static_cast<std::size_t>(pattern.nodes)),
+      coarse_size_(static_cast<std::size_t>(space_->pattern().size())) {
+    top_.resize(size_);
+    set_columns(1);
+}
+
+/// Room for `count` columns; the contents are set by their users.
+void SmoothedLevels::set_columns(std::size_t count) {
+    columns_ = count;
+    for (Rough* v : {&side_, &correction_, &step_, &rest_}) v->resize(count * size_);
+    if (count > 1) one_.resize(size_);
+    coarse_side_.resize(count * coarse_size_);
+}
+
+bool SmoothedLevels::set(std::span<const double> values, std::span<const double> positions) {
+    matrix_.set(values);
+    values_ = values;
+    positions_.assign(positions.begin(), positions.end());
+    if (!invert_diagonal()) return false;
+    set_columns(1);
+    if (kind_ == Kind::groups)
+        find_largest_by_powers();
+    else
+        find_largest_by_lanczos();
+    if (!built_ || !space_->turn(positions)) return build();
+    turned_ = true;
+    return true;
+}
+
+/// Builds the coarse level for the present matrix and positions.
+bool SmoothedLevels::build() {
+    space_->set({matrix_, values_, positions_, inverse_diagonal_.data(), 4.0F / 3 / upper()});
+    turned_ = false;
+    if (kind_ == Kind::corners && coarse_.precision() == Precision::double_) coarse_.use(Precision::single_);
+    // A body that bends easily may be too ill-conditioned for single precision; once it is, it stays in double, with
+    // groups.
+    built_ = coarse_.factorise(space_->values());
+    if (!built_ && coarse_.precision() == Precision::single_) {
+        coarse_.use(Precision::double_);
+        built_ = coarse_.factorise(space_->values());
+    }
+    coarse_.release_work_space();
+    return built_;
+}
+
+bool SmoothedLevels::invert_diagonal() {
+    std::vector<char> definite(size_ / 3);
+    parallel_for(size_ / 3, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Eigen::Matrix3d block = matrix_.diagonal(static_cast<int>(i));
+            const Eigen::LLT<Eigen::Matrix3d> llt(block);
+            definite[i] = llt.info() == Eigen::Success ? 1 : 0;
+            Eigen::Map<Eigen::Matrix3f>(inverse_diagonal_.data() + 9 * i) = block.inverse().cast<float>();
+        }
+    });
+    return std::all_of(definite.begin(), definite.end(), [](char d) { return d != 0; });
+}
+
+void SmoothedLevels::apply_inverse_diagonal(const Rough& from, Rough& to) const {
+    parallel_for(size_ / 3, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Eigen::Map<const Eigen::Matrix3f> inverse(inverse_diagonal_.data() + 9 * i);
+            Eigen::Map<Eigen::Vector3f>(to.data() + 3 * i).noalias() =
+                inverse * Eigen::Map<const Eigen::Vector3f>(from.data() + 3 * i);
+        }
+    });
+}
+
+/// Power iteration with D^-1 A, in the inner product of D: continues where the last matrix left it.
+void SmoothedLevels::find_largest_by_powers() {
+    if (!powered_) fill_randomly(top_, size_);
+    std::fill_n(side_.data(), size_, 0.0F);
+    for (int k = 0; k < (powered_ ? later_powers : first_powers); ++k) {
+        std::copy_n(top_.data(), size_, correction_.data());
+        advance(correction_, Start::where_it_is, 0, 1);  // step: -D^-1 A top
+        const double squared = dot(step_, step_, size_);
+        largest_ = std::max(powered_ ? largest_ : 0, static_cast<float>(std::sqrt(squared / dot(top_, top_, size_))));
+        const float shrink = static_cast<float>(-1 / std::sqrt(squared));
+        for_numbers(size_, [&](std::size_t i) { top_[i] = shrink * step_[i]; });
+    }
+    powered_ = true;
+}
+
+/// Lanczos with D^-1 A, in the inner product of D, plus the error that it knows of: where a surface begins to wrinkle,
+/// one eigenvalue lies far beyond the others, and powers would take dozens of products to find it. Independent of
+/// earlier matrices.
+void SmoothedLevels::find_largest_by_lanczos() {
+    // The vectors v of the basis are orthonormal in D. correction: v; rest: A v; top: D v; side: D times the v before.
+    Eigen::MatrixXd projected = Eigen::MatrixXd::Zero(lanczos_steps, lanczos_steps);
+    fill_randomly(top_, size_);
+    std::fill_n(side_.data(), size_, 0.0F);
+    apply_inverse_diagonal(top_, correction_);
+    double norm = std::sqrt(dot(top_, correction_, size_));
+    int steps = 0;
+    while (steps < lanczos_steps && norm > 0) {
+        const float shrink = static_cast<float>(1 / norm), before = steps > 0 ? static_cast<float>(norm) : 0.0F;
+        for_numbers(size_, [&](std::size_t i) {
+            top_[i] *= shrink;
+            correction_[i] *= shrink;
+        });
+        matrix_.multiply(correction_.data(), rest_.data());
+        const double own = dot(correction_, rest_, size_);
+        for_numbers(size_, [&](std::size_t i) {
+            const float now = top_[i];
+            top_[i] = rest_[i] - static_cast<float>(own) * now - before * side_[i];
+            side_[i] = now;
+        });
+        apply_inverse_diagonal(top_, correction_);
+        norm = std::sqrt(std::max(dot(top_, correction_, size_), 0.0));
+        projected(steps, steps) = own;
+        if (++steps < lanczos_steps) projected(steps, steps - 1) = norm;
+    }
+    if (steps == 0) return;
+    const Eigenpairs pairs = symmetric_eigenpairs(projected.topLeftCorner(steps, steps));
+    largest_ = static_cast<float>(pairs.values[steps - 1] + norm * std::fabs(pairs.vectors(steps - 1, steps - 1)));
+}
+
+float SmoothedLevels::upper() const {
+    return (kind_ == Kind::groups ? safety_of_powers : safety_of_lanczos) * largest_;
+}
+
+/// x <- x + p(D^-1 A) D^-1 (side - A x), p the Chebyshev polynomial for the upper part of the spectrum
+/// (Adams, Brezina, Hu and Tuminaro 2003).
+void SmoothedLevels::smoothe(Rough& x, Start start) {
+    const float upper = this->upper(), lower = smoothed_part * upper;
+    const float middle = (upper + lower) / 2, half = (upper - lower) / 2;
+    float rho = half / middle;
+    for (int k = 0; k < degree; ++k) {
+        if (k == 0) {
+            advance(x, start, 0, 1 / middle);
+            continue;
+        }
+        const float next = 1 / (2 * middle / half - rho);
+        advance(x, Start::where_it_is, next * rho, 2 * next / half);
+        rho = next;
+    }
+}
+
+/// step <- keep step + share D^-1 (side - A x); x <- x + step. In one pass per node, whose numbers are all read before
+/// any is written: arrays on huge pages may have addresses that are equal in their lower bits, so that the processor
+/// mistakes a load for one that depends on a store, and stalls.
+void SmoothedLevels::advance(Rough& x, Start start, float keep, float share) {
+    if (columns_ == 1)
+        advance_columns<1>(x, start, keep, share);
+    else
+        advance_columns<most_columns>(x, start, keep, share);
+}
+
+template <std::size_t count>
+void SmoothedLevels::advance_columns(Rough& x, Start start, float keep, float share) {
+    using Block = Eigen::Matrix<float, count, 3>;  // one per column: numbers of a component are contiguous
+    using At = Eigen::Map<Block>;
+    const bool from_zero = start == Start::zero;
+    if (!from_zero) matrix_.multiply(x.data(), rest_.data(), static_cast<int>(count));
+    parallel_for(size_ / 3, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t at = 3 * count * i;
+            Block left = At(side_.data() + at), now = Block::Zero(), go = Block::Zero();
+            if (!from_zero) {
+                left -= At(rest_.data() + at);
+                now = At(x.data() + at);
+            }
+            if (keep != 0) go = keep * At(step_.data() + at);
+            // The inverse of a diagonal block is symmetric.
+            const Eigen::Map<const Eigen::Matrix3f> inverse(inverse_diagonal_.data() + 9 * i);
+            for (int c = 0; c < 3; ++c) {
+                const Eigen::Matrix<float, count, 1> sum =
+                    left.col(0) * inverse(c, 0) + left.col(1) * inverse(c, 1) + left.col(2) * inverse(c, 2);
+                go.col(c) += share * sum;
+            }
+            now += go;
+            At(step_.data() + at) = go;
+            At(x.data() + at) = now;
+        }
+    });
+}
+
+/// Correction on the coarse level for the remainder of `side`, in `rest`.
+void SmoothedLevels::correct() {
+    for (std::size_t c = 0; c < columns_; ++c) {
+        Rough& fine = columns_ == 1 ? rest_ : one_;
+        if (columns_ > 1) for_numbers(size_, [&](std::size_t i) { one_[i] = rest_[columns_ * i + c]; });
+        space_->restrict(fine.data(), coarse_side_.data() + c * coarse_size_);
+    }
+    coarse_.solve({coarse_side_.data(), columns_ * coarse_size_}, static_cast<int>(columns_));
+    for (std::size_t c = 0; c < columns_; ++c) {
+        const double* from = coarse_side_.data() + c * coarse_size_;
+        if (columns_ == 1) {
+            space_->add_prolonged(from, correction_.data());
+            continue;
+        }
+        for_numbers(size_, [&](std::size_t i) { one_[i] = 0; });
+        space_->add_prolonged(from, one_.data());
+        for_numbers(size_, [&](std::size_t i) { correction_[columns_ * i + c] += one_[i]; });
+    }
+}
+
+const Interleaved<float>& SmoothedLevels::apply(const Interleaved<double>& right, std::size_t columns) {
+    set_columns(columns);
+    const std::size_t all = columns * size_;
+    for_numbers(all, [&](std::size_t i) { side_[i] = static_cast<float>(right[i]); });
+    smoothe(correction_, Start::zero);
+    matrix_.multiply(correction_.data(), rest_.data(), static_cast<int>(columns));
+    for_numbers(all, [&](std::size_t i) { rest_[i] = side_[i] - rest_[i]; });
+    correct();
+    smoothe(correction_, Start::where_it_is);
+    return correction_;
+}
+
+}  // namespace pliant::linalg
