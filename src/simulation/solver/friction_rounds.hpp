@@ -22,8 +22,9 @@ struct StepStart {
 ///
 /// Sliding contact may alternate between two states for ever. If the state is then within ten times the tolerance, and
 /// its cables within the tolerance, it is accepted as `loose`, and `reason` gives the error; otherwise the step did not
-/// converge. `controls`: prescribed values; friction and weighted lengths are filled in. `known`: the evaluation of
-/// `next`, used if there is no friction.
+/// converge. Rounds end early where the last ones show that those left would not lead there. `controls`: prescribed
+/// values; friction and weighted lengths are filled in. `known`: the evaluation of `next`, used if there is no
+/// friction.
 [[nodiscard]] StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, const StepSettings& settings,
                                           int rounds, const StepStart& start, Controls& controls, State& next,
                                           const Progress& progress, std::optional<Evaluation> known = {});
