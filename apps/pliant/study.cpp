@@ -40,6 +40,7 @@ struct Options {
     std::string on = "local";
     int jobs = 0;
     int chunk = -1;
+    int chunks = 1;  ///< from that one on
     bool resume = false;
     bool plan_only = false;
     Output output;
@@ -114,18 +115,20 @@ Status run_by_slurm(const Options& options, const study::Plan& plan, const fs::p
     return {};
 }
 
-/// A task on a cluster: runs the rows of one chunk of a study that another process manages.
+/// A task on a cluster: runs the rows of one or a few chunks of a study that another process manages.
 Result<int> run_chunk(const Options& options) {
     const auto plan = study::load_plan(options.study);
     if (!plan) return tl::unexpected(plan.error());
     if (plan->version != PLIANT_VERSION)
         return input_error("{}: was begun with pliant {}, and this is {}", options.study, plan->version,
                            PLIANT_VERSION);
-    if (static_cast<std::size_t>(options.chunk) >= plan->chunk_count())
+    const auto first = static_cast<std::size_t>(options.chunk);
+    if (first >= plan->chunk_count())
         return input_error("--chunk {}: the study has {} chunks, from 0 on", options.chunk, plan->chunk_count());
     auto progress = terminal_progress(options.output);
     study::RunSettings settings = run_settings(std::max(options.jobs, 1), true);
-    settings.chunks = {static_cast<std::size_t>(options.chunk)};
+    const std::size_t end = std::min(first + static_cast<std::size_t>(options.chunks), plan->chunk_count());
+    for (std::size_t chunk = first; chunk < end; ++chunk) settings.chunks.push_back(chunk);
     settings.wait_for_others = false;
     settings.stop_at_missing_path = false;
     constexpr int most_begun = 4;
@@ -284,6 +287,10 @@ void add_study(CLI::App& app, int& status) {
         ->add_option("--chunk", options->chunk,
                      "run only the rows of this chunk, counted from 0, as a task of a cluster does")
         ->check(CLI::Range(0, 1000000));
+    command->add_option("--chunks", options->chunks, "with --chunk: that many chunks, from that one on")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str()
+        ->needs("--chunk");
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant study examples/study/finger.toml -o out");
     on_call(*command, status, [options] { return study_command(*options); });

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <chrono>
+#include <system_error>
 
 #include "base/core/digest.hpp"
 #include "base/core/files.hpp"
@@ -26,10 +28,10 @@ std::string in_quotes(const std::string& text) {
     return quoted + "'";
 }
 
-/// The last line logged by a task of these chunks.
-std::string last_words(const fs::path& folder, const std::vector<std::size_t>& chunks) {
-    for (const std::size_t chunk : chunks) {
-        const auto text = read_file(folder / "slurm" / fmt::format("{}.out", chunk), std::uintmax_t{16} << 20);
+/// The last line logged by one of these tasks.
+std::string last_words(const fs::path& folder, const std::vector<std::size_t>& tasks) {
+    for (const std::size_t task : tasks) {
+        const auto text = read_file(folder / "slurm" / fmt::format("{}.out", task), std::uintmax_t{16} << 20);
         if (!text) continue;
         std::string_view rest = trimmed(*text);
         if (rest.empty()) continue;
@@ -51,7 +53,6 @@ public:
           follower_(plan, folder_) {}
 
     Result<SlurmAccount> run() {
-        if (Status status = write_script(); !status) return tl::unexpected(status.error());
         for (;;) {
             if (Status status = look(); !status) return tl::unexpected(status.error());
             if (complete()) return account_;
@@ -73,10 +74,22 @@ public:
 private:
     [[nodiscard]] bool complete() const { return count_.recorded == plan_.rows.size(); }
 
-    Status write_script() {
+    Status write_script(std::size_t chunks_of_task) {
         std::error_code error;
         fs::create_directories(folder_ / "slurm", error);
-        return write_file(folder_ / "slurm" / "task.sh", task_script(settings_.program, folder_));
+        return write_file(folder_ / "slurm" / "task.sh", task_script(settings_.program, folder_, chunks_of_task));
+    }
+
+    /// Number of tasks that may run at a time; 0: unknown.
+    [[nodiscard]] std::size_t most_at_a_time() const {
+        std::vector<std::string> words{"--noheader", "--format=%C"};
+        if (!plan_.slurm.partition.empty()) words.push_back("--partition=" + plan_.slurm.partition);
+        const auto answer = run_tool("sinfo", words, patience_s, progress_);
+        if (!answer || answer->status != 0) return 0;
+        const std::size_t tasks =
+            total_processors(answer->output) / static_cast<std::size_t>(std::max(plan_.slurm.cpus_per_task, 1));
+        const auto most = static_cast<std::size_t>(settings_.most_tasks);
+        return most > 0 ? std::min(most, tasks) : tasks;
     }
 
     Status look() {
@@ -110,17 +123,20 @@ private:
         constexpr int most_idle = 6;
         idle_ = account_.submissions > 0 && count_.recorded == recorded_at_submission_ ? idle_ + 1 : 0;
         const auto chunks = follower_.open_chunks();
+        const std::size_t chunks_of_task = chunks_for_each_task(chunks.size(), most_at_a_time());
+        const auto tasks = tasks_of(chunks, chunks_of_task);
         if (idle_ >= most_idle)
             return failure("{} tasks in turn ended without a row; the last words of one: {}", most_idle,
-                           last_words(folder_, chunks));
+                           last_words(folder_, tasks));
+        if (Status status = write_script(chunks_of_task); !status) return status;
         recorded_at_submission_ = count_.recorded;
         const auto answer =
-            run_tool("sbatch", sbatch_words(plan_, folder_, chunks, settings_.most_tasks), patience_s, progress_);
+            run_tool("sbatch", sbatch_words(plan_, folder_, tasks, settings_.most_tasks), patience_s, progress_);
         if (!answer) return {};  // timeout: squeue will tell below whether it was accepted
         if (answer->status != 0 && passes_later(answer->errors)) return {};  // squeue will tell whether it was accepted
         if (answer->status != 0) return failure("sbatch refuses the study: {}", trimmed(answer->errors));
         ++account_.submissions;
-        account_.tasks += chunks.size();
+        account_.tasks += tasks.size();
         pause_s_ = 1;
         return {};
     }
@@ -174,24 +190,51 @@ std::string job_name(const Plan& plan, const fs::path& folder) {
     return fmt::format("pliant-{}-{}", plan.fingerprint.substr(0, 8), digest.text().substr(0, 8));
 }
 
-std::string array_text(std::span<const std::size_t> chunks) {
+std::size_t total_processors(std::string_view text) {
+    std::size_t total = 0;
+    while (!text.empty()) {
+        const std::string_view line = text.substr(0, text.find('\n'));
+        text.remove_prefix(std::min(line.size() + 1, text.size()));
+        const std::string_view last = trimmed(line.substr(line.rfind('/') + 1));
+        std::size_t count = 0;
+        const auto read = std::from_chars(last.data(), last.data() + last.size(), count);
+        if (read.ec == std::errc{}) total += count;
+    }
+    return total;
+}
+
+std::size_t chunks_for_each_task(std::size_t chunks, std::size_t at_a_time) {
+    constexpr std::size_t tasks_in_turn = 12;  // enough to even out their lengths, few enough to start them
+    return at_a_time == 0 ? 1 : std::max<std::size_t>(1, chunks / (tasks_in_turn * at_a_time));
+}
+
+std::vector<std::size_t> tasks_of(std::span<const std::size_t> chunks, std::size_t chunks_of_task) {
+    std::vector<std::size_t> tasks;
+    for (const std::size_t chunk : chunks) {
+        const std::size_t task = chunk / chunks_of_task * chunks_of_task;
+        if (tasks.empty() || tasks.back() != task) tasks.push_back(task);
+    }
+    return tasks;
+}
+
+std::string array_text(std::span<const std::size_t> tasks) {
     std::string text;
-    for (std::size_t k = 0; k < chunks.size();) {
+    for (std::size_t k = 0; k < tasks.size();) {
         std::size_t last = k;
-        while (last + 1 < chunks.size() && chunks[last + 1] == chunks[last] + 1) ++last;
+        while (last + 1 < tasks.size() && tasks[last + 1] == tasks[last] + 1) ++last;
         text += text.empty() ? "" : ",";
-        text += last == k ? fmt::format("{}", chunks[k]) : fmt::format("{}-{}", chunks[k], chunks[last]);
+        text += last == k ? fmt::format("{}", tasks[k]) : fmt::format("{}-{}", tasks[k], tasks[last]);
         k = last + 1;
     }
     return text;
 }
 
-std::vector<std::string> sbatch_words(const Plan& plan, const fs::path& folder, std::span<const std::size_t> chunks,
+std::vector<std::string> sbatch_words(const Plan& plan, const fs::path& folder, std::span<const std::size_t> tasks,
                                       int most_tasks) {
     const SlurmOptions& slurm = plan.slurm;
     std::vector<std::string> words{
         "--job-name=" + job_name(plan, folder),
-        "--array=" + array_text(chunks) + (most_tasks > 0 ? fmt::format("%{}", most_tasks) : ""),
+        "--array=" + array_text(tasks) + (most_tasks > 0 ? fmt::format("%{}", most_tasks) : ""),
         "--nodes=1",
         "--ntasks=1",
         fmt::format("--cpus-per-task={}", slurm.cpus_per_task),
@@ -211,12 +254,13 @@ std::vector<std::string> sbatch_words(const Plan& plan, const fs::path& folder, 
     return words;
 }
 
-std::string task_script(const fs::path& program, const fs::path& folder) {
+std::string task_script(const fs::path& program, const fs::path& folder, std::size_t chunks_of_task) {
     return fmt::format(
         "#!/bin/sh\n"
-        "# One task of the study in this folder: the rows of one chunk that have no record yet.\n"
-        "exec {} study {} --chunk \"$SLURM_ARRAY_TASK_ID\" --jobs \"${{SLURM_CPUS_PER_TASK:-1}}\" --quiet\n",
-        in_quotes(program.string()), in_quotes(folder.string()));
+        "# One task of the study in this folder: the rows of some chunks that have no record yet.\n"
+        "exec {} study {} --chunk \"$SLURM_ARRAY_TASK_ID\" --chunks {} --jobs \"${{SLURM_CPUS_PER_TASK:-1}}\" "
+        "--quiet\n",
+        in_quotes(program.string()), in_quotes(folder.string()), chunks_of_task);
 }
 
 bool passes_later(std::string_view errors) {

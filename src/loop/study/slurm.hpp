@@ -1,10 +1,12 @@
-// Runs a study on a Slurm cluster: chunks of rows are tasks of a job array, resubmitted while rows are missing.
+// Runs a study on a Slurm cluster: some chunks of rows each are tasks of a job array, resubmitted while rows are
+// missing.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/core/error.hpp"
@@ -34,13 +36,21 @@ struct SlurmAccount {
 
 /// The job name for a study in a folder.
 [[nodiscard]] std::string job_name(const Plan& plan, const std::filesystem::path& folder);
+/// Processors of the nodes in the output of `sinfo --format=%C`: lines of allocated/idle/other/total.
+[[nodiscard]] std::size_t total_processors(std::string_view text);
+/// How many chunks a task takes, where `at_a_time` tasks can run (0: unknown): starting a task takes Slurm up to a
+/// second, and a chunk of small rows little more.
+[[nodiscard]] std::size_t chunks_for_each_task(std::size_t chunks, std::size_t at_a_time);
+/// The first chunk of every task that has one of these; both ascending.
+[[nodiscard]] std::vector<std::size_t> tasks_of(std::span<const std::size_t> chunks, std::size_t chunks_of_task);
 /// "0-3,7": the argument of `--array`. Ascending, without duplicates.
-[[nodiscard]] std::string array_text(std::span<const std::size_t> chunks);
-/// The command line of sbatch for these chunks.
+[[nodiscard]] std::string array_text(std::span<const std::size_t> tasks);
+/// The command line of sbatch for these tasks, each named by its first chunk.
 [[nodiscard]] std::vector<std::string> sbatch_words(const Plan& plan, const std::filesystem::path& folder,
-                                                    std::span<const std::size_t> chunks, int most_tasks);
+                                                    std::span<const std::size_t> tasks, int most_tasks);
 /// The shell script of a task.
-[[nodiscard]] std::string task_script(const std::filesystem::path& program, const std::filesystem::path& folder);
+[[nodiscard]] std::string task_script(const std::filesystem::path& program, const std::filesystem::path& folder,
+                                      std::size_t chunks_of_task);
 /// True if the error is temporary, so that a later attempt may succeed.
 [[nodiscard]] bool passes_later(std::string_view errors);
 

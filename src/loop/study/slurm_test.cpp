@@ -32,6 +32,20 @@ TEST_CASE("sbatch gets the right arguments") {
     CHECK(words == expected);
 }
 
+TEST_CASE("tasks of a small cluster take several chunks, those of a large or unknown one take one") {
+    CHECK(total_processors("0/2/0/2\n") == 2);
+    CHECK(total_processors("12/20/0/32\n1/3/60/64\n") == 96);
+    CHECK(total_processors("sinfo: something else\n") == 0);
+    CHECK(chunks_for_each_task(100, 2) == 4);
+    CHECK(chunks_for_each_task(100, 96) == 1);
+    CHECK(chunks_for_each_task(3, 2) == 1);
+    CHECK(chunks_for_each_task(100, 0) == 1);
+    const std::vector<std::size_t> open{0, 1, 2, 5, 6, 11};
+    CHECK(tasks_of(open, 4) == std::vector<std::size_t>{0, 4, 8});
+    CHECK(tasks_of(open, 1) == open);
+    CHECK(tasks_of({}, 4).empty());
+}
+
 TEST_CASE("studies in different folders, and different studies, have different job names") {
     Plan plan, other;
     plan.fingerprint = "0123456789abcdef";
@@ -42,8 +56,9 @@ TEST_CASE("studies in different folders, and different studies, have different j
 }
 
 TEST_CASE("the task script quotes folders with blanks and quotes") {
-    CHECK(task_script("/opt/pliant", "/scratch/it's here")
-              .find("exec '/opt/pliant' study '/scratch/it'\\''s here' --chunk") != std::string::npos);
+    CHECK(task_script("/opt/pliant", "/scratch/it's here", 4)
+              .find("exec '/opt/pliant' study '/scratch/it'\\''s here' --chunk \"$SLURM_ARRAY_TASK_ID\" --chunks 4 ") !=
+          std::string::npos);
 }
 
 TEST_CASE("an unreachable Slurm controller is tried again, a refusal is not") {

@@ -28,30 +28,16 @@ struct Misfit {
     }
 };
 
-/// The residuals of the misfit, round by round.
-class Rounds {
-public:
-    explicit Rounds(int most) : most_(most) {}
-    void add(double residual) { residuals_.push_back(residual); }
-
-    /// True if the misfit, which shrinks as in the last two rounds, will not come within `wanted` in the rounds that
-    /// are left: sliding contact that alternates between two states does so for ever.
-    [[nodiscard]] bool are_vain(double wanted) const {
-        const std::size_t done = residuals_.size();
-        if (done < rounds_to_judge) return false;
-        const double now = residuals_[done - 1], two_before = residuals_[done - 3];
-        if (now <= wanted) return false;
-        return now * std::pow(now / two_before, (most_ - static_cast<double>(done)) / 2) > wanted;
-    }
-
-private:
-    static constexpr std::size_t rounds_to_judge = 8;
-
-    int most_;
-    std::vector<double> residuals_;
-};
-
 }  // namespace
+
+bool rounds_are_vain(std::span<const double> misfits, int most, double wanted) {
+    constexpr std::size_t rounds_to_judge = 8;
+    const std::size_t done = misfits.size();
+    if (done < rounds_to_judge) return false;
+    const double now = misfits[done - 1], two_before = misfits[done - 3];
+    const double pairs_left = (most - static_cast<double>(done)) / 2;
+    return now > wanted && now * std::pow(now / two_before, pairs_left) > wanted;
+}
 
 StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, const StepSettings& settings, int rounds,
                             const StepStart& start, Controls& controls, State& next, const Progress& progress,
@@ -62,7 +48,7 @@ StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, con
     controls.friction = system.freeze_friction(start.state, start.state, start.controls, start.controls);
     if (rubs) known.reset();
     StepOutcome total;
-    Rounds past(rounds);
+    std::vector<double> misfits;
     for (int round = 1; round <= rounds; ++round) {
         StepOutcome outcome =
             solvers.solve(system, controls, settings, next, progress, std::exchange(known, std::nullopt));
@@ -75,8 +61,8 @@ StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, con
         total.evaluation = system.evaluate(next, controls);
         const Misfit misfit{total.evaluation.residual, system.cable_friction_error(next, wanted)};
         if (misfit.within(settings.tolerance, 1, cable_share)) break;
-        past.add(misfit.residual);
-        if (round < rounds && !past.are_vain(loose_residual * settings.tolerance)) continue;
+        misfits.push_back(misfit.residual);
+        if (round < rounds && !rounds_are_vain(misfits, rounds, loose_residual * settings.tolerance)) continue;
         total.converged = total.loose = misfit.within(settings.tolerance, loose_residual, loose_cable_length);
         total.reason = misfit.text(settings.tolerance);
         break;

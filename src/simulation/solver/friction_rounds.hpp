@@ -29,4 +29,8 @@ struct StepStart {
                                           int rounds, const StepStart& start, Controls& controls, State& next,
                                           const Progress& progress, std::optional<Evaluation> known = {});
 
+/// True if the error of friction after each round so far, which goes on as in the last two, will not come down to
+/// `wanted` in `most` rounds: contact that alternates between two states may do so for ever. False for few rounds.
+[[nodiscard]] bool rounds_are_vain(std::span<const double> misfits, int most, double wanted);
+
 }  // namespace pliant::sim

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <vector>
+
 #include "base/core/near.hpp"
 #include "simulation/run/live.hpp"
 #include "simulation/run/test_problems.hpp"
@@ -100,4 +103,20 @@ TEST_CASE("interactive control settles friction like a program") {
         CHECK(step.residual <= 1e-5);
     }
     CHECK(live.describe().cables[0].length_ratio == near(0.85, {.relative = 1e-6}));
+}
+
+TEST_CASE("rounds are given up where their rate does not lead to the error wanted, and not before it shows") {
+    const auto shrinking = [](double rate, int rounds) {
+        std::vector<double> misfits;
+        for (int k = 0; k < rounds; ++k) misfits.push_back(0.1 * std::pow(rate, k));
+        return misfits;
+    };
+    CHECK_FALSE(rounds_are_vain(shrinking(0.98, 7), 30, 1e-3));
+    CHECK(rounds_are_vain(shrinking(0.98, 8), 30, 1e-3));
+    CHECK(rounds_are_vain(shrinking(1.1, 8), 30, 1e-3));
+    CHECK_FALSE(rounds_are_vain(shrinking(0.8, 8), 30, 1e-3));
+    CHECK(rounds_are_vain(shrinking(0.8, 8), 20, 1e-3));
+    CHECK_FALSE(rounds_are_vain(shrinking(0.5, 12), 12, 1e-3));
+    // It alternates, but shrinks from one pair of rounds to the next.
+    CHECK_FALSE(rounds_are_vain(std::vector<double>{1, 0.1, 0.5, 0.05, 0.25, 0.025, 0.125, 0.0125, 0.0625}, 30, 1e-3));
 }
