@@ -205,7 +205,14 @@ std::size_t total_processors(std::string_view text) {
 
 std::size_t chunks_for_each_task(std::size_t chunks, std::size_t at_a_time) {
     constexpr std::size_t tasks_in_turn = 12;  // enough to even out their lengths, few enough to start them
-    return at_a_time == 0 ? 1 : std::max<std::size_t>(1, chunks / (tasks_in_turn * at_a_time));
+    const std::size_t most_tasks = tasks_in_turn * at_a_time;
+    if (at_a_time == 0 || chunks <= most_tasks) return 1;
+    const auto quotient = [](std::size_t a, std::size_t b) { return (a + b - 1) / b; };
+    const std::size_t least = quotient(chunks, most_tasks);
+    for (std::size_t each = least; each <= 2 * least; ++each) {
+        if (quotient(chunks, each) % at_a_time == 0) return each;  // no processor is left without a last task
+    }
+    return least;
 }
 
 std::vector<std::size_t> tasks_of(std::span<const std::size_t> chunks, std::size_t chunks_of_task) {
