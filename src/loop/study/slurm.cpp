@@ -204,7 +204,7 @@ std::size_t total_processors(std::string_view text) {
 }
 
 std::size_t chunks_for_each_task(std::size_t chunks, std::size_t at_a_time) {
-    constexpr std::size_t tasks_in_turn = 12;  // enough to even out their lengths, few enough to start them
+    constexpr std::size_t tasks_in_turn = 6;  // enough to even out their lengths, few enough to start them
     const std::size_t most_tasks = tasks_in_turn * at_a_time;
     if (at_a_time == 0 || chunks <= most_tasks) return 1;
     const auto quotient = [](std::size_t a, std::size_t b) { return (a + b - 1) / b; };

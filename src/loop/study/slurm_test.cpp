@@ -36,9 +36,9 @@ TEST_CASE("tasks of a small cluster take several chunks, those of a large or unk
     CHECK(total_processors("0/2/0/2\n") == 2);
     CHECK(total_processors("12/20/0/32\n1/3/60/64\n") == 96);
     CHECK(total_processors("sinfo: something else\n") == 0);
-    CHECK(chunks_for_each_task(100, 2) == 5);
-    CHECK(chunks_for_each_task(85, 2) == 4);
-    CHECK(chunks_for_each_task(121, 2) == 7);  // 6 would make 21 tasks, an odd number
+    CHECK(chunks_for_each_task(100, 2) == 9);
+    CHECK(chunks_for_each_task(72, 2) == 6);
+    CHECK(chunks_for_each_task(85, 2) == 9);  // 8 would make 11 tasks, an odd number
     CHECK(chunks_for_each_task(100, 96) == 1);
     CHECK(chunks_for_each_task(3, 2) == 1);
     CHECK(chunks_for_each_task(100, 0) == 1);
