@@ -40,7 +40,8 @@ struct Options {
     std::string on = "local";
     int jobs = 0;
     int chunk = -1;
-    int chunks = 1;  ///< from that one on
+    int chunks = 1;       ///< from that one on
+    bool others = false;  ///< and then what no other process has
     bool resume = false;
     bool plan_only = false;
     Output output;
@@ -127,8 +128,7 @@ Result<int> run_chunk(const Options& options) {
         return input_error("--chunk {}: the study has {} chunks, from 0 on", options.chunk, plan->chunk_count());
     auto progress = terminal_progress(options.output);
     study::RunSettings settings = run_settings(std::max(options.jobs, 1), true);
-    const std::size_t end = std::min(first + static_cast<std::size_t>(options.chunks), plan->chunk_count());
-    for (std::size_t chunk = first; chunk < end; ++chunk) settings.chunks.push_back(chunk);
+    settings.chunks = study::chunks_from(*plan, first, static_cast<std::size_t>(options.chunks), options.others);
     settings.wait_for_others = false;
     settings.stop_at_missing_path = false;
     constexpr int most_begun = 4;
@@ -290,6 +290,8 @@ void add_study(CLI::App& app, int& status) {
     command->add_option("--chunks", options->chunks, "with --chunk: that many chunks, from that one on")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str()
+        ->needs("--chunk");
+    command->add_flag("--others", options->others, "with --chunk: then also chunks that no other process has begun")
         ->needs("--chunk");
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant study examples/study/finger.toml -o out");

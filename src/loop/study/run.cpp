@@ -220,4 +220,11 @@ std::vector<std::size_t> all_chunks(const Plan& plan, std::size_t share, std::si
     return chunks;
 }
 
+std::vector<std::size_t> chunks_from(const Plan& plan, std::size_t first, std::size_t count, bool others) {
+    const std::size_t all = plan.chunk_count(), own = std::min(count, all - first);
+    std::vector<std::size_t> chunks(others ? all : own);
+    for (std::size_t k = 0; k < chunks.size(); ++k) chunks[k] = (first + k) % all;
+    return chunks;
+}
+
 }  // namespace pliant::study

@@ -39,5 +39,7 @@ struct RunAccount {
 
 /// Every chunk, beginning at part `share` of `shares` equal parts, so that processes started together rarely meet.
 [[nodiscard]] std::vector<std::size_t> all_chunks(const Plan& plan, std::size_t share = 0, std::size_t shares = 1);
+/// `count` chunks from `first` on, and then, with `others`, all that come after and before them.
+[[nodiscard]] std::vector<std::size_t> chunks_from(const Plan& plan, std::size_t first, std::size_t count, bool others);
 
 }  // namespace pliant::study

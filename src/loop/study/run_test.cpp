@@ -100,6 +100,16 @@ TEST_CASE("rows run in parallel, each once, several in one process") {
     CHECK(again->rows == 0);
 }
 
+TEST_CASE("a task takes its own chunks first, then those after and before them") {
+    Plan plan;
+    plan.rows.resize(9);
+    plan.rows_per_chunk = 2;
+    using Chunks = std::vector<std::size_t>;
+    CHECK(chunks_from(plan, 3, 1, false) == Chunks{3});
+    CHECK(chunks_from(plan, 3, 4, false) == Chunks{3, 4});
+    CHECK(chunks_from(plan, 3, 1, true) == Chunks{3, 4, 0, 1, 2});
+}
+
 TEST_CASE("an error in a row fails only that row, with its reason") {
     CHECK(reason_of_row_3(squares("fail")) == "finger.toml: step 4: no equilibrium");
     CHECK(reason_of_row_3(squares("silent")) == "the command printed no JSON");

@@ -77,7 +77,8 @@ private:
     Status write_script(std::size_t chunks_of_task) {
         std::error_code error;
         fs::create_directories(folder_ / "slurm", error);
-        return write_file(folder_ / "slurm" / "task.sh", task_script(settings_.program, folder_, chunks_of_task));
+        return write_file(folder_ / "slurm" / "task.sh",
+                          task_script(plan_, settings_.program, folder_, chunks_of_task));
     }
 
     /// Number of tasks that may run at a time; 0: unknown.
@@ -204,7 +205,7 @@ std::size_t total_processors(std::string_view text) {
 }
 
 std::size_t chunks_for_each_task(std::size_t chunks, std::size_t at_a_time) {
-    constexpr std::size_t tasks_in_turn = 6;  // enough to even out their lengths, few enough to start them
+    constexpr std::size_t tasks_in_turn = 2;  // they also take what others have not begun, so few are enough
     const std::size_t most_tasks = tasks_in_turn * at_a_time;
     if (at_a_time == 0 || chunks <= most_tasks) return 1;
     const auto quotient = [](std::size_t a, std::size_t b) { return (a + b - 1) / b; };
@@ -261,13 +262,15 @@ std::vector<std::string> sbatch_words(const Plan& plan, const fs::path& folder, 
     return words;
 }
 
-std::string task_script(const fs::path& program, const fs::path& folder, std::size_t chunks_of_task) {
+std::string task_script(const Plan& plan, const fs::path& program, const fs::path& folder, std::size_t chunks_of_task) {
+    // Where a task has a time limit, it would end in the middle of another task's rows.
+    const std::string_view others = plan.slurm.time.empty() ? " --others" : "";
     return fmt::format(
         "#!/bin/sh\n"
         "# One task of the study in this folder: the rows of some chunks that have no record yet.\n"
-        "exec {} study {} --chunk \"$SLURM_ARRAY_TASK_ID\" --chunks {} --jobs \"${{SLURM_CPUS_PER_TASK:-1}}\" "
+        "exec {} study {} --chunk \"$SLURM_ARRAY_TASK_ID\" --chunks {}{} --jobs \"${{SLURM_CPUS_PER_TASK:-1}}\" "
         "--quiet\n",
-        in_quotes(program.string()), in_quotes(folder.string()), chunks_of_task);
+        in_quotes(program.string()), in_quotes(folder.string()), chunks_of_task, others);
 }
 
 bool passes_later(std::string_view errors) {

@@ -48,9 +48,9 @@ struct SlurmAccount {
 /// The command line of sbatch for these tasks, each named by its first chunk.
 [[nodiscard]] std::vector<std::string> sbatch_words(const Plan& plan, const std::filesystem::path& folder,
                                                     std::span<const std::size_t> tasks, int most_tasks);
-/// The shell script of a task.
-[[nodiscard]] std::string task_script(const std::filesystem::path& program, const std::filesystem::path& folder,
-                                      std::size_t chunks_of_task);
+/// The shell script of a task: it runs its own chunks and then, without a time limit, those that no other task has.
+[[nodiscard]] std::string task_script(const Plan& plan, const std::filesystem::path& program,
+                                      const std::filesystem::path& folder, std::size_t chunks_of_task);
 /// True if the error is temporary, so that a later attempt may succeed.
 [[nodiscard]] bool passes_later(std::string_view errors);
 

@@ -36,9 +36,9 @@ TEST_CASE("tasks of a small cluster take several chunks, those of a large or unk
     CHECK(total_processors("0/2/0/2\n") == 2);
     CHECK(total_processors("12/20/0/32\n1/3/60/64\n") == 96);
     CHECK(total_processors("sinfo: something else\n") == 0);
-    CHECK(chunks_for_each_task(100, 2) == 9);
-    CHECK(chunks_for_each_task(72, 2) == 6);
-    CHECK(chunks_for_each_task(85, 2) == 9);  // 8 would make 11 tasks, an odd number
+    CHECK(chunks_for_each_task(100, 2) == 25);
+    CHECK(chunks_for_each_task(9, 2) == 5);  // 3 or 4 would make three tasks
+    CHECK(chunks_for_each_task(4, 2) == 1);
     CHECK(chunks_for_each_task(100, 96) == 1);
     CHECK(chunks_for_each_task(3, 2) == 1);
     CHECK(chunks_for_each_task(100, 0) == 1);
@@ -57,10 +57,13 @@ TEST_CASE("studies in different folders, and different studies, have different j
     CHECK(job_name(plan, "/a") != job_name(other, "/a"));
 }
 
-TEST_CASE("the task script quotes folders with blanks and quotes") {
-    CHECK(task_script("/opt/pliant", "/scratch/it's here", 4)
-              .find("exec '/opt/pliant' study '/scratch/it'\\''s here' --chunk \"$SLURM_ARRAY_TASK_ID\" --chunks 4 ") !=
-          std::string::npos);
+TEST_CASE("the task script quotes folders with blanks and quotes, and takes other chunks where no time limit ends it") {
+    Plan plan;
+    const std::string script = task_script(plan, "/opt/pliant", "/scratch/it's here", 4);
+    CHECK(script.find("exec '/opt/pliant' study '/scratch/it'\\''s here' --chunk \"$SLURM_ARRAY_TASK_ID\" --chunks 4 "
+                      "--others --jobs") != std::string::npos);
+    plan.slurm.time = "00:10:00";
+    CHECK(task_script(plan, "/opt/pliant", "/scratch", 1).find("--others") == std::string::npos);
 }
 
 TEST_CASE("an unreachable Slurm controller is tried again, a refusal is not") {
