@@ -28,6 +28,7 @@ void add_study(CLI::App& app, int& status);
 void add_simulate(CLI::App& app, int& status);
 void add_inverse(CLI::App& app, int& status);
 void add_workspace(CLI::App& app, int& status);
+void add_reduce(CLI::App& app, int& status);
 void add_mesh(CLI::App& app, int& status);
 void add_slice(CLI::App& app, int& status);
 void add_plan(CLI::App& app, int& status);

@@ -71,28 +71,11 @@ void add_commands(CLI::App& app, int& status) {
     app.require_subcommand(1);
     app.footer(
         "Example: pliant simulate examples/cable_gripper/gripper.toml -o out\nEvery command has its own --help.");
-    for (const AddCommand add : {add_new,
-                                 add_simulate,
-                                 add_inverse,
-                                 add_workspace,
-                                 add_mesh,
-                                 add_slice,
-                                 add_plan,
-                                 add_export,
-                                 add_print,
-                                 add_twin,
-                                 add_firmware,
-                                 add_project,
-                                 add_compare_printers,
-                                 add_check,
-                                 add_materials,
-                                 add_calibrate,
-                                 add_identify,
-                                 add_study,
-                                 add_studio,
-                                 add_help,
-                                 add_version,
-                                 add_completion})
+    for (const AddCommand add :
+         {add_new,     add_simulate,  add_inverse,   add_workspace, add_reduce,   add_mesh,    add_slice,
+          add_plan,    add_export,    add_print,     add_twin,      add_firmware, add_project, add_compare_printers,
+          add_check,   add_materials, add_calibrate, add_identify,  add_study,    add_studio,  add_help,
+          add_version, add_completion})
         add(app, status);
 }
 

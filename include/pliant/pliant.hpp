@@ -10,6 +10,7 @@
 #include "pliant/linearisation.hpp"  // IWYU pragma: export
 #include "pliant/printing.hpp"       // IWYU pragma: export
 #include "pliant/program.hpp"        // IWYU pragma: export
+#include "pliant/reduced.hpp"        // IWYU pragma: export
 #include "pliant/simulation.hpp"     // IWYU pragma: export
 #include "pliant/view.hpp"           // IWYU pragma: export
 #include "pliant/workspace.hpp"      // IWYU pragma: export

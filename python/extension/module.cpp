@@ -11,6 +11,7 @@ PYBIND11_MODULE(_pliant, module) {
     add_printing(module);
     add_batch(module);
     add_inverse(module);
+    add_reduced(module);
     add_view(module);
     module.def("version", [] { return std::string(pliant::version()); });
     module.def("quantity", &pliant::quantity, py::arg("text"), py::arg("unit"));

@@ -18,6 +18,7 @@ void add_program(py::module_& module);
 void add_printing(py::module_& module);
 void add_batch(py::module_& module);
 void add_inverse(py::module_& module);
+void add_reduced(py::module_& module);
 void add_view(py::module_& module);
 
 }  // namespace pliant::python

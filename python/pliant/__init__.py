@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from .objectives import ProgramGradient, gradient
     from .printing import CuredBlock, PrintPlan, Vat, VirtualPrint, check, plan, print_virtually, slice
     from .program import ProgramResult, ProgramStep
+    from .reduced import ReducedCheck, ReducedError, ReducedModel, ReducedState, ReducedStep, reduce
     from .results import Cable, Chamber, Fields, Joint, Object, Observation, Spring
     from .robot import Mesh, Robot
     from .steering import GoalResult, InverseResult, SteeredInput, Waypoint, Workspace, inverse, workspace
@@ -40,10 +41,11 @@ __all__ = [
     "Batch", "Cable", "Cancelled", "Chamber", "Change", "Comparison", "CuredBlock", "Drive", "Estimate", "Failure",
     "Fields", "FitError", "GoalResult", "Gradient", "GuidePoint", "Identification", "InputError", "Inputs",
     "InverseResult", "Joint", "KeySensitivity", "Linearisation", "Measure", "Mesh", "Model", "Object", "Observation",
-    "Parameter", "PrintPlan", "ProgramGradient", "ProgramResult", "ProgramStep", "Robot", "SobolIndex", "Spring",
-    "State", "SteeredInput", "StepResult", "StudyResult", "Vat", "Viewer", "VirtualPrint",
+    "Parameter", "PrintPlan", "ProgramGradient", "ProgramResult", "ProgramStep", "ReducedCheck", "ReducedError",
+    "ReducedModel", "ReducedState", "ReducedStep", "Robot", "SobolIndex", "Spring", "State", "SteeredInput",
+    "StepResult", "StudyResult", "Vat", "Viewer", "VirtualPrint",
     "Waypoint", "Workspace", "check", "gradient", "identify", "inverse", "plan", "print_virtually", "quantity",
-    "show", "slice", "study", "workspace",
+    "reduce", "show", "slice", "study", "workspace",
 ]  # fmt: skip
 
 
@@ -71,6 +73,7 @@ _NAMES_OF = {
     "objectives": ("ProgramGradient", "gradient"),
     "printing": ("CuredBlock", "PrintPlan", "Vat", "VirtualPrint", "check", "plan", "print_virtually", "slice"),
     "program": ("ProgramResult", "ProgramStep"),
+    "reduced": ("ReducedCheck", "ReducedError", "ReducedModel", "ReducedState", "ReducedStep", "reduce"),
     "results": ("Cable", "Chamber", "Fields", "Joint", "Object", "Observation", "Spring"),
     "robot": ("Mesh", "Robot"),
     "steering": ("GoalResult", "InverseResult", "SteeredInput", "Waypoint", "Workspace", "inverse", "workspace"),

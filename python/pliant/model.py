@@ -261,17 +261,7 @@ class Model:
         when = known[0] if time is None else _check.number(time, "time")
         if controls is None or isinstance(controls, Inputs):
             return self._inputs_of((when, known[1], known[2]))
-        if not isinstance(controls, Mapping):
-            values = _check.numbers(controls, "controls", (len(self._actuators),))
-            return self._inputs_of((when, known[1], values.tolist()))
-        by, numbers = list(known[1]), list(known[2])
-        rest = self._rest_measures()
-        for name, wanted in controls.items():
-            if not isinstance(name, str) or name not in rest:
-                raise InputError(self._no_actuator(name), key=str(name))
-            index = self._actuators.index(name)
-            by[index], numbers[index] = drive_of(name, rest[name], wanted)
-        return self._inputs_of((when, by, numbers))
+        return self._changed((when, known[1], known[2]), controls)
 
     # ---- steps
 
@@ -425,6 +415,20 @@ class Model:
         if state.model is not self and state.model._model is not self._model:
             raise InputError("the state is one of another model")
         return state
+
+    def _changed(self, known: tuple[float, Any, Any], controls: Any) -> Inputs:
+        """What is known, with the targets of a mapping or the numbers of a vector in its place."""
+        if not isinstance(controls, Mapping):
+            values = _check.numbers(controls, "controls", (len(self._actuators),))
+            return self._inputs_of((known[0], known[1], values.tolist()))
+        by, numbers = list(known[1]), list(known[2])
+        rest = self._rest_measures()
+        for name, wanted in controls.items():
+            if not isinstance(name, str) or name not in rest:
+                raise InputError(self._no_actuator(name), key=str(name))
+            index = self._actuators.index(name)
+            by[index], numbers[index] = drive_of(name, rest[name], wanted)
+        return self._inputs_of((known[0], by, numbers))
 
     def _inputs_of(self, known: tuple[float, Any, Any]) -> Inputs:
         return Inputs._known(self._actuators, *known)

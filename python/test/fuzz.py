@@ -142,6 +142,8 @@ class Fuzz:
             lambda: self.model.run(on_step=self.thing(), measured=self.thing(), checkpoint_every=self.number(), progress=self.thing()),
             lambda: pliant.inverse(self.pick(self.model, self.thing()), starts=self.number()),
             lambda: pliant.workspace(self.pick(self.model, self.thing()), side=self.number(), between=self.number()),
+            lambda: pliant.reduce(self.pick(self.model, self.thing()), samples=self.number(), basis_error=self.number()),
+            lambda: pliant.ReducedModel.load(self.pick(self.model, self.thing()), self.thing()),
             lambda: pliant.identify(self.thing(), self.thing(), self.thing(), judge=self.thing()),
             lambda: pliant.gradient(self.model, [pliant.Measure("marker", "top", (0, 0, 1))], lambda step, values: self.thing(), kept=self.number()),
             lambda: pliant.plan(self.thing()),
@@ -163,7 +165,7 @@ class Fuzz:
         part = self.pick(*[p for p in dir(_pliant) if not p.startswith("_")])
         thing = getattr(_pliant, part)
         arguments = [self.pick(self.thing(), self.model._model, self.state._state, self.model._engine, None) for _ in range(int(self.random.integers(0, 5)))]
-        if part in ("slice", "print_virtually", "run", "workspace", "inverse", "identify", "program_gradient"):
+        if part in ("slice", "print_virtually", "run", "workspace", "inverse", "identify", "program_gradient", "reduce"):
             arguments = arguments[:2]
         try:
             made = thing(*arguments)

@@ -17,9 +17,10 @@ export const mayDrive = computed(() => online.value && helm.value.you);
 
 export const documentState = signal({ name: '', unsaved: false, undo: 0, redo: 0, accuracy: 'automatic' as Accuracy });
 export const scene = signal<Scene | null>(null);
-/// The latest frame; with linear elements it is a fast preview, too stiff to be a result.
+/// The latest frame; with linear elements it is a fast preview, too stiff to be a result, and that of a reduced model is
+/// nearly one.
 export const frame = signal<Frame | null>(null);
-export const isRough = (f: Frame | null) => (f?.head.order ?? scene.value?.head.order) === 1;
+export const isRough = (f: Frame | null) => f?.head.reduced_error_mm !== undefined || (f?.head.order ?? scene.value?.head.order) === 1;
 export const rough = computed(() => isRough(frame.value));
 export const building = signal<{ stage: string; fraction: number } | null>(null);
 export const problems = signal<Problem[]>([]);

@@ -50,7 +50,8 @@ export interface FrameHead {
   tag: number;
   time: number;
   order?: number; // element order of this state; missing: that of the scene
-  refining?: boolean; // the linear result is shown, the quadratic one is being computed
+  refining?: boolean; // an approximate result is shown, the quadratic one is being computed
+  reduced_error_mm?: number; // the state is that of a reduced model: its estimated error
   arrived: boolean;
   stuck: string;
   warnings: string[]; // reasons not to trust the state

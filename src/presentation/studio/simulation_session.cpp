@@ -322,12 +322,14 @@ bool SimulationSession::is_input_waiting() const {
 
 void SimulationSession::start(const std::shared_ptr<const Built>& built) {
     hand_ = shown_ = nullptr;
+    reduced_.reset();
     preview_.reset();
     fine_ = std::make_unique<LiveRobot>(built->robot, built->model, built->size_m);
     hand_ = fine_.get();
     if (built->preview) {
         preview_ = std::make_unique<LiveRobot>(built->preview->robot(), built->preview->model(), built->size_m);
         hand_ = preview_.get();
+        reduced_ = std::make_unique<ReducedHand>(built->robot, built->model, built->size_m);
     }
     now_ = {};
     refining_ = catching_up_ = false;
@@ -427,6 +429,7 @@ void SimulationSession::go_on_playing() {
 }
 
 void SimulationSession::advance() {
+    if (advance_reduced()) return;
     Watch watch(*this);
     sim::LiveProgress progress = hand_->advance(watch);
     if (!progress.reason.empty()) playing_ = false;
@@ -441,6 +444,18 @@ void SimulationSession::advance() {
     const bool due = Clock::now() - last_frame_at_ >= frame_gap;
     if ((due || settled_) && !catching_up_) publish(progress, *hand_);
     if (preview_ && hand_ == fine_.get() && slow && !settled_ && !hand_->is_led()) give_way();
+}
+
+/// Jumps to the target with the reduced model; the preview, which falls behind, catches up when it is needed. False:
+/// the reduced model does not cover it.
+bool SimulationSession::advance_reduced() {
+    if (!reduced_ || hand_ != preview_.get() || hand_->is_led()) return false;
+    const std::optional<ReducedHand::Shown> shown = reduced_->at(hand_->target());
+    if (!shown) return false;
+    settled_ = catching_up_ = true;
+    refining_ = !playing_;
+    publish(*shown);
+    return true;
 }
 
 /// True if nothing moves and no marker is dragged.
@@ -479,13 +494,33 @@ void SimulationSession::give_way() {
 }
 
 void SimulationSession::publish(const sim::LiveProgress& progress, const LiveRobot& shown) {
-    last_frame_at_ = Clock::now();
     shown_ = &shown == fine_.get() ? fine_.get() : preview_.get();
     sim::Step step = shown.live().describe();
-    const std::string head = frame_head(step, progress, shown);
+    About about;
+    about.order = shown.model().mesh().order;
+    about.arrived = progress.arrived;
+    about.stuck = progress.reason;
+    about.iterations = progress.iterations;
+    about.warnings = shown.live().warnings(step);
+    about.pulled_vertex = shown.pulled_vertex();
+    if (about.pulled_vertex >= 0) about.pull_force_N = shown.live().pull_force_N();
+    const std::string head = frame_head(step, about);
     // With a preview, exported states are only those of the fine robot.
     if (progress.moved && shown_ == fine_.get() && !refining_) remember(step);
     if (shown_ == preview_.get()) step.positions = built_->preview->lifted(step.positions);
+    send(step, head);
+}
+
+void SimulationSession::publish(const ReducedHand::Shown& shown) {
+    shown_ = preview_.get();
+    About about;
+    about.warnings = sim::warnings_of(shown.step);
+    about.reduced_error_m = shown.error_m;
+    send(shown.step, frame_head(shown.step, about));
+}
+
+void SimulationSession::send(const sim::Step& step, const std::string& head) {
+    last_frame_at_ = Clock::now();
     auto frame = std::make_shared<const std::string>(built_->scene.frame(step, events_.fields(), head));
     {
         const std::lock_guard lock(mutex_);
@@ -513,27 +548,27 @@ void SimulationSession::remember(const sim::Step& step) {
     history_stride_ *= 2;
 }
 
-std::string SimulationSession::frame_head(const sim::Step& step, const sim::LiveProgress& progress,
-                                          const LiveRobot& shown) {
-    std::vector<std::string> warnings = shown.live().warnings(step);
+std::string SimulationSession::frame_head(const sim::Step& step, const About& about) {
+    std::vector<std::string> warnings = about.warnings;
     warnings.insert(warnings.begin(), built_->warnings.begin(), built_->warnings.end());
     Json json = state_json(step);
     json.update({{"type", "frame"},
                  {"revision", built_->revision},
                  {"sequence", sequence_++},
                  {"tag", tag_},
-                 {"order", shown.model().mesh().order},
+                 {"order", about.order},
                  {"refining", refining_},
-                 {"arrived", progress.arrived},
-                 {"stuck", progress.reason},
+                 {"arrived", about.arrived},
+                 {"stuck", about.stuck},
                  {"warnings", warnings},
                  {"playing", playing_},
-                 {"iterations", progress.iterations},
+                 {"iterations", about.iterations},
                  {"solve_ms", 1e3 * step.wall_s}});
+    if (about.reduced_error_m) json["reduced_error_mm"] = mm * *about.reduced_error_m;
     if (events_.beside) json["beside"] = true;
-    if (shown.pulled_vertex() >= 0) {
-        const Vec3 force = shown.live().pull_force_N();
-        json["pull"] = {{"vertex", shown.pulled_vertex()}, {"force_N", Json::array({force.x, force.y, force.z})}};
+    if (about.pulled_vertex >= 0) {
+        const Vec3 force = about.pull_force_N;
+        json["pull"] = {{"vertex", about.pulled_vertex}, {"force_N", Json::array({force.x, force.y, force.z})}};
     }
     if (hand_->led()) json["lead"] = Json::parse(hand_->led()->json());
     std::string text = dumped(json);

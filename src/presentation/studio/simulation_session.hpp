@@ -19,14 +19,15 @@
 #include "presentation/studio/live_robot.hpp"
 #include "presentation/studio/message.hpp"
 #include "presentation/studio/preview.hpp"
+#include "presentation/studio/reduced_hand.hpp"
 #include "robot/description/robot.hpp"
 #include "simulation/scene/scene.hpp"
 
 namespace pliant::studio {
 
 /// Mesh order used: linear tets answer at once but are too stiff; quadratic ones are those of `pliant simulate`.
-/// `automatic`: linear ones during interaction, if quadratic ones are not fast enough for it, and quadratic ones as
-/// soon as the input rests.
+/// `automatic`: during interaction, if quadratic ones are not fast enough for it, linear ones or, as soon as it has
+/// been made, a reduced model of the quadratic ones; quadratic ones as soon as the input rests.
 enum class Accuracy { preview, automatic, fine };
 [[nodiscard]] std::string_view name(Accuracy accuracy);
 [[nodiscard]] std::optional<Accuracy> accuracy_named(std::string_view name);
@@ -133,14 +134,27 @@ private:
     void let_go_of_marker();
     void go_on_playing();
     void advance();
+    [[nodiscard]] bool advance_reduced();
     [[nodiscard]] bool may_refine() const;
     void refine();
     void give_way();
     void publish(const sim::LiveProgress& progress, const LiveRobot& shown);
+    void publish(const ReducedHand::Shown& shown);
+    void send(const sim::Step& step, const std::string& head);
     void forget_history();
     void remember(const sim::Step& step);
-    [[nodiscard]] std::string frame_head(const sim::Step& step, const sim::LiveProgress& progress,
-                                         const LiveRobot& shown);
+    /// What the page is told of a state.
+    struct About {
+        int order = 2;
+        bool arrived = false;
+        std::string stuck;
+        int iterations = 0;
+        std::vector<std::string> warnings;
+        int pulled_vertex = -1;
+        Vec3 pull_force_N{};
+        std::optional<double> reduced_error_m{};  ///< of a reduced model: the estimate
+    };
+    [[nodiscard]] std::string frame_head(const sim::Step& step, const About& about);
     [[nodiscard]] std::string wanted_json() const;
     void tell(const std::string& key, const std::string& json);
 
@@ -160,11 +174,12 @@ private:
     std::size_t history_stride_ = 1, history_seen_ = 0;
 
     // Used by the session's thread only.
-    std::unique_ptr<LiveRobot> fine_;     ///< gives the final results, on the model as built
-    std::unique_ptr<LiveRobot> preview_;  ///< on Built::preview; null without one
-    LiveRobot* hand_ = nullptr;           ///< the one that follows the interaction
-    LiveRobot* shown_ = nullptr;          ///< the one published last
-    Wanted now_;                          ///< the inputs applied last
+    std::unique_ptr<LiveRobot> fine_;       ///< gives the final results, on the model as built
+    std::unique_ptr<LiveRobot> preview_;    ///< on Built::preview; null without one
+    std::unique_ptr<ReducedHand> reduced_;  ///< likewise: moves sliders in place of the preview, once it is ready
+    LiveRobot* hand_ = nullptr;             ///< the one that follows the interaction
+    LiveRobot* shown_ = nullptr;            ///< the one published last
+    Wanted now_;                            ///< the inputs applied last
     double tag_ = 0;
     bool settled_ = true, playing_ = false;
     bool refining_ = false;     ///< the interactive robot has arrived, the fine one has not

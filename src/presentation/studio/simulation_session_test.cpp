@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <chrono>
 #include <cstring>
 #include <future>
 
@@ -49,6 +50,12 @@ struct Bench {
         return nullptr;
     }
 };
+
+const char* const wall = R"(
+[[obstacle]]
+name = "wall"
+geometry = { box = [[50, 0, 0], [51, 3, 2]] }
+)";
 
 std::string renamed(const std::string& name) {
     std::string text = bar;
@@ -131,12 +138,14 @@ TEST_CASE("a dragged marker moves the cable, and stays where it is released") {
 }
 
 TEST_CASE("by default answers come from quadratic tets, and answers from linear tets say so") {
-    // Coarse and nearly incompressible: linear tets lock, and their tension is three times as large.
+    // Coarse and nearly incompressible: linear tets lock, and their tension is three times as large. What the robot
+    // could touch, far away, keeps it from being reduced.
+    const std::string with_wall = std::string(bar) + wall;
     const auto tension = [](const Json& f) { return f["cables"][0]["tension_N"].get<double>(); };
     Bench fine, linear, automatic;
-    fine.open(bar, Accuracy::fine);
-    linear.open(bar, Accuracy::preview);
-    automatic.open(bar, Accuracy::automatic);
+    fine.open(with_wall, Accuracy::fine);
+    linear.open(with_wall, Accuracy::preview);
+    automatic.open(with_wall, Accuracy::automatic);
     for (Bench* b : {&fine, &linear, &automatic}) {
         REQUIRE(b->session.wait_until_built());
         b->drive(1, "flexor", "shortening_mm", 0.3);
@@ -155,6 +164,35 @@ TEST_CASE("by default answers come from quadratic tets, and answers from linear 
     for (const sim::Step& step : automatic.session.history().steps)
         CHECK(step.positions.size() == automatic.session.built()->model.mesh().points.size());
     CHECK(automatic.session.history().steps.back().cables[0].tension_N == near(tension(right), {.relative = 1e-3}));
+}
+
+TEST_CASE(
+    "once the reduced model is ready, it moves the sliders, nearly as the quadratic tets and never as their answer") {
+    Bench b;
+    b.open(bar, Accuracy::automatic);
+    REQUIRE(b.session.wait_until_built());
+    REQUIRE(b.session.built()->preview != nullptr);
+    Json near_frame;
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    for (int tag = 1; near_frame.is_null() && std::chrono::steady_clock::now() < until; ++tag) {
+        b.frames.clear();
+        b.drive(tag, "flexor", "shortening_mm", 0.2 + 0.001 * (tag % 50));
+        const Json frame = b.frames.wait_for([&](const Json& f) { return f["tag"] == tag; });
+        if (frame.contains("reduced_error_mm")) near_frame = frame;
+    }
+    REQUIRE(!near_frame.is_null());
+    CHECK(near_frame["order"] == 2);
+    CHECK(near_frame["arrived"] == false);
+    CHECK(near_frame["reduced_error_mm"].get<double>() < 0.05);
+    const Json exact = b.arrived(near_frame["tag"]);
+    CHECK(!exact.contains("reduced_error_mm"));
+    CHECK(near_frame["cables"][0]["tension_N"].get<double>() ==
+          near(exact["cables"][0]["tension_N"].get<double>(), {.relative = 0.01}));
+    CHECK(near_frame["markers"][0][2].get<double>() == near(exact["markers"][0][2].get<double>(), {.absolute = 0.01}));
+    // A point that is pulled is not among its modes.
+    b.session.pull({1000, 0, {0, 0, 1}});
+    const Json pulled = b.frames.wait_for([](const Json& f) { return f["tag"] == 1000; });
+    CHECK(!pulled.contains("reduced_error_mm"));
 }
 
 TEST_CASE("after dragging on, the final answer agrees with quadratic tets, also with program and pull") {

@@ -124,7 +124,7 @@ Result<Elements> Elements::create(const Description& description) {
         for (const int region : mesh.region) elements.law_.push_back(description.material_of_region[region]);
     }
     elements.group_by_law(mesh);
-    if (Status status = elements.integrate(mesh); !status) return tl::unexpected(status.error());
+    if (Status status = elements.integrate(description); !status) return tl::unexpected(status.error());
     elements.weigh(description);
     elements.add_lumps(description);
     elements.fill_empty_lanes();
@@ -161,7 +161,9 @@ void Elements::group_by_law(const mesh::TetMesh& mesh) {
 }
 
 /// Computes nodes, gradients and volumes. Errors: a flat tet; the message names the first one.
-Status Elements::integrate(const mesh::TetMesh& mesh) {
+Status Elements::integrate(const Description& description) {
+    const mesh::TetMesh& mesh = description.mesh;
+    const std::vector<double>& weights = description.tet_weights;
     std::vector<ShapeGradients> shapes;
     for (const Barycentric& b : integration_points(mesh.order)) shapes.push_back(shape_gradients(mesh.order, b));
     std::vector<std::size_t> flat((mesh.tet_count() + tets_per_piece - 1) / tets_per_piece, no_tet);
@@ -174,7 +176,8 @@ Status Elements::integrate(const mesh::TetMesh& mesh) {
                 const double determinant = jacobian.determinant();
                 if (!(determinant > 0)) flat[begin / tets_per_piece] = std::min(t, flat[begin / tets_per_piece]);
                 const std::size_t point = place_[t] / lanes * points() + q, lane = place_[t] % lanes;
-                volume_[point * lanes + lane] = determinant / 6 / static_cast<double>(points());
+                volume_[point * lanes + lane] =
+                    (weights.empty() ? 1 : weights[t]) * determinant / 6 / static_cast<double>(points());
                 put_gradients(shapes[q], jacobian, gradient_.data() + point * width() * 3 * lanes + lane);
             }
         }

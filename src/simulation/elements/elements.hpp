@@ -79,7 +79,7 @@ public:
     [[nodiscard]] const std::vector<double>& node_mass_kg() const { return node_mass_; }
     [[nodiscard]] bool has_energy() const { return has_energy_; }
 
-    /// Deformation gradients at the integration points of tet t and their volumes.
+    /// Deformation gradients at the integration points of tet t and their volumes, times the weight of the tet.
     [[nodiscard]] int points_per_tet() const { return points_per_tet_; }
     [[nodiscard]] linalg::Matrix3 deformation_gradient(std::size_t tet, int point, std::span<const double> x) const;
     [[nodiscard]] double point_volume(std::size_t tet, int point) const {
@@ -129,7 +129,7 @@ private:
     [[nodiscard]] TetBatch batch(std::size_t b) const;
     void group_by_law(const mesh::TetMesh& mesh);
     void fill_empty_lanes();
-    Status integrate(const mesh::TetMesh& mesh);
+    Status integrate(const Description& description);
     void weigh(const Description& description);
     void add_lumps(const Description& description);
     [[nodiscard]] const material::Law& law_of_batch(std::size_t batch) const {

@@ -55,6 +55,11 @@ Status check_mesh(const Description& d) {
     for (const int m : d.material_of_tet) {
         if (m < 0 || m >= static_cast<int>(d.materials.size())) return input_error("material {} does not exist", m);
     }
+    if (!d.tet_weights.empty() && d.tet_weights.size() != mesh.tet_count())
+        return input_error("there are weights of {} tets, the mesh has {}", d.tet_weights.size(), mesh.tet_count());
+    for (const double weight : d.tet_weights) {
+        if (!(weight > 0) || !std::isfinite(weight)) return input_error("the weight of a tet must be above zero");
+    }
     return {};
 }
 

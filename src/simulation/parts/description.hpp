@@ -292,7 +292,10 @@ struct Description {
     double ambient_pressure_Pa = 101325;
     std::vector<int> material_of_tet{};  ///< (tets) for graded bodies, instead of the material of the region; else
                                          ///< empty
-    std::vector<std::string> notes{};    ///< remarks for the user, one line each
+    /// (tets) above zero: how often each tet counts in energy, forces and mass; empty: once. For a few tets that stand
+    /// for all (simulation/reduced).
+    std::vector<double> tet_weights{};
+    std::vector<std::string> notes{};  ///< remarks for the user, one line each
 };
 
 /// Position of an attachment for node positions `x` (3n).

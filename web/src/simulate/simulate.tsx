@@ -373,6 +373,9 @@ function Rough() {
   );
 }
 
+/// A length of which only the size matters: 0.03 mm.
+const millimetres = (mm: number) => `${mm < 0.01 ? 0.01 : +mm.toPrecision(1)} mm`;
+
 function Status() {
   const head = frame.value?.head;
   const s = scene.value?.head;
@@ -386,13 +389,14 @@ function Status() {
   const led = head.lead?.settled ?? false;
   const state = look.shownFrame.value ? 'replay' : head.stuck ? 'stuck' : head.arrived ? 'arrived' : head.refining ? 'refining' : led ? 'led' : 'solving';
   const warning = head.warnings.join('. ');
+  const near = head.reduced_error_mm === undefined ? '≈ linear preview' : `≈ within ${millimetres(head.reduced_error_mm)}`;
   const words = {
     replay: 'replay',
     stuck: 'did not converge',
     arrived: rough.value ? '≈ linear preview' : 'at equilibrium',
     led: rough.value ? '≈ linear preview' : 'at equilibrium',
-    refining: '≈ linear preview, computing the quadratic answer…',
-    solving: rough.value ? '≈ Solving…' : 'Solving…',
+    refining: `${near}, computing the quadratic answer…`,
+    solving: head.reduced_error_mm !== undefined ? near : rough.value ? '≈ Solving…' : 'Solving…',
   }[state];
   const settled = state === 'arrived' || state === 'led';
   const lamp = settled ? (warning || rough.value ? 'warn' : 'good') : state === 'stuck' ? 'bad' : 'busy';

@@ -64,7 +64,8 @@ export function channelsOf(head: SceneHead): Channel[] {
 
 export interface Tracks {
   seconds: number[]; // seconds of motion: time without motion is not counted
-  rough: boolean[]; // computed with linear elements
+  rough: boolean[]; // approximate: of linear elements or of a reduced model
+  elements: number[]; // order of the elements: 1 linear, 2 quadratic, 0 a reduced model
   channels: Channel[];
   values: number[][]; // (channels)(states)
 }
@@ -76,7 +77,7 @@ export const tracksVersion = signal(0);
 
 function empty(head: SceneHead | null): Tracks {
   const channels = head ? channelsOf(head) : [];
-  return { seconds: [], rough: [], channels, values: channels.map(() => []) };
+  return { seconds: [], rough: [], elements: [], channels, values: channels.map(() => []) };
 }
 
 export function clearTracks() {
@@ -100,10 +101,11 @@ function add(next: Frame) {
   tracks.seconds.push(n === 0 ? 0 : tracks.seconds[n - 1] + Math.min(now - last, longestStep));
   last = now;
   tracks.rough.push(isRough(next));
+  tracks.elements.push(next.head.reduced_error_mm !== undefined ? 0 : isRough(next) ? 1 : 2);
   tracks.channels.forEach((c, k) => tracks.values[k].push(c.read(next.head) ?? NaN));
   frames.push(next);
   if (frames.length > mostFrames) frames.shift();
-  if (tracks.seconds.length > mostPoints) for (const list of [tracks.seconds, tracks.rough, ...tracks.values]) list.shift();
+  if (tracks.seconds.length > mostPoints) for (const list of [tracks.seconds, tracks.rough, tracks.elements, ...tracks.values]) list.shift();
   tracksVersion.value = tracksVersion.peek() + 1;
 }
 
@@ -118,11 +120,11 @@ effect(() => {
   add(next);
 });
 
-/// All channels as a table; `elements` is 1 (linear, only a preview) or 2.
+/// All channels as a table; `elements` is 1 (linear, only a preview), 2, or 0 (a reduced model).
 export function tracksCsv(): string {
   const quoted = (s: string) => (/^[A-Za-z0-9_]+$/.test(s) ? s : `"${s.replace(/"/g, '""')}"`);
   const columns = ['seconds', 'elements', ...tracks.channels.map((c) => quoted(c.key))];
-  const rows = tracks.seconds.map((t, i) => [t.toFixed(4), tracks.rough[i] ? 1 : 2, ...tracks.values.map((v) => v[i])].join(','));
+  const rows = tracks.seconds.map((t, i) => [t.toFixed(4), tracks.elements[i], ...tracks.values.map((v) => v[i])].join(','));
   return [columns.join(','), ...rows].join('\r\n') + '\r\n';
 }
 
