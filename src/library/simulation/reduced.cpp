@@ -15,6 +15,7 @@
 #include "simulation/reduced/reduction_file.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/scene/build_goals.hpp"
+#include "simulation/stepper/state_file.hpp"
 
 namespace pliant {
 namespace {
@@ -27,6 +28,11 @@ sim::StepperOptions options_for(const Model::Data& model) {
 
 sim::InverseTask task_for(const Model::Data& model) {
     return library::value_of(robot::build_goals(model.scene.robot, model.scene.model, false));
+}
+
+/// Tells robots apart: by their text, and by their mesh, which may come from a file.
+std::string origin_of(const Model::Data& model) {
+    return model.robot->origin() + "\n" + sim::mesh_digest(model.scene.model.mesh());
 }
 
 void check_options(const ReductionOptions& options) {
@@ -107,8 +113,7 @@ ReducedModel::ReducedModel(std::shared_ptr<const Data> data) : data_(std::move(d
 
 ReducedModel ReducedModel::load(const Model& model, const std::filesystem::path& file) {
     const std::string bytes = library::value_of(read_file(file));
-    auto reduction =
-        sim::reduced::reduction_from_bytes(model.data()->scene.model, bytes, model.data()->robot->origin());
+    auto reduction = sim::reduced::reduction_from_bytes(model.data()->scene.model, bytes, origin_of(*model.data()));
     if (!reduction)
         throw Failure(Failure::Kind::input, fmt::format("{}: {}", file.string(), reduction.error().message),
                       file.string());
@@ -116,8 +121,8 @@ ReducedModel ReducedModel::load(const Model& model, const std::filesystem::path&
 }
 
 void ReducedModel::save(const std::filesystem::path& file) const {
-    library::check(write_file(
-        file, sim::reduced::reduction_bytes(data_->model.reduction(), data_->whole.data()->robot->origin())));
+    library::check(
+        write_file(file, sim::reduced::reduction_bytes(data_->model.reduction(), origin_of(*data_->whole.data()))));
 }
 
 const Model& ReducedModel::whole() const {

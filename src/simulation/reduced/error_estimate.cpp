@@ -58,7 +58,9 @@ std::optional<RobotState> ErrorEstimator::exact(const ReducedState& state, const
         return robot;
     };
     RobotState robot = at(state.inputs);
-    if (estimate.corrected.x.size() > 0 && stepper_->settle_beside(robot, estimate.corrected, progress).arrived)
+    // Contact begins on the path of a step: a state that passes through itself is solved again, on such a path.
+    if (estimate.corrected.x.size() > 0 && stepper_->settle_beside(robot, estimate.corrected, progress).arrived &&
+        !stepper_->system().crossing(robot.now.state, robot.controls))
         return robot;
     robot = at(model_->inputs_of_sample(nearest, state.inputs));
     robot.now.state = model_->reduction().samples[nearest].state;

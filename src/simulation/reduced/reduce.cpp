@@ -119,41 +119,42 @@ private:
     std::vector<std::pair<Eigen::VectorXd, RobotState>> known_;
 };
 
-// --- tets
-// --------------------------------------------------------------------------------------------------------------
+// --- tets ------------------------------------------------------------------------------------------------------------
 
-/// result (modes) += V^T f of tet t with f = `force(q) grad N_a` or `weight(q) N_a`, summed over its points.
+/// What single tets do in the modes: result (modes) += V^T f.
 class TetForces {
 public:
     TetForces(const Elements& elements, const Description& description, const Eigen::MatrixXd& modes)
         : elements_(elements), description_(description), modes_(modes) {}
 
-    /// The modes at a node of a tet.
-    [[nodiscard]] auto rows(std::size_t t, int a) const {
-        return modes_.middleRows<3>(3 * static_cast<Eigen::Index>(elements_.node_of(t, a)));
-    }
-    /// Internal forces in the modes at x. False: the tet is inverted.
+    /// Internal forces at positions x (3n). False: the tet is inverted.
     [[nodiscard]] bool add_internal(std::size_t t, const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> result) const {
         for (int q = 0; q < elements_.points_per_tet(); ++q) {
             const linalg::Matrix3 F = elements_.deformation_gradient(t, q, linalg::view(x));
             if (!(F.determinant() > 0)) return false;
             const linalg::Matrix3 P = elements_.point_volume(t, q) * material::stress(elements_.law(t), F);
             for (int a = 0; a < static_cast<int>(elements_.nodes_per_tet()); ++a)
-                result += rows(t, a).transpose() * (P * linalg::vector(elements_.shape_gradient(t, q, a)));
+                result += modes_at(t, a).transpose() * (P * linalg::vector(elements_.shape_gradient(t, q, a)));
         }
         return true;
     }
+    /// The weight of the tet with all of gravity.
     void add_weight(std::size_t t, Eigen::Ref<Eigen::VectorXd> result) const {
         const double density = description_.materials[static_cast<std::size_t>(elements_.material(t))].density_kg_m3;
         const Eigen::Vector3d gravity = linalg::vector(description_.gravity_m_s2);
         for (int q = 0; q < elements_.points_per_tet(); ++q) {
             const double mass = density * elements_.point_volume(t, q);
             for (int a = 0; a < static_cast<int>(elements_.nodes_per_tet()); ++a)
-                result += mass * elements_.shape_value(q, a) * (rows(t, a).transpose() * gravity);
+                result += mass * elements_.shape_value(q, a) * (modes_at(t, a).transpose() * gravity);
         }
     }
 
 private:
+    using Modes = Eigen::Block<const Eigen::MatrixXd, 3>;
+    /// (3, modes) of a node of a tet.
+    [[nodiscard]] Modes modes_at(std::size_t t, int a) const {
+        return modes_.middleRows<3>(3 * static_cast<Eigen::Index>(elements_.node_of(t, a)));
+    }
     const Elements& elements_;
     const Description& description_;
     const Eigen::MatrixXd& modes_;
