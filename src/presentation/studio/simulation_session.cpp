@@ -329,7 +329,6 @@ void SimulationSession::start(const std::shared_ptr<const Built>& built) {
     if (built->preview) {
         preview_ = std::make_unique<LiveRobot>(built->preview->robot(), built->preview->model(), built->size_m);
         hand_ = preview_.get();
-        reduced_ = std::make_unique<ReducedHand>(built->robot, built->model, built->size_m);
     }
     now_ = {};
     refining_ = catching_up_ = false;
@@ -449,7 +448,9 @@ void SimulationSession::advance() {
 /// Jumps to the target with the reduced model; the preview, which falls behind, catches up when it is needed. False:
 /// the reduced model does not cover it.
 bool SimulationSession::advance_reduced() {
-    if (!reduced_ || hand_ != preview_.get() || hand_->is_led()) return false;
+    if (!preview_ || hand_ != preview_.get() || hand_->is_led()) return false;
+    // Made when something first moves: a robot that is only looked at costs nothing.
+    if (!reduced_) reduced_ = std::make_unique<ReducedHand>(built_->robot, built_->model, built_->size_m);
     const std::optional<ReducedHand::Shown> shown = reduced_->at(hand_->target());
     if (!shown) return false;
     settled_ = catching_up_ = true;
