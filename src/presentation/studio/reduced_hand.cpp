@@ -15,7 +15,7 @@ namespace pliant::studio {
 namespace {
 
 constexpr double largest_error = 0.005;  ///< of the robot's size: above it the linear preview is shown instead
-constexpr int background = 10;           ///< nice value of the thread: what the user does comes first
+constexpr int background = 4;            ///< nice value of the thread: what the user does comes first
 constexpr int most_samples = 72;
 constexpr int most_nodes = 60000;  ///< of larger robots the samples would take the better part of an hour
 
