@@ -54,12 +54,6 @@ InverseTask task_of(const Description& d) {
     return task;
 }
 
-double longest(const Eigen::VectorXd& motion) {
-    double most = 0;
-    for (Eigen::Index k = 0; k + 2 < motion.size(); k += 3) most = std::max(most, motion.segment<3>(k).norm());
-    return most;
-}
-
 void row(const std::string& name, const Description& description) {
     const tbb::global_control one_core(tbb::global_control::max_allowed_parallelism, 1);
     const auto model = Model::create(description);

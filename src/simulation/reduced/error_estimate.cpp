@@ -5,15 +5,11 @@
 #include "base/linalg/vectors.hpp"
 
 namespace pliant::sim::reduced {
-namespace {
-
 double longest(const Eigen::VectorXd& motion) {
     double most = 0;
     for (Eigen::Index k = 0; k + 2 < motion.size(); k += 3) most = std::max(most, motion.segment<3>(k).norm());
     return most;
 }
-
-}  // namespace
 
 ErrorEstimator::ErrorEstimator(const ReducedModel& model, Stepper& stepper)
     : model_(&model), stepper_(&stepper), tangent_(model.check_part()) {}
@@ -49,7 +45,6 @@ Estimate ErrorEstimator::estimate(const ReducedState& state) {
 
 std::optional<RobotState> ErrorEstimator::exact(const ReducedState& state, const Estimate& estimate,
                                                 const Progress& progress) {
-    const std::size_t nearest = model_->nearest_sample(state.inputs);
     const auto at = [&](const Inputs& inputs) {
         RobotState robot = stepper_->rest();
         robot.inputs = inputs;
@@ -62,6 +57,7 @@ std::optional<RobotState> ErrorEstimator::exact(const ReducedState& state, const
     if (estimate.corrected.x.size() > 0 && stepper_->settle_beside(robot, estimate.corrected, progress).arrived &&
         !stepper_->system().crossing(robot.now.state, robot.controls))
         return robot;
+    const std::size_t nearest = model_->nearest_sample(state.inputs);
     robot = at(model_->inputs_of_sample(nearest, state.inputs));
     robot.now.state = model_->reduction().samples[nearest].state;
     if (stepper_->drive(robot, state.inputs, progress).arrived) return robot;

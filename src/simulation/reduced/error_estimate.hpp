@@ -15,6 +15,9 @@
 
 namespace pliant::sim::reduced {
 
+/// Length of the longest motion of a node, of all (3n).
+[[nodiscard]] double longest(const Eigen::VectorXd& motion);
+
 struct Estimate {
     /// Largest motion of any node to the equilibrium of the whole robot, m; infinite if the state is impossible there.
     double error_m = std::numeric_limits<double>::infinity();

@@ -1,6 +1,4 @@
 // How a reduction is made: samples, modes, weighted tets.
-#include <fmt/format.h>
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>

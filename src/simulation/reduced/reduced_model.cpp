@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "base/linalg/vectors.hpp"
 #include "simulation/reduced/sampled_robot.hpp"
@@ -9,16 +10,9 @@
 namespace pliant::sim::reduced {
 namespace {
 
-Eigen::VectorXd numbers_of(const std::vector<Vec3>& points) {
-    Eigen::VectorXd numbers(3 * static_cast<Eigen::Index>(points.size()));
-    for (std::size_t k = 0; k < points.size(); ++k)
-        numbers.segment<3>(3 * static_cast<Eigen::Index>(k)) = linalg::vector(points[k]);
-    return numbers;
-}
-
-Status check_fits(const Model& model, const Reduction& reduction) {
-    const Eigen::Index size = 3 * static_cast<Eigen::Index>(model.node_count());
-    const auto actuators = static_cast<Eigen::Index>(Equilibrium(model).actuators().size());
+/// `rest`: the state of the whole robot.
+Status check_fits(const Model& model, const State& rest, const Reduction& reduction) {
+    const Eigen::Index size = rest.x.size(), actuators = rest.multiplier.size();
     const std::size_t steered = model.description().cables.size() + model.description().chambers.size();
     const auto fits = [&](const Sample& sample) {
         return sample.state.x.size() == size && sample.state.multiplier.size() == actuators &&
@@ -36,10 +30,11 @@ Status check_fits(const Model& model, const Reduction& reduction) {
 
 Result<ReducedModel> ReducedModel::create(const Model& model, Reduction reduction) {
     if (Status status = check_reducible(model.description()); !status) return tl::unexpected(status.error());
-    if (Status status = check_fits(model, reduction); !status) return tl::unexpected(status.error());
+    State rest = Equilibrium(model).rest();
+    if (Status status = check_fits(model, rest, reduction); !status) return tl::unexpected(status.error());
     ReducedModel made;
     made.model_ = &model;
-    made.rest_ = numbers_of(model.mesh().points);
+    made.rest_ = std::move(rest.x);
     const Description& d = model.description();
     Result<ProjectedModel> part = ProjectedModel::create(d, reduction.modes.leftCols(reduction.used), reduction.tets);
     if (!part) return tl::unexpected(part.error());

@@ -1,8 +1,8 @@
 #include "simulation/reduced/reduction_check.hpp"
 
 #include <algorithm>
-#include <chrono>
 
+#include "base/core/stopwatch.hpp"
 #include "simulation/inverse/follow.hpp"
 #include "simulation/inverse/input_space.hpp"
 #include "simulation/reduced/error_estimate.hpp"
@@ -14,15 +14,9 @@ constexpr int first_point = 5003;  ///< of the sequence: far behind those that s
 
 template <class Work>
 double seconds_of(const Work& work) {
-    const auto begin = std::chrono::steady_clock::now();
+    Stopwatch watch;
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-double longest(const Eigen::VectorXd& motion) {
-    double most = 0;
-    for (Eigen::Index k = 0; k + 2 < motion.size(); k += 3) most = std::max(most, motion.segment<3>(k).norm());
-    return most;
+    return watch.read_s();
 }
 
 /// Largest multiplier of each actuator in the samples: those of cables and chambers have different units.
