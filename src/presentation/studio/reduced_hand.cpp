@@ -4,10 +4,8 @@
 #include <tbb/task_arena.h>
 
 #include <utility>
-#include <vector>
 
 #include "base/core/stopwatch.hpp"
-#include "presentation/studio/led_marker.hpp"
 #include "simulation/run/describe.hpp"
 #include "simulation/run/simulate.hpp"
 
@@ -18,13 +16,6 @@ constexpr double largest_error = 0.005;  ///< of the robot's size: above it the 
 constexpr int background = 4;            ///< nice value of the thread: what the user does comes first
 constexpr int most_samples = 72;
 constexpr int most_nodes = 60000;  ///< of larger robots the samples would take the better part of an hour
-
-std::vector<double> rest_measures(const sim::Model& model) {
-    const sim::Equilibrium system(model);
-    std::vector<double> measures;
-    for (const sim::Actuator& actuator : system.actuators()) measures.push_back(actuator.rest_measure());
-    return measures;
-}
 
 sim::StepperOptions options_of(const robot::Robot& robot) {
     sim::StepperOptions options = sim::stepper_options(robot.program);
@@ -54,8 +45,9 @@ struct ReducedHand::Ready {
     std::optional<sim::reduced::ReducedState> state{};
 };
 
-ReducedHand::ReducedHand(const robot::Robot& robot, const sim::Model& model, double size_m)
-    : robot_(&robot), model_(&model), size_m_(size_m), thread_([this] {
+ReducedHand::ReducedHand(const robot::Robot& robot, const sim::Model& model, std::vector<sim::Steered> inputs,
+                         double size_m)
+    : robot_(&robot), model_(&model), inputs_(std::move(inputs)), size_m_(size_m), thread_([this] {
           (void)setpriority(PRIO_PROCESS, 0, background);  // of this thread
           tbb::task_arena alone(1);
           alone.execute([this] { make(); });
@@ -67,10 +59,9 @@ ReducedHand::~ReducedHand() {
 }
 
 void ReducedHand::make() {
-    if (robot_->program.dynamics || model_->node_count() > most_nodes) return;
+    if (robot_->program.dynamics || inputs_.empty() || model_->node_count() > most_nodes) return;
     sim::InverseTask task;
-    task.inputs = led_inputs(*robot_, *model_, rest_measures(*model_));
-    if (task.inputs.empty()) return;
+    task.inputs = inputs_;
     task.times = {robot_->program.duration};
     Cancel progress(stopping_);
     const int samples = std::min(most_samples, 24 * static_cast<int>(task.inputs.size()));

@@ -7,8 +7,10 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "robot/description/robot.hpp"
+#include "simulation/parts/inverse_task.hpp"
 #include "simulation/reduced/error_estimate.hpp"
 #include "simulation/run/live.hpp"
 #include "simulation/run/trajectory.hpp"
@@ -17,9 +19,9 @@ namespace pliant::studio {
 
 class ReducedHand {
 public:
-    /// Begins to make the model on a thread of its own, within the ranges of the sliders. `robot` and `model` must
+    /// Begins to make the model on a thread of its own, within the ranges of these inputs. `robot` and `model` must
     /// outlive it. Robots that cannot be reduced never become ready.
-    ReducedHand(const robot::Robot& robot, const sim::Model& model, double size_m);
+    ReducedHand(const robot::Robot& robot, const sim::Model& model, std::vector<sim::Steered> inputs, double size_m);
     /// Ends the work at once.
     ~ReducedHand();
     ReducedHand(const ReducedHand&) = delete;
@@ -40,6 +42,7 @@ private:
 
     const robot::Robot* robot_;
     const sim::Model* model_;
+    std::vector<sim::Steered> inputs_;
     double size_m_;
     std::atomic<bool> stopping_ = false;
     std::mutex mutex_;

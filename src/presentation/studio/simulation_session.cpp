@@ -450,7 +450,10 @@ void SimulationSession::advance() {
 bool SimulationSession::advance_reduced() {
     if (!preview_ || hand_ != preview_.get() || hand_->is_led()) return false;
     // Made when something first moves: a robot that is only looked at costs nothing.
-    if (!reduced_) reduced_ = std::make_unique<ReducedHand>(built_->robot, built_->model, built_->size_m);
+    if (!reduced_) {
+        auto inputs = led_inputs(built_->robot, built_->model, fine_->live().rest_measures());
+        reduced_ = std::make_unique<ReducedHand>(built_->robot, built_->model, std::move(inputs), built_->size_m);
+    }
     const std::optional<ReducedHand::Shown> shown = reduced_->at(hand_->target());
     if (!shown) return false;
     settled_ = catching_up_ = true;
