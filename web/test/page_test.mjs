@@ -233,6 +233,28 @@ test('a mistake in the robot file is shown at its line', async (t) => {
   assert.equal(readFileSync(join(folder, 'finger.toml'), 'utf8'), good, 'nothing is written before it is saved');
 });
 
+test('text that is typed before the studio has answered stays', async (t) => {
+  const { page } = await openPage(browser, studio.address, t);
+  await settled(page);
+  await page.getByTestId('tab-file').click();
+  await page.waitForFunction(() => window.pliant.robotText.value.includes('youngs_modulus'));
+  const good = await readRobot(page);
+  const answers = [];
+  await page.route('**/api/robot', (route) => (route.request().method() === 'GET' ? answers.push(route) : route.continue()));
+  await typeRobot(page, good.replace('youngs_modulus', 'young_modulus'));
+  await page.getByTestId('apply').click();
+  await page.waitForSelector('[data-testid=problems]');
+  await typeRobot(page, good); // as it was before Apply
+  while (answers.length === 0) await page.waitForTimeout(20);
+  await page.unroute('**/api/robot');
+  for (const route of answers) await route.continue();
+  await page.waitForFunction((t) => window.pliant.robotText.value === t, good);
+  await page.getByTestId('apply').click(); // it is a change: the studio has the other text
+  await page.waitForSelector('[data-testid=problems]', { state: 'detached' });
+  await settled(page);
+  assert.equal(await readRobot(page), good);
+});
+
 test('a robot is built by clicks, sliders and the library; the rest of the text stays, and every change can be undone', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);

@@ -66,7 +66,7 @@ export async function openPage(browser, address, t, options = {}) {
 /// Closes a page as a person does: the helm is free at once.
 async function leave({ page, context }) {
   await page.evaluate(() => window.pliant.send({ type: 'steer', action: 'leave' })).catch(() => {});
-  await page.waitForTimeout(100).catch(() => {});
+  await page.waitForFunction(() => !window.pliant.helm.value.you, undefined, { timeout: 10_000 }).catch(() => {});
   await context.close().catch(() => {});
 }
 

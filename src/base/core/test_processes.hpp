@@ -5,7 +5,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -20,7 +19,8 @@ inline std::vector<pid_t> children_of(pid_t parent, const std::string& name) {
         const std::string number = entry.path().filename();
         if (number.find_first_not_of("0123456789") != std::string::npos) continue;
         std::ifstream file(entry.path() / "stat");
-        const std::string stat{std::istreambuf_iterator<char>(file), {}};
+        std::string stat;
+        std::getline(file, stat, '\0');  // the process may end meanwhile: then nothing is read
         const std::size_t name_end = stat.rfind(')');
         if (stat.find("(" + name + ")") == std::string::npos || name_end == std::string::npos) continue;
         std::istringstream rest(stat.substr(name_end + 1));
@@ -30,8 +30,10 @@ inline std::vector<pid_t> children_of(pid_t parent, const std::string& name) {
         if (of != parent) continue;
         // The main thread may have ended while others, and their open files, still exist.
         std::error_code gone;
-        const auto threads =
-            std::distance(fs::directory_iterator(entry.path() / "task", gone), fs::directory_iterator());
+        int threads = 0;
+        for (fs::directory_iterator thread(entry.path() / "task", gone); !gone && thread != fs::directory_iterator();
+             thread.increment(gone))
+            ++threads;
         if (state != 'Z' || threads > 1) found.push_back(static_cast<pid_t>(std::stol(number)));
     }
     return found;

@@ -19,15 +19,20 @@ export function revert() {
 }
 
 let applied: string | null = null; // being sent to the studio
+let loads = 0;
 let savedLine = 0; // the connection, and whether the text was in a file, at the last update
 let wasUnsaved = false;
 
-/// Changes that have not been applied are kept, and so is text that a restarted studio no longer has.
+/// Changes that have not been applied are kept, also those that are typed before the studio's text arrives, and so is
+/// text that a restarted studio no longer has.
 async function load() {
+  const mineBefore = text.value;
   const line = lines.value;
+  const nth = ++loads;
   const next = await (await api('/api/robot')).text();
+  if (nth !== loads) return; // the studio has a newer text
   const mine = text.value;
-  const dirty = mine !== theirs.value && mine !== applied;
+  const dirty = (mine !== theirs.value && mine !== applied) || mine !== mineBefore;
   const lost = line !== savedLine && wasUnsaved && next !== theirs.value;
   const keep = helm.value.you && (dirty || lost) && mine !== next;
   batch(() => {
