@@ -1,7 +1,7 @@
 // The tables of docs/performance.md, made again: frames, cold starts beside CalculiX, and how time and memory grow with
 // the mesh. Every case runs in a process of its own, so that its memory is its own; every row says what was reached.
-//   build/release/bench/pliant_speed [frames|elements|cold|fingers|contact|size [TETS [PNG]]]
-// all, or one table; sizes up to TETS, and a plot of them on one core and on two
+//   build/release/bench/pliant_speed [frames|elements|cold|fingers|contact|size [TETS [PNG]]|huge [SHARE]]
+// all but huge, or one table; sizes up to TETS, and a plot of them on one core and on two; a share of the huge ones
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/resource.h>
@@ -18,6 +18,7 @@
 #include <string>
 
 #include "base/core/files.hpp"
+#include "base/core/stopwatch.hpp"
 #include "presentation/draw/plot.hpp"
 #include "problems.hpp"
 #include "simulation/peers/calculix.hpp"
@@ -340,11 +341,12 @@ struct Cells {
 };
 
 struct ColdStart {
-    double seconds, iterations, tip_z_mm, peak_MB;
+    double model_s, setup_s, solve_s, iterations, tip_z_mm, peak_MB;
+    [[nodiscard]] double seconds() const { return setup_s + solve_s; }
 };
 
 /// The bend from rest, in a process of its own that has so many of this one's cores; nothing if it failed there.
-std::optional<ColdStart> cold_start(const Cells& cells, double tolerance, int cores) {
+std::optional<ColdStart> cold_start(const Cells& cells, int order, double tolerance, int cores) {
     int ends[2];
     if (pipe(ends) != 0) return std::nullopt;
     const bool done = apart([&] {
@@ -355,9 +357,12 @@ std::optional<ColdStart> cold_start(const Cells& cells, double tolerance, int co
             if (CPU_ISSET(cpu, &mine)) CPU_SET(cpu, &some);
         }
         sched_setaffinity(0, sizeof(some), &some);
-        const auto model = Model::create(bench::two_material_bend(0.45, 1, cells.along, cells.across));
+        sim::Description bend = bench::two_material_bend(0.45, order, cells.along, cells.across);
+        Stopwatch watch;
+        const auto model = Model::create(std::move(bend));
+        const double model_s = watch.read_s();
         const Trajectory found = solve(*model, {.steps = 1, .tolerance = tolerance});
-        const ColdStart result{found.setup_s + found.solve_s, iterations(found), 1e3 * tip(found).z, peak_MB()};
+        const ColdStart result{model_s, found.setup_s, found.solve_s, iterations(found), 1e3 * tip(found).z, peak_MB()};
         if (!found.converged || write(ends[1], &result, sizeof(result)) != sizeof(result)) std::_Exit(1);
     });
     ColdStart result{};
@@ -378,17 +383,17 @@ void sizes(double most, const std::string& picture) {
     for (const Cells& c : {Cells{48, 5}, {72, 8}, {100, 10}, {128, 13}, {160, 16}, {200, 20}, {256, 26}}) {
         if (c.tets() > most) break;
         for (const double tolerance : {1e-3, 1e-4}) {
-            const auto alone = cold_start(c, tolerance, 1), both = cold_start(c, tolerance, 2);
+            const auto alone = cold_start(c, 1, tolerance, 1), both = cold_start(c, 1, tolerance, 2);
             if (!alone || !both) {
                 fmt::print("| {:.0f} | {:.0e} | did not converge |\n", c.tets(), tolerance);
                 continue;
             }
             fmt::print("| {:.0f} | {:.0e} | {:.2f} | {:.2f} | {:.1f} | {:.0f} | {:.3f} | {:.0f} |\n", c.tets(),
-                       tolerance, alone->seconds, both->seconds, 1e6 * alone->seconds / c.tets(), alone->iterations,
-                       alone->tip_z_mm, alone->peak_MB);
+                       tolerance, alone->seconds(), both->seconds(), 1e6 * alone->seconds() / c.tets(),
+                       alone->iterations, alone->tip_z_mm, alone->peak_MB);
             if (tolerance != 1e-4) continue;
-            one.points.push_back({c.tets(), alone->seconds});
-            two.points.push_back({c.tets(), both->seconds});
+            one.points.push_back({c.tets(), alone->seconds()});
+            two.points.push_back({c.tets(), both->seconds()});
             even.points.push_back({c.tets(), one.points.front().y * c.tets() / one.points.front().x});
         }
     }
@@ -403,6 +408,33 @@ void sizes(double most, const std::string& picture) {
     fmt::print(stderr, "{} could not be written\n", picture);
 }
 
+/// What two cores and 24 GiB hold: ten million linear tets, two million quadratic ones, to 1e-3. An optional share of
+/// each, for a trial.
+void huge(double share) {
+    struct Case {
+        int order;
+        Cells cells;
+    };
+    fmt::print(
+        "| tets | order | model, s | set up, s | solve, s | us per tet | iterations | tip z, mm | peak memory, MB | B "
+        "per "
+        "tet |\n"
+        "|---|---|---|---|---|---|---|---|---|---|\n");
+    for (const Case& wanted : {Case{1, {550, 55}}, Case{2, {328, 32}}}) {
+        const double along = std::cbrt(share);
+        const Cells cells{static_cast<int>(wanted.cells.along * along), static_cast<int>(wanted.cells.across * along)};
+        const auto found = cold_start(cells, wanted.order, 1e-3, 2);
+        if (!found) {
+            fmt::print("| {:.0f} | {} | did not converge, or memory ended |\n", cells.tets(), wanted.order);
+            continue;
+        }
+        fmt::print("| {:.0f} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.0f} | {:.3f} | {:.0f} | {:.0f} |\n",
+                   cells.tets(), wanted.order, found->model_s, found->setup_s, found->solve_s,
+                   1e6 * (found->model_s + found->seconds()) / cells.tets(), found->iterations, found->tip_z_mm,
+                   found->peak_MB, 1e6 * found->peak_MB / cells.tets());
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -413,4 +445,5 @@ int main(int argc, char** argv) {
     if (only.empty() || only == "fingers") fingers();
     if (only.empty() || only == "contact") contact_price();
     if (only.empty() || only == "size") sizes(argc > 2 ? std::atof(argv[2]) : 3e5, argc > 3 ? argv[3] : "");
+    if (only == "huge") huge(argc > 2 ? std::atof(argv[2]) : 1);
 }

@@ -81,7 +81,8 @@ public:
 /// The weighted Laplacian of a model, factorised once; shared by the first three and by the predictor of each step.
 class FactoredLaplacian {
 public:
-    explicit FactoredLaplacian(const Equilibrium& system);
+    /// A factor of more entries than `most_double` is kept in single precision, and each solution corrected once.
+    explicit FactoredLaplacian(const Equilibrium& system, double most_double = 2.5e8);
     FactoredLaplacian(FactoredLaplacian&&) noexcept;
     ~FactoredLaplacian();
     /// columns (3 free, k) <- L^-1 columns.
@@ -105,6 +106,7 @@ public:
     [[nodiscard]] double work() const;
 
 private:
+    void factorise(linalg::SymmetricPattern pattern, std::vector<double> values, double most_double);
     void hold_free_pieces(const Equilibrium& system, const linalg::SymmetricPattern& scalar, std::span<double> values);
     [[nodiscard]] Eigen::VectorXd follow_on_rollers(const Equilibrium& system, const Eigen::VectorXd& forces) const;
     void keep_joined(const Equilibrium& system, const RotatingStep& rotating, Eigen::VectorXd& end) const;

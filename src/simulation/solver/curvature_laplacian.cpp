@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/core/parallel.hpp"
 #include "base/linalg/cholesky.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
@@ -15,6 +16,8 @@ struct FactoredLaplacian::State {
     const Model* model;
     std::shared_ptr<const TangentLayout> layout;
     linalg::Cholesky factor;
+    linalg::SymmetricPattern pattern;  ///< and values: of a factor in single precision only
+    std::vector<double> values;
     std::vector<std::pair<int, double>> held;  ///< nodes of free pieces and objects, stiffness N/m
     /// Which object follows which joint, starting from what is held.
     struct Follower {
@@ -26,6 +29,26 @@ struct FactoredLaplacian::State {
 };
 
 namespace {
+
+/// fields (3 n, k) of three components per node -= matrix times `by`, of the same shape.
+void subtract_product(const linalg::SymmetricPattern& pattern, std::span<const double> values,
+                      const Eigen::MatrixXd& by, Eigen::MatrixXd& fields) {
+    const auto nodes = static_cast<std::size_t>(pattern.nodes);
+    const auto components = static_cast<std::size_t>(3 * fields.cols());
+    parallel_for(components, 1, [&](std::size_t begin, std::size_t end) {
+        Eigen::VectorXd from(pattern.nodes), sum(pattern.nodes);
+        for (std::size_t c = begin; c < end; ++c) {
+            const Eigen::Index column = static_cast<Eigen::Index>(c / 3), component = static_cast<Eigen::Index>(c % 3);
+            const auto of = [&](auto& all) {
+                return all.col(column).reshaped(3, pattern.nodes).row(component).transpose();
+            };
+            from = of(by);
+            sum.setZero();
+            linalg::add_product(pattern, values, linalg::view(std::as_const(from)), 1, {sum.data(), nodes});
+            of(fields) -= sum;
+        }
+    });
+}
 
 /// Stiffness that holds free pieces, relative to that of their nodes.
 constexpr double small_hold = 1e-5;
@@ -114,7 +137,7 @@ private:
 
 }  // namespace
 
-FactoredLaplacian::FactoredLaplacian(const Equilibrium& system) {
+FactoredLaplacian::FactoredLaplacian(const Equilibrium& system, double most_double) {
     const Model& model = system.model();
     auto layout = std::make_shared<const TangentLayout>(system.lay_out_tangent());
     linalg::SymmetricPattern scalar = layout->pattern;
@@ -129,12 +152,26 @@ FactoredLaplacian::FactoredLaplacian(const Equilibrium& system) {
         double& diagonal = values[static_cast<std::size_t>(scalar.node_start[static_cast<std::size_t>(roller.free)])];
         diagonal *= 1 + (3 - roller.may_move.trace()) / 3;
     }
-    state_ = std::make_unique<State>(State{&model, std::move(layout), linalg::Cholesky(scalar), {}, {}});
+    state_ = std::make_unique<State>(State{&model, std::move(layout), linalg::Cholesky(scalar), {}, {}, {}, {}});
     state_->followers = order_of_joints<State::Follower>(model.description());
     hold_free_pieces(system, scalar, values);
-    // Positive definite by construction: every piece is held, by supports or here, and all weights are positive.
-    [[maybe_unused]] const bool done = state_->factor.factorise(values);
-    state_->factor.release_work_space();
+    factorise(std::move(scalar), std::move(values), most_double);
+}
+
+void FactoredLaplacian::factorise(linalg::SymmetricPattern pattern, std::vector<double> values, double most_double) {
+    linalg::Cholesky& factor = state_->factor;
+    if (factor.factor_entries() > most_double) {
+        factor.use(linalg::Precision::single_);
+        if (factor.factorise(values)) {
+            state_->pattern = std::move(pattern);
+            state_->values = std::move(values);
+            return factor.release_work_space();
+        }
+        factor.use(linalg::Precision::double_);
+    }
+    // Positive definite by construction: every piece is held, by supports or weakly, and all weights are positive.
+    [[maybe_unused]] const bool done = factor.factorise(values);
+    factor.release_work_space();
 }
 
 /// Pieces without support are weakly held at all nodes, and objects have only this stiffness: the Laplacian then gives
@@ -185,8 +222,16 @@ double FactoredLaplacian::work() const {
 }
 
 void FactoredLaplacian::solve(Eigen::Ref<Eigen::MatrixXd> columns) const {
-    state_->factor.solve_fields({columns.data(), static_cast<std::size_t>(columns.size())},
-                                static_cast<int>(columns.cols()));
+    const auto solve_with_factor = [&](auto& all) {
+        state_->factor.solve_fields({all.data(), static_cast<std::size_t>(all.size())}, static_cast<int>(all.cols()));
+    };
+    if (state_->values.empty()) return solve_with_factor(columns);
+    // One correction in double precision: the error of the single one, squared.
+    Eigen::MatrixXd left = columns;
+    solve_with_factor(columns);
+    subtract_product(state_->pattern, state_->values, columns, left);
+    solve_with_factor(left);
+    columns += left;
 }
 
 Eigen::VectorXd FactoredLaplacian::follow(const Equilibrium& system, const Eigen::VectorXd& support_motion) const {

@@ -516,7 +516,7 @@ function Pin() {
 }
 
 const hints = [
-  'Drag a slider to pull a cable or to inflate a chamber. While you drag, numbers marked ≈ come from linear elements; let go, and the exact ones follow.',
+  'Drag a slider to pull a cable or to inflate a chamber. While you drag, numbers marked ≈ are approximate; let go, and the exact ones follow.',
   'Drag a marker: the actuators bring it there. Drag the body to apply a force. Drag the background to rotate the view, scroll to zoom.',
   'Change a material under File: the previous state stays visible as a ghost for comparison. Then continue under Prepare.',
 ];
@@ -605,10 +605,12 @@ export function Simulate() {
         </div>
         <Legend />
         <ViewCube />
-        <ScaleBar />
         <Measure />
-        <Hints />
-        <Status />
+        <div class="stage-foot">
+          <Hints />
+          <ScaleBar />
+          <Status />
+        </div>
       </section>
       <aside class="side">
         <div class="tabs">
