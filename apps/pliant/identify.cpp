@@ -14,7 +14,7 @@
 
 #include "command.hpp"
 #include "inputs.hpp"
-#include "interrupt.hpp"
+#include "watched.hpp"
 
 namespace pliant::app {
 namespace {
@@ -45,10 +45,7 @@ Result<int> identify(const Options& options) {
     if (!judge) return tl::unexpected(judge.error());
     if (Status status = expect(FileKind::robot, options.robot); !status) return tl::unexpected(status.error());
     auto progress = terminal_progress(options.output);
-    const Watch watch = [&](std::string_view stage, double share) {
-        progress->advance(stage, share);
-        return !interrupted();
-    };
+    const Watch watch = watch_of(*progress);
     const Robot robot = Robot::load(options.robot, options.assignments);
     const Identification result =
         pliant::identify(robot, options.unknowns, Measurements::load(options.measured), *judge, {}, watch);

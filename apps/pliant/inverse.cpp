@@ -12,6 +12,7 @@
 #include "command.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
+#include "watched.hpp"
 
 namespace pliant::app {
 namespace {
@@ -33,13 +34,8 @@ void print_text(const Options& options, const Model& model, const InverseResult&
 Result<int> inverse(const Options& options) {
     if (Status status = expect(FileKind::robot, options.robot); !status) return tl::unexpected(status.error());
     auto progress = terminal_progress(options.output);
-    const Watch watch = [&](std::string_view stage, double share) {
-        progress->advance(stage, share);
-        return !interrupted();
-    };
-    on_signal(OnSignal::leave);
-    const Model model(Robot::load(options.robot, options.assignments), watch);
-    on_signal(OnSignal::ask);
+    const Watch watch = watch_of(*progress);
+    const Model model = load_model(options.robot, options.assignments, watch);
     const InverseResult result = pliant::inverse(model, options.search, watch);
     std::vector<std::string> warnings = result.notes();
     if (!options.folder.empty() && result.waypoint_count() > 0 && !interrupted()) {

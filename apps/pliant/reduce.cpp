@@ -11,8 +11,8 @@
 #include "base/core/counted.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
-#include "interrupt.hpp"
 #include "pliant/reduced.hpp"
+#include "watched.hpp"
 
 namespace pliant::app {
 namespace {
@@ -107,13 +107,8 @@ Result<int> reduce(const Options& options) {
     if (Status status = check_ending("-o", options.file, "a reduced model", ".reduced"); !status)
         return tl::unexpected(status.error());
     auto progress = terminal_progress(options.output);
-    const Watch watch = [&](std::string_view stage, double share) {
-        progress->advance(stage, share);
-        return !interrupted();
-    };
-    on_signal(OnSignal::leave);
-    const Model model(Robot::load(options.robot, options.assignments), watch);
-    on_signal(OnSignal::ask);
+    const Watch watch = watch_of(*progress);
+    const Model model = load_model(options.robot, options.assignments, watch);
     const ReducedModel reduced = pliant::reduce(model, options.reduction, watch);
     const std::vector<ReductionCheck> checks = check_reduction(reduced, options.checks, watch);
     if (!options.file.empty()) reduced.save(options.file);

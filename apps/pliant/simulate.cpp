@@ -19,6 +19,7 @@
 #include "interrupt.hpp"
 #include "library/simulation/data.hpp"
 #include "pliant/program.hpp"
+#include "watched.hpp"
 
 namespace pliant::app {
 namespace {
@@ -194,10 +195,7 @@ Result<int> simulate(const Options& options) {
     if (!solvers) return tl::unexpected(solvers.error());
     if (Status status = check_options(options, *solvers); !status) return tl::unexpected(status.error());
     auto progress = terminal_progress(options.output);
-    const Watch watch = [&](std::string_view stage, double share) {
-        progress->advance(stage, share);
-        return !interrupted();
-    };
+    const Watch watch = watch_of(*progress);
     on_signal(OnSignal::leave);  // nothing is written before the first step
     const Robot robot = Robot::load(options.robot, all_assignments(options, *solvers));
     const Model model(robot, watch);

@@ -10,7 +10,7 @@
 
 #include "command.hpp"
 #include "inputs.hpp"
-#include "interrupt.hpp"
+#include "watched.hpp"
 
 namespace pliant::app {
 namespace {
@@ -45,13 +45,8 @@ Result<int> workspace(const Options& options) {
     const Result<WorkspaceOptions> search = search_options(options);
     if (!search) return tl::unexpected(search.error());
     auto progress = terminal_progress(options.output);
-    const Watch watch = [&](std::string_view stage, double share) {
-        progress->advance(stage, share);
-        return !interrupted();
-    };
-    on_signal(OnSignal::leave);
-    const Model model(Robot::load(options.robot, options.assignments), watch);
-    on_signal(OnSignal::ask);
+    const Watch watch = watch_of(*progress);
+    const Model model = load_model(options.robot, options.assignments, watch);
     try {
         const Workspace found = pliant::workspace(model, *search, watch);
         if (!options.folder.empty()) {
