@@ -127,6 +127,11 @@ Result<Reduction> reduction_from_bytes(const Model& model, std::string_view byte
     sizes.modes = in.integer("mode_count", 1, static_cast<int>(std::min<Eigen::Index>(sizes.coordinates, 10000)));
     Reduction reduction;
     const Eigen::Index all = sizes.modes;
+    const Json& packed_modes = in.at("modes");
+    const auto claimed = sizeof(double) * static_cast<std::size_t>(sizes.coordinates * all);
+    if (!packed_modes.is_binary() || packed_modes.get_binary().size() != claimed)
+        in.fail("modes are not as many as mode_count says");
+    if (!in.status()) return tl::unexpected(in.status().error());  // before anything of that size is allocated
     const Eigen::VectorXd modes = in.vector("modes", sizes.coordinates * all);
     reduction.modes = Eigen::Map<const Eigen::MatrixXd>(modes.data(), sizes.coordinates, all);
     reduction.used = sizes.modes = in.integer("used", 1, static_cast<int>(all));

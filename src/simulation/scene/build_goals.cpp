@@ -58,8 +58,9 @@ std::vector<sim::Steered> steered_actuators(const Robot& robot) {
 
 Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model, bool need_goals) {
     if (robot.program.dynamics)
-        return input_error("{}: program: time_step: goals are for a robot at rest at every waypoint; leave it out",
-                           robot.file.string());
+        return input_error("{}: program: time_step: {}; leave it out", robot.file.string(),
+                           need_goals ? "goals are for a robot at rest at every waypoint"
+                                      : "the states within the ranges of actuators are those of a robot at rest");
     if (need_goals && robot.goals.empty())
         return input_error("{}: goal: there is none; add a [[goal]] with marker = \"NAME\" and point = [x, y, z]",
                            robot.file.string());

@@ -1,0 +1,34 @@
+// A reduced model of a small block, as read from a file: whatever is accepted can be solved.
+#include "input.hpp"
+#include "simulation/reduced/error_estimate.hpp"
+#include "simulation/reduced/reduced_solver.hpp"
+#include "simulation/reduced/reduction_file.hpp"
+#include "small_robot.hpp"
+
+namespace {
+
+using namespace pliant;
+using namespace pliant::sim;
+
+struct Small {
+    Model model = Model::create(pliant::fuzz::block()).value();
+    Stepper stepper{model, {.iteration_limit = 3}};
+};
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static Small small;
+    auto reduction = reduced::reduction_from_bytes(small.model, as_text(data, size), "block");
+    if (!reduction) return 0;
+    (void)reduced::reduction_bytes(*reduction, "block");
+    const auto model = reduced::ReducedModel::create(small.model, std::move(*reduction));
+    if (!model) return 0;
+    reduced::ReducedSolver solver(*model);
+    const Inputs wanted{1, {{Drive::Kind::measure, 0.0195}}};
+    reduced::ReducedState state = solver.start(wanted);
+    if (!solver.solve(state, wanted).found) return 0;
+    reduced::ErrorEstimator estimator(*model, small.stepper);
+    (void)estimator.estimate(state);
+    return 0;
+}
