@@ -5,20 +5,11 @@
 #include "simulation/reduced/reduction_file.hpp"
 #include "small_robot.hpp"
 
-namespace {
-
 using namespace pliant;
 using namespace pliant::sim;
 
-struct Small {
-    Model model = Model::create(pliant::fuzz::block()).value();
-    Stepper stepper{model, {.iteration_limit = 3}};
-};
-
-}  // namespace
-
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static Small small;
+    static pliant::fuzz::SmallRobot small;
     auto reduction = reduced::reduction_from_bytes(small.model, as_text(data, size), "block");
     if (!reduction) return 0;
     (void)reduced::reduction_bytes(*reduction, "block");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "simulation/peers/reference_problems.hpp"
+#include "simulation/stepper/stepper.hpp"
 
 namespace pliant::fuzz {
 
@@ -21,5 +22,10 @@ inline sim::Description block() {
     d.cables.push_back(cable);
     return d;
 }
+
+struct SmallRobot {
+    sim::Model model = sim::Model::create(block()).value();
+    sim::Stepper stepper{model, {.iteration_limit = 3}};
+};
 
 }  // namespace pliant::fuzz

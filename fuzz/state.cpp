@@ -4,20 +4,11 @@
 #include "simulation/stepper/state_file.hpp"
 #include "small_robot.hpp"
 
-namespace {
-
 using namespace pliant;
 using namespace pliant::sim;
 
-struct Small {
-    Model model = Model::create(pliant::fuzz::block()).value();
-    Stepper stepper{model, {.iteration_limit = 3}};
-};
-
-}  // namespace
-
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static Small small;
+    static pliant::fuzz::SmallRobot small;
     const std::string_view bytes = as_text(data, size);
     (void)step_from_bytes(bytes, small.model.mesh().points.size());
     auto robot = state_from_bytes(small.stepper, bytes);
