@@ -40,7 +40,7 @@ export async function startStudio(args = [], cwd = undefined, port = 0) {
 export async function startBrowser() {
   return chromium.launch({
     executablePath: process.env.PLIANT_CHROMIUM ?? '/usr/bin/chromium',
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-dev-shm-usage'],
+    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-gpu-compositing', '--disable-dev-shm-usage'],
   });
 }
 

@@ -1,7 +1,7 @@
 // A soft shadow below the robot: low parts darken the ground more than high ones.
 import * as THREE from 'three';
 
-const pixels = 256;
+const pixels = 128;
 /// Objects that cast a shadow are on this layer too.
 export const shadowLayer = 1;
 
@@ -15,8 +15,8 @@ function blurMaterial() {
       void main() {
         float sum = 0.0;
         float weights = 0.0;
-        for (int k = -8; k <= 8; ++k) {
-          float w = exp(-float(k * k) / 26.0);
+        for (int k = -4; k <= 4; ++k) {
+          float w = exp(-float(k * k) / 6.5);
           sum += w * texture2D(image, at + float(k) * step).a;
           weights += w;
         }

@@ -7,7 +7,7 @@ import { counted } from '../counted';
 import { Icon } from '../icons';
 import { say, scene } from '../store';
 import { cssColour, theme } from '../theme';
-import { keepRun, readTable, runs, tracks, tracksVersion, valuesOf, type Channel } from './tracks';
+import { keepRun, plottedVersion, readTable, runs, tracks, valuesOf, type Channel } from './tracks';
 
 /// Powers of ten, thinned out: grid lines of a logarithmic axis over many decades would merge into a grey block.
 function decades(least: number, most: number): number[] {
@@ -111,6 +111,21 @@ function drawCurves(u: uPlot, curves: Curve[]) {
   ctx.restore();
 }
 
+/// uPlot asks for the context of its canvas without options. Drawn by the processor, plots cost little also where there is
+/// no graphics card: there, every drawing through WebGL's driver would make the page wait.
+function drawnByProcessor<T>(make: () => T): T {
+  const canvas = HTMLCanvasElement.prototype;
+  const getContext = canvas.getContext;
+  canvas.getContext = function (this: HTMLCanvasElement, kind: string, options?: object) {
+    return getContext.call(this, kind, { willReadFrequently: true, ...options });
+  } as typeof getContext;
+  try {
+    return make();
+  } finally {
+    canvas.getContext = getContext;
+  }
+}
+
 const isEmpty = (curves: Curve[]) => !curves.some((c) => c.y.filter((v) => Number.isFinite(v)).length > 1);
 
 function seriesOf(curves: Curve[]): uPlot.Series[] {
@@ -121,7 +136,7 @@ function seriesOf(curves: Curve[]): uPlot.Series[] {
 }
 
 function Plot({ shown, onClose }: { shown: Shown; onClose?: () => void }) {
-  tracksVersion.value;
+  plottedVersion.value;
   const box = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot | null>(null);
   const drawn = useRef<Curve[]>([]);
@@ -135,24 +150,22 @@ function Plot({ shown, onClose }: { shown: Shown; onClose?: () => void }) {
     const ink = cssColour('--faint');
     const grid = { stroke: cssColour('--line'), width: 1 };
     const axis = { stroke: ink, grid, ticks: { show: false }, font: '11px system-ui', size: 34, gap: 4 };
-    const made = new uPlot(
-      {
-        width: box.current.clientWidth,
-        height: 150,
-        padding: [8, 8, 0, 0],
-        cursor: { points: { size: 7 }, drag: { x: false, y: false } },
-        legend: { show: false },
-        scales: { x: { time: false }, y: shown.log ? { distr: 3 } : {} },
-        axes: [
-          { ...axis, size: 24, values: (_, v) => v.map((s) => `${+s.toPrecision(4)}`) },
-          { ...axis, size: 44, ...(shown.log && { splits: (_: uPlot, __: number, least: number, most: number) => decades(least, most), filter: (_: uPlot, lines: number[]) => lines }), values: (_, v) => v.map((y) => (y == null ? '' : shown.log ? y.toExponential(0) : `${+y.toPrecision(4)}`)) },
-        ],
-        series: seriesOf(curves),
-        hooks: { draw: [(u) => drawCurves(u, drawn.current)] },
-      },
-      aligned(curves),
-      box.current,
-    );
+    const options: uPlot.Options = {
+      width: box.current.clientWidth,
+      height: 150,
+      padding: [8, 8, 0, 0],
+      cursor: { points: { size: 7 }, drag: { x: false, y: false } },
+      legend: { show: false },
+      scales: { x: { time: false }, y: shown.log ? { distr: 3 } : {} },
+      axes: [
+        { ...axis, size: 24, values: (_, v) => v.map((s) => `${+s.toPrecision(4)}`) },
+        { ...axis, size: 44, ...(shown.log && { splits: (_: uPlot, __: number, least: number, most: number) => decades(least, most), filter: (_: uPlot, lines: number[]) => lines }), values: (_, v) => v.map((y) => (y == null ? '' : shown.log ? y.toExponential(0) : `${+y.toPrecision(4)}`)) },
+      ],
+      series: seriesOf(curves),
+      hooks: { draw: [(u) => drawCurves(u, drawn.current)] },
+    };
+    const parent = box.current;
+    const made = drawnByProcessor(() => new uPlot(options, aligned(curves), parent));
     plot.current = made;
     const resize = new ResizeObserver(() => box.current && made.setSize({ width: box.current.clientWidth, height: 150 }));
     resize.observe(box.current);
@@ -276,7 +289,7 @@ function Runs() {
 }
 
 export function Plots({ all = false }: { all?: boolean }) {
-  tracksVersion.value;
+  plottedVersion.value;
   const head = scene.value?.head;
   if (!head) return null;
   const keys = (kind: string) => tracks.channels.filter((c) => c.kind === kind).map((c) => c.key);

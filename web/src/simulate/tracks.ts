@@ -74,6 +74,24 @@ export let tracks: Tracks = empty(null);
 export let frames: Frame[] = [];
 /// Incremented with every change of the two.
 export const tracksVersion = signal(0);
+/// Follows it, at most ten times a second: for what is costly to draw.
+export const plottedVersion = signal(0);
+const plotPause_ms = 100;
+let plotTimer = 0;
+let plottedAt = -Infinity;
+
+effect(() => {
+  const version = tracksVersion.value;
+  if (plotTimer || version === plottedVersion.peek()) return;
+  const show = () => {
+    plotTimer = 0;
+    plottedAt = performance.now();
+    plottedVersion.value = tracksVersion.peek();
+  };
+  const wait = plottedAt + plotPause_ms - performance.now();
+  if (wait > 0) plotTimer = window.setTimeout(show, wait);
+  else show();
+});
 
 function empty(head: SceneHead | null): Tracks {
   const channels = head ? channelsOf(head) : [];

@@ -127,6 +127,8 @@ export class RobotView {
   private readonly handle: THREE.Mesh;
   private centre = new THREE.Vector3();
   private size = 100;
+  private width = 1; // of the canvas, px: asking the page for it in every frame would make it lay itself out
+  private height = 1;
   private offsets: THREE.Vector3[] = [];
   private options: ViewOptions | null = null;
   private dirty = true;
@@ -772,7 +774,7 @@ export class RobotView {
   /// Pixels per millimetre at the camera's target.
   get pixelsPerMm(): number {
     const distance = this.camera.position.distanceTo(this.controls.target);
-    return this.canvas.clientHeight / (2 * Math.tan((this.camera.fov * Math.PI) / 360) * distance);
+    return this.height / (2 * Math.tan((this.camera.fov * Math.PI) / 360) * distance);
   }
 
   turn(around: number, up: number, nearer: number) {
@@ -891,6 +893,7 @@ export class RobotView {
   private resize() {
     const box = (this.canvas.parentElement as Element).getBoundingClientRect();
     if (!box.width || !box.height) return;
+    [this.width, this.height] = [box.width, box.height];
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(box.width, box.height, false);
     this.camera.aspect = box.width / box.height;
@@ -908,10 +911,10 @@ export class RobotView {
 
   /// Projects mm to pixels of the canvas, from its top left corner.
   private placer() {
-    const box = this.canvas.getBoundingClientRect();
+    const [width, height] = [this.width, this.height];
     return (p: [number, number, number]): [number, number] => {
       const v = new THREE.Vector3(...p).project(this.camera);
-      return [((v.x + 1) / 2) * box.width, ((1 - v.y) / 2) * box.height];
+      return [((v.x + 1) / 2) * width, ((1 - v.y) / 2) * height];
     };
   }
   placeOnPage(p: [number, number, number]) {
