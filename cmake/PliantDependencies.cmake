@@ -49,6 +49,10 @@ endfunction()
 pliant_find_plain(gmsh gmsh.h gmsh)
 pliant_find_plain(civetweb civetweb.h civetweb)
 
+# Of Highway only the headers: base/linalg/simd_targets.cpp says why.
+add_library(pliant_highway INTERFACE)
+target_include_directories(pliant_highway SYSTEM INTERFACE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
+
 # Kernels in SIMD are compiled once for each of: what every processor has, AVX2, AVX-512; NEON elsewhere. Vectors whose
 # size is not known when they are compiled (SVE, RVV) do not fit into arrays.
 set(PLIANT_SIMD_TARGETS

@@ -99,7 +99,7 @@ function(pliant_targets result)
   set(${result} ${targets} PARENT_SCOPE)
 endfunction()
 
-# target_link_libraries with names as above: pliant_link(TARGET PUBLIC base/core PRIVATE hwy::hwy).
+# target_link_libraries with names as above: pliant_link(TARGET PUBLIC base/core PRIVATE pliant_highway).
 function(pliant_link target)
   pliant_targets(libraries ${ARGN})
   target_link_libraries(${target} ${libraries})

@@ -24,13 +24,17 @@ Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSett
     return unpacked<TetMesh>(ask_mesher(MessageKind::mesh_bodies, request.take(), crash, progress));
 }
 
-Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
+Result<TriMesh> tessellate(const Solid& solid, double tolerance, Progress& progress) {
     if (!(tolerance > 0)) return input_error("the tolerance of a surface must be above zero");
     Packer request;
     pack(request, solid);
     request.number(tolerance);
+    return unpacked<TriMesh>(ask_mesher(MessageKind::tessellate, request.take(), crash, progress));
+}
+
+Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
     Progress silent;
-    return unpacked<TriMesh>(ask_mesher(MessageKind::tessellate, request.take(), crash, silent));
+    return tessellate(solid, tolerance, silent);
 }
 
 Result<double> solid_volume(const Solid& solid) {

@@ -119,6 +119,21 @@ TEST_CASE("surfaces for the slicer are closed and exact where they are flat") {
     CHECK(signed_volume(*ball) == near(4.0 / 3 * std::numbers::pi * 125, {.relative = 5e-3}));
 }
 
+TEST_CASE("a long thin rod, alone and on a plate, gets no more triangles than its roundness needs") {
+    const double rod_volume = std::numbers::pi * 4 * 240;
+    const Solid rod = solid(CylinderSolid{{0, 0, 0}, {0, 0, 240}, 2});
+    const Solid plate = solid(CylinderSolid{{0, 0, -5}, {0, 0, 0}, 25});
+    const Solid both = solid(CombinedSolid{CombinedSolid::Operation::unite, {rod, plate}});
+    for (const auto& [body, exact] :
+         {std::pair(rod, rod_volume), std::pair(both, rod_volume + std::numbers::pi * 625 * 5)}) {
+        const Result<TriMesh> surface = tessellate(body, 0.01);
+        REQUIRE_MESSAGE(surface, (surface ? "" : surface.error().message));
+        CHECK(check_closed(*surface));
+        CHECK(surface->triangles.size() < 300000);
+        CHECK(signed_volume(*surface) == near(exact, {.relative = 5e-3}));
+    }
+}
+
 TEST_CASE("cavities look inwards, and every chord of a curve keeps to the tolerance") {
     const double pi = std::numbers::pi;
     const Solid ball = solid(SphereSolid{{0, 0, 0}, 5});

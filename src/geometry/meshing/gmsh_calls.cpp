@@ -53,6 +53,18 @@ Projection get_closest_point(int dimension, int tag, std::vector<double> coordin
     return found;
 }
 
+std::vector<double> get_curvature(int tag, const std::vector<double>& parameters) {
+    std::vector<double> curvatures;
+    api::getCurvature(2, tag, parameters, curvatures);
+    return curvatures;
+}
+
+ParameterBounds get_parametrization_bounds(int dimension, int tag) {
+    ParameterBounds found;
+    api::getParametrizationBounds(dimension, tag, found.low, found.high);
+    return found;
+}
+
 std::vector<double> get_normal(int tag, std::vector<double> parameters) {
     std::vector<double> normal;
     api::getNormal(tag, parameters, normal);

@@ -32,6 +32,12 @@ struct Projection {
 };
 Projection get_closest_point(int dimension, int tag, std::vector<double> coordinates);
 std::vector<double> get_normal(int tag, std::vector<double> parameters);
+/// The largest curvature of a surface at each of its parameters (2 n); 0 where it is flat.
+std::vector<double> get_curvature(int tag, const std::vector<double>& parameters);
+struct ParameterBounds {
+    std::vector<double> low, high;
+};
+ParameterBounds get_parametrization_bounds(int dimension, int tag);
 
 namespace mesh {
 struct Nodes {

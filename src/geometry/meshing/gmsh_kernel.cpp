@@ -634,23 +634,84 @@ Result<TetMesh> mesh_surface(const TriMesh& surface, double size, double angle_d
     });
 }
 
+namespace {
+
+struct RoundFace {
+    double area, least_radius, largest_radius;
+};
+
+/// The faces of the volumes that are not flat, with their radii at a grid of points, at most `reach`.
+std::vector<RoundFace> round_faces(const Entities& volumes, double reach) {
+    constexpr int grid = 4;
+    std::vector<RoundFace> faces;
+    for (const auto& [dimension, tag] : gmsh::model::get_boundary(volumes, false)) {
+        const auto [low, high] = gmsh::model::get_parametrization_bounds(dimension, tag);
+        std::vector<double> places;
+        for (int i = 0; i < grid * grid; ++i) {
+            const double u = (i % grid + 0.5) / grid, v = (i / grid + 0.5) / grid;
+            places.push_back(low[0] + u * (high[0] - low[0]));
+            places.push_back(low[1] + v * (high[1] - low[1]));
+        }
+        RoundFace face{occ::get_mass(dimension, tag), reach, 0};
+        for (const double curvature : gmsh::model::get_curvature(tag, places)) {
+            if (!(std::fabs(curvature) * reach > 1)) continue;
+            face.least_radius = std::min(face.least_radius, 1 / std::fabs(curvature));
+            face.largest_radius = std::max(face.largest_radius, 1 / std::fabs(curvature));
+        }
+        if (face.largest_radius > 0) faces.push_back(face);
+    }
+    return faces;
+}
+
+/// How many triangles, about, the round faces get with so many chords per turn.
+double triangles_of(const std::vector<RoundFace>& faces, double segments) {
+    constexpr double equilateral = 0.433;  // area over the square of an edge
+    double sum = 0;
+    for (const RoundFace& face : faces) {
+        const double edge = 2 * std::numbers::pi * face.least_radius / segments;
+        sum += face.area / (equilateral * edge * edge);
+    }
+    return sum;
+}
+
+struct Chords {
+    double per_turn, deviation;
+};
+
+/// So many chords per turn that those of an arc of radius r deviate by tolerance / 2; the other half is for triangles,
+/// which deviate more from a ball than their edges do. Gmsh divides arcs of all radii into equally many: what the
+/// largest one needs would make a long thin rod a matter of hours, so where that is too much, only what the radii at
+/// hand need, or even less.
+Chords chords_for(const Entities& volumes, double reach, double tolerance) {
+    constexpr double least = 24, most = 2000, too_many_triangles = 5e5, many_triangles = 2e5;
+    const auto needed = [&](double radius) {
+        return std::clamp(2 * std::numbers::pi / std::sqrt(4 * tolerance / radius), least, most);
+    };
+    const std::vector<RoundFace> faces = round_faces(volumes, reach);
+    if (triangles_of(faces, needed(reach)) <= too_many_triangles) return {needed(reach), tolerance};
+    double radius = tolerance;
+    for (const RoundFace& face : faces) radius = std::max(radius, face.largest_radius);
+    const double fewer = std::sqrt(std::min(1.0, many_triangles / triangles_of(faces, needed(radius))));
+    const double chords = std::max(least, fewer * needed(radius));
+    return {chords, std::max(tolerance, std::pow(std::numbers::pi / chords, 2) * radius)};
+}
+
+}  // namespace
+
 Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
     return in_session("tessellating", [&]() -> Result<TriMesh> {
         const Entities volumes = BuildSolid::build(solid);
         if (volumes.empty()) return input_error("is empty: nothing is left of it");
         occ::synchronize();
-        // Flat faces need no inner points; chords of an arc of radius r deviate by tolerance / 2 at 2 pi / sqrt(4
-        // tolerance / r) chords per turn. The other half is for triangles, which deviate more from a ball than their
-        // edges do.
         const double reach = std::max(bounds(solid).diagonal() / 2, tolerance);
-        const double segments = std::clamp(2 * std::numbers::pi / std::sqrt(4 * tolerance / reach), 24.0, 2000.0);
-        set_size(4 * reach);
+        const auto [segments, deviation] = chords_for(volumes, reach, tolerance);
+        set_size(4 * reach);  // flat faces need no inner points
         gmsh::option::set_number("Mesh.MeshSizeFromCurvature", segments);
         gmsh::model::mesh::generate(2);
         TriMesh surface = collect_surface(volumes);
         const double exact = mass(volumes);
         const double found = signed_volume(surface);
-        if (std::fabs(found - exact) > 4 * tolerance * surface_area(volumes) + 1e-6 * exact)
+        if (std::fabs(found - exact) > 4 * deviation * surface_area(volumes) + 1e-6 * exact)
             return failure("the surface encloses {:.6g} where the solid has {:.6g}", found, exact);
         return surface;
     });

@@ -276,7 +276,7 @@ Result<mesh::TetMesh> take_mesh(const Robot& robot, mesh::TetMesh mesh_m) {
 }
 
 Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& progress) {
-    constexpr double printable_m = 10e-6;  // chords may deviate from a curve by a fraction of a pixel
+    const double tolerance = 10e-6 / robot.unit_m;  // chords may deviate from a curve by a fraction of a pixel
     const std::vector<mesh::Solid> air = drawn_air(robot);
     std::vector<BodySurface> surfaces;
     Result<mesh::TetMesh> regions;
@@ -291,16 +291,16 @@ Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& pro
         Result<mesh::TriMesh> surface;
         std::vector<std::string> notes;
         if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
-            surface = mesh::tessellate(without_air(*solid, cut_from(robot, b, air)), printable_m / robot.unit_m);
+            surface = mesh::tessellate(without_air(*solid, cut_from(robot, b, air)), tolerance, progress);
         } else if (std::holds_alternative<SurfaceFile>(body.geometry)) {
             const Result<Shape> shape = body_shape(robot, body, air, notes);
             if (!shape) return tl::unexpected(shape.error());
             const auto* cut = std::get_if<mesh::Solid>(&*shape);
-            surface =
-                cut != nullptr ? mesh::tessellate(*cut, printable_m / robot.unit_m) : std::get<mesh::TriMesh>(*shape);
+            surface = cut != nullptr ? mesh::tessellate(*cut, tolerance, progress) : std::get<mesh::TriMesh>(*shape);
         } else {
             surface = mesh::region_surface(*regions, static_cast<int>(b));
         }
+        if (!surface && progress.cancelled()) return cancelled();
         if (!surface) return tl::unexpected(at(place(robot, body.line, "body", body.name), surface.error()));
         surfaces.push_back(
             {body.name, body.material, mesh::scaled(std::move(*surface), robot.unit_m), std::move(notes)});

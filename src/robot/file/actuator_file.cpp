@@ -22,16 +22,13 @@ CableTarget read_target(Reader& cable) {
     if (cable.has("target") && given != 1) reader.problem("", "takes one of length_ratio, shortening and tension");
     if (reader.has("length_ratio")) {
         target = {Kind::length_ratio, reader.number("length_ratio")};
-        if (!(target.value > 0 && target.value <= 1)) {
-            reader.problem("length_ratio",
-                           fmt::format("{} is not possible; a cable gets shorter: above 0, at most 1", target.value));
-        }
+        if (!(target.value > 0 && target.value <= largest_length_ratio))
+            reader.problem("length_ratio", fmt::format("{} is not possible: {}", target.value, possible_length_ratios));
     }
     if (reader.has("shortening")) target = {Kind::shortening_m, reader.quantity("shortening", Dimension::length)};
     if (reader.has("tension")) target = {Kind::tension_N, reader.quantity("tension", Dimension::force)};
-    if (target.kind != Kind::length_ratio && target.value < 0) {
-        reader.problem("", "must not be negative: a cable can only pull");
-    }
+    if (target.kind == Kind::tension_N && target.value < 0)
+        reader.problem("tension", "must not be negative: a cable can only pull");
     for (const char* key : {"length_ratio", "shortening", "tension"}) (void)reader.raw(key);
     const bool force = target.kind == Kind::tension_N;
     target.offset = reader.quantity("offset", force ? Dimension::force : Dimension::length, 0);
@@ -39,12 +36,15 @@ CableTarget read_target(Reader& cable) {
     return target;
 }
 
-SteeredBy steered_by(const CableTarget& target) {
+/// Gap elements close gaps and cannot pay a cable out.
+SteeredBy steered_by(const CableTarget& target, bool gap_elements) {
     switch (target.kind) {
         case CableTarget::Kind::length_ratio:
-            return {{}, 1e-6, 1, "above 0, at most 1: a cable gets shorter", "tension"};
+            if (gap_elements) return {{}, 1e-6, 1, "above 0, at most 1", "tension"};
+            return {{}, 1e-6, largest_length_ratio, possible_length_ratios, "tension"};
         case CableTarget::Kind::shortening_m:
-            return {Dimension::length, 0, 1e300, "not below zero", "tension"};
+            if (gap_elements) return {Dimension::length, 0, 1e300, "not below zero", "tension"};
+            return {Dimension::length, -1e300, 1e300, "lengths", "tension"};
         case CableTarget::Kind::tension_N:
             break;
     }
@@ -60,6 +60,10 @@ SteeredBy steered_by(const ChamberTarget& target) {
         default:
             return {{}, 1e-6, 1e300, "above zero", "pressure"};
     }
+}
+
+bool is_paid_out(const CableTarget& target) {
+    return target.kind == CableTarget::Kind::length_ratio ? target.value > 1 : target.value < 0;
 }
 
 /// Reads `points`; `kind` is for messages.
@@ -107,7 +111,7 @@ void read_cable(Reader& reader, Context& context, CableSpec& cable) {
     if (!(cable.friction >= 0 && cable.friction <= 10))
         reader.problem("friction", "is a coefficient: 0 or more, a cord in a plastic tube has 0.1 to 0.3");
     cable.target = read_target(reader);
-    cable.steering = read_steering(reader, steered_by(cable.target));
+    cable.steering = read_steering(reader, steered_by(cable.target, cable.gap_elements));
     if (reader.has("weight") && !cable.gap_elements)
         reader.problem("weight", "is that of gap elements, which act with model = \"gap-elements\" only");
     cable.weight = read_weight(reader).value_or(cable.weight);
@@ -115,6 +119,10 @@ void read_cable(Reader& reader, Context& context, CableSpec& cable) {
         reader.problem("friction", "model = \"gap-elements\" closes the gaps and has no guides; leave it out");
     if (cable.gap_elements && cable.target.kind == CableTarget::Kind::tension_N)
         reader.problem("target", "model = \"gap-elements\" takes lengths only: length_ratio or shortening");
+    else if (cable.gap_elements && is_paid_out(cable.target))
+        reader.problem("target",
+                       "model = \"gap-elements\" closes gaps and cannot pay the cable out: use a length_ratio of "
+                       "1 or less, or a shortening of 0 or more");
 }
 
 void read_spring(Reader& reader, Context& context, SpringSpec& spring) {

@@ -1,6 +1,7 @@
 #include "simulation/actuators/cable_path.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -108,6 +109,26 @@ std::vector<int> CablePath::nodes() const {
     return all;
 }
 
+namespace {
+
+struct WeightedNode {
+    int free;
+    double weight;
+};
+
+/// The free nodes of a segment, ascending.
+std::vector<WeightedNode> free_nodes(std::span<const int> nodes, std::span<const double> weights,
+                                     const std::vector<int>& free_index) {
+    std::vector<WeightedNode> sorted;
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+        if (const int free = free_index[nodes[k]]; free >= 0) sorted.push_back({free, weights[k]});
+    }
+    std::ranges::sort(sorted, {}, &WeightedNode::free);
+    return sorted;
+}
+
+}  // namespace
+
 void CablePath::add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
                             const linalg::SymmetricPattern& pattern, std::span<double> values,
                             std::span<const double> shares) const {
@@ -117,18 +138,19 @@ void CablePath::add_hessian(std::span<const double> x, double factor, const std:
         const Vec3 d = vector_of(segment, x);
         const double l = std::max(norm(d), met_length_m_);
         const Vec3 t = norm(d) >= met_length_m_ ? d / l : Vec3{};
-        for (std::size_t b = 0; b < segment.nodes.size(); ++b) {
-            const int j = free_index[segment.nodes[b]];
-            if (j < 0) continue;
-            for (std::size_t a = 0; a < segment.nodes.size(); ++a) {
-                const int i = free_index[segment.nodes[a]];
-                if (i < j) continue;
-                const double scale = pull * segment.weights[a] * segment.weights[b] / l;
-                pattern.add_block(values, i, j, [&](int r, int c) {
-                    const auto row = static_cast<std::size_t>(r);
-                    const auto column = static_cast<std::size_t>(c);
-                    return scale * ((r == c ? 1.0 : 0.0) - t[row] * t[column]);
-                });
+        std::array<double, 9> across{};  // I - t t^T
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (std::size_t r = 0; r < 3; ++r) across[3 * c + r] = (r == c ? 1.0 : 0.0) - t[r] * t[c];
+        }
+        const std::vector<WeightedNode> nodes = free_nodes(segment.nodes, segment.weights, free_index);
+        for (std::size_t b = 0; b < nodes.size(); ++b) {
+            // An eyelet couples so many nodes that a search for each pair would take longer than what is added there.
+            int at = pattern.node_start[nodes[b].free];
+            for (std::size_t a = b; a < nodes.size(); ++a) {
+                while (pattern.node_row[at] != nodes[a].free) ++at;
+                const double scale = pull * nodes[a].weight * nodes[b].weight / l;
+                double* block = values.data() + 9 * static_cast<std::size_t>(at);
+                for (std::size_t e = 0; e < 9; ++e) block[e] += scale * across[e];
             }
         }
     }

@@ -122,6 +122,7 @@ void RunChecks::warn_of_open_places(const RobotState& robot, Trajectory& result)
 void RunChecks::at_end(const RobotState& robot, Trajectory& result) {
     warn_of_open_places(robot, result);
     if (!program_.checks || program_.dynamics || program_.imperfection_m > 0 || result.steps.size() < 2) return;
+    stepper_.release();  // the check of stability makes a factor of its own, of the same size
     std::vector<std::size_t> suspects = state_.before_jump;
     suspects.push_back(result.steps.size() - 1);
     for (const std::size_t suspect : suspects) {

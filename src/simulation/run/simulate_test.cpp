@@ -245,6 +245,36 @@ TEST_CASE("of two cables along one path only the shorter one pulls") {
     CHECK(result.steps.back().cables[1].tension_N == 0);
 }
 
+TEST_CASE("a cable that is paid out is slack while its path is shorter, and holds the bar back from there on") {
+    const auto bent = [](double ratio_below) {
+        Description d = bar(1);
+        d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9}),
+                    flexor(d.mesh, {CableTarget::Kind::length_ratio, ratio_below})};
+        d.cables[1].name = "below";
+        for (Attachment& point : d.cables[1].points) {
+            point.fixed.z = 0;
+            for (int& node : point.nodes) {
+                const Vec3 above = d.mesh.points[static_cast<std::size_t>(node)];
+                node = reference::nodes_where(d.mesh, [&](Vec3 p) {
+                    return norm(p - Vec3{above.x, above.y, 0}) < 1e-9;
+                })[0];
+            }
+        }
+        const Trajectory result = solve(d, {.steps = 5, .tolerance = 1e-9});
+        REQUIRE_MESSAGE(result.converged, result.message);
+        return result.steps.back().cables;
+    };
+    const auto free = bent(2);  // longer than its path ever gets
+    CHECK(free[1].tension_N == 0);
+    CHECK(free[1].length_ratio > 1.01);
+    const double between = (1 + free[1].length_ratio) / 2;
+    const auto held = bent(between);
+    CHECK(held[1].tension_N > 0.01 * held[0].tension_N);
+    CHECK(held[1].length_ratio == near(between, {.relative = 1e-8}));
+    CHECK(held[0].tension_N > free[0].tension_N);
+    CHECK(bent(1.01 * free[1].length_ratio)[0].tension_N == near(free[0].tension_N, {.relative = 1e-6}));
+}
+
 TEST_CASE("rigid targets: the thesis' iteration never raises the energy") {
     Description d = bar(1, material::ShapeBlend{1e6, 1.0});
     d.supports.push_back(

@@ -96,7 +96,7 @@ TEST_CASE("mistakes in goals and ranges are named, with their line") {
     check_problem(body + "[[goal]]\nname = \"a\"\nmarker = \"tipp\"\npoint = [1, 2, 3]\n",
                   "bar.toml:32: goal[0].marker: there is no marker \"tipp\"; there is \"tip\" and \"middle\"");
     check_problem(test::replaced(body, "[0.8, 1.0]", "[1.0, 0.8]"), "range: is empty");
-    check_problem(test::replaced(body, "[0.8, 1.0]", "[0.8, 1.1]"), "range: is not possible");
+    check_problem(test::replaced(body, "[0.8, 1.0]", "[0.8, 11]"), "range: is not possible");
     check_problem(test::replaced(body, "rate = 0.05", "rate = 0"), "rate: must be above zero");
     check_problem(test::replaced(body, "tension = 2", "tensoin = 2"), "tensoin");
     check_problem(test::replaced(body, "range = [0.8, 1.0]\n", ""), "belongs to an actuator with a range");

@@ -43,6 +43,10 @@ void SolverChain::recall(const SolverMemory* memory) {
     if (memory != nullptr || made_.front()) at(0).recall(memory);
 }
 
+void SolverChain::release() {
+    for (auto& solver : made_) solver.reset();
+}
+
 StepSettings SolverChain::settings_of(std::size_t link, const StepSettings& asked, int spent) const {
     StepSettings settings = asked;
     if (links_.size() == 1) return settings;

@@ -29,6 +29,8 @@ public:
     /// anew whenever they are used.
     [[nodiscard]] std::shared_ptr<const SolverMemory> memory() const;
     void recall(const SolverMemory* memory);
+    /// Frees the solvers with their factors; the next use makes them anew.
+    void release();
     /// As solve_step. A fallback starts from the best state of the one before it, and may cost about as much as that
     /// one did. With `settings.patience` 0 a chain of several uses its own patience. `iterations` and `history` cover
     /// all solvers used, `solver` and `evaluation` the last one.

@@ -420,6 +420,11 @@ std::shared_ptr<const Inertia> Stepper::inertia(const History& history, double d
     return motion_->inertia(history, dt, scheme);
 }
 
+void Stepper::release() {
+    live_.reset();
+    solvers_.release();
+}
+
 /// Restores the solvers' memory of when this state was computed.
 void Stepper::recall(const RobotState& robot) {
     if (robot.memory && robot.memory == live_) return;

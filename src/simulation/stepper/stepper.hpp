@@ -105,6 +105,8 @@ public:
     [[nodiscard]] const FactoredLaplacian& laplacian() const { return laplacian_; }
     [[nodiscard]] const StepperOptions& options() const { return options_; }
     [[nodiscard]] SolverChain& solvers() { return solvers_; }
+    /// Frees the solvers' factors, which are most of the memory of a large robot; the next step makes them anew.
+    void release();
 
 private:
     struct Target;

@@ -46,9 +46,9 @@ function range(actuator: Actuator, kind: string, value: number): [number, number
     Math.max(least, Number.isFinite(target) ? factor * Math.abs(target) : 0, 1.25 * Math.abs(value));
   switch (kind) {
     case 'length_ratio':
-      return [Math.min(0.5, Number.isFinite(target) ? target - 0.1 : 1, value), 1];
+      return [Math.min(0.5, Number.isFinite(target) ? target - 0.1 : 1, value), Math.max(1, target > 1 ? 2 * target - 1 : 1, value)];
     case 'shortening_mm':
-      return [0, Math.max(0.5 * actuator.rest, value)];
+      return [Math.min(0, target < 0 ? 2 * target : 0, value), Math.max(0.5 * actuator.rest, value)];
     case 'tension_N':
       return [0, niceAbove(atLeast(10, 1.5))];
     case 'volume_ratio':
