@@ -100,8 +100,12 @@ void add_cable(const robot::CableSpec& cable, Collector& to) {
     const robot::CableTarget& t = cable.target;
     const bool force = t.kind == Kind::tension_N;
     if (!cable.gap_elements) to.positive(owner + "friction", "", cable.friction, 10);
-    if (t.kind == Kind::length_ratio) to.positive(target + "length_ratio", "", t.value, 1);
-    if (t.kind == Kind::shortening_m) to.positive(target + "shortening", "m", t.value);
+    const bool paid_out = t.kind == Kind::length_ratio ? t.value > 1 : t.value < 0;
+    if (t.kind == Kind::length_ratio) to.positive(target + "length_ratio", "", t.value, paid_out ? 10 : 1);
+    if (t.kind == Kind::shortening_m && paid_out)
+        to.any(target + "shortening", "m", t.value, std::max(1e-3, -0.1 * t.value));
+    else if (t.kind == Kind::shortening_m)
+        to.positive(target + "shortening", "m", t.value);
     if (force) to.positive(target + "tension", "N", t.value);
     to.any(target + "offset", force ? "N" : "m", t.offset, force ? std::max(0.1, 0.1 * t.value) : 1e-3);
 }
