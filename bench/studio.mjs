@@ -1,9 +1,10 @@
-// Frame rate and latency of the studio: a hand that drags the cable of the gripper of some 7,500 tets to and fro, sixty
-// inputs a second, in Chromium on the real program. Linear tets as such; quadratic ones by the linear preview and, once
-// it has been made, by the reduced model.
+// What the studio makes its user wait for. First picture: from opening the address to a robot in the 3D view. Stack: from a
+// click to thirty layers of a job in 3D. Frame rate and latency: a hand that drags the cable of the gripper of some 7,500
+// tets to and fro, sixty inputs a second, in Chromium on the real program. Linear tets as such; quadratic ones by the
+// linear preview and, once it has been made, by the reduced model.
 //   node bench/studio.mjs [SECONDS]        after a release build; needs chromium
 import { cpus, loadavg } from 'node:os';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { copyFileSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
@@ -84,8 +85,45 @@ async function reduced(page) {
   return false;
 }
 
+/// Seconds from the navigation to the address to the first picture of the robot, at rest or further.
+async function firstPicture(studio) {
+  const { page, context } = await openPage(browser, studio.address);
+  await page.waitForFunction(() => window.pliant?.frame?.value && document.querySelector('.stage canvas'));
+  const took = await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(() => drawn(performance.now() / 1000)))));
+  await context.close();
+  return took;
+}
+
+/// Seconds from the click to the job in 3D.
+async function stack(studio) {
+  const { page, context } = await openPage(browser, `${studio.address}#make`);
+  await page.getByTestId('estimate').waitFor();
+  await page.getByTestId('option-layer').fill('400');
+  await page.getByTestId('slice').click();
+  await page.getByTestId('layer-view').waitFor();
+  const begin = performance.now();
+  await page.getByTestId('make-stack').click();
+  await page.waitForSelector('[data-testid=stack-view][data-state=shown]');
+  const took = (performance.now() - begin) / 1000;
+  await context.close();
+  return took;
+}
+
+async function waits() {
+  copyFileSync(join(root, 'examples/tutorial/finger.toml'), join(folder, 'finger.toml'));
+  const studio = await startStudio(['finger.toml'], folder);
+  try {
+    const pictures = [];
+    for (let k = 0; k < 5; ++k) pictures.push(await firstPicture(studio));
+    console.log(`first picture: ${pictures.map((s) => s.toFixed(2)).join(', ')} s; stack of 30 layers: ${(await stack(studio)).toFixed(2)} s`);
+  } finally {
+    await studio.stop();
+  }
+}
+
 const browser = await startBrowser();
 console.log(`${cpus().length} cores, load ${loadavg()[0].toFixed(1)} before; ${cpus()[0].model}`);
+await waits();
 console.log(`tolerance 1e-4, ${seconds} s each`);
 console.log('| tets | measured | frames per second | frames at target | solver, ms | latency, median, ms | latency, 95 %, ms | longest gap, 95 %, ms |');
 console.log('|---|---|---|---|---|---|---|---|');
