@@ -46,8 +46,8 @@ struct MeshSettings {
                                           Progress& progress);
 
 /// The closed surface of a solid, normals outwards: curved faces within `tolerance` (above zero), but with chords no
-/// finer than 1/2000 of a turn, and with longer ones where there would be more than 200,000 triangles; flat faces
-/// exact.
+/// finer than 1/2000 of a turn, and with longer ones where curved faces would get far too many triangles; flat
+/// faces exact.
 [[nodiscard]] Result<TriMesh> tessellate(const Solid& solid, double tolerance, Progress& progress);
 [[nodiscard]] Result<TriMesh> tessellate(const Solid& solid, double tolerance);
 

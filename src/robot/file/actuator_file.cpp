@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "robot/description/cable_length.hpp"
 #include "robot/file/goal_file.hpp"
 
 namespace pliant::robot {
@@ -22,8 +23,9 @@ CableTarget read_target(Reader& cable) {
     if (cable.has("target") && given != 1) reader.problem("", "takes one of length_ratio, shortening and tension");
     if (reader.has("length_ratio")) {
         target = {Kind::length_ratio, reader.number("length_ratio")};
-        if (!(target.value > 0 && target.value <= largest_length_ratio))
-            reader.problem("length_ratio", fmt::format("{} is not possible: {}", target.value, possible_length_ratios));
+        const TargetLimits limits = target_limits(target.kind, false);
+        if (!(target.value > 0 && target.value <= limits.high))
+            reader.problem("length_ratio", fmt::format("{} is not possible: {}", target.value, limits.words));
     }
     if (reader.has("shortening")) target = {Kind::shortening_m, reader.quantity("shortening", Dimension::length)};
     if (reader.has("tension")) target = {Kind::tension_N, reader.quantity("tension", Dimension::force)};
@@ -36,19 +38,12 @@ CableTarget read_target(Reader& cable) {
     return target;
 }
 
-/// Gap elements close gaps and cannot pay a cable out.
 SteeredBy steered_by(const CableTarget& target, bool gap_elements) {
-    switch (target.kind) {
-        case CableTarget::Kind::length_ratio:
-            if (gap_elements) return {{}, 1e-6, 1, "above 0, at most 1", "tension"};
-            return {{}, 1e-6, largest_length_ratio, possible_length_ratios, "tension"};
-        case CableTarget::Kind::shortening_m:
-            if (gap_elements) return {Dimension::length, 0, 1e300, "not below zero", "tension"};
-            return {Dimension::length, -1e300, 1e300, "lengths", "tension"};
-        case CableTarget::Kind::tension_N:
-            break;
-    }
-    return {Dimension::force, 0, 1e300, "not below zero: a cable can only pull", "tension"};
+    std::optional<Dimension> dimension;
+    if (target.kind == CableTarget::Kind::shortening_m) dimension = Dimension::length;
+    if (target.kind == CableTarget::Kind::tension_N) dimension = Dimension::force;
+    const TargetLimits limits = target_limits(target.kind, gap_elements);
+    return {dimension, limits.low, limits.high, limits.words, "tension"};
 }
 
 SteeredBy steered_by(const ChamberTarget& target) {
@@ -60,10 +55,6 @@ SteeredBy steered_by(const ChamberTarget& target) {
         default:
             return {{}, 1e-6, 1e300, "above zero", "pressure"};
     }
-}
-
-bool is_paid_out(const CableTarget& target) {
-    return target.kind == CableTarget::Kind::length_ratio ? target.value > 1 : target.value < 0;
 }
 
 /// Reads `points`; `kind` is for messages.

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "base/core/text.hpp"
-#include "robot/file/actuator_file.hpp"
+#include "robot/description/cable_length.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -27,11 +27,17 @@ struct Driven {
 
 Driven driven(CableSpec& cable) {
     using Kind = CableTarget::Kind;
-    Driven d{cable.name, {}, 0, cable.target.value, 0, 1e300, [&](Curve c) { cable.target.keys = std::move(c); }};
-    if (cable.target.kind == Kind::length_ratio)
-        d.rest = 1, d.low = 1e-6, d.high = cable.gap_elements ? 1 : largest_length_ratio;
+    const TargetLimits limits = target_limits(cable.target.kind, cable.gap_elements);
+    Driven d{cable.name,
+             {},
+             0,
+             cable.target.value,
+             limits.low,
+             limits.high,
+             [&](Curve c) {
+                 cable.target.keys = std::move(c); }};
+    if (cable.target.kind == Kind::length_ratio) d.rest = 1;
     if (cable.target.kind == Kind::shortening_m) d.dimension = Dimension::length;
-    if (cable.target.kind == Kind::shortening_m && !cable.gap_elements) d.low = -1e300;
     if (cable.target.kind == Kind::tension_N) d.dimension = Dimension::force;
     return d;
 }
@@ -80,10 +86,12 @@ std::vector<Driven> everything_driven(Robot& robot) {
 
 double read_value(Reader& key, const Driven& d) {
     const double value = d.dimension ? key.quantity(d.name, *d.dimension) : key.number(d.name);
-    if (value < d.low || value > d.high)
-        key.problem(d.name, d.high < 1e300 ? fmt::format("{} is not possible: above 0, at most {:g}", value, d.high)
-                            : d.low > 0    ? fmt::format("{} is not possible; it must be above zero", value)
-                                           : fmt::format("{} is not possible; it must not be below zero", value));
+    if (value < d.low || value > d.high) {
+        const std::string limit = d.high < 1e300 ? fmt::format(": above 0, at most {:g}", d.high)
+                                  : d.low > 0    ? "; it must be above zero"
+                                                 : "; it must not be below zero";
+        key.problem(d.name, fmt::format("{} is not possible{}", value, limit));
+    }
     return value;
 }
 

@@ -12,6 +12,7 @@
 #include "base/core/letters.hpp"
 #include "base/core/text.hpp"
 #include "base/core/units.hpp"
+#include "robot/description/cable_length.hpp"
 #include "simulation/material/law_parameters.hpp"
 
 namespace pliant::sim::identify {
@@ -100,8 +101,9 @@ void add_cable(const robot::CableSpec& cable, Collector& to) {
     const robot::CableTarget& t = cable.target;
     const bool force = t.kind == Kind::tension_N;
     if (!cable.gap_elements) to.positive(owner + "friction", "", cable.friction, 10);
-    const bool paid_out = t.kind == Kind::length_ratio ? t.value > 1 : t.value < 0;
-    if (t.kind == Kind::length_ratio) to.positive(target + "length_ratio", "", t.value, paid_out ? 10 : 1);
+    const bool paid_out = robot::is_paid_out(t);
+    if (t.kind == Kind::length_ratio)
+        to.positive(target + "length_ratio", "", t.value, paid_out ? robot::target_limits(t.kind, false).high : 1);
     if (t.kind == Kind::shortening_m && paid_out)
         to.any(target + "shortening", "m", t.value, std::max(1e-3, -0.1 * t.value));
     else if (t.kind == Kind::shortening_m)

@@ -70,10 +70,10 @@ Status check_cable(const Cable& cable, int nodes) {
         if (Status status = check_attachment(point, nodes, owner); !status) return status;
     }
     const double value = cable.target.value;
-    const bool low = cable.target.kind == CableTarget::Kind::length_ratio ? !(value > 0)
-                     : cable.target.kind == CableTarget::Kind::tension_N  ? value < 0
-                                                                          : false;
-    if (low || !std::isfinite(value)) return input_error("{}: the target {} is not possible", owner, value);
+    const bool ratio = cable.target.kind == CableTarget::Kind::length_ratio;
+    const bool pushes = cable.target.kind == CableTarget::Kind::tension_N && value < 0;
+    if (!std::isfinite(value) || pushes || (ratio && value <= 0))
+        return input_error("{}: the target {} is not possible", owner, value);
     return {};
 }
 

@@ -127,8 +127,6 @@ export class RobotView {
   private readonly handle: THREE.Mesh;
   private centre = new THREE.Vector3();
   private size = 100;
-  private width = 1; // of the canvas, px: asking the page for it in every frame would make it lay itself out
-  private height = 1;
   private offsets: THREE.Vector3[] = [];
   private options: ViewOptions | null = null;
   private dirty = true;
@@ -774,7 +772,7 @@ export class RobotView {
   /// Pixels per millimetre at the camera's target.
   get pixelsPerMm(): number {
     const distance = this.camera.position.distanceTo(this.controls.target);
-    return this.height / (2 * Math.tan((this.camera.fov * Math.PI) / 360) * distance);
+    return this.pixels().y / (2 * Math.tan((this.camera.fov * Math.PI) / 360) * distance);
   }
 
   turn(around: number, up: number, nearer: number) {
@@ -893,7 +891,6 @@ export class RobotView {
   private resize() {
     const box = (this.canvas.parentElement as Element).getBoundingClientRect();
     if (!box.width || !box.height) return;
-    [this.width, this.height] = [box.width, box.height];
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(box.width, box.height, false);
     this.camera.aspect = box.width / box.height;
@@ -909,9 +906,14 @@ export class RobotView {
     this.onDraw(this.placer(), this.camera);
   }
 
+  /// Size of the canvas; asking the page for it in every frame would make it lay itself out.
+  private pixels() {
+    return this.renderer.getSize(new THREE.Vector2());
+  }
+
   /// Projects mm to pixels of the canvas, from its top left corner.
   private placer() {
-    const [width, height] = [this.width, this.height];
+    const { x: width, y: height } = this.pixels();
     return (p: [number, number, number]): [number, number] => {
       const v = new THREE.Vector3(...p).project(this.camera);
       return [((v.x + 1) / 2) * width, ((1 - v.y) / 2) * height];
