@@ -133,6 +133,8 @@ export interface Job {
   /** Source of its images, if not the current job. */
   at?: (layer: number, material: number) => string;
   revision: number;
+  /** In the addresses of its images: they change with their content, also over restarts of the studio. */
+  key: string;
   file: string;
   saved: boolean;
   printer: string;

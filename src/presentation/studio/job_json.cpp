@@ -91,6 +91,7 @@ std::string job_json(const OpenJob& open, bool saved) {
     const Result<plan::Plan> plan = plan::make_plan(manifest, open.printer);
     const auto& p = open.printer;
     Json json = {{"revision", open.revision},
+                 {"key", open.key},
                  {"file", open.file.filename().string()},
                  {"saved", saved},
                  {"manifest", Json::parse(job::to_json(manifest))},
@@ -108,7 +109,16 @@ std::string job_json(const OpenJob& open, bool saved) {
     return dumped(json);
 }
 
+bool names_job(const Request& request) {
+    return request.query.count("job") != 0;
+}
+
+bool is_of_another_job(const OpenJob& open, const Request& request) {
+    return names_job(request) && request.query.find("job")->second != open.key;
+}
+
 Response layer_image(OpenJob& open, const Request& request) {
+    if (is_of_another_job(open, request)) return {204, "image/png", ""};
     const int layer = whole_number(request.parts.at("layer")), material = whole_number(request.parts.at("material"));
     const auto& layers = open.archive.manifest().layers;
     if (layer < 0 || layer >= static_cast<int>(layers.size())) return error_response(404, "there is no such layer");
@@ -118,7 +128,7 @@ Response layer_image(OpenJob& open, const Request& request) {
         Result<std::string> png = open.archive.file(entry.file);
         if (!png) return error_response(png.error());
         Response response{200, "image/png", std::move(*png)};
-        response.keep = true;
+        response.keep = names_job(request);
         return response;
     }
     return error_response(404, "nothing of this material is in this layer");

@@ -7,7 +7,6 @@
 
 #include "base/core/files.hpp"
 #include "presentation/print_report/material_colours.hpp"
-#include "presentation/studio/access.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/slice_robot.hpp"
 #include "printing/operate/job_file.hpp"
@@ -112,6 +111,10 @@ void MakeSession::work(const SliceOrder& order) {
     std::filesystem::permissions(scratch_, std::filesystem::perms::owner_all, error);
     const std::filesystem::path file = scratch_ / ("job_" + random_key() + ".zip");
     Result<std::vector<std::string>> colours = slice_robot(order, file, watch, under_way_);
+    if (colours && cancelled_) {  // since the slicer last looked
+        std::filesystem::remove(file, error);
+        colours = cancelled();
+    }
     Status status = colours ? adopt(file, std::move(*colours)) : Status(tl::unexpected(colours.error()));
     under_way_.clear();
     slicing_ = false;  // before the pages are told: they may start the next one at once

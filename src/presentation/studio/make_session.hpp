@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/core/progress.hpp"
+#include "presentation/studio/access.hpp"
 #include "presentation/studio/job_under_way.hpp"
 #include "printing/job/job.hpp"
 #include "printing/machine/printer.hpp"
@@ -33,6 +34,7 @@ struct OpenJob {
     machine::Printer printer;
     std::filesystem::path file;
     int revision;
+    std::string key = random_key();      ///< in the addresses of its images, which browsers keep for ever
     std::vector<std::string> colours{};  ///< (materials)
     std::mutex mutex{};                  ///< an archive must be used by one thread at a time
     std::string part{};                  ///< see job_part(); "": not requested yet

@@ -91,13 +91,14 @@ Response image_under_way(Studio& studio, const Request& request) {
     return {200, "image/png", std::move(*png)};
 }
 
-Response part(Studio& studio, const Request&) {
+Response part(Studio& studio, const Request& request) {
     const auto open = studio.make().job();
     if (!open) return no_job();
+    if (is_of_another_job(*open, request)) return {204, "application/octet-stream", ""};
     Result<std::string> packet = job_part(*open);
     if (!packet) return error_response(packet.error());
     Response response{200, "application/octet-stream", std::move(*packet)};
-    response.keep = true;
+    response.keep = names_job(request);
     return response;
 }
 
@@ -230,7 +231,8 @@ void add_make_routes(std::vector<Route>& routes) {
     routes.push_back({"GET", "/api/printer", "a built-in printer or one of the folder: ?name=", json, false, printer});
     routes.push_back({"POST", "/api/job/cancel", "cancels slicing", json, true, cancel});
     routes.push_back({"GET", "/api/job", "the job: manifest, plan, one swap, issues", json, false, job});
-    routes.push_back({"GET", "/api/job/layers/{layer}/{material}", "one image", "image/png", false, image});
+    routes.push_back({"GET", "/api/job/layers/{layer}/{material}", "one image; 204 without content if it is not of job ?job=, its key",
+                      "image/png", false, image});
     routes.push_back({"GET", "/api/job/other", "a job to compare with: ?name= of the folder; the one before without it",
                       json, false, other});
     routes.push_back({"GET", "/api/job/other/{layer}/{material}", "one image of it", "image/png", false, other_image});

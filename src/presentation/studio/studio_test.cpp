@@ -328,6 +328,18 @@ TEST_CASE("a robot is sliced, its layers and plan can be read, and slicing can b
     for (const char* path :
          {"/api/job/layers/20/0", "/api/job/layers/-1/0", "/api/job/layers/0/7", "/api/job/layers/x/0"})
         CHECK_MESSAGE(ask(studio, "GET", path).status == 404, path);
+    // Browsers keep what names the job by its key, which no other job has; a page may still ask for one before it.
+    const auto of_job = [&](const char* path, const std::string& key) {
+        Request request{"GET", path};
+        request.query["job"] = key;
+        return studio.handle(request);
+    };
+    const Response kept = of_job("/api/job/layers/3/0", job["key"]);
+    CHECK(kept.keep);
+    CHECK(kept.body == image.body);
+    CHECK_FALSE(image.keep);
+    for (const char* path : {"/api/job/layers/3/0", "/api/job/layers/900/0", "/api/job/part"})
+        CHECK_MESSAGE(of_job(path, "of-another").status == 204, path);
     CHECK(Json::parse(ask(studio, "GET", "/api/job/compare").body).size() >= 5);
     CHECK(job["projector"]["width"] == 1920);
     // The job in 3D: slabs of runs of one material up to the height of the part.

@@ -153,7 +153,7 @@ export function Compare({ job }: { job: Job }) {
     setWhy('');
     api(`/api/job/other?name=${name}`)
       .then((r) => r.json())
-      .then((o: Job) => setOther({ ...o, at: (l, m) => `/api/job/other/${l}/${m}?name=${name}&job=${o.revision}` }))
+      .then((o: Job) => setOther({ ...o, at: (l, m) => `/api/job/other/${l}/${m}?name=${name}&job=${o.key}` }))
       .catch((e: Error) => setWhy(e.message));
   }, [chosen.value, job.revision]);
   return (

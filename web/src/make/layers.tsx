@@ -15,7 +15,7 @@ const cache = new Map<string, Promise<ImageData | null>>();
 export function load(job: Job, l: number, material: number): Promise<ImageData | null> {
   const there = job.manifest.layers[l]?.images.some((i) => i.material === material);
   if (!there) return Promise.resolve(null);
-  const address = job.at ? job.at(l, material) : `/api/job/layers/${l}/${material}?job=${job.revision}`;
+  const address = job.at ? job.at(l, material) : `/api/job/layers/${l}/${material}?job=${job.key}`;
   let entry = cache.get(address);
   if (!entry) {
     entry = read(address);
@@ -25,7 +25,7 @@ export function load(job: Job, l: number, material: number): Promise<ImageData |
   return entry;
 }
 
-/// Null if the image is not there any more, as of a job that was being sliced.
+/// Null if the image is not there any more, as of a job that was being sliced, or has been replaced.
 async function read(address: string): Promise<ImageData | null> {
   const answer = await fetch(address);
   if (answer.status !== 200) return null;

@@ -234,10 +234,10 @@ export function Stack({ job, openLayers }: { job: Job; openLayers: () => void })
       return;
     }
     shown.current = view;
-    api(`/api/job/part?job=${job.revision}`)
+    api(`/api/job/part?job=${job.key}`)
       .then((r) => r.arrayBuffer())
       .then((buffer) => {
-        if (gone) return;
+        if (gone || !buffer.byteLength) return; // empty: of a job that has been replaced
         view.show(partOf(buffer, null).part);
         view.mark(issues.flatMap((issue, k) => (marks.current[k] ? [{ element: marks.current[k]!, issue }] : [])));
         setState('shown');
