@@ -9,41 +9,12 @@
 namespace pliant::linalg {
 namespace {
 
-std::span<const int> neighbours(const BlockRows& matrix, int node) {
-    return {matrix.column.data() + matrix.start[node], matrix.column.data() + matrix.start[node + 1]};
-}
-
-/// Groups are whole neighbourhoods of which no node is taken yet; remaining nodes join an adjacent group.
-Aggregates take_neighbourhoods(const BlockRows& matrix) {
-    const int nodes = matrix.rows();
-    Aggregates result{std::vector<int>(static_cast<std::size_t>(nodes), -1)};
-    auto& of = result.of_node;
-    for (int i = 0; i < nodes; ++i) {
-        bool untouched = true;
-        for (const int j : neighbours(matrix, i)) untouched = untouched && of[j] < 0;
-        if (!untouched) continue;
-        for (const int j : neighbours(matrix, i)) of[j] = result.count;
-        ++result.count;
-    }
-    const std::vector<int> first = of;
-    for (int i = 0; i < nodes; ++i) {
-        if (of[i] >= 0) continue;
-        for (const int j : neighbours(matrix, i)) {
-            if (of[i] < 0) of[i] = first[j];
-        }
-    }
-    for (int i = 0; i < nodes; ++i) {
-        if (of[i] >= 0) continue;
-        for (const int j : neighbours(matrix, i)) {
-            if (of[j] < 0) of[j] = result.count;
-        }
-        ++result.count;
-    }
-    return result;
+std::span<const int> neighbours(const Neighbours& all, int node) {
+    return all.column.subspan(all.start[node], all.start[node + 1] - all.start[node]);
 }
 
 /// Merges each group with the unpaired group it is coupled to most strongly.
-Aggregates pair_up(const BlockRows& matrix, const Aggregates& groups) {
+Aggregates pair_up(const Neighbours& all, const Aggregates& groups) {
     const Lists nodes = members_of(groups.of_node, groups.count);
     std::vector<int> pair(static_cast<std::size_t>(groups.count), -1), couplings(pair.size(), 0), seen;
     int count = 0;
@@ -51,7 +22,7 @@ Aggregates pair_up(const BlockRows& matrix, const Aggregates& groups) {
         if (pair[g] >= 0) continue;
         pair[g] = count++;
         for (const int i : nodes[static_cast<std::size_t>(g)]) {
-            for (const int j : neighbours(matrix, i)) {
+            for (const int j : neighbours(all, i)) {
                 const int h = groups.of_node[j];
                 if (pair[h] < 0 && couplings[h]++ == 0) seen.push_back(h);
             }
@@ -77,10 +48,40 @@ bool too_many(int groups, int nodes) {
 
 }  // namespace
 
+/// Groups are whole neighbourhoods of which no node is taken yet; remaining nodes join an adjacent group.
+Aggregates take_neighbourhoods(const Neighbours& all) {
+    const int nodes = static_cast<int>(all.start.size()) - 1;
+    Aggregates result{std::vector<int>(static_cast<std::size_t>(nodes), -1)};
+    auto& of = result.of_node;
+    for (int i = 0; i < nodes; ++i) {
+        bool untouched = true;
+        for (const int j : neighbours(all, i)) untouched = untouched && of[j] < 0;
+        if (!untouched) continue;
+        for (const int j : neighbours(all, i)) of[j] = result.count;
+        ++result.count;
+    }
+    const std::vector<int> first = of;
+    for (int i = 0; i < nodes; ++i) {
+        if (of[i] >= 0) continue;
+        for (const int j : neighbours(all, i)) {
+            if (of[i] < 0) of[i] = first[j];
+        }
+    }
+    for (int i = 0; i < nodes; ++i) {
+        if (of[i] >= 0) continue;
+        for (const int j : neighbours(all, i)) {
+            if (of[j] < 0) of[j] = result.count;
+        }
+        ++result.count;
+    }
+    return result;
+}
+
 Aggregates aggregate(const BlockRows& matrix) {
-    Aggregates groups = take_neighbourhoods(matrix);
+    const Neighbours all{matrix.start, matrix.column};
+    Aggregates groups = take_neighbourhoods(all);
     while (too_many(groups.count, matrix.rows())) {
-        Aggregates paired = pair_up(matrix, groups);
+        Aggregates paired = pair_up(all, groups);
         if (paired.count == groups.count) break;  // no groups are adjacent
         groups = std::move(paired);
     }

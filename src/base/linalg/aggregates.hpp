@@ -1,6 +1,7 @@
 // Aggregates of neighbouring nodes.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "base/linalg/block_rows.hpp"
@@ -14,5 +15,13 @@ struct Aggregates {
     int count = 0;
 };
 [[nodiscard]] Aggregates aggregate(const BlockRows& matrix);
+
+/// The neighbours of each node, itself included: those of i are column[start[i]] .. column[start[i + 1]].
+struct Neighbours {
+    std::span<const int> start;  ///< (nodes + 1)
+    std::span<const int> column;
+};
+/// Groups about as large as a node and its neighbours, however many there are.
+[[nodiscard]] Aggregates take_neighbourhoods(const Neighbours& neighbours);
 
 }  // namespace pliant::linalg

@@ -79,9 +79,9 @@ public:
 
 private:
     Status begin() {
-        Stopwatch watch;
         if (options_.begin) {
             now_ = *std::exchange(options_.begin, std::nullopt);
+            now_.so_far.setup_s += since_construction_.read_s();
             return {};
         }
         now_.now = {0, system_.rest()};
@@ -89,7 +89,7 @@ private:
         Step rest;
         const Controls controls = system_.controls(0);
         describe(system_, now_.now.state, controls, system_.evaluate(now_.now.state, controls), rest);
-        now_.so_far.setup_s += watch.read_s();
+        now_.so_far.setup_s += since_construction_.read_s();
         return add(std::move(rest));
     }
 

@@ -92,7 +92,7 @@ KnownPattern known_pattern(const Equilibrium& system, const FactoredLaplacian& l
     const auto& alone = laplacian.tangent_layout();
     const bool two_levels = !system.has_skew() && two_levels_are_quicker(alone->pattern, laplacian.work());
     if (memory != nullptr && memory->touching && memory->layout) return {memory->layout, memory->analysis, two_levels};
-    return {alone, laplacian.analysis(), two_levels};
+    return {alone, two_levels ? nullptr : laplacian.analysis(), two_levels};
 }
 
 Result<Linearisation> Linearisation::create(const Equilibrium& system, const State& state, const Controls& controls,

@@ -47,7 +47,6 @@ public:
 
 private:
     void begin() {
-        Stopwatch watch;
         if (options_.begin) {
             now_ = *std::exchange(options_.begin, std::nullopt);
             checks_.set_state(now_.checks);
@@ -63,7 +62,7 @@ private:
             describe(rest);
             add(std::move(rest));
         }
-        now_.so_far.setup_s += watch.read_s();
+        now_.so_far.setup_s += since_construction_.read_s();
     }
 
     /// False: it did not converge; the trajectory says why.
@@ -141,6 +140,7 @@ private:
         add_warnings(result);
     }
 
+    Stopwatch since_construction_;
     const Program& program_;
     RunOptions options_;
     Stepper stepper_;

@@ -109,8 +109,8 @@ struct Trajectory {
     std::vector<std::string> warnings;  ///< reasons not to trust the result
     std::string solver;                 ///< name of the solver that was requested or chosen; see also Step::solver
     std::vector<IterationRecord> iterations;  ///< all, in order, including those of steps that did not converge
-    double setup_s = 0;
-    double solve_s = 0;
+    double setup_s = 0;  ///< time until the first step, from the model on: matrices and their factors
+    double solve_s = 0;  ///< of the steps and of the checks at the end
 };
 
 }  // namespace pliant::sim

@@ -1,13 +1,16 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "base/core/parallel.hpp"
 #include "base/linalg/cholesky.hpp"
+#include "base/linalg/factor_size.hpp"
+#include "base/linalg/field_levels.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
+#include "simulation/solver/corner_nesting.hpp"
 #include "simulation/solver/curvature.hpp"
 
 namespace pliant::sim {
@@ -15,10 +18,11 @@ namespace pliant::sim {
 struct FactoredLaplacian::State {
     const Model* model;
     std::shared_ptr<const TangentLayout> layout;
-    linalg::Cholesky factor;
-    linalg::SymmetricPattern pattern;  ///< and values: of a factor in single precision only
-    std::vector<double> values;
-    std::vector<std::pair<int, double>> held;  ///< nodes of free pieces and objects, stiffness N/m
+    std::shared_ptr<const linalg::Analysis> analysis{};  ///< null: not needed yet
+    double work = 0;                                     ///< multiply-adds of a factorisation
+    std::optional<linalg::Cholesky> factor;
+    std::optional<linalg::FieldLevels> levels;  ///< in place of a factor
+    std::vector<std::pair<int, double>> held;   ///< nodes of free pieces and objects, stiffness N/m
     /// Which object follows which joint, starting from what is held.
     struct Follower {
         std::size_t joint = 0;
@@ -26,29 +30,14 @@ struct FactoredLaplacian::State {
         double sign = 1;  ///< of the joint's second thing; -1: of its first
     };
     std::vector<Follower> followers;
+
+    void invert(const linalg::SymmetricPattern& pattern, const std::vector<double>& values, double most_entries);
 };
 
 namespace {
 
-/// fields (3 n, k) of three components per node -= matrix times `by`, of the same shape.
-void subtract_product(const linalg::SymmetricPattern& pattern, std::span<const double> values,
-                      const Eigen::MatrixXd& by, Eigen::MatrixXd& fields) {
-    const auto nodes = static_cast<std::size_t>(pattern.nodes);
-    const auto components = static_cast<std::size_t>(3 * fields.cols());
-    parallel_for(components, 1, [&](std::size_t begin, std::size_t end) {
-        Eigen::VectorXd from(pattern.nodes), sum(pattern.nodes);
-        for (std::size_t c = begin; c < end; ++c) {
-            const Eigen::Index column = static_cast<Eigen::Index>(c / 3), component = static_cast<Eigen::Index>(c % 3);
-            const auto of = [&](auto& all) {
-                return all.col(column).reshaped(3, pattern.nodes).row(component).transpose();
-            };
-            from = of(by);
-            sum.setZero();
-            linalg::add_product(pattern, values, linalg::view(std::as_const(from)), 1, {sum.data(), nodes});
-            of(fields) -= sum;
-        }
-    });
-}
+/// Relative error, in the energy norm, of solutions on several levels: a hundredth of what steps and directions need.
+constexpr double levels_tolerance = 1e-5;
 
 /// Stiffness that holds free pieces, relative to that of their nodes.
 constexpr double small_hold = 1e-5;
@@ -137,7 +126,7 @@ private:
 
 }  // namespace
 
-FactoredLaplacian::FactoredLaplacian(const Equilibrium& system, double most_double) {
+FactoredLaplacian::FactoredLaplacian(const Equilibrium& system, double most_entries) {
     const Model& model = system.model();
     auto layout = std::make_shared<const TangentLayout>(system.lay_out_tangent());
     linalg::SymmetricPattern scalar = layout->pattern;
@@ -152,26 +141,28 @@ FactoredLaplacian::FactoredLaplacian(const Equilibrium& system, double most_doub
         double& diagonal = values[static_cast<std::size_t>(scalar.node_start[static_cast<std::size_t>(roller.free)])];
         diagonal *= 1 + (3 - roller.may_move.trace()) / 3;
     }
-    state_ = std::make_unique<State>(State{&model, std::move(layout), linalg::Cholesky(scalar), {}, {}, {}, {}});
+    state_ = std::make_unique<State>(State{&model, std::move(layout), {}, {}, {}, {}, {}, {}});
     state_->followers = order_of_joints<State::Follower>(model.description());
     hold_free_pieces(system, scalar, values);
-    factorise(std::move(scalar), std::move(values), most_double);
+    state_->invert(scalar, values, most_entries);
 }
 
-void FactoredLaplacian::factorise(linalg::SymmetricPattern pattern, std::vector<double> values, double most_double) {
-    linalg::Cholesky& factor = state_->factor;
-    if (factor.factor_entries() > most_double) {
-        factor.use(linalg::Precision::single_);
-        if (factor.factorise(values)) {
-            state_->pattern = std::move(pattern);
-            state_->values = std::move(values);
-            return factor.release_work_space();
-        }
-        factor.use(linalg::Precision::double_);
+void FactoredLaplacian::State::invert(const linalg::SymmetricPattern& pattern, const std::vector<double>& values,
+                                      double most_entries) {
+    const double full = 0.5 * pattern.nodes * pattern.nodes;  // entries of a factor without zeros
+    const linalg::FactorSize size = full > most_entries ? linalg::estimate_factor_size(pattern) : linalg::FactorSize{};
+    if (size.entries > most_entries) {
+        work = size.work;
+        const std::optional<linalg::Nesting> corners = nest_in_corners(*model);
+        levels.emplace(pattern, values, corners ? &*corners : nullptr);
+        return;
     }
+    factor.emplace(pattern);
+    work = factor->factor_work();
+    analysis = factor->analysis();
     // Positive definite by construction: every piece is held, by supports or weakly, and all weights are positive.
-    [[maybe_unused]] const bool done = factor.factorise(values);
-    factor.release_work_space();
+    [[maybe_unused]] const bool done = factor->factorise(values);
+    factor->release_work_space();
 }
 
 /// Pieces without support are weakly held at all nodes, and objects have only this stiffness: the Laplacian then gives
@@ -214,24 +205,20 @@ const std::shared_ptr<const TangentLayout>& FactoredLaplacian::tangent_layout() 
 }
 
 const std::shared_ptr<const linalg::Analysis>& FactoredLaplacian::analysis() const {
-    return state_->factor.analysis();
+    if (!state_->analysis) state_->analysis = linalg::analyse(state_->layout->pattern);
+    return state_->analysis;
 }
 
 double FactoredLaplacian::work() const {
-    return state_->factor.factor_work();
+    return state_->work;
 }
 
 void FactoredLaplacian::solve(Eigen::Ref<Eigen::MatrixXd> columns) const {
-    const auto solve_with_factor = [&](auto& all) {
-        state_->factor.solve_fields({all.data(), static_cast<std::size_t>(all.size())}, static_cast<int>(all.cols()));
-    };
-    if (state_->values.empty()) return solve_with_factor(columns);
-    // One correction in double precision: the error of the single one, squared.
-    Eigen::MatrixXd left = columns;
-    solve_with_factor(columns);
-    subtract_product(state_->pattern, state_->values, columns, left);
-    solve_with_factor(left);
-    columns += left;
+    const std::span<double> fields(columns.data(), static_cast<std::size_t>(columns.size()));
+    if (state_->levels)
+        state_->levels->solve(fields, static_cast<int>(columns.cols()), levels_tolerance);
+    else
+        state_->factor->solve_fields(fields, static_cast<int>(columns.cols()));
 }
 
 Eigen::VectorXd FactoredLaplacian::follow(const Equilibrium& system, const Eigen::VectorXd& support_motion) const {

@@ -21,11 +21,7 @@ using Effort = TangentInverse::Effort;
 class Newton final : public Curvature, private NewtonRates {
 public:
     Newton(const Equilibrium& system, const FactoredLaplacian& laplacian)
-        : system_(&system),
-          laplacian_(&laplacian),
-          layout_(laplacian.tangent_layout()),
-          analysis_(laplacian.analysis()),
-          rotation_(system, laplacian) {
+        : system_(&system), laplacian_(&laplacian), layout_(laplacian.tangent_layout()), rotation_(system, laplacian) {
         corners_ = nest_in_corners(system.model());
         if (corners_ && corners_->coarse_nodes > most_corners) corners_.reset();
         two_levels_ = starts_on_two_levels();
@@ -159,7 +155,7 @@ private:
     [[nodiscard]] std::unique_ptr<TangentInverse> make_inverse() {
         if (two_levels_ && corners_) return make_nested_inverse(layout_->pattern, *corners_);
         if (two_levels_) return make_two_level_inverse(layout_->pattern);
-        if (!analysis_) analysis_ = linalg::analyse(layout_->pattern);
+        if (!analysis_) analysis_ = room_for_ ? linalg::analyse(layout_->pattern) : laplacian_->analysis();
         return make_direct_inverse(analysis_, system_->has_skew());
     }
 
@@ -324,7 +320,7 @@ private:
                                      : std::make_shared<const TangentLayout>(system_->lay_out_tangent(*room_for_));
         if (layout == layout_ && known.rates.two_levels_ == two_levels_) return true;
         layout_ = std::move(layout);
-        analysis_ = room_for_ ? known.analysis : laplacian_->analysis();
+        analysis_ = room_for_ ? known.analysis : nullptr;
         two_levels_ = known.rates.two_levels_;
         inverse_ = make_inverse();
         return false;

@@ -1,0 +1,265 @@
+#include "base/linalg/field_levels.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "base/core/aligned_array.hpp"
+#include "base/core/parallel.hpp"
+#include "base/linalg/aggregates.hpp"
+#include "base/linalg/cholesky.hpp"
+#include "base/linalg/interleaved.hpp"
+#include "base/linalg/scalar_rows.hpp"
+
+namespace pliant::linalg {
+namespace {
+
+constexpr std::size_t grain = 4096;       // nodes per parallel piece
+constexpr float smoothing_share = 1.8F;   // of a step that removes the error of the largest eigenvalue; below 2
+constexpr float safety_of_powers = 1.1F;  // they approach that eigenvalue from below
+constexpr int powers = 10;
+constexpr int few_nodes = 20000;      // these are factorised
+constexpr int most_iterations = 100;  // some ten do
+
+/// Three components of a node and a zero, which the processor takes at once.
+using Numbers = AlignedArray<float>;
+using At = Eigen::Map<Eigen::Array4f, Eigen::Aligned16>;
+
+At at(const Numbers& field, std::size_t node) {
+    return At(field.data() + 4 * node);
+}
+
+/// body(i) for all i below `count`, on all cores.
+template <class Body>
+void for_nodes(std::size_t count, const Body& body) {
+    parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) body(i);
+    });
+}
+
+struct Level {
+    explicit Level(ScalarRows of) : matrix(std::move(of)), inverse_diagonal(matrix.diagonal_inverses()) {
+        for (Numbers* field : {&side, &x, &rest}) field->resize(4 * nodes());
+        find_largest();
+    }
+    [[nodiscard]] std::size_t nodes() const { return matrix.rows(); }
+
+    void multiply(const Numbers& from, Numbers& to) const {
+        for_nodes(nodes(), [&](std::size_t i) { at(to, i) = matrix.row_product(i, from.data()); });
+    }
+    void find_largest();
+    /// One step of Jacobi's iteration, from x = 0 and from where x is.
+    void smoothe_from_zero();
+    void smoothe();
+
+    ScalarRows matrix;
+    Numbers inverse_diagonal;              ///< (nodes)
+    float largest = 0;                     ///< eigenvalue of D^-1 A
+    ScalarRows prolongation, restriction;  ///< to and from the next level
+    Numbers side, x, rest;                 ///< (nodes, 4)
+};
+
+void Level::find_largest() {
+    unsigned seed = 1;
+    for (std::size_t i = 0; i < nodes(); ++i) {
+        seed = seed * 1664525U + 1013904223U;
+        at(x, i) = static_cast<float>(seed >> 8) / static_cast<float>(1U << 24) - 0.5F;
+    }
+    const auto size_of = [&](const Numbers& field) {
+        return std::sqrt(parallel_sum(nodes(), grain, [&](std::size_t begin, std::size_t end) {
+            double sum = 0;
+            for (std::size_t i = begin; i < end; ++i) sum += static_cast<double>(field[4 * i]) * field[4 * i];
+            return sum;
+        }));
+    };
+    double before = size_of(x);
+    for (int k = 0; k < powers && before > 0; ++k) {
+        multiply(x, rest);
+        for_nodes(nodes(), [&](std::size_t i) { at(rest, i) *= inverse_diagonal[i]; });
+        const double now = size_of(rest);
+        largest = std::max(largest, static_cast<float>(now / before));
+        const auto shrink = static_cast<float>(1 / now);
+        for_nodes(nodes(), [&](std::size_t i) { at(x, i) = shrink * at(rest, i); });
+        before = 1;
+    }
+    largest *= safety_of_powers;
+}
+
+void Level::smoothe_from_zero() {
+    const float share = smoothing_share / largest;
+    for_nodes(nodes(), [&](std::size_t i) { at(x, i) = share * inverse_diagonal[i] * at(side, i); });
+}
+
+void Level::smoothe() {
+    const float share = smoothing_share / largest;
+    multiply(x, rest);
+    for_nodes(nodes(), [&](std::size_t i) { at(x, i) += share * inverse_diagonal[i] * (at(side, i) - at(rest, i)); });
+}
+
+/// (1 - damping D^-1 A) times the constants on groups of neighbours.
+ScalarRows smoothed_groups(const Level& level) {
+    const Aggregates groups = take_neighbourhoods({level.matrix.start(), level.matrix.columns()});
+    const float damping = 4.0F / 3 / level.largest;
+    return ScalarRows::make(static_cast<int>(level.nodes()), groups.count, [&](int i, auto& put) {
+        const auto [columns, values] = level.matrix.row(static_cast<std::size_t>(i));
+        const float share = damping * level.inverse_diagonal[static_cast<std::size_t>(i)];
+        put(groups.of_node[static_cast<std::size_t>(i)], 1.0);
+        for (std::size_t k = 0; k < columns.size(); ++k)
+            put(groups.of_node[static_cast<std::size_t>(columns[k])], static_cast<double>(-share * values[k]));
+    });
+}
+
+/// Each node as the mean of its ends.
+ScalarRows nested(const Nesting& corners) {
+    return ScalarRows::make(static_cast<int>(corners.ends.size()), corners.coarse_nodes, [&](int i, auto& put) {
+        for (const int end : corners.ends[static_cast<std::size_t>(i)]) {
+            if (end >= 0) put(end, 0.5);
+        }
+    });
+}
+
+std::vector<double> sums_of_rows(const SymmetricPattern& pattern, std::span<const double> values) {
+    std::vector<double> sums(static_cast<std::size_t>(pattern.nodes), 0.0);
+    const std::vector<double> ones(sums.size(), 1.0);
+    add_product(pattern, values, ones, 1, sums);
+    return sums;
+}
+
+}  // namespace
+
+struct FieldLevels::State {
+    State(const SymmetricPattern& pattern, std::span<const double> values, const Nesting* corners)
+        : row_sums(sums_of_rows(pattern, values)) {
+        levels.emplace_back(ScalarRows::of(pattern, values));
+        while (levels.back().nodes() > few_nodes) {
+            Level& level = levels.back();
+            level.prolongation = corners != nullptr && levels.size() == 1 ? nested(*corners) : smoothed_groups(level);
+            level.restriction = level.prolongation.transposed();
+            if (level.restriction.rows() > level.nodes() / 2) break;  // hardly any nodes are neighbours
+            levels.emplace_back(coarse_product(level.restriction, level.matrix, level.prolongation));
+        }
+        const auto [last_pattern, last_values] = levels.back().matrix.lower_triangle();
+        last = std::make_unique<Cholesky>(last_pattern, Precision::single_);
+        if (!last->factorise(last_values)) {
+            last->use(Precision::double_);
+            [[maybe_unused]] const bool done = last->factorise(last_values);
+        }
+        last->release_work_space();
+        last_side.resize(3 * levels.back().nodes());
+        for (Interleaved<double>* field : {&residual, &direction, &product}) field->resize(3 * levels.front().nodes());
+    }
+
+    /// M^-1 of the side of a level, in its x.
+    void apply(std::size_t at_level);
+    /// direction <- M^-1 residual + keep direction; returns the product of the residual and the former.
+    double precondition();
+    int solve(double* field, double tolerance);
+    /// Row i of the matrix times the direction. By differences from the node's own motion, of which the row sum is
+    /// left: a rounded matrix would hold a body that moves as a whole.
+    [[nodiscard]] Eigen::Array3d force(std::size_t i) const;
+
+    std::vector<double> row_sums;  ///< of the matrix before it was rounded
+    std::vector<Level> levels;
+    std::unique_ptr<Cholesky> last;
+    std::vector<double> last_side;  ///< (nodes, 3)
+    Interleaved<double> residual, direction, product;
+};
+
+void FieldLevels::State::apply(std::size_t at_level) {
+    Level& level = levels[at_level];
+    if (at_level + 1 == levels.size()) {
+        for (std::size_t i = 0; i < level.nodes(); ++i)
+            for (std::size_t k = 0; k < 3; ++k) last_side[3 * i + k] = static_cast<double>(level.side[4 * i + k]);
+        last->solve_fields(last_side, 1);
+        for (std::size_t i = 0; i < level.nodes(); ++i) {
+            for (std::size_t k = 0; k < 3; ++k) level.x[4 * i + k] = static_cast<float>(last_side[3 * i + k]);
+            level.x[4 * i + 3] = 0;
+        }
+        return;
+    }
+    Level& next = levels[at_level + 1];
+    level.smoothe_from_zero();
+    level.multiply(level.x, level.rest);
+    for_nodes(level.nodes(), [&](std::size_t i) { at(level.rest, i) = at(level.side, i) - at(level.rest, i); });
+    for_nodes(next.nodes(),
+              [&](std::size_t c) { at(next.side, c) = level.restriction.row_product(c, level.rest.data()); });
+    apply(at_level + 1);
+    for_nodes(level.nodes(),
+              [&](std::size_t i) { at(level.x, i) += level.prolongation.row_product(i, next.x.data()); });
+    level.smoothe();
+}
+
+double FieldLevels::State::precondition() {
+    Level& level = levels.front();
+    for_nodes(level.nodes(), [&](std::size_t i) {
+        const double* from = residual.data() + 3 * i;
+        at(level.side, i) =
+            Eigen::Array4f(static_cast<float>(from[0]), static_cast<float>(from[1]), static_cast<float>(from[2]), 0.0F);
+    });
+    apply(0);
+    return parallel_sum(level.nodes(), grain, [&](std::size_t begin, std::size_t end) {
+        double sum = 0;
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t k = 0; k < 3; ++k) sum += residual[3 * i + k] * static_cast<double>(level.x[4 * i + k]);
+        return sum;
+    });
+}
+
+Eigen::Array3d FieldLevels::State::force(std::size_t i) const {
+    const auto motion = [&](std::size_t node) { return Eigen::Map<const Eigen::Array3d>(direction.data() + 3 * node); };
+    const auto [columns, values] = levels.front().matrix.row(i);
+    const Eigen::Array3d own = motion(i);
+    Eigen::Array3d sum = row_sums[i] * own;
+    for (std::size_t k = 0; k < columns.size(); ++k)
+        sum += static_cast<double>(values[k]) * (motion(static_cast<std::size_t>(columns[k])) - own);
+    return sum;
+}
+
+int FieldLevels::State::solve(double* field, double tolerance) {
+    const Level& level = levels.front();
+    const std::size_t size = 3 * level.nodes();
+    for_numbers(size, [&](std::size_t i) {
+        residual[i] = field[i];
+        field[i] = 0;
+        direction[i] = 0;
+    });
+    double left = precondition(), keep = 0;
+    const double enough = tolerance * tolerance * left;
+    int iterations = 0;
+    while (left > enough && iterations < most_iterations) {
+        ++iterations;
+        for_nodes(level.nodes(), [&](std::size_t i) {
+            for (std::size_t k = 0; k < 3; ++k)
+                direction[3 * i + k] = static_cast<double>(level.x[4 * i + k]) + keep * direction[3 * i + k];
+        });
+        for_nodes(level.nodes(), [&](std::size_t i) { Eigen::Map<Eigen::Array3d>(product.data() + 3 * i) = force(i); });
+        const double curvature = dot(direction, product, size);
+        if (!(curvature > 0)) break;
+        const double advance = left / curvature;
+        for_numbers(size, [&](std::size_t i) {
+            field[i] += advance * direction[i];
+            residual[i] -= advance * product[i];
+        });
+        const double before = std::exchange(left, precondition());
+        keep = left / before;
+    }
+    return iterations;
+}
+
+FieldLevels::FieldLevels(const SymmetricPattern& pattern, std::span<const double> values, const Nesting* corners)
+    : state_(std::make_unique<State>(pattern, values, corners)) {}
+FieldLevels::FieldLevels(FieldLevels&&) noexcept = default;
+FieldLevels& FieldLevels::operator=(FieldLevels&&) noexcept = default;
+FieldLevels::~FieldLevels() = default;
+
+int FieldLevels::solve(std::span<double> fields, int count, double tolerance) {
+    int most = 0;
+    const std::size_t size = 3 * state_->levels.front().nodes();
+    for (std::size_t c = 0; c < static_cast<std::size_t>(count); ++c)
+        most = std::max(most, state_->solve(fields.data() + c * size, tolerance));
+    return most;
+}
+
+}  // namespace pliant::linalg
