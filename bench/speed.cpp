@@ -1,7 +1,8 @@
 // The tables of docs/performance.md, made again: frames, cold starts beside CalculiX, and how time and memory grow with
 // the mesh. Every case runs in a process of its own, so that its memory is its own; every row says what was reached.
-//   build/release/bench/pliant_speed [frames|elements|cold|fingers|contact|size [TETS [PNG]]|huge [SHARE]]
-// all but huge, or one table; sizes up to TETS, and a plot of them on one core and on two; a share of the huge ones
+//   build/release/bench/pliant_speed [frames|elements|cold|fingers|contact|size [TETS [PNG]]|huge [SHARE [CORES]]]
+// all but huge, or one table; sizes up to TETS, and a plot of them on one core and on two; a share of the huge ones, on two
+// or so many cores
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/resource.h>
@@ -408,9 +409,9 @@ void sizes(double most, const std::string& picture) {
     fmt::print(stderr, "{} could not be written\n", picture);
 }
 
-/// What two cores and 24 GiB hold: ten million linear tets, two million quadratic ones, to 1e-3. An optional share of
-/// each, for a trial.
-void huge(double share) {
+/// What two cores and 24 GiB hold: ten million linear tets, two million quadratic ones, to 1e-3. Or a share of each, on
+/// some cores.
+void huge(double share, int cores) {
     struct Case {
         int order;
         Cells cells;
@@ -423,7 +424,7 @@ void huge(double share) {
     for (const Case& wanted : {Case{1, {550, 55}}, Case{2, {328, 32}}}) {
         const double along = std::cbrt(share);
         const Cells cells{static_cast<int>(wanted.cells.along * along), static_cast<int>(wanted.cells.across * along)};
-        const auto found = cold_start(cells, wanted.order, 1e-3, 2);
+        const auto found = cold_start(cells, wanted.order, 1e-3, cores);
         if (!found) {
             fmt::print("| {:.0f} | {} | did not converge, or memory ended |\n", cells.tets(), wanted.order);
             continue;
@@ -445,5 +446,5 @@ int main(int argc, char** argv) {
     if (only.empty() || only == "fingers") fingers();
     if (only.empty() || only == "contact") contact_price();
     if (only.empty() || only == "size") sizes(argc > 2 ? std::atof(argv[2]) : 3e5, argc > 3 ? argv[3] : "");
-    if (only == "huge") huge(argc > 2 ? std::atof(argv[2]) : 1);
+    if (only == "huge") huge(argc > 2 ? std::atof(argv[2]) : 1, argc > 3 ? std::atoi(argv[3]) : 2);
 }

@@ -231,8 +231,8 @@ void add_make_routes(std::vector<Route>& routes) {
     routes.push_back({"GET", "/api/printer", "a built-in printer or one of the folder: ?name=", json, false, printer});
     routes.push_back({"POST", "/api/job/cancel", "cancels slicing", json, true, cancel});
     routes.push_back({"GET", "/api/job", "the job: manifest, plan, one swap, issues", json, false, job});
-    routes.push_back({"GET", "/api/job/layers/{layer}/{material}", "one image; 204 without content if it is not of job ?job=, its key",
-                      "image/png", false, image});
+    routes.push_back({"GET", "/api/job/layers/{layer}/{material}",
+                      "one image; 204 without content if it is not of job ?job=, its key", "image/png", false, image});
     routes.push_back({"GET", "/api/job/other", "a job to compare with: ?name= of the folder; the one before without it",
                       json, false, other});
     routes.push_back({"GET", "/api/job/other/{layer}/{material}", "one image of it", "image/png", false, other_image});

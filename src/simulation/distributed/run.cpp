@@ -219,6 +219,7 @@ private:
         return status;
     }
 
+    Stopwatch since_construction_;
     const DistributedEquilibrium& system_;
     const Program& program_;
     RunOptions options_;

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "base/core/near.hpp"
+#include "base/core/stopwatch.hpp"
 #include "simulation/actuators/cable_path.hpp"
 #include "simulation/actuators/loads.hpp"
 #include "simulation/elements/elements.hpp"
@@ -317,6 +318,23 @@ TEST_CASE("a step that needs more than its iterations is halved") {
     const Trajectory result = solve(d, {.steps = 1, .tolerance = 1e-6, .solver = Solver::newton, .iteration_limit = 4});
     REQUIRE_MESSAGE(result.converged, result.message);
     CHECK(result.steps.back().substeps > 1);
+}
+
+TEST_CASE("setting up counts from the model on: its time and that of the steps are that of the run") {
+    Description d = bar(2);
+    d.mesh = mesh::to_quadratic(reference::kuhn_box({4 * side, side, side}, 16, 6, 6, [](Vec3) { return 0; }));
+    d.supports[0].nodes = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; });
+    d.markers.clear();
+    const auto model = Model::create(std::move(d));
+    REQUIRE(model.has_value());
+    Progress quiet;
+    Stopwatch watch;
+    const Trajectory found = run(*model, {.steps = 1}, quiet);  // nothing acts on it: the step is nearly free
+    const double all_s = watch.read_s();
+    REQUIRE(found.converged);
+    CHECK(found.setup_s > 0.05 * all_s);
+    CHECK(found.setup_s + found.solve_s <= all_s);
+    CHECK(found.setup_s + found.solve_s > 0.85 * all_s);
 }
 
 TEST_CASE("the same input gives the same bits on any number of threads") {
