@@ -1,8 +1,8 @@
 // The tables of docs/performance.md, made again: frames, cold starts beside CalculiX, and how time and memory grow with
 // the mesh. Every case runs in a process of its own, so that its memory is its own; every row says what was reached.
 //   build/release/bench/pliant_speed [frames|elements|cold|fingers|contact|size [TETS [PNG]]|huge [SHARE [CORES]]]
-// all but huge, or one table; sizes up to TETS, and a plot of them on one core and on two; a share of the huge ones, on two
-// or so many cores
+// all but huge, or one table; sizes up to TETS, and a plot of them on one core and on two; a share of the huge ones, on
+// two or so many cores
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/resource.h>

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "base/core/aligned_array.hpp"
@@ -39,9 +41,14 @@ void for_nodes(std::size_t count, const Body& body) {
     });
 }
 
+/// Of one level, (nodes, 4).
+struct Fields {
+    explicit Fields(std::size_t nodes) : side(4 * nodes), x(4 * nodes), rest(4 * nodes) {}
+    Numbers side, x, rest;
+};
+
 struct Level {
     explicit Level(ScalarRows of) : matrix(std::move(of)), inverse_diagonal(matrix.diagonal_inverses()) {
-        for (Numbers* field : {&side, &x, &rest}) field->resize(4 * nodes());
         find_largest();
     }
     [[nodiscard]] std::size_t nodes() const { return matrix.rows(); }
@@ -50,22 +57,22 @@ struct Level {
         for_nodes(nodes(), [&](std::size_t i) { at(to, i) = matrix.row_product(i, from.data()); });
     }
     void find_largest();
-    /// One step of Jacobi's iteration, from x = 0 and from where x is.
-    void smoothe_from_zero();
-    void smoothe();
+    /// One step of Jacobi's iteration for the side, from x = 0 and from where x is.
+    void smoothe_from_zero(Fields& of) const;
+    void smoothe(Fields& of) const;
 
     ScalarRows matrix;
     Numbers inverse_diagonal;              ///< (nodes)
     float largest = 0;                     ///< eigenvalue of D^-1 A
     ScalarRows prolongation, restriction;  ///< to and from the next level
-    Numbers side, x, rest;                 ///< (nodes, 4)
 };
 
 void Level::find_largest() {
+    Fields room(nodes());
     unsigned seed = 1;
     for (std::size_t i = 0; i < nodes(); ++i) {
         seed = seed * 1664525U + 1013904223U;
-        at(x, i) = static_cast<float>(seed >> 8) / static_cast<float>(1U << 24) - 0.5F;
+        at(room.x, i) = static_cast<float>(seed >> 8) / static_cast<float>(1U << 24) - 0.5F;
     }
     const auto size_of = [&](const Numbers& field) {
         return std::sqrt(parallel_sum(nodes(), grain, [&](std::size_t begin, std::size_t end) {
@@ -74,28 +81,29 @@ void Level::find_largest() {
             return sum;
         }));
     };
-    double before = size_of(x);
+    double before = size_of(room.x);
     for (int k = 0; k < powers && before > 0; ++k) {
-        multiply(x, rest);
-        for_nodes(nodes(), [&](std::size_t i) { at(rest, i) *= inverse_diagonal[i]; });
-        const double now = size_of(rest);
+        multiply(room.x, room.rest);
+        for_nodes(nodes(), [&](std::size_t i) { at(room.rest, i) *= inverse_diagonal[i]; });
+        const double now = size_of(room.rest);
         largest = std::max(largest, static_cast<float>(now / before));
         const auto shrink = static_cast<float>(1 / now);
-        for_nodes(nodes(), [&](std::size_t i) { at(x, i) = shrink * at(rest, i); });
+        for_nodes(nodes(), [&](std::size_t i) { at(room.x, i) = shrink * at(room.rest, i); });
         before = 1;
     }
     largest *= safety_of_powers;
 }
 
-void Level::smoothe_from_zero() {
+void Level::smoothe_from_zero(Fields& of) const {
     const float share = smoothing_share / largest;
-    for_nodes(nodes(), [&](std::size_t i) { at(x, i) = share * inverse_diagonal[i] * at(side, i); });
+    for_nodes(nodes(), [&](std::size_t i) { at(of.x, i) = share * inverse_diagonal[i] * at(of.side, i); });
 }
 
-void Level::smoothe() {
+void Level::smoothe(Fields& of) const {
     const float share = smoothing_share / largest;
-    multiply(x, rest);
-    for_nodes(nodes(), [&](std::size_t i) { at(x, i) += share * inverse_diagonal[i] * (at(side, i) - at(rest, i)); });
+    multiply(of.x, of.rest);
+    for_nodes(nodes(),
+              [&](std::size_t i) { at(of.x, i) += share * inverse_diagonal[i] * (at(of.side, i) - at(of.rest, i)); });
 }
 
 /// (1 - damping D^-1 A) times the constants on groups of neighbours.
@@ -147,100 +155,126 @@ struct FieldLevels::State {
             [[maybe_unused]] const bool done = last->factorise(last_values);
         }
         last->release_work_space();
-        last_side.resize(3 * levels.back().nodes());
-        for (Interleaved<double>* field : {&residual, &direction, &product}) field->resize(3 * levels.front().nodes());
     }
-
-    /// M^-1 of the side of a level, in its x.
-    void apply(std::size_t at_level);
-    /// direction <- M^-1 residual + keep direction; returns the product of the residual and the former.
-    double precondition();
-    int solve(double* field, double tolerance);
-    /// Row i of the matrix times the direction. By differences from the node's own motion, of which the row sum is
-    /// left: a rounded matrix would hold a body that moves as a whole.
-    [[nodiscard]] Eigen::Array3d force(std::size_t i) const;
 
     std::vector<double> row_sums;  ///< of the matrix before it was rounded
     std::vector<Level> levels;
     std::unique_ptr<Cholesky> last;
-    std::vector<double> last_side;  ///< (nodes, 3)
-    Interleaved<double> residual, direction, product;
+
+    /// Work space of the solutions under way, which may be several at once.
+    std::mutex lending;
+    std::vector<std::unique_ptr<Solution>> idle;
 };
 
-void FieldLevels::State::apply(std::size_t at_level) {
-    Level& level = levels[at_level];
-    if (at_level + 1 == levels.size()) {
-        for (std::size_t i = 0; i < level.nodes(); ++i)
-            for (std::size_t k = 0; k < 3; ++k) last_side[3 * i + k] = static_cast<double>(level.side[4 * i + k]);
-        last->solve_fields(last_side, 1);
-        for (std::size_t i = 0; i < level.nodes(); ++i) {
-            for (std::size_t k = 0; k < 3; ++k) level.x[4 * i + k] = static_cast<float>(last_side[3 * i + k]);
-            level.x[4 * i + 3] = 0;
-        }
-        return;
+/// One solution at a time.
+class FieldLevels::Solution {
+public:
+    explicit Solution(const State& state) : levels_(state.levels), last_(*state.last), row_sums_(state.row_sums) {
+        for (const Level& level : levels_) fields_.emplace_back(level.nodes());
+        last_side_.resize(3 * levels_.back().nodes());
+        for (Interleaved<double>* field : {&residual_, &direction_, &product_})
+            field->resize(3 * levels_.front().nodes());
     }
-    Level& next = levels[at_level + 1];
-    level.smoothe_from_zero();
-    level.multiply(level.x, level.rest);
-    for_nodes(level.nodes(), [&](std::size_t i) { at(level.rest, i) = at(level.side, i) - at(level.rest, i); });
-    for_nodes(next.nodes(),
-              [&](std::size_t c) { at(next.side, c) = level.restriction.row_product(c, level.rest.data()); });
+    /// In place; returns the number of iterations.
+    int find(double* field, double tolerance);
+
+private:
+    /// M^-1 of the side of a level, in its x.
+    void apply(std::size_t at_level);
+    void solve_last(Fields& of);
+    /// M^-1 residual, in the first x; returns the product of both.
+    double precondition();
+    /// Row i of the matrix times the direction. By differences from the node's own motion, of which the row sum is
+    /// left: a rounded matrix would hold a body that moves as a whole.
+    [[nodiscard]] Eigen::Array3d force(std::size_t i) const;
+
+    const std::vector<Level>& levels_;
+    const Cholesky& last_;
+    const std::vector<double>& row_sums_;
+    std::vector<Fields> fields_;     ///< (levels)
+    std::vector<double> last_side_;  ///< (nodes of the last level, 3)
+    Interleaved<double> residual_, direction_, product_;
+};
+
+void FieldLevels::Solution::apply(std::size_t at_level) {
+    const Level& level = levels_[at_level];
+    Fields& own = fields_[at_level];
+    if (at_level + 1 == levels_.size()) return solve_last(own);
+    Fields& next = fields_[at_level + 1];
+    level.smoothe_from_zero(own);
+    level.multiply(own.x, own.rest);
+    for_nodes(level.nodes(), [&](std::size_t i) { at(own.rest, i) = at(own.side, i) - at(own.rest, i); });
+    for_nodes(level.restriction.rows(),
+              [&](std::size_t c) { at(next.side, c) = level.restriction.row_product(c, own.rest.data()); });
     apply(at_level + 1);
-    for_nodes(level.nodes(),
-              [&](std::size_t i) { at(level.x, i) += level.prolongation.row_product(i, next.x.data()); });
-    level.smoothe();
+    for_nodes(level.nodes(), [&](std::size_t i) { at(own.x, i) += level.prolongation.row_product(i, next.x.data()); });
+    level.smoothe(own);
 }
 
-double FieldLevels::State::precondition() {
-    Level& level = levels.front();
-    for_nodes(level.nodes(), [&](std::size_t i) {
-        const double* from = residual.data() + 3 * i;
-        at(level.side, i) =
+void FieldLevels::Solution::solve_last(Fields& of) {
+    const std::size_t nodes = levels_.back().nodes();
+    for (std::size_t i = 0; i < nodes; ++i)
+        for (std::size_t k = 0; k < 3; ++k) last_side_[3 * i + k] = static_cast<double>(of.side[4 * i + k]);
+    last_.solve_fields(last_side_, 1);
+    for (std::size_t i = 0; i < nodes; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) of.x[4 * i + k] = static_cast<float>(last_side_[3 * i + k]);
+        of.x[4 * i + 3] = 0;
+    }
+}
+
+double FieldLevels::Solution::precondition() {
+    Fields& first = fields_.front();
+    const std::size_t nodes = levels_.front().nodes();
+    for_nodes(nodes, [&](std::size_t i) {
+        const double* from = residual_.data() + 3 * i;
+        at(first.side, i) =
             Eigen::Array4f(static_cast<float>(from[0]), static_cast<float>(from[1]), static_cast<float>(from[2]), 0.0F);
     });
     apply(0);
-    return parallel_sum(level.nodes(), grain, [&](std::size_t begin, std::size_t end) {
+    return parallel_sum(nodes, grain, [&](std::size_t begin, std::size_t end) {
         double sum = 0;
         for (std::size_t i = begin; i < end; ++i)
-            for (std::size_t k = 0; k < 3; ++k) sum += residual[3 * i + k] * static_cast<double>(level.x[4 * i + k]);
+            for (std::size_t k = 0; k < 3; ++k) sum += residual_[3 * i + k] * static_cast<double>(first.x[4 * i + k]);
         return sum;
     });
 }
 
-Eigen::Array3d FieldLevels::State::force(std::size_t i) const {
-    const auto motion = [&](std::size_t node) { return Eigen::Map<const Eigen::Array3d>(direction.data() + 3 * node); };
-    const auto [columns, values] = levels.front().matrix.row(i);
+Eigen::Array3d FieldLevels::Solution::force(std::size_t i) const {
+    const auto motion = [&](std::size_t node) {
+        return Eigen::Map<const Eigen::Array3d>(direction_.data() + 3 * node);
+    };
+    const auto [columns, values] = levels_.front().matrix.row(i);
     const Eigen::Array3d own = motion(i);
-    Eigen::Array3d sum = row_sums[i] * own;
+    Eigen::Array3d sum = row_sums_[i] * own;
     for (std::size_t k = 0; k < columns.size(); ++k)
         sum += static_cast<double>(values[k]) * (motion(static_cast<std::size_t>(columns[k])) - own);
     return sum;
 }
 
-int FieldLevels::State::solve(double* field, double tolerance) {
-    const Level& level = levels.front();
-    const std::size_t size = 3 * level.nodes();
+int FieldLevels::Solution::find(double* field, double tolerance) {
+    const Numbers& correction = fields_.front().x;
+    const std::size_t nodes = levels_.front().nodes(), size = 3 * nodes;
     for_numbers(size, [&](std::size_t i) {
-        residual[i] = field[i];
+        residual_[i] = field[i];
         field[i] = 0;
-        direction[i] = 0;
+        direction_[i] = 0;
     });
     double left = precondition(), keep = 0;
     const double enough = tolerance * tolerance * left;
     int iterations = 0;
     while (left > enough && iterations < most_iterations) {
         ++iterations;
-        for_nodes(level.nodes(), [&](std::size_t i) {
+        for_nodes(nodes, [&](std::size_t i) {
             for (std::size_t k = 0; k < 3; ++k)
-                direction[3 * i + k] = static_cast<double>(level.x[4 * i + k]) + keep * direction[3 * i + k];
+                direction_[3 * i + k] = static_cast<double>(correction[4 * i + k]) + keep * direction_[3 * i + k];
         });
-        for_nodes(level.nodes(), [&](std::size_t i) { Eigen::Map<Eigen::Array3d>(product.data() + 3 * i) = force(i); });
-        const double curvature = dot(direction, product, size);
+        for_nodes(nodes, [&](std::size_t i) { Eigen::Map<Eigen::Array3d>(product_.data() + 3 * i) = force(i); });
+        const double curvature = dot(direction_, product_, size);
         if (!(curvature > 0)) break;
         const double advance = left / curvature;
         for_numbers(size, [&](std::size_t i) {
-            field[i] += advance * direction[i];
-            residual[i] -= advance * product[i];
+            field[i] += advance * direction_[i];
+            residual_[i] -= advance * product_[i];
         });
         const double before = std::exchange(left, precondition());
         keep = left / before;
@@ -254,11 +288,22 @@ FieldLevels::FieldLevels(FieldLevels&&) noexcept = default;
 FieldLevels& FieldLevels::operator=(FieldLevels&&) noexcept = default;
 FieldLevels::~FieldLevels() = default;
 
-int FieldLevels::solve(std::span<double> fields, int count, double tolerance) {
+int FieldLevels::solve(std::span<double> fields, int count, double tolerance) const {
+    std::unique_ptr<Solution> solution;
+    {
+        const std::lock_guard lock(state_->lending);
+        if (!state_->idle.empty()) {
+            solution = std::move(state_->idle.back());
+            state_->idle.pop_back();
+        }
+    }
+    if (!solution) solution = std::make_unique<Solution>(*state_);
     int most = 0;
     const std::size_t size = 3 * state_->levels.front().nodes();
     for (std::size_t c = 0; c < static_cast<std::size_t>(count); ++c)
-        most = std::max(most, state_->solve(fields.data() + c * size, tolerance));
+        most = std::max(most, solution->find(fields.data() + c * size, tolerance));
+    const std::lock_guard lock(state_->lending);
+    state_->idle.push_back(std::move(solution));
     return most;
 }
 

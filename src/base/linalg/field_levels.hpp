@@ -25,12 +25,13 @@ public:
     ~FieldLevels();
 
     /// Solves in place for `count` fields, (count, nodes, 3), until the error of each, in the energy norm, is about
-    /// `tolerance` relative to the solution. Returns the most iterations that one of them took. Not for several threads
-    /// at once.
-    int solve(std::span<double> fields, int count, double tolerance);
+    /// `tolerance` relative to the solution. Returns the most iterations that one of them took. Several threads may
+    /// call it at once, each with work space of its own.
+    int solve(std::span<double> fields, int count, double tolerance) const;
 
 private:
     struct State;
+    class Solution;
     std::unique_ptr<State> state_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <thread>
 #include <vector>
 
 #include "base/core/near.hpp"
@@ -135,6 +136,15 @@ TEST_CASE("several fields are solved as each one alone, with the same bits on an
     const std::vector<double> both = solved(4, 2), one = solved(1, 1);
     CHECK(std::equal(one.begin(), one.end(), both.begin()));
     CHECK(solved(1, 2) == both);
+    // From several threads at once.
+    const FieldLevels shared(p.pattern, p.values);
+    std::vector<std::vector<double>> each(4, forces_on(p.pattern.nodes, 1));
+    {
+        std::vector<std::jthread> threads;
+        for (std::vector<double>& field : each)
+            threads.emplace_back([&shared, &field] { shared.solve(field, 1, 1e-4); });
+    }
+    for (const std::vector<double>& field : each) CHECK(field == one);
 }
 
 TEST_CASE("no force, no motion; nodes without neighbours move by their own stiffness") {

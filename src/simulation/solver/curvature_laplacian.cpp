@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <utility>
@@ -16,10 +17,11 @@
 namespace pliant::sim {
 
 struct FactoredLaplacian::State {
-    const Model* model;
+    const Model* model = nullptr;
     std::shared_ptr<const TangentLayout> layout;
-    std::shared_ptr<const linalg::Analysis> analysis{};  ///< null: not needed yet
-    double work = 0;                                     ///< multiply-adds of a factorisation
+    std::mutex analysing;
+    std::shared_ptr<const linalg::Analysis> analysis;  ///< null: not needed yet
+    double work = 0;                                   ///< multiply-adds of a factorisation
     std::optional<linalg::Cholesky> factor;
     std::optional<linalg::FieldLevels> levels;  ///< in place of a factor
     std::vector<std::pair<int, double>> held;   ///< nodes of free pieces and objects, stiffness N/m
@@ -36,8 +38,8 @@ struct FactoredLaplacian::State {
 
 namespace {
 
-/// Relative error, in the energy norm, of solutions on several levels: a hundredth of what steps and directions need.
-constexpr double levels_tolerance = 1e-5;
+/// Relative error, in the energy norm, of solutions on several levels: far below what steps and directions need.
+constexpr double levels_tolerance = 1e-6;
 
 /// Stiffness that holds free pieces, relative to that of their nodes.
 constexpr double small_hold = 1e-5;
@@ -141,7 +143,9 @@ FactoredLaplacian::FactoredLaplacian(const Equilibrium& system, double most_entr
         double& diagonal = values[static_cast<std::size_t>(scalar.node_start[static_cast<std::size_t>(roller.free)])];
         diagonal *= 1 + (3 - roller.may_move.trace()) / 3;
     }
-    state_ = std::make_unique<State>(State{&model, std::move(layout), {}, {}, {}, {}, {}, {}});
+    state_ = std::make_unique<State>();
+    state_->model = &model;
+    state_->layout = std::move(layout);
     state_->followers = order_of_joints<State::Follower>(model.description());
     hold_free_pieces(system, scalar, values);
     state_->invert(scalar, values, most_entries);
@@ -205,6 +209,7 @@ const std::shared_ptr<const TangentLayout>& FactoredLaplacian::tangent_layout() 
 }
 
 const std::shared_ptr<const linalg::Analysis>& FactoredLaplacian::analysis() const {
+    const std::lock_guard lock(state_->analysing);
     if (!state_->analysis) state_->analysis = linalg::analyse(state_->layout->pattern);
     return state_->analysis;
 }

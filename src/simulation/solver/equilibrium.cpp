@@ -379,7 +379,8 @@ void Equilibrium::fill_residual(const Balance& balance, Evaluation& e) const {
     e.out_of_balance = balance.internal + balance.driving;
     const double unbalanced = restrict_to_free(e.out_of_balance).norm();
     const double balancing = std::max({balance.internal.norm(), balance.driving.norm(), force_floor_});
-    e.residual = balancing > 0 && unbalanced > force_rounding_ ? unbalanced / balancing : 0;
+    const double residual = balancing <= 0 || unbalanced <= force_rounding_ ? 0 : unbalanced / balancing;
+    e.residual = std::isnan(residual) ? std::numeric_limits<double>::infinity() : residual;
 }
 
 double Equilibrium::potential_energy(const State& state, const Controls& controls) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <utility>
 
 #include "simulation/elements/elements.hpp"
@@ -112,11 +113,38 @@ Drive Stepper::hold(const RobotState& robot, std::size_t a, Drive::Kind kind) co
     return {kind, (model_.description().ambient_pressure_Pa - m) * g};
 }
 
+namespace {
+
+/// Measures the past states along a new path on which the last of them is at `last` and the present one at 0. States
+/// that do not lie one behind the other, as after a reversal, cannot be extrapolated together: the older are dropped.
+void measure_past(RobotState& robot, double last) {
+    constexpr double least_distance = 1e-6;
+    const double begin = robot.now.along, length = robot.past.back().along - begin;
+    std::deque<PastMoment> kept;
+    while (!robot.past.empty()) {
+        PastMoment moment = std::move(robot.past.back());
+        robot.past.pop_back();
+        if (kept.empty()) {
+            moment.along = last;
+        } else {
+            moment.along = last / length * (moment.along - begin);
+            if (!(last < 0 && moment.along < kept.front().along + least_distance * last)) break;
+        }
+        kept.push_front(std::move(moment));
+    }
+    robot.past = std::move(kept);
+}
+
+}  // namespace
+
 bool Stepper::set_course(RobotState& robot, const Inputs& wanted) const {
     const double onward = robot.before ? units_.onward_share(*robot.before, robot.inputs, wanted) : 0;
     const bool known = onward != 0 && !robot.past.empty();
+    if (known)
+        measure_past(robot, -1 / onward);
+    else
+        robot.past.clear();
     robot.now.along = 0;
-    if (known) robot.past.back().along = -1 / onward;
     return known;
 }
 
@@ -135,7 +163,7 @@ StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progres
         return report;
     }
     const double length = in_time ? wanted.time - begin.time : 1;
-    const bool onward = set_course(robot, wanted) || in_time;
+    const bool onward = in_time || set_course(robot, wanted);
     if (in_time) robot.now.along = begin.time;
     const double from = robot.now.along;
     const auto inputs_at = [&](double along) { return between(begin, wanted, (along - from) / length); };
