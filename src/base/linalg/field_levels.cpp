@@ -18,12 +18,13 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::size_t grain = 4096;       // nodes per parallel piece
-constexpr float smoothing_share = 1.8F;   // of a step that removes the error of the largest eigenvalue; below 2
-constexpr float safety_of_powers = 1.1F;  // they approach that eigenvalue from below
-constexpr int powers = 10;
+constexpr std::size_t grain = 4096;   // nodes per parallel piece
 constexpr int few_nodes = 20000;      // these are factorised
 constexpr int most_iterations = 100;  // some ten do
+
+// With each row divided by the sum of its magnitudes, no eigenvalue is above 1, and damping below 2 is stable.
+constexpr float smoothing = 1.8F;
+constexpr float smoothing_of_groups = 4.0F / 3;
 
 /// Three components of a node and a zero, which the processor takes at once.
 using Numbers = AlignedArray<float>;
@@ -48,71 +49,34 @@ struct Fields {
 };
 
 struct Level {
-    explicit Level(ScalarRows of) : matrix(std::move(of)), inverse_diagonal(matrix.diagonal_inverses()) {
-        find_largest();
-    }
+    explicit Level(ScalarRows of) : matrix(std::move(of)), inverse_sums(matrix.inverse_absolute_sums()) {}
     [[nodiscard]] std::size_t nodes() const { return matrix.rows(); }
 
     void multiply(const Numbers& from, Numbers& to) const {
         for_nodes(nodes(), [&](std::size_t i) { at(to, i) = matrix.row_product(i, from.data()); });
     }
-    void find_largest();
     /// One step of Jacobi's iteration for the side, from x = 0 and from where x is.
-    void smoothe_from_zero(Fields& of) const;
-    void smoothe(Fields& of) const;
+    void smoothe_from_zero(Fields& of) const {
+        for_nodes(nodes(), [&](std::size_t i) { at(of.x, i) = smoothing * inverse_sums[i] * at(of.side, i); });
+    }
+    void smoothe(Fields& of) const {
+        multiply(of.x, of.rest);
+        for_nodes(nodes(), [&](std::size_t i) {
+            at(of.x, i) += smoothing * inverse_sums[i] * (at(of.side, i) - at(of.rest, i));
+        });
+    }
 
     ScalarRows matrix;
-    Numbers inverse_diagonal;              ///< (nodes)
-    float largest = 0;                     ///< eigenvalue of D^-1 A
+    Numbers inverse_sums;                  ///< (nodes) of the magnitudes in each row
     ScalarRows prolongation, restriction;  ///< to and from the next level
 };
 
-void Level::find_largest() {
-    Fields room(nodes());
-    unsigned seed = 1;
-    for (std::size_t i = 0; i < nodes(); ++i) {
-        seed = seed * 1664525U + 1013904223U;
-        at(room.x, i) = static_cast<float>(seed >> 8) / static_cast<float>(1U << 24) - 0.5F;
-    }
-    const auto size_of = [&](const Numbers& field) {
-        return std::sqrt(parallel_sum(nodes(), grain, [&](std::size_t begin, std::size_t end) {
-            double sum = 0;
-            for (std::size_t i = begin; i < end; ++i) sum += static_cast<double>(field[4 * i]) * field[4 * i];
-            return sum;
-        }));
-    };
-    double before = size_of(room.x);
-    for (int k = 0; k < powers && before > 0; ++k) {
-        multiply(room.x, room.rest);
-        for_nodes(nodes(), [&](std::size_t i) { at(room.rest, i) *= inverse_diagonal[i]; });
-        const double now = size_of(room.rest);
-        largest = std::max(largest, static_cast<float>(now / before));
-        const auto shrink = static_cast<float>(1 / now);
-        for_nodes(nodes(), [&](std::size_t i) { at(room.x, i) = shrink * at(room.rest, i); });
-        before = 1;
-    }
-    largest *= safety_of_powers;
-}
-
-void Level::smoothe_from_zero(Fields& of) const {
-    const float share = smoothing_share / largest;
-    for_nodes(nodes(), [&](std::size_t i) { at(of.x, i) = share * inverse_diagonal[i] * at(of.side, i); });
-}
-
-void Level::smoothe(Fields& of) const {
-    const float share = smoothing_share / largest;
-    multiply(of.x, of.rest);
-    for_nodes(nodes(),
-              [&](std::size_t i) { at(of.x, i) += share * inverse_diagonal[i] * (at(of.side, i) - at(of.rest, i)); });
-}
-
-/// (1 - damping D^-1 A) times the constants on groups of neighbours.
+/// (1 - smoothing D^-1 A) times the constants on groups of neighbours, D the sums of magnitudes in the rows of A.
 ScalarRows smoothed_groups(const Level& level) {
     const Aggregates groups = take_neighbourhoods({level.matrix.start(), level.matrix.columns()});
-    const float damping = 4.0F / 3 / level.largest;
     return ScalarRows::make(static_cast<int>(level.nodes()), groups.count, [&](int i, auto& put) {
         const auto [columns, values] = level.matrix.row(static_cast<std::size_t>(i));
-        const float share = damping * level.inverse_diagonal[static_cast<std::size_t>(i)];
+        const float share = smoothing_of_groups * level.inverse_sums[static_cast<std::size_t>(i)];
         put(groups.of_node[static_cast<std::size_t>(i)], 1.0);
         for (std::size_t k = 0; k < columns.size(); ++k)
             put(groups.of_node[static_cast<std::size_t>(columns[k])], static_cast<double>(-share * values[k]));

@@ -10,7 +10,8 @@
 
 namespace pliant::linalg {
 
-/// Each level smooths by one step of Jacobi's iteration and corrects on the next one: the corners of quadratic tets,
+/// Each level smooths by one step of Jacobi's iteration, damped by the sum of magnitudes in each row (Baker, Falgout,
+/// Kolev and Yang 2011), which no mesh makes unstable, and corrects on the next one: the corners of quadratic tets,
 /// where there are any, and then groups of neighbouring nodes (smoothed aggregation: Vanek, Mandel and Brezina 1996);
 /// the last one is factorised. Time and memory grow with the number of nodes. For matrices like a Laplacian, whose
 /// smoothest motions are constants. Bit-identical on any number of cores.

@@ -1,5 +1,6 @@
 #include "base/linalg/scalar_rows.hpp"
 
+#include <cmath>
 #include <numeric>
 
 namespace pliant::linalg {
@@ -38,12 +39,12 @@ ScalarRows ScalarRows::of(const SymmetricPattern& pattern, std::span<const doubl
     return made;
 }
 
-AlignedArray<float> ScalarRows::diagonal_inverses() const {
+AlignedArray<float> ScalarRows::inverse_absolute_sums() const {
     AlignedArray<float> inverses(rows());
     for (std::size_t i = 0; i < rows(); ++i) {
-        const Row own = row(i);
-        const auto place = std::lower_bound(own.columns.begin(), own.columns.end(), static_cast<int>(i));
-        inverses[i] = 1 / own.values[static_cast<std::size_t>(place - own.columns.begin())];
+        float sum = 0;
+        for (const float a : row(i).values) sum += std::fabs(a);
+        inverses[i] = sum > 0 ? 1 / sum : 0;
     }
     return inverses;
 }

@@ -46,8 +46,8 @@ public:
         }
         return sum;
     }
-    /// Inverses of the diagonal (rows).
-    [[nodiscard]] AlignedArray<float> diagonal_inverses() const;
+    /// 1 / sum of |a| for each row; 0 for one of zeros.
+    [[nodiscard]] AlignedArray<float> inverse_absolute_sums() const;
     [[nodiscard]] ScalarRows transposed() const;
     /// Of a symmetric matrix.
     [[nodiscard]] std::pair<SymmetricPattern, std::vector<double>> lower_triangle() const;
