@@ -7,6 +7,7 @@
 
 #include "base/linalg/vectors.hpp"
 #include "simulation/solver/drives.hpp"
+#include "simulation/solver/residual.hpp"
 
 namespace pliant::sim::distributed {
 
@@ -141,7 +142,7 @@ Evaluation DistributedEquilibrium::evaluate(const State& state, const Controls& 
     ranks().add_up(squares);
     const double unbalanced = std::sqrt(squares[0]);
     const double balancing = std::max(std::sqrt(std::max(squares[1], squares[2])), force_floor_);
-    e.residual = balancing > 0 && unbalanced > force_rounding_ ? unbalanced / balancing : 0;
+    e.residual = relative_residual(unbalanced, balancing, force_rounding_);
     return e;
 }
 

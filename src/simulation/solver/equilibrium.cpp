@@ -11,6 +11,7 @@
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/solver/drives.hpp"
+#include "simulation/solver/residual.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -379,8 +380,7 @@ void Equilibrium::fill_residual(const Balance& balance, Evaluation& e) const {
     e.out_of_balance = balance.internal + balance.driving;
     const double unbalanced = restrict_to_free(e.out_of_balance).norm();
     const double balancing = std::max({balance.internal.norm(), balance.driving.norm(), force_floor_});
-    const double residual = balancing <= 0 || unbalanced <= force_rounding_ ? 0 : unbalanced / balancing;
-    e.residual = std::isnan(residual) ? std::numeric_limits<double>::infinity() : residual;
+    e.residual = relative_residual(unbalanced, balancing, force_rounding_);
 }
 
 double Equilibrium::potential_energy(const State& state, const Controls& controls) const {
