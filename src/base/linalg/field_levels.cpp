@@ -34,14 +34,6 @@ At at(const Numbers& field, std::size_t node) {
     return At(field.data() + 4 * node);
 }
 
-/// body(i) for all i below `count`, on all cores.
-template <class Body>
-void for_nodes(std::size_t count, const Body& body) {
-    parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) body(i);
-    });
-}
-
 /// Of one level, (nodes, 4).
 struct Fields {
     explicit Fields(std::size_t nodes) : side(4 * nodes), x(4 * nodes), rest(4 * nodes) {}
@@ -53,15 +45,15 @@ struct Level {
     [[nodiscard]] std::size_t nodes() const { return matrix.rows(); }
 
     void multiply(const Numbers& from, Numbers& to) const {
-        for_nodes(nodes(), [&](std::size_t i) { at(to, i) = matrix.row_product(i, from.data()); });
+        for_numbers(nodes(), [&](std::size_t i) { at(to, i) = matrix.row_product(i, from.data()); });
     }
     /// One step of Jacobi's iteration for the side, from x = 0 and from where x is.
     void smoothe_from_zero(Fields& of) const {
-        for_nodes(nodes(), [&](std::size_t i) { at(of.x, i) = smoothing * inverse_sums[i] * at(of.side, i); });
+        for_numbers(nodes(), [&](std::size_t i) { at(of.x, i) = smoothing * inverse_sums[i] * at(of.side, i); });
     }
     void smoothe(Fields& of) const {
         multiply(of.x, of.rest);
-        for_nodes(nodes(), [&](std::size_t i) {
+        for_numbers(nodes(), [&](std::size_t i) {
             at(of.x, i) += smoothing * inverse_sums[i] * (at(of.side, i) - at(of.rest, i));
         });
     }
@@ -167,11 +159,12 @@ void FieldLevels::Solution::apply(std::size_t at_level) {
     Fields& next = fields_[at_level + 1];
     level.smoothe_from_zero(own);
     level.multiply(own.x, own.rest);
-    for_nodes(level.nodes(), [&](std::size_t i) { at(own.rest, i) = at(own.side, i) - at(own.rest, i); });
-    for_nodes(level.restriction.rows(),
-              [&](std::size_t c) { at(next.side, c) = level.restriction.row_product(c, own.rest.data()); });
+    for_numbers(level.nodes(), [&](std::size_t i) { at(own.rest, i) = at(own.side, i) - at(own.rest, i); });
+    for_numbers(level.restriction.rows(),
+                [&](std::size_t c) { at(next.side, c) = level.restriction.row_product(c, own.rest.data()); });
     apply(at_level + 1);
-    for_nodes(level.nodes(), [&](std::size_t i) { at(own.x, i) += level.prolongation.row_product(i, next.x.data()); });
+    for_numbers(level.nodes(),
+                [&](std::size_t i) { at(own.x, i) += level.prolongation.row_product(i, next.x.data()); });
     level.smoothe(own);
 }
 
@@ -189,7 +182,7 @@ void FieldLevels::Solution::solve_last(Fields& of) {
 double FieldLevels::Solution::precondition() {
     Fields& first = fields_.front();
     const std::size_t nodes = levels_.front().nodes();
-    for_nodes(nodes, [&](std::size_t i) {
+    for_numbers(nodes, [&](std::size_t i) {
         const double* from = residual_.data() + 3 * i;
         at(first.side, i) =
             Eigen::Array4f(static_cast<float>(from[0]), static_cast<float>(from[1]), static_cast<float>(from[2]), 0.0F);
@@ -228,11 +221,11 @@ int FieldLevels::Solution::find(double* field, double tolerance) {
     int iterations = 0;
     while (left > enough && iterations < most_iterations) {
         ++iterations;
-        for_nodes(nodes, [&](std::size_t i) {
+        for_numbers(nodes, [&](std::size_t i) {
             for (std::size_t k = 0; k < 3; ++k)
                 direction_[3 * i + k] = static_cast<double>(correction[4 * i + k]) + keep * direction_[3 * i + k];
         });
-        for_nodes(nodes, [&](std::size_t i) { Eigen::Map<Eigen::Array3d>(product_.data() + 3 * i) = force(i); });
+        for_numbers(nodes, [&](std::size_t i) { Eigen::Map<Eigen::Array3d>(product_.data() + 3 * i) = force(i); });
         const double curvature = dot(direction_, product_, size);
         if (!(curvature > 0)) break;
         const double advance = left / curvature;

@@ -40,6 +40,26 @@ double tether_dt_s(const Model& model) {
     return std::sqrt(box.diagonal() / (share * g_m_s2));
 }
 
+/// Measures the past states along a new path on which the last of them is at `last` and the present one at 0. States
+/// that do not lie one behind the other, as after a reversal, cannot be extrapolated together: the older are dropped.
+void measure_past(RobotState& robot, double last) {
+    constexpr double least_distance = 1e-6;
+    const double begin = robot.now.along, length = robot.past.back().along - begin;
+    std::deque<PastMoment> kept;
+    while (!robot.past.empty()) {
+        PastMoment moment = std::move(robot.past.back());
+        robot.past.pop_back();
+        if (kept.empty()) {
+            moment.along = last;
+        } else {
+            moment.along = last / length * (moment.along - begin);
+            if (!(last < 0 && moment.along < kept.front().along + least_distance * last)) break;
+        }
+        kept.push_front(std::move(moment));
+    }
+    robot.past = std::move(kept);
+}
+
 }  // namespace
 
 /// One piece of a path.
@@ -112,30 +132,6 @@ Drive Stepper::hold(const RobotState& robot, std::size_t a, Drive::Kind kind) co
     if (kind == Drive::Kind::multiplier) return {kind, m};
     return {kind, (model_.description().ambient_pressure_Pa - m) * g};
 }
-
-namespace {
-
-/// Measures the past states along a new path on which the last of them is at `last` and the present one at 0. States
-/// that do not lie one behind the other, as after a reversal, cannot be extrapolated together: the older are dropped.
-void measure_past(RobotState& robot, double last) {
-    constexpr double least_distance = 1e-6;
-    const double begin = robot.now.along, length = robot.past.back().along - begin;
-    std::deque<PastMoment> kept;
-    while (!robot.past.empty()) {
-        PastMoment moment = std::move(robot.past.back());
-        robot.past.pop_back();
-        if (kept.empty()) {
-            moment.along = last;
-        } else {
-            moment.along = last / length * (moment.along - begin);
-            if (!(last < 0 && moment.along < kept.front().along + least_distance * last)) break;
-        }
-        kept.push_front(std::move(moment));
-    }
-    robot.past = std::move(kept);
-}
-
-}  // namespace
 
 bool Stepper::set_course(RobotState& robot, const Inputs& wanted) const {
     const double onward = robot.before ? units_.onward_share(*robot.before, robot.inputs, wanted) : 0;
