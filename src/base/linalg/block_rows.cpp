@@ -28,17 +28,15 @@ BlockRows::BlockRows(const SymmetricPattern& pattern) : start(static_cast<std::s
     });
     std::partial_sum(start.begin(), start.end(), start.begin());
     column.resize(static_cast<std::size_t>(start.back()));
-    source_.resize(column.size());
     diagonal_.resize(static_cast<std::size_t>(pattern.nodes));
+    first_pair_.assign(pattern.node_start.begin(), pattern.node_start.end() - 1);
+    left_.resize(pattern.node_row.size() - diagonal_.size());
     std::vector<int> next(start.begin(), start.end() - 1);
-    const auto put = [&](int row, int at, int pair, Source::Kind kind) {
-        column[next[row]] = at;
-        source_[next[row]++] = {pair, kind};
-    };
     visit([&](int i, int j, int k) {
         if (i == j) diagonal_[i] = next[i];
-        put(i, j, k, i == j ? Source::diagonal : Source::as_it_is);
-        if (i != j) put(j, i, k, Source::transposed);
+        if (i != j) left_[next[i] - first_pair_[i]] = k;
+        column[next[i]++] = j;
+        if (i != j) column[next[j]++] = i;
     });
     for (AlignedArray<float>* numbers : {&rounded_, &rest_}) {
         numbers->resize(9 * column.size() + 1);  // kernels read columns four rows at a time
@@ -46,22 +44,43 @@ BlockRows::BlockRows(const SymmetricPattern& pattern) : start(static_cast<std::s
     }
 }
 
-void BlockRows::set(std::span<const double> values) {
-    using Rounded = Eigen::Map<Eigen::Matrix3f>;
-    const auto block_at = [&](Source source) -> Eigen::Matrix3d {
-        const Eigen::Map<const Eigen::Matrix3d> given(values.data() + 9 * static_cast<std::size_t>(source.pair));
-        if (source.kind == Source::as_it_is) return given;
-        if (source.kind == Source::transposed) return given.transpose();
-        return given.selfadjointView<Eigen::Lower>();
+/// Calls visit(entry, block of the matrix with these values) for all entries, on all cores. Of a diagonal block the
+/// lower triangle is used.
+template <class Visit>
+void BlockRows::for_blocks(std::span<const double> values, const Visit& visit) const {
+    const auto given = [&](int pair) -> Eigen::Matrix3d {
+        return Eigen::Map<const Eigen::Matrix3d>(values.data() + 9 * static_cast<std::size_t>(pair));
+    };
+    const auto symmetric = [](const Eigen::Matrix3d& block) -> Eigen::Matrix3d {
+        return block.selfadjointView<Eigen::Lower>();
     };
     parallel_for(diagonal_.size(), grain, [&](std::size_t begin, std::size_t end) {
-        for (int k = start[begin]; k < start[end]; ++k) {
-            const Eigen::Matrix3d block = block_at(source_[k]);
-            const Eigen::Matrix3f rounded = block.cast<float>();
-            const std::size_t at = 9 * static_cast<std::size_t>(k);
-            Rounded(rounded_.data() + at) = rounded;
-            Rounded(rest_.data() + at) = (block - rounded.cast<double>()).cast<float>();
+        for (std::size_t i = begin; i < end; ++i) {
+            const int diagonal = diagonal_[i], first = first_pair_[i];
+            for (int k = start[i]; k < diagonal; ++k) visit(k, given(left_[k - first]));
+            visit(diagonal, symmetric(given(first)));
+            for (int k = diagonal + 1; k < start[i + 1]; ++k)
+                visit(k, Eigen::Matrix3d(given(first + k - diagonal).transpose()));
         }
+    });
+}
+
+void BlockRows::put(int entry, const Eigen::Matrix3d& block) const {
+    using Rounded = Eigen::Map<Eigen::Matrix3f>;
+    const Eigen::Matrix3f rounded = block.cast<float>();
+    const std::size_t at = 9 * static_cast<std::size_t>(entry);
+    Rounded(rounded_.data() + at) = rounded;
+    Rounded(rest_.data() + at) = (block - rounded.cast<double>()).cast<float>();
+}
+
+void BlockRows::set(std::span<const double> values) {
+    for_blocks(values, [&](int entry, const Eigen::Matrix3d& given) { put(entry, given); });
+}
+
+void BlockRows::move_towards(std::span<const double> values, double share) {
+    for_blocks(values, [&](int entry, const Eigen::Matrix3d& given) {
+        const Eigen::Matrix3d now = block(entry);
+        put(entry, now + share * (given - now));
     });
 }
 

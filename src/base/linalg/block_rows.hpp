@@ -22,6 +22,8 @@ public:
 
     /// Copies the values of the pattern.
     void set(std::span<const double> values);
+    /// Adds `share` of the difference from the present matrix to `values`.
+    void move_towards(std::span<const double> values, double share);
 
     [[nodiscard]] int rows() const { return static_cast<int>(start.size()) - 1; }
     [[nodiscard]] Eigen::Matrix3d block(int entry) const {
@@ -39,15 +41,15 @@ public:
     std::vector<int> column;  ///< (entries)
 
 private:
-    /// In the pattern; of a diagonal block the lower triangle is used.
-    struct Source {
-        int pair;
-        enum Kind : char { as_it_is, transposed, diagonal } kind;
-    };
+    template <class Visit>
+    void for_blocks(std::span<const double> values, const Visit& visit) const;
+    void put(int entry, const Eigen::Matrix3d& block) const;
     [[nodiscard]] RowBlocks blocks() const { return {start.data(), column.data(), rounded_.data(), rest_.data()}; }
 
-    std::vector<Source> source_;   ///< (entries) source of each entry's values
+    // Entries from the diagonal on have the order of the pattern's column of the same node; the others do not.
     std::vector<int> diagonal_;    ///< (rows) entry of the diagonal block
+    std::vector<int> first_pair_;  ///< (rows) its pair in the pattern
+    std::vector<int> left_;        ///< (entries left of the diagonal) pair in the pattern
     AlignedArray<float> rounded_;  ///< (entries, 9) each block by columns
     AlignedArray<float> rest_;     ///< (entries, 9) rounding errors of `rounded_`
 };

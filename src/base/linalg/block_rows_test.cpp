@@ -80,6 +80,17 @@ void check_blocks_and_products() {
         rows.multiply(short_x.data(), short_y.data());
         CHECK(((short_y.cast<double>() - product).array().abs() <= 1e-6 * sizes.array()).all());
 
+        std::vector<double> other_values = m.values;
+        for (double& v : other_values) v *= 3;
+        rows.move_towards(other_values, 0.25);
+        for (int i = 0; i < nodes; ++i) {
+            for (int k = rows.start[i]; k < rows.start[i + 1]; ++k) {
+                const Eigen::Matrix3d moved = 1.5 * m.dense.block<3, 3>(3 * i, 3 * rows.column[k]);
+                CHECK((rows.block(k) - moved).norm() <= 2e-14 * moved.norm());
+            }
+        }
+        rows.set(m.values);
+
         // Two interleaved vectors give the same as each alone; two numbers past the end are read.
         Eigen::VectorXd both = Eigen::VectorXd::Zero(6 * nodes + 2), both_y(6 * nodes);
         const Eigen::VectorXd other = Eigen::VectorXd::NullaryExpr(3 * nodes, [&] { return number(random); });

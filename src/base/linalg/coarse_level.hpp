@@ -11,11 +11,10 @@ namespace pliant::linalg {
 
 class CoarseLevel {
 public:
-    /// The fine level: the matrix A, as rows and as the `values` of its pattern; the node positions (nodes, 3); the
-    /// inverses of its diagonal blocks D (nodes, 9); and 4/3 of the inverse of the largest eigenvalue of D^-1 A.
+    /// The fine level: the matrix A; the node positions (nodes, 3); the inverses of its diagonal blocks D (nodes, 9);
+    /// and 4/3 of the inverse of the largest eigenvalue of D^-1 A.
     struct Fine {
         const BlockRows& matrix;
-        std::span<const double> values;
         std::span<const double> positions;
         const float* inverse_diagonal;
         float damping;
@@ -31,6 +30,9 @@ public:
     /// Pattern and values of P^T A P, as of the last set(). Blocks of 3.
     [[nodiscard]] virtual const SymmetricPattern& pattern() const = 0;
     [[nodiscard]] virtual std::span<const double> values() const = 0;
+
+    /// (nodes of the pattern, 3) where its nodes are, as of the last set(); none if they are not at places.
+    [[nodiscard]] virtual std::span<const double> positions() const { return {}; }
 
     /// coarse (size of the pattern) <- P^T fine.
     virtual void restrict(const float* fine, double* coarse) = 0;

@@ -11,7 +11,6 @@ namespace pliant::linalg {
 namespace {
 
 constexpr std::size_t grain = 1024;
-constexpr std::size_t pieces = 4;  // of the fine pairs, with separate sums
 
 /// Calls visit(pair, column, a, b) for each pair of fine nodes, each moving end a of its row and b of its column.
 template <class Visit>
@@ -31,9 +30,7 @@ void for_pairs(const SymmetricPattern& fine, const Nesting& nesting, const Visit
 
 NestedSpace::NestedSpace(const SymmetricPattern& fine, Nesting nesting) : nesting_(std::move(nesting)) {
     find_pattern(fine);
-    find_uses(fine);
     coarse_.resize(pattern_.entries());
-    sums_.resize(pieces * coarse_.size());
 }
 
 void NestedSpace::find_pattern(const SymmetricPattern& fine) {
@@ -42,10 +39,10 @@ void NestedSpace::find_pattern(const SymmetricPattern& fine) {
     };
     const auto coarse = static_cast<std::size_t>(nesting_.coarse_nodes);
     std::vector<std::vector<int>> on(coarse), later(coarse);
-    std::vector<int> own(coarse, 0);
+    corner_.assign(coarse, 0);
     for (int i = 0; i < fine.nodes; ++i) {
         const auto [a, b] = ends_of(i);
-        if (a == b && a >= 0) own[static_cast<std::size_t>(a)] = i;
+        if (a == b && a >= 0) corner_[static_cast<std::size_t>(a)] = i;
         if (a >= 0) on[static_cast<std::size_t>(a)].push_back(i);
         if (b >= 0 && b != a) on[static_cast<std::size_t>(b)].push_back(i);
     }
@@ -62,64 +59,37 @@ void NestedSpace::find_pattern(const SymmetricPattern& fine) {
         pattern_.node_row.push_back(static_cast<int>(c));
         pattern_.node_row.insert(pattern_.node_row.end(), later[c].begin(), later[c].end());
         pattern_.node_start.push_back(static_cast<int>(pattern_.node_row.size()));
-        if (!fine.points.empty()) pattern_.points.push_back(fine.points[static_cast<std::size_t>(own[c])]);
+        if (!fine.points.empty()) pattern_.points.push_back(fine.points[static_cast<std::size_t>(corner_[c])]);
     }
 }
 
-void NestedSpace::find_uses(const SymmetricPattern& fine) {
-    std::vector<int> count(fine.node_row.size() + 1, 0);
-    for_pairs(fine, nesting_, [&](int pair, int row, int a, int b) {
-        const bool diagonal = pair == fine.node_start[row];
-        if (diagonal && a < b) return;  // the upper triangle of a diagonal block
-        const Use use{pattern_.find(std::max(a, b), std::min(a, b)), 0.25F,
-                      diagonal ? Use::symmetric
-                      : a == b ? Use::both
-                      : a > b  ? Use::as_it_is
-                               : Use::transposed};
-        int& used = count[static_cast<std::size_t>(pair) + 1];
-        const auto known = std::find_if(use_.end() - used, use_.end(), [&](const Use& other) {
-            return other.target == use.target && other.kind == use.kind;
-        });
-        if (known != use_.end()) {
-            known->share += use.share;
-            return;
+void NestedSpace::set(const Fine& fine) {
+    positions_.resize(3 * corner_.size());
+    parallel_for(corner_.size(), grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c) {
+            std::copy_n(fine.positions.data() + 3 * static_cast<std::size_t>(corner_[c]), 3, positions_.data() + 3 * c);
+            const auto first = static_cast<std::size_t>(pattern_.node_start[c]);
+            double* const sums = coarse_.data() + 9 * first;
+            std::fill_n(sums, 9 * (static_cast<std::size_t>(pattern_.node_start[c + 1]) - first), 0.0);
+            for (const int i : on_[c]) add_row(fine.matrix, static_cast<int>(c), i, sums);
         }
-        use_.push_back(use);
-        ++used;
     });
-    use_start_.resize(count.size());
-    std::partial_sum(count.begin(), count.end(), use_start_.begin());
 }
 
-void NestedSpace::set(const Fine& fine) {
-    using Block = Eigen::Matrix3d;
-    const std::size_t size = coarse_.size(), pairs = use_start_.size() - 1;
-    const std::size_t piece = (pairs + pieces - 1) / pieces;
-    parallel_for(pairs, piece, [&](std::size_t begin, std::size_t end) {
-        double* sums = sums_.data() + begin / piece * size;
-        std::fill_n(sums, size, 0.0);
-        for (std::size_t k = begin; k < end; ++k) {
-            const Eigen::Map<const Block> block(fine.values.data() + 9 * k);
-            for (int u = use_start_[k]; u < use_start_[k + 1]; ++u) {
-                const Use& use = use_[static_cast<std::size_t>(u)];
-                Eigen::Map<Block> sum(sums + 9 * static_cast<std::size_t>(use.target));
-                const auto share = static_cast<double>(use.share);
-                if (use.kind == Use::symmetric) {
-                    sum += share * Block(block.selfadjointView<Eigen::Lower>());
-                    continue;
-                }
-                if (use.kind != Use::transposed) sum += share * block;
-                if (use.kind != Use::as_it_is) sum += share * block.transpose();
-            }
+/// What row `fine` of the matrix adds to the blocks of column `coarse`, from the diagonal on.
+void NestedSpace::add_row(const BlockRows& matrix, int coarse, int fine, double* sums) const {
+    const auto begin = pattern_.node_row.begin() + pattern_.node_start[coarse],
+               end = pattern_.node_row.begin() + pattern_.node_start[coarse + 1];
+    const double own = share(fine);
+    for (int k = matrix.start[fine]; k < matrix.start[fine + 1]; ++k) {
+        const int j = matrix.column[k];
+        const std::array<int, 2>& ends = nesting_.ends[static_cast<std::size_t>(j)];
+        for (std::size_t e = ends[0] == ends[1] ? 1 : 0; e < 2; ++e) {
+            if (ends[e] < coarse) continue;
+            const auto at = static_cast<std::size_t>(std::lower_bound(begin, end, ends[e]) - begin);
+            Eigen::Map<Eigen::Matrix3d>(sums + 9 * at) += own * share(j) * matrix.block(k).transpose();
         }
-    });
-    const std::size_t used = (pairs + piece - 1) / piece;
-    parallel_for(size, 9 * grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            coarse_[k] = sums_[k];
-            for (std::size_t p = 1; p < used; ++p) coarse_[k] += sums_[p * size + k];
-        }
-    });
+    }
 }
 
 void NestedSpace::restrict(const float* fine, double* coarse) {
@@ -127,9 +97,8 @@ void NestedSpace::restrict(const float* fine, double* coarse) {
         for (std::size_t c = begin; c < end; ++c) {
             std::array<float, 3> sum{};
             for (const int i : on_[c]) {
-                const auto& ends = nesting_.ends[static_cast<std::size_t>(i)];
-                const float share = ends[0] == ends[1] ? 1.0F : 0.5F;
-                for (std::size_t k = 0; k < 3; ++k) sum[k] += share * fine[3 * static_cast<std::size_t>(i) + k];
+                const auto weight = static_cast<float>(share(i));
+                for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * fine[3 * static_cast<std::size_t>(i) + k];
             }
             for (std::size_t k = 0; k < 3; ++k) coarse[3 * c + k] = static_cast<double>(sum[k]);
         }

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "base/core/aligned_array.hpp"
 #include "base/linalg/coarse_level.hpp"
 
 namespace pliant::linalg {
@@ -28,27 +27,25 @@ public:
     [[nodiscard]] bool turn(std::span<const double>) override { return false; }
     [[nodiscard]] const SymmetricPattern& pattern() const override { return pattern_; }
     [[nodiscard]] std::span<const double> values() const override { return coarse_; }
+    [[nodiscard]] std::span<const double> positions() const override { return positions_; }
     void restrict(const float* fine, double* coarse) override;
     void add_prolonged(const double* coarse, float* fine) const override;
 
 private:
-    /// What a fine block adds to a coarse one: `share` times itself, its transpose, or both; of a diagonal block the
-    /// lower triangle is used.
-    struct Use {
-        int target;
-        float share;
-        enum Kind : int { as_it_is, transposed, both, symmetric } kind;
-    };
     void find_pattern(const SymmetricPattern& fine);
-    void find_uses(const SymmetricPattern& fine);
+    /// How much of a coarse node's motion a fine node makes.
+    [[nodiscard]] double share(int fine) const {
+        const auto& ends = nesting_.ends[static_cast<std::size_t>(fine)];
+        return ends[0] == ends[1] ? 1.0 : 0.5;
+    }
+    void add_row(const BlockRows& matrix, int coarse, int fine, double* sums) const;
 
     Nesting nesting_;
     SymmetricPattern pattern_;
-    Lists on_;                    ///< (coarse nodes) fine nodes that depend on each
-    std::vector<int> use_start_;  ///< (fine pairs + 1)
-    std::vector<Use> use_;
+    Lists on_;                 ///< (coarse nodes) fine nodes that depend on each
+    std::vector<int> corner_;  ///< (coarse nodes) the fine node at the same place
+    std::vector<double> positions_;
     std::vector<double> coarse_;
-    AlignedArray<double> sums_;  ///< (pieces, entries) work space
 };
 
 }  // namespace pliant::linalg

@@ -4,7 +4,9 @@
 #include <tbb/global_control.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 using namespace pliant;
 using namespace pliant::linalg;
@@ -56,8 +58,13 @@ Eigen::MatrixXd dense(const SymmetricPattern& p, std::span<const double> values)
     return result.selfadjointView<Eigen::Lower>();
 }
 
-void set(NestedSpace& space, const BlockRows& rows, const Matrix& m) {
-    space.set({rows, m.values, {}, nullptr, 0});
+/// Node i is at (i, 2 i, -i).
+void set(NestedSpace& space, const SymmetricPattern& pattern, const Matrix& m) {
+    BlockRows rows(pattern);
+    rows.set(m.values);
+    std::vector<double> positions;
+    for (int i = 0; i < pattern.nodes; ++i) positions.insert(positions.end(), {1.0 * i, 2.0 * i, -1.0 * i});
+    space.set({rows, positions, nullptr, 0});
 }
 
 }  // namespace
@@ -66,10 +73,12 @@ TEST_CASE("the coarse matrix is exact for motions of the corners") {
     const SymmetricPattern fine = pattern();
     const Matrix m = numbers(fine);
     NestedSpace space(fine, nesting);
-    set(space, BlockRows(fine), m);
+    set(space, fine, m);
     const Eigen::MatrixXd P = prolongation();
     const Eigen::MatrixXd expected = P.transpose() * m.dense * P;
     CHECK((dense(space.pattern(), space.values()) - expected).cwiseAbs().maxCoeff() < 1e-14 * m.dense.norm());
+    const std::vector<double> corners = {0, 0, 0, 3, 6, -3, 5, 10, -5};
+    CHECK(std::ranges::equal(space.positions(), corners));
 }
 
 TEST_CASE("restriction is the transpose of prolongation") {
@@ -106,7 +115,7 @@ TEST_CASE("long sums are the same bits on any number of threads") {
     for (const std::size_t threads : {1, 2, 4}) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
         NestedSpace space(fine, chain);
-        set(space, BlockRows(fine), m);
+        set(space, fine, m);
         const std::vector<double> values(space.values().begin(), space.values().end());
         if (threads == 1) first = values;
         CHECK(values == first);

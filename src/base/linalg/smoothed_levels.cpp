@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/core/parallel.hpp"
+#include "base/linalg/coarse_space.hpp"
 #include "base/linalg/dense.hpp"
 
 namespace pliant::linalg {
@@ -31,12 +32,12 @@ void fill_randomly(Interleaved<float>& v, std::size_t size) {
 }  // namespace
 
 SmoothedLevels::SmoothedLevels(const SymmetricPattern& pattern, BlockRows matrix, std::unique_ptr<CoarseLevel> space,
-                               Kind kind)
+                               std::unique_ptr<CoarseSolver> coarse, Kind kind)
     : size_(static_cast<std::size_t>(pattern.size())),
       kind_(kind),
       matrix_(std::move(matrix)),
       space_(std::move(space)),
-      coarse_(space_->pattern(), Precision::single_),
+      coarse_(std::move(coarse)),
       inverse_diagonal_(9 * static_cast<std::size_t>(pattern.nodes)),
       coarse_size_(static_cast<std::size_t>(space_->pattern().size())) {
     top_.resize(size_);
@@ -52,34 +53,40 @@ void SmoothedLevels::set_columns(std::size_t count) {
 }
 
 bool SmoothedLevels::set(std::span<const double> values, std::span<const double> positions) {
+    take(values, positions);
+    return prepare();
+}
+
+void SmoothedLevels::take(std::span<const double> values, std::span<const double> positions) {
     matrix_.set(values);
-    values_ = values;
     positions_.assign(positions.begin(), positions.end());
+}
+
+bool SmoothedLevels::move_towards(std::span<const double> values, double share) {
+    matrix_.move_towards(values, share);
+    return prepare();
+}
+
+bool SmoothedLevels::prepare() {
     if (!invert_diagonal()) return false;
     set_columns(1);
     if (kind_ == Kind::groups)
         find_largest_by_powers();
     else
         find_largest_by_lanczos();
-    if (!built_ || !space_->turn(positions)) return build();
+    if (!built_ || !space_->turn(positions_)) return build();
     turned_ = true;
     return true;
 }
 
-/// Builds the coarse level for the present matrix and positions.
 bool SmoothedLevels::build() {
-    space_->set({matrix_, values_, positions_, inverse_diagonal_.data(), 4.0F / 3 / upper()});
-    turned_ = false;
-    if (kind_ == Kind::corners && coarse_.precision() == Precision::double_) coarse_.use(Precision::single_);
-    // A body that bends easily may be too ill-conditioned for single precision; once it is, it stays in double, with
-    // groups.
-    built_ = coarse_.factorise(space_->values());
-    if (!built_ && coarse_.precision() == Precision::single_) {
-        coarse_.use(Precision::double_);
-        built_ = coarse_.factorise(space_->values());
+    if (!built_ || turned_ || !coarse_->is_turned()) {
+        space_->set({matrix_, positions_, inverse_diagonal_.data(), 4.0F / 3 / upper()});
+        turned_ = false;
+        built_ = coarse_->set(space_->values(), space_->positions());
+        return built_;
     }
-    coarse_.release_work_space();
-    return built_;
+    return coarse_->build();
 }
 
 bool SmoothedLevels::invert_diagonal() {
@@ -221,7 +228,7 @@ void SmoothedLevels::correct() {
         if (columns_ > 1) for_numbers(size_, [&](std::size_t i) { one_[i] = rest_[columns_ * i + c]; });
         space_->restrict(fine.data(), coarse_side_.data() + c * coarse_size_);
     }
-    coarse_.solve({coarse_side_.data(), columns_ * coarse_size_}, static_cast<int>(columns_));
+    coarse_->solve({coarse_side_.data(), columns_ * coarse_size_}, static_cast<int>(columns_));
     for (std::size_t c = 0; c < columns_; ++c) {
         const double* from = coarse_side_.data() + c * coarse_size_;
         if (columns_ == 1) {
@@ -244,6 +251,20 @@ const Interleaved<float>& SmoothedLevels::apply(const Interleaved<double>& right
     correct();
     smoothe(correction_, Start::where_it_is);
     return correction_;
+}
+
+SmoothedLevels levels_on_groups(const SymmetricPattern& pattern) {
+    BlockRows rows(pattern);
+    auto groups = std::make_unique<CoarseSpace>(rows);
+    auto factor = make_factored_solver(groups->pattern(), true);
+    return {pattern, std::move(rows), std::move(groups), std::move(factor), SmoothedLevels::Kind::groups};
+}
+
+SmoothedLevels levels_on_corners(const SymmetricPattern& pattern, Nesting corners, int most_factored) {
+    auto space = std::make_unique<NestedSpace>(pattern, std::move(corners));
+    auto coarse = space->pattern().nodes > most_factored ? make_grouped_solver(space->pattern())
+                                                         : make_factored_solver(space->pattern(), false);
+    return {pattern, BlockRows(pattern), std::move(space), std::move(coarse), SmoothedLevels::Kind::corners};
 }
 
 }  // namespace pliant::linalg

@@ -1,4 +1,4 @@
-// The preconditioner of TwoLevel: smoothing on the fine level, a factorised coarse level.
+// The preconditioner of TwoLevel: smoothing on the fine level, and a coarse level.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,10 @@
 
 #include "base/core/aligned_array.hpp"
 #include "base/linalg/block_rows.hpp"
-#include "base/linalg/cholesky.hpp"
 #include "base/linalg/coarse_level.hpp"
+#include "base/linalg/coarse_solver.hpp"
 #include "base/linalg/interleaved.hpp"
+#include "base/linalg/nested_space.hpp"
 
 namespace pliant::linalg {
 
@@ -21,15 +22,20 @@ constexpr std::size_t most_columns = 2;  ///< solved for together: each number o
 class SmoothedLevels {
 public:
     enum class Kind { groups, corners };
-    /// Preconditions: `matrix` has the blocks of `pattern`, which are 3 by 3, and `space` was made for them.
-    SmoothedLevels(const SymmetricPattern& pattern, BlockRows matrix, std::unique_ptr<CoarseLevel> space, Kind kind);
+    /// Preconditions: `matrix` has the blocks of `pattern`, which are 3 by 3, `space` was made for them, and `coarse`
+    /// for the pattern of `space`.
+    SmoothedLevels(const SymmetricPattern& pattern, BlockRows matrix, std::unique_ptr<CoarseLevel> space,
+                   std::unique_ptr<CoarseSolver> coarse, Kind kind);
 
-    /// See TwoLevel::set(); `values` must stay valid until the next call. False: not positive definite.
+    /// See TwoLevel::set(). False: not positive definite.
     [[nodiscard]] bool set(std::span<const double> values, std::span<const double> positions);
+    /// See TwoLevel.
+    void take(std::span<const double> values, std::span<const double> positions);
+    [[nodiscard]] bool move_towards(std::span<const double> values, double share);
     /// Builds the coarse level for the present matrix and positions; false: not positive definite.
     [[nodiscard]] bool build();
-    /// True if the coarse level was made for an earlier matrix, and rotated.
-    [[nodiscard]] bool is_turned() const { return turned_; }
+    /// True if a coarse level was made for an earlier matrix, and rotated.
+    [[nodiscard]] bool is_turned() const { return turned_ || coarse_->is_turned(); }
 
     /// M^-1 right, of `columns` interleaved columns (up to most_columns); valid until the next call.
     [[nodiscard]] const Interleaved<float>& apply(const Interleaved<double>& right, std::size_t columns);
@@ -40,6 +46,7 @@ public:
 private:
     using Rough = Interleaved<float>;
     enum class Start { zero, where_it_is };
+    [[nodiscard]] bool prepare();
     void set_columns(std::size_t count);
     [[nodiscard]] bool invert_diagonal();
     void apply_inverse_diagonal(const Rough& from, Rough& to) const;
@@ -58,7 +65,7 @@ private:
     std::size_t columns_ = 1;
     BlockRows matrix_;
     std::unique_ptr<CoarseLevel> space_;
-    Cholesky coarse_;
+    std::unique_ptr<CoarseSolver> coarse_;
     AlignedArray<float> inverse_diagonal_;
     std::size_t coarse_size_;
     std::vector<double> coarse_side_;  ///< (columns, coarse unknowns)
@@ -66,11 +73,16 @@ private:
     float largest_ = 0;                ///< that eigenvalue
     bool powered_ = false;             ///< both were found for an earlier matrix
     Rough side_, correction_, step_, rest_;
-    Rough one_;                       ///< work space for a single column
-    std::span<const double> values_;  ///< of the matrix
-    std::vector<double> positions_;   ///< current node positions
-    bool built_ = false;              ///< the coarse level exists,
-    bool turned_ = false;             ///< but was made for an earlier state
+    Rough one_;                      ///< work space for a single column
+    std::vector<double> positions_;  ///< current node positions
+    bool built_ = false;             ///< the coarse level exists,
+    bool turned_ = false;            ///< but was made for an earlier state
 };
+
+/// With groups of nodes as the coarse level, which is factorised. Precondition: blocks of 3.
+[[nodiscard]] SmoothedLevels levels_on_groups(const SymmetricPattern& pattern);
+/// With the corners of quadratic tets as the coarse level, which is factorised or, if there are more than
+/// `most_factored`, solved on groups.
+[[nodiscard]] SmoothedLevels levels_on_corners(const SymmetricPattern& pattern, Nesting corners, int most_factored);
 
 }  // namespace pliant::linalg

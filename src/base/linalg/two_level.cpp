@@ -5,9 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "base/linalg/block_rows.hpp"
 #include "base/linalg/coarse_quality.hpp"
-#include "base/linalg/coarse_space.hpp"
 #include "base/linalg/projected_gradients.hpp"
 #include "base/linalg/smoothed_levels.hpp"
 
@@ -15,12 +13,6 @@ namespace pliant::linalg {
 namespace {
 
 using PerColumn = std::array<double, most_columns>;
-
-SmoothedLevels levels_on_groups(const SymmetricPattern& pattern) {
-    BlockRows rows(pattern);
-    auto groups = std::make_unique<CoarseSpace>(rows);
-    return {pattern, std::move(rows), std::move(groups), SmoothedLevels::Kind::groups};
-}
 
 }  // namespace
 
@@ -123,16 +115,22 @@ TwoLevel::Outcome TwoLevel::State::solve(double* b, std::size_t count, double to
 }
 
 TwoLevel::TwoLevel(const SymmetricPattern& pattern) : state_(std::make_unique<State>(levels_on_groups(pattern))) {}
-TwoLevel::TwoLevel(const SymmetricPattern& pattern, Nesting corners)
-    : state_(std::make_unique<State>(SmoothedLevels(pattern, BlockRows(pattern),
-                                                    std::make_unique<NestedSpace>(pattern, std::move(corners)),
-                                                    SmoothedLevels::Kind::corners))) {}
+TwoLevel::TwoLevel(const SymmetricPattern& pattern, Nesting corners, int most_factored)
+    : state_(std::make_unique<State>(levels_on_corners(pattern, std::move(corners), most_factored))) {}
 TwoLevel::TwoLevel(TwoLevel&&) noexcept = default;
 TwoLevel& TwoLevel::operator=(TwoLevel&&) noexcept = default;
 TwoLevel::~TwoLevel() = default;
 
 bool TwoLevel::set(std::span<const double> values, std::span<const double> positions) {
     return state_->levels.set(values, positions);
+}
+
+void TwoLevel::take(std::span<const double> values, std::span<const double> positions) {
+    state_->levels.take(values, positions);
+}
+
+bool TwoLevel::move_towards(std::span<const double> values, double share) {
+    return state_->levels.move_towards(values, share);
 }
 
 TwoLevel::Outcome TwoLevel::solve(std::span<double> right_hand_sides, int columns, double tolerance, int limit) {

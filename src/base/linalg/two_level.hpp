@@ -9,6 +9,9 @@
 
 namespace pliant::linalg {
 
+/// With more corners of quadratic tets a cycle on groups of nodes is as quick as a factor, and takes less memory.
+constexpr int most_factored_corners = 5000;
+
 /// The fine level smooths (Chebyshev polynomials of D^-1 A), the coarse one (CoarseSpace or, for quadratic tets,
 /// NestedSpace) is factorised. Time and memory grow with the number of nodes, whereas those of a factorisation grow
 /// with its square in bulky bodies. Bit-identical on any number of cores.
@@ -16,15 +19,20 @@ class TwoLevel {
 public:
     /// Analyses the pattern. Precondition: blocks of 3.
     explicit TwoLevel(const SymmetricPattern& pattern);
-    /// With the linear tets on the corners of quadratic tets as the coarse level.
-    TwoLevel(const SymmetricPattern& pattern, Nesting corners);
+    /// With the linear tets on the corners of quadratic tets as the coarse level. If there are more than
+    /// `most_factored`, one cycle on groups of nodes takes the place of their factor.
+    TwoLevel(const SymmetricPattern& pattern, Nesting corners, int most_factored = most_factored_corners);
     TwoLevel(TwoLevel&&) noexcept;
     TwoLevel& operator=(TwoLevel&&) noexcept;
     ~TwoLevel();
 
-    /// `values` belong to the pattern; `positions` (nodes, 3) are the current node positions. False if the matrix is
-    /// found not to be positive definite; solve() must not be called then.
+    /// `values` belong to the pattern, and are copied; `positions` (nodes, 3) are the current node positions. False if
+    /// the matrix is found not to be positive definite; solve() must not be called then.
     [[nodiscard]] bool set(std::span<const double> values, std::span<const double> positions);
+    /// As set(), for a matrix in two parts, so that memory for one suffices: take() copies the first; move_towards()
+    /// adds `share` of the difference from it to `values`, and prepares to solve.
+    void take(std::span<const double> values, std::span<const double> positions);
+    [[nodiscard]] bool move_towards(std::span<const double> values, double share);
 
     enum class Outcome { solved, indefinite, slow };
     /// Solves in place for `columns` right-hand sides, stored one after the other, until the error, in the energy norm,

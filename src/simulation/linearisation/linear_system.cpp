@@ -118,7 +118,7 @@ SystemSolver::SystemSolver(const LinearSystem& system) : system_(&system) {
 }
 
 SystemSolver::SystemSolver(const LinearSystem& system, SystemSolver&& other) : SystemSolver(system) {
-    if (!other.exact_ || (other.way_ != Way::two_levels && other.way_ != Way::single_)) return;
+    if (!other.exact_ || (other.way_ != Way::levels && other.way_ != Way::single_)) return;
     taken_over_ = other.way_;
     factor_ = std::move(other.factor_);
     levels_ = std::move(other.levels_);
@@ -234,8 +234,7 @@ bool SystemSolver::take_schur_complement(const Solve& solve, double threshold) {
 
 /// Chooses the fastest method that is accurate enough for this matrix.
 void SystemSolver::begin() {
-    const bool on_levels = system_->two_levels && system_->skew.empty();
-    if (on_levels && begin_quickly(Way::two_levels)) return;
+    if (system_->on_levels && system_->skew.empty() && begin_quickly(Way::levels)) return;
     levels_.reset();
     // Rounding errors of single precision cannot be told from a skew part.
     if (system_->skew.empty() && begin_quickly(Way::single_)) return;
@@ -251,8 +250,10 @@ bool SystemSolver::begin_quickly(Way way) {
 }
 
 bool SystemSolver::make_quickly(Way way) {
-    if (way == Way::two_levels) {
-        levels_ = std::make_unique<linalg::TwoLevel>(system_->layout->pattern);
+    if (way == Way::levels) {
+        const linalg::SymmetricPattern& pattern = system_->layout->pattern;
+        levels_ = system_->corners ? std::make_unique<linalg::TwoLevel>(pattern, *system_->corners)
+                                   : std::make_unique<linalg::TwoLevel>(pattern);
         return levels_->set(system_->symmetric, view(system_->positions));
     }
     const bool definite = factor(linalg::Precision::single_).factorise(system_->symmetric);

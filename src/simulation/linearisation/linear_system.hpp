@@ -30,7 +30,8 @@ inline constexpr double best_residual = 1e-13, gradient_residual = 1e-8;
 struct LinearSystem {
     std::shared_ptr<const TangentLayout> layout;
     std::shared_ptr<const linalg::Analysis> analysis;  ///< of the layout's pattern, if known; else null
-    bool two_levels = false;                           ///< factorising K would take longer
+    bool on_levels = false;                            ///< factorising K would take longer than iterating on levels
+    std::optional<linalg::Nesting> corners;            ///< of quadratic tets, as the second level; else groups of nodes
     Eigen::VectorXd positions;                         ///< (3 free nodes) positions of the free nodes, m
     std::vector<FreeRoller> rollers;
     std::vector<double> symmetric;           ///< (entries of the layout's pattern)
@@ -78,7 +79,7 @@ public:
 
 private:
     /// How K is solved with, from fastest to most robust.
-    enum class Way { none, two_levels, single_, double_ };
+    enum class Way { none, levels, single_, double_ };
     [[nodiscard]] Status prepare();
     void begin();
     [[nodiscard]] bool begin_quickly(Way way);

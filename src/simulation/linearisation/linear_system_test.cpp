@@ -58,8 +58,8 @@ TEST_CASE("on two levels products with a solution agree with exact ones to six d
     const Controls controls = c.system.controls(0.3);
     Linearisation exact = c.at(state, controls);
     KnownPattern pattern = known_pattern(c.system, laplacian, nullptr);
-    CHECK_FALSE(pattern.two_levels);
-    pattern.two_levels = true;
+    CHECK_FALSE(pattern.on_levels);
+    pattern.on_levels = true;
     auto levels = Linearisation::create(c.system, state, controls, pattern);
     REQUIRE(levels);
     const Quantity tip = marker_coordinate(c.system, 0, {0, 0, 1});
@@ -83,16 +83,16 @@ TEST_CASE("with fewer digits wanted, by factor or on two levels, gradients still
     const Quantity tip = marker_coordinate(c.system, 0, {0, 0, 1});
     const auto told = exact.adjoint(tip);
     REQUIRE(told);
-    for (const bool two_levels : {false, true}) {
+    for (const bool on_levels : {false, true}) {
         KnownPattern pattern = known_pattern(c.system, laplacian, nullptr);
-        pattern.two_levels = two_levels;
+        pattern.on_levels = on_levels;
         auto at = Linearisation::create(c.system, state, controls, pattern, gradient_residual);
         REQUIRE(at);
         const auto found = at->adjoint(tip);
         REQUIRE(found);
         const Eigen::VectorXd right = exact.multiply_transposed(told->weights);
         const double left = (at->multiply_transposed(found->weights) - right).norm() / right.norm();
-        CHECK(left < (two_levels ? 1e-3 : 10 * gradient_residual));
+        CHECK(left < (on_levels ? 1e-3 : 10 * gradient_residual));
         for (const Parameter& p : inputs(exact)) {
             CAPTURE(p.name);
             const double wanted = told->derivative(derivative(exact, p));

@@ -12,6 +12,7 @@
 #include "simulation/elements/elements.hpp"
 #include "simulation/linearisation/contact_forces.hpp"
 #include "simulation/linearisation/element_derivatives.hpp"
+#include "simulation/solver/corner_nesting.hpp"
 #include "simulation/solver/tangent_inverse.hpp"
 
 namespace pliant::sim {
@@ -90,9 +91,9 @@ struct Linearisation::Whole {
 
 KnownPattern known_pattern(const Equilibrium& system, const FactoredLaplacian& laplacian, const SolverMemory* memory) {
     const auto& alone = laplacian.tangent_layout();
-    const bool two_levels = !system.has_skew() && two_levels_are_quicker(alone->pattern, laplacian.work());
-    if (memory != nullptr && memory->touching && memory->layout) return {memory->layout, memory->analysis, two_levels};
-    return {alone, two_levels ? nullptr : laplacian.analysis(), two_levels};
+    const bool on_levels = !system.has_skew() && levels_are_quicker(alone->pattern, false, laplacian.work());
+    if (memory != nullptr && memory->touching && memory->layout) return {memory->layout, memory->analysis, on_levels};
+    return {alone, on_levels ? nullptr : laplacian.analysis(), on_levels};
 }
 
 Result<Linearisation> Linearisation::create(const Equilibrium& system, const State& state, const Controls& controls,
@@ -136,7 +137,8 @@ void Linearisation::assemble(const KnownPattern& known) {
     } else {
         A.layout = std::make_shared<const TangentLayout>(layout_at(*system_, state_, controls_, TangentNodes::free));
     }
-    A.two_levels = known.two_levels;
+    A.on_levels = known.on_levels;
+    if (A.on_levels) A.corners = nest_in_corners(system_->model());
     A.positions = system_->free_positions(state_.x);
     A.rollers = system_->rollers();
     Parts parts = assembled(*system_, state_, controls_, *A.layout);

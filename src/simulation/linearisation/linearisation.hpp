@@ -76,7 +76,7 @@ struct Adjoint {
 struct KnownPattern {
     std::shared_ptr<const TangentLayout> layout;  ///< null: unknown
     std::shared_ptr<const linalg::Analysis> analysis;
-    bool two_levels = false;  ///< a factorisation would take longer
+    bool on_levels = false;  ///< a factorisation would take longer
 };
 /// `memory` may be null.
 [[nodiscard]] KnownPattern known_pattern(const Equilibrium& system, const FactoredLaplacian& laplacian,

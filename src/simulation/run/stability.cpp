@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "base/linalg/dense.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
+#include "simulation/solver/corner_nesting.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -83,8 +85,9 @@ void Stability::assemble(const State& state, const Controls& controls, bool proj
 /// positive projection.
 bool Stability::take_metric(const State& state, const Controls& controls) {
     const Eigen::VectorXd positions = system_->free_positions(state.x);
-    auto inverse = two_levels_are_quicker(layout_->pattern, laplacian_->work())
-                       ? make_two_level_inverse(layout_->pattern)
+    const std::optional<linalg::Nesting> corners = nest_in_corners(system_->model());
+    auto inverse = levels_are_quicker(layout_->pattern, corners.has_value(), laplacian_->work())
+                       ? make_levels_inverse(layout_->pattern, corners)
                        : make_direct_inverse(laplacian_->analysis(), false);
     AlignedArray<double> values(stiffness_.size());
     std::ranges::copy(stiffness_.span(), values.span().begin());

@@ -23,7 +23,6 @@ public:
     Newton(const Equilibrium& system, const FactoredLaplacian& laplacian)
         : system_(&system), laplacian_(&laplacian), layout_(laplacian.tangent_layout()), rotation_(system, laplacian) {
         corners_ = nest_in_corners(system.model());
-        if (corners_ && corners_->coarse_nodes > most_corners) corners_.reset();
         two_levels_ = starts_on_two_levels();
         inverse_ = make_inverse();
     }
@@ -153,8 +152,7 @@ public:
 private:
     /// The skew part needs the inverse of the exact tangent.
     [[nodiscard]] std::unique_ptr<TangentInverse> make_inverse() {
-        if (two_levels_ && corners_) return make_nested_inverse(layout_->pattern, *corners_);
-        if (two_levels_) return make_two_level_inverse(layout_->pattern);
+        if (two_levels_) return make_levels_inverse(layout_->pattern, corners_);
         if (!analysis_) analysis_ = room_for_ ? linalg::analyse(layout_->pattern) : laplacian_->analysis();
         return make_direct_inverse(analysis_, system_->has_skew());
     }
@@ -238,14 +236,26 @@ private:
 
     /// Sets the tangent with `share` of its projection, or more if necessary.
     [[nodiscard]] bool project(double share) {
-        if (share_ == 0) assemble(true, projected_);
+        if (share_ == 0 && !inverse_->keeps_matrix()) assemble(true, projected_);
         for (; share <= 1; share *= 2) {
             share_ = share_wanted_ = share;
-            blend();
-            if ((usable_ = inverse_->set(blended_.span(), positions_, share < 1 ? Effort::little : Effort::all)))
-                return true;
+            if (inverse_->keeps_matrix()) {
+                usable_ = set_blend_in_parts();
+            } else {
+                blend();
+                usable_ = inverse_->set(blended_.span(), positions_, share < 1 ? Effort::little : Effort::all);
+            }
+            if (usable_) return true;
         }
         return false;
+    }
+
+    /// Adds its share of the projection to the tangent, in the memory of one matrix.
+    [[nodiscard]] bool set_blend_in_parts() {
+        assemble(false, values_);
+        inverse_->take(values_.span(), positions_);
+        assemble(true, values_);
+        return inverse_->move_towards(values_.span(), share_);
     }
 
     /// (tangent + skew)^-1 b by GMRES, right-preconditioned with H^-1. If H is the tangent, the product is v + skew
@@ -306,9 +316,7 @@ private:
 
     [[nodiscard]] bool starts_on_two_levels() const {
         if (system_->has_skew()) return false;
-        const linalg::SymmetricPattern& pattern = laplacian_->tangent_layout()->pattern;
-        return corners_ ? nested_levels_are_quicker(pattern, laplacian_->work())
-                        : two_levels_are_quicker(pattern, laplacian_->work());
+        return levels_are_quicker(laplacian_->tangent_layout()->pattern, corners_.has_value(), laplacian_->work());
     }
 
     /// False if the inverse had to be rebuilt for it.
@@ -328,6 +336,10 @@ private:
 
     void recall_tangent(const TangentInverse::Memory& memory) {
         positions_ = system_->free_positions(tangent_->state.x);
+        if (share_ > 0 && inverse_->keeps_matrix()) {
+            (void)set_blend_in_parts();
+            return;
+        }
         assemble(false, values_);
         if (share_ > 0) {
             assemble(true, projected_);
@@ -350,8 +362,6 @@ private:
     static constexpr double share_of_wanted = 0.02, largest_solution_error = 0.05;
     static constexpr double straight_share = 0.05;  // of the tolerance: error that a step without rotation may add
     static constexpr double well_led = 0.3;
-    static constexpr int most_corners = 12000;  // number of corners up to which one factor is used; groups of nodes are
-                                                // fewer
     static constexpr std::size_t most_remembered = 20000;
     static constexpr double skew_tolerance = 1e-8;
     static constexpr int skew_limit = 60;
@@ -361,7 +371,7 @@ private:
     std::shared_ptr<const TangentLayout> layout_;
     std::shared_ptr<const linalg::Analysis> analysis_;  ///< of its pattern, computed on demand
     std::unique_ptr<TangentInverse> inverse_;
-    AlignedArray<double> values_;     ///< tangent
+    AlignedArray<double> values_;     ///< tangent, or the part of it that was set last
     AlignedArray<double> projected_;  ///< its positive projection, computed on demand
     AlignedArray<double> blended_;
     struct {

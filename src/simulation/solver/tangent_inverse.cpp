@@ -102,13 +102,20 @@ private:
     int refusals_ = 0;                                              ///< by single precision
 };
 
-class TwoLevelInverse final : public TangentInverse {
+class LevelsInverse final : public TangentInverse {
 public:
-    TwoLevelInverse(linalg::TwoLevel levels, int most_iterations)
+    LevelsInverse(linalg::TwoLevel levels, int most_iterations)
         : levels_(std::move(levels)), most_iterations_(most_iterations) {}
 
     [[nodiscard]] bool set(std::span<const double> values, const Eigen::VectorXd& positions, Effort) override {
-        return levels_.set(values, {positions.data(), static_cast<std::size_t>(positions.size())});
+        return levels_.set(values, linalg::view(positions));
+    }
+    [[nodiscard]] bool keeps_matrix() const override { return true; }
+    void take(std::span<const double> values, const Eigen::VectorXd& positions) override {
+        levels_.take(values, linalg::view(positions));
+    }
+    [[nodiscard]] bool move_towards(std::span<const double> values, double share) override {
+        return levels_.move_towards(values, share);
     }
 
     [[nodiscard]] Outcome solve(Eigen::MatrixXd& columns, double error) override {
@@ -164,26 +171,20 @@ std::unique_ptr<TangentInverse> make_direct_inverse(std::shared_ptr<const linalg
         linalg::Cholesky(std::move(analysis), 3, exact ? linalg::Precision::double_ : linalg::Precision::single_));
 }
 
-std::unique_ptr<TangentInverse> make_two_level_inverse(const linalg::SymmetricPattern& pattern) {
-    constexpr int most_iterations = 100;  // ten do in a usual body
-    return std::make_unique<TwoLevelInverse>(linalg::TwoLevel(pattern), most_iterations);
+std::unique_ptr<TangentInverse> make_levels_inverse(const linalg::SymmetricPattern& pattern,
+                                                    const std::optional<linalg::Nesting>& corners) {
+    // Ten iterations do in a usual body. With more corners than most_factored_corners, a factor is no alternative.
+    constexpr int most_on_groups = 100, most_on_corners = 40;
+    if (!corners) return std::make_unique<LevelsInverse>(linalg::TwoLevel(pattern), most_on_groups);
+    return std::make_unique<LevelsInverse>(linalg::TwoLevel(pattern, *corners), most_on_corners);
 }
 
-std::unique_ptr<TangentInverse> make_nested_inverse(const linalg::SymmetricPattern& pattern, linalg::Nesting corners) {
-    constexpr int most_iterations = 40;  // with more of them, a factor is faster
-    return std::make_unique<TwoLevelInverse>(linalg::TwoLevel(pattern, std::move(corners)), most_iterations);
-}
-
-bool nested_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work) {
-    constexpr double even = 6000;  // as below
-    return 27 * factor_work > even * pairs_of(pattern);
-}
-
-bool two_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work) {
-    // Multiply-adds of a factorisation, per pair of nodes, that take as long as the two-level method (measured:
-    // 10,000), and half as much again, because ill-conditioned bodies slow down two levels, but not a factor.
-    constexpr double even = 15000;
-    return 27 * factor_work > even * pairs_of(pattern);
+bool levels_are_quicker(const linalg::SymmetricPattern& pattern, bool nested, double factor_work) {
+    // Multiply-adds of a factorisation, per pair of nodes, that take as long as conjugate gradients on two levels
+    // (measured: 10,000 with groups), and half as much again, because ill-conditioned bodies slow them down, but not a
+    // factor.
+    constexpr double even_with_groups = 15000, even_with_corners = 6000;
+    return 27 * factor_work > (nested ? even_with_corners : even_with_groups) * pairs_of(pattern);
 }
 
 }  // namespace pliant::sim

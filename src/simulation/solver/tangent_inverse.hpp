@@ -1,8 +1,9 @@
-// Two ways to solve with a tangent stiffness: a factorisation, or a two-level method if that would be too large.
+// Two ways to solve with a tangent stiffness: a factorisation, or a method on levels if that would be too large.
 #pragma once
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "base/linalg/analysis.hpp"
@@ -18,9 +19,19 @@ public:
     /// Effort for a matrix that single precision cannot factorise: double precision is tried never,
     /// occasionally or always.
     enum class Effort { little, usual, all };
-    /// Sets a matrix, of which `values` must be valid until the next call, and the positions of its nodes (3 nodes).
-    /// False if it is found not to be positive definite.
+    /// Sets a matrix, of which `values` must be valid until the next call unless keeps_matrix(), and the positions of
+    /// its nodes (3 nodes). False if it is found not to be positive definite.
     [[nodiscard]] virtual bool set(std::span<const double> values, const Eigen::VectorXd& positions, Effort effort) = 0;
+    /// True: set() copies the matrix, and one may be given in two parts, so that memory for one suffices: take() copies
+    /// the first; move_towards() adds `share` of the difference from it to `values`, then does as set().
+    [[nodiscard]] virtual bool keeps_matrix() const { return false; }
+    virtual void take(std::span<const double> values, const Eigen::VectorXd& positions) {
+        (void)values, (void)positions;
+    }
+    [[nodiscard]] virtual bool move_towards(std::span<const double> values, double share) {
+        (void)values, (void)share;
+        return false;
+    }
     enum class Outcome { solved, indefinite, slow };
     /// columns (3 nodes, k) <- H^-1 columns, within `error` of each solution in the norm of H, but no tighter than
     /// 1e-3. Outcomes indefinite and slow: columns hold the last iterate, which is still a descent direction.
@@ -60,14 +71,11 @@ public:
 /// `exact`: in double precision throughout.
 [[nodiscard]] std::unique_ptr<TangentInverse> make_direct_inverse(std::shared_ptr<const linalg::Analysis> analysis,
                                                                   bool exact);
-[[nodiscard]] std::unique_ptr<TangentInverse> make_two_level_inverse(const linalg::SymmetricPattern& pattern);
-/// For quadratic tets, whose corner nodes form the second level.
-[[nodiscard]] std::unique_ptr<TangentInverse> make_nested_inverse(const linalg::SymmetricPattern& pattern,
-                                                                  linalg::Nesting corners);
-/// Which of the two is faster, judged by the pattern alone. `factor_work`: multiply-adds of a factorisation with one
-/// unknown per node.
-[[nodiscard]] bool two_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work);
-/// The same for the second level formed by the corners of quadratic tets.
-[[nodiscard]] bool nested_levels_are_quicker(const linalg::SymmetricPattern& pattern, double factor_work);
+/// Conjugate gradients on levels. `corners`: of quadratic tets, which are the second level; none: groups of nodes.
+[[nodiscard]] std::unique_ptr<TangentInverse> make_levels_inverse(const linalg::SymmetricPattern& pattern,
+                                                                  const std::optional<linalg::Nesting>& corners);
+/// Which of the two is faster, judged by the pattern alone. `nested`: there are corners. `factor_work`: multiply-adds
+/// of a factorisation with one unknown per node.
+[[nodiscard]] bool levels_are_quicker(const linalg::SymmetricPattern& pattern, bool nested, double factor_work);
 
 }  // namespace pliant::sim

@@ -78,7 +78,7 @@ TEST_CASE("two levels and the factor give the same solutions for a bent body, li
         const auto factor = make_direct_inverse(linalg::analyse(b.layout.pattern), true);
         REQUIRE(factor->set(b.values, b.positions, TangentInverse::Effort::usual));
         REQUIRE(factor->solve(direct, 1e-3) == TangentInverse::Outcome::solved);
-        const auto two = make_two_level_inverse(b.layout.pattern);
+        const auto two = make_levels_inverse(b.layout.pattern, {});
         REQUIRE(two->set(b.values, b.positions, TangentInverse::Effort::usual));
         REQUIRE(two->solve(levels, 1e-3) == TangentInverse::Outcome::solved);
         for (const Eigen::Index k : {0, 1}) {
@@ -91,31 +91,57 @@ TEST_CASE("two levels and the factor give the same solutions for a bent body, li
 
 TEST_CASE("the corners of quadratic tets as second level give the factor's solutions, in few iterations") {
     const Bent b(pushed({0.06, 0.01, 0.01}, 18, 3, 2, 1), 0.05, true);
-    Eigen::MatrixXd columns(b.positions.size(), 2);
+    Eigen::MatrixXd columns(b.positions.size(), 3);
     columns.col(0) = b.out_of_balance;
     columns.col(1) = b.positions.array().sin();
-    Eigen::MatrixXd direct = columns, nested = columns;
+    columns.col(2) = b.positions.array().cos();
+    Eigen::MatrixXd direct = columns;
     const auto factor = make_direct_inverse(linalg::analyse(b.layout.pattern), true);
     REQUIRE(factor->set(b.values, b.positions, TangentInverse::Effort::usual));
     REQUIRE(factor->solve(direct, 1e-3) == TangentInverse::Outcome::solved);
-    linalg::TwoLevel levels(b.layout.pattern, *nest_in_corners(b.model));
-    REQUIRE(levels.set(b.values, {b.positions.data(), static_cast<std::size_t>(b.positions.size())}));
-    constexpr int most = 24;  // of both
-    REQUIRE(levels.solve({nested.data(), static_cast<std::size_t>(nested.size())}, 2, 1e-3, most) ==
-            linalg::TwoLevel::Outcome::solved);
-    CHECK(levels.iterations() <= most);
-    for (const Eigen::Index k : {0, 1}) {
-        const double energy = direct.col(k).dot(columns.col(k));
-        CHECK(std::fabs(nested.col(k).dot(columns.col(k)) - energy) < 1e-3 * energy);
-        CHECK((nested.col(k) - direct.col(k)).norm() < 1e-2 * direct.col(k).norm());
+    struct Case {
+        int most_factored, most_iterations;
+    };
+    for (const auto& [most_factored, most] : {Case{linalg::most_factored_corners, 24}, {0, 32}}) {
+        CAPTURE(most_factored);
+        Eigen::MatrixXd nested = columns;
+        linalg::TwoLevel levels(b.layout.pattern, *nest_in_corners(b.model), most_factored);
+        REQUIRE(levels.set(b.values, linalg::view(b.positions)));
+        REQUIRE(levels.solve({nested.data(), static_cast<std::size_t>(nested.size())}, 3, 1e-3, most) ==
+                linalg::TwoLevel::Outcome::solved);
+        CHECK(levels.iterations() <= most);
+        for (const Eigen::Index k : {0, 1, 2}) {
+            const double energy = direct.col(k).dot(columns.col(k));
+            CHECK(std::fabs(nested.col(k).dot(columns.col(k)) - energy) < 1e-3 * energy);
+            CHECK((nested.col(k) - direct.col(k)).norm() < 1e-2 * direct.col(k).norm());
+        }
     }
+}
+
+TEST_CASE("a matrix in two parts is solved as in one") {
+    const Bent b(pushed({0.06, 0.01, 0.01}, 18, 3, 2, 1), 0.05, true);
+    std::vector<double> other = b.values, between = b.values;
+    constexpr double share = 0.25;
+    for (std::size_t k = 0; k < other.size(); ++k) {
+        other[k] *= k % 9 % 4 == 0 ? 1.5 : 1;
+        between[k] += share * (other[k] - b.values[k]);
+    }
+    const auto levels = make_levels_inverse(b.layout.pattern, nest_in_corners(b.model));
+    REQUIRE(levels->keeps_matrix());
+    Eigen::MatrixXd whole = b.out_of_balance, parts = whole;
+    REQUIRE(levels->set(between, b.positions, TangentInverse::Effort::usual));
+    REQUIRE(levels->solve(whole, 1e-3) == TangentInverse::Outcome::solved);
+    levels->take(b.values, b.positions);
+    REQUIRE(levels->move_towards(other, share));
+    REQUIRE(levels->solve(parts, 1e-3) == TangentInverse::Outcome::solved);
+    CHECK((parts - whole).norm() < 1e-5 * whole.norm());
 }
 
 TEST_CASE("a tangent with negative directions is refused or found by factor and two levels") {
     const Bent b(pushed({0.06, 0.01, 0.01}, 24, 4, 1, 1), 0.02, false);
     const auto factor = make_direct_inverse(linalg::analyse(b.layout.pattern), true);
     REQUIRE_FALSE(factor->set(b.values, b.positions, TangentInverse::Effort::all));
-    const auto two = make_two_level_inverse(b.layout.pattern);
+    const auto two = make_levels_inverse(b.layout.pattern, {});
     Eigen::MatrixXd column = b.out_of_balance;
     if (two->set(b.values, b.positions, TangentInverse::Effort::usual))
         CHECK(two->solve(column, 1e-3) == TangentInverse::Outcome::indefinite);
@@ -148,7 +174,7 @@ TEST_CASE("a column beyond its buckling load is solved where constraints hold it
         linalg::add_product(b.layout.pattern, b.values, linalg::view(unit), 1, linalg::view(column));
         whole.col(k).head(size) = column;
     }
-    const auto two = make_nested_inverse(b.layout.pattern, *nest_in_corners(b.model));
+    const auto two = make_levels_inverse(b.layout.pattern, nest_in_corners(b.model));
     REQUIRE(two->set(b.values, b.positions, TangentInverse::Effort::usual));
     Eigen::MatrixXd free = force;
     CHECK(two->solve(free, 1e-3) == TangentInverse::Outcome::indefinite);
@@ -174,7 +200,7 @@ TEST_CASE("a bulky body is solved on two levels, and converges to equilibrium") 
     const TangentLayout layout = system.lay_out_tangent();
     linalg::SymmetricPattern scalar = layout.pattern;
     scalar.block = 1;
-    REQUIRE(two_levels_are_quicker(layout.pattern, linalg::Cholesky(scalar).factor_work()));
+    REQUIRE(levels_are_quicker(layout.pattern, false, linalg::Cholesky(scalar).factor_work()));
     Progress silent;
     const Trajectory result = run(*model, {.steps = 1, .tolerance = 1e-6}, silent);
     REQUIRE_MESSAGE(result.converged, result.message);

@@ -1,0 +1,75 @@
+#include "base/linalg/coarse_solver.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "base/linalg/cholesky.hpp"
+#include "base/linalg/smoothed_levels.hpp"
+
+namespace pliant::linalg {
+namespace {
+
+/// A body that bends easily may be too ill-conditioned for single precision.
+class FactoredSolver final : public CoarseSolver {
+public:
+    FactoredSolver(const SymmetricPattern& pattern, bool stays_double)
+        : factor_(pattern, Precision::single_), stays_double_(stays_double) {}
+
+    [[nodiscard]] bool set(std::span<const double> values, std::span<const double>) override {
+        if (!stays_double_ && factor_.precision() == Precision::double_) factor_.use(Precision::single_);
+        bool found = factor_.factorise(values);
+        if (!found && factor_.precision() == Precision::single_) {
+            factor_.use(Precision::double_);
+            found = factor_.factorise(values);
+        }
+        factor_.release_work_space();
+        return found;
+    }
+    void solve(std::span<double> right_hand_sides, int columns) override { factor_.solve(right_hand_sides, columns); }
+
+private:
+    Cholesky factor_;
+    bool stays_double_;
+};
+
+class GroupedSolver final : public CoarseSolver {
+public:
+    explicit GroupedSolver(const SymmetricPattern& pattern) : levels_(levels_on_groups(pattern)) {}
+
+    [[nodiscard]] bool set(std::span<const double> values, std::span<const double> positions) override {
+        return levels_.set(values, positions);
+    }
+    void solve(std::span<double> right_hand_sides, int columns) override {
+        const std::size_t size = levels_.size();
+        for (std::size_t c = 0; c < static_cast<std::size_t>(columns); c += most_columns) {
+            const std::size_t count = std::min(most_columns, static_cast<std::size_t>(columns) - c);
+            double* const sides = right_hand_sides.data() + c * size;
+            right_.resize(count * size);
+            for_numbers(size, [&](std::size_t i) {
+                for (std::size_t k = 0; k < count; ++k) right_[count * i + k] = sides[k * size + i];
+            });
+            const Interleaved<float>& found = levels_.apply(right_, count);
+            for_numbers(size, [&](std::size_t i) {
+                for (std::size_t k = 0; k < count; ++k) sides[k * size + i] = static_cast<double>(found[count * i + k]);
+            });
+        }
+    }
+    [[nodiscard]] bool is_turned() const override { return levels_.is_turned(); }
+    [[nodiscard]] bool build() override { return levels_.build(); }
+
+private:
+    SmoothedLevels levels_;
+    Interleaved<double> right_;
+};
+
+}  // namespace
+
+std::unique_ptr<CoarseSolver> make_factored_solver(const SymmetricPattern& pattern, bool stays_double) {
+    return std::make_unique<FactoredSolver>(pattern, stays_double);
+}
+
+std::unique_ptr<CoarseSolver> make_grouped_solver(const SymmetricPattern& pattern) {
+    return std::make_unique<GroupedSolver>(pattern);
+}
+
+}  // namespace pliant::linalg

@@ -1,0 +1,35 @@
+// How the coarse level of a two-level solver is solved: by a factor or, where that would be too large, by one cycle of
+// further levels.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "base/linalg/sparse.hpp"
+
+namespace pliant::linalg {
+
+class CoarseSolver {
+public:
+    virtual ~CoarseSolver() = default;
+
+    /// `values` belong to the pattern and must stay valid until the next call; `positions` (nodes, 3) are those of its
+    /// nodes. False: not positive definite.
+    [[nodiscard]] virtual bool set(std::span<const double> values, std::span<const double> positions) = 0;
+    /// In place, for `columns` right-hand sides stored one after the other: the same symmetric and positive definite
+    /// operator until the next set() or build(), to single precision.
+    virtual void solve(std::span<double> right_hand_sides, int columns) = 0;
+    /// True if some of it was made for an earlier matrix, and rotated.
+    [[nodiscard]] virtual bool is_turned() const { return false; }
+    /// Makes all of it for the present matrix; false: not positive definite.
+    [[nodiscard]] virtual bool build() { return true; }
+};
+
+/// `stays_double`: a matrix that single precision could not factorise is factorised in double precision, and so are all
+/// later ones; otherwise single precision is tried again each time.
+[[nodiscard]] std::unique_ptr<CoarseSolver> make_factored_solver(const SymmetricPattern& pattern, bool stays_double);
+/// Smoothing, and groups of nodes as the next level, which is factorised. Precondition: blocks of 3, whose unknowns are
+/// displacements of nodes.
+[[nodiscard]] std::unique_ptr<CoarseSolver> make_grouped_solver(const SymmetricPattern& pattern);
+
+}  // namespace pliant::linalg
