@@ -95,6 +95,7 @@ Result<int> run_studio(const Options& options) {
     Result<std::unique_ptr<studio::Studio>> studio =
         studio::Studio::open({options.file, PLIANT_VERSION, options.notify, options.webcam});
     if (!studio) return tl::unexpected(studio.error());
+    const std::jthread ahead([&studio](const std::stop_token& stop) { (*studio)->draw_ahead(stop); });
     const Result<std::string> token = choose_token(options);
     if (!token) return tl::unexpected(token.error());
     std::error_code error;

@@ -16,4 +16,6 @@ const shown = () => shownFrame.value ?? store.frame.value;
 const project = (p: [number, number, number]) => theView.value?.placeOnPage(p);
 Object.assign(window, { pliant: { ...store, robotText: text, shown, project } });
 store.connect();
-render(<App />, document.getElementById('app') as HTMLElement);
+const root = document.getElementById('app') as HTMLElement;
+root.replaceChildren(); // what index.html shows until here
+render(<App />, root);

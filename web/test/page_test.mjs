@@ -68,6 +68,29 @@ test('a dragged slider moves the tip to where pliant simulate puts it', async (t
   assert.deepEqual(wrong, []);
 });
 
+test('the robot is shown before the page runs, in Simulate only, and gives way to the 3D view', async (t) => {
+  const picture = '.first-picture img';
+  for (const [hash, visible] of [['', true], ['#simulate', true], ['#make', false], ['#print', false]]) {
+    const context = await browser.newContext({ bypassCSP: true });
+    t.after(() => context.close());
+    const page = await context.newPage();
+    await page.route('**/*.js', (route) => route.abort());
+    await page.goto(studio.address + hash);
+    await page.waitForFunction((of) => document.querySelector(of).naturalWidth > 100, picture);
+    assert.equal(await page.locator(picture).isVisible(), visible, hash);
+    if (!visible) continue;
+    const [drawn, stage] = await Promise.all([picture, '.stage'].map((of) => page.locator(of).boundingBox()));
+    assert.ok(drawn.width > 0.9 * stage.width && drawn.x >= stage.x && drawn.y >= stage.y, JSON.stringify([drawn, stage]));
+  }
+  const { page, wrong } = await openPage(browser, studio.address, t);
+  await settled(page);
+  assert.equal(await page.locator(picture).count(), 0);
+  await page.getByTestId('section-make').click();
+  await page.getByTestId('section-simulate').click();
+  assert.equal(await page.locator(picture).count(), 0);
+  assert.deepEqual(wrong, []);
+});
+
 test('the program plays to its end, and a body can be pulled with the pointer', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t);
   await settled(page);

@@ -77,6 +77,11 @@ Response thumbnail(Studio& studio, const Request& request) {
     return text ? picture(studio, *text, *path) : error_response(404, text.error().message);
 }
 
+Response first_picture(Studio& studio, const Request& request) {
+    const std::shared_ptr<const std::string> png = studio.first_picture(asked_for(request, "theme") == "dark");
+    return png ? Response{200, "image/png", *png} : Response{204, "image/png", ""};
+}
+
 }  // namespace
 
 void add_file_routes(std::vector<Route>& routes) {
@@ -86,6 +91,11 @@ void add_file_routes(std::vector<Route>& routes) {
                       "application/json", true, receive, "application/octet-stream", true});
     routes.push_back({"GET", "/api/thumbnail", "a small picture of a robot or a job, ?example= or ?file=", "image/png",
                       false, thumbnail});
+    routes.push_back(
+        {"GET", "/api/picture",
+         "the robot as drawn, before it is built; theme=dark for a dark background; 204 without content if "
+         "there is none",
+         "image/png", false, first_picture});
 }
 
 }  // namespace pliant::studio

@@ -83,6 +83,15 @@ Status Studio::start(const std::filesystem::path& file) {
     return {};
 }
 
+std::shared_ptr<const std::string> Studio::first_picture(bool dark, const std::stop_token& stop) {
+    const Document d = document();
+    return thumbnails_.of(d.text, d.file, folder_, first_picture_style(dark), stop);
+}
+
+void Studio::draw_ahead(const std::stop_token& stop) {
+    for (const bool dark : {false, true}) (void)first_picture(dark, stop);
+}
+
 Studio::Document Studio::document() {
     const std::lock_guard lock(mutex_);
     return document_;

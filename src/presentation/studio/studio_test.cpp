@@ -473,6 +473,36 @@ TEST_CASE("robots have thumbnails; invalid files have none") {
     CHECK(thumbnail("file", "bar.zip").body == session.job()->archive.file(job::thumbnail_file).value());
 }
 
+TEST_CASE("the robot has a picture before it is built, in light and dark; one with an error has none") {
+    const Project project;
+    const auto owner = opened(project);
+    owner->draw_ahead({});
+    const auto picture = [&](const std::string& theme) {
+        Request request{"GET", "/api/picture"};
+        request.query = {{"theme", theme}};
+        return owner->handle(request);
+    };
+    const Response light = picture("light"), dark = picture("dark");
+    REQUIRE(light.status == 200);
+    CHECK(light.type == "image/png");
+    CHECK(light.body.substr(1, 3) == "PNG");
+    REQUIRE(dark.status == 200);
+    CHECK(light.body != dark.body);
+    CHECK(picture("").body == light.body);
+
+    std::stop_source stopped;
+    stopped.request_stop();
+    std::string other = bar;
+    other.replace(other.find("[40, 10, 10]"), 12, "[40, 10, 20]");
+    REQUIRE(owner->edit(other));
+    CHECK(owner->first_picture(false, stopped.get_token()) == nullptr);
+    CHECK(picture("light").status == 200);  // what was stopped is drawn when asked for again
+    CHECK(picture("light").body != light.body);
+
+    (void)owner->edit("name = 3\n");
+    CHECK(picture("light").status == 204);
+}
+
 TEST_CASE("a second robot is shown beside the first, and follows the same inputs") {
     const Project project;
     const auto owner = built(project);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "presentation/draw/camera.hpp"
@@ -16,16 +18,19 @@
 namespace pliant::studio {
 namespace {
 
-constexpr int width_px = 240, height_px = 150;
 constexpr std::size_t most_kept = 200;
 constexpr std::chrono::seconds longest{15};
 
-/// Cancels drawing that takes too long.
+/// Cancels drawing that takes too long, or is not wanted any more.
 class Hurry final : public Progress {
 public:
-    [[nodiscard]] bool cancelled() const override { return std::chrono::steady_clock::now() > end_; }
+    explicit Hurry(std::stop_token stop) : stop_(std::move(stop)) {}
+    [[nodiscard]] bool cancelled() const override {
+        return stop_.stop_requested() || std::chrono::steady_clock::now() > end_;
+    }
 
 private:
+    std::stop_token stop_;
     std::chrono::steady_clock::time_point end_ = std::chrono::steady_clock::now() + longest;
 };
 
@@ -52,10 +57,20 @@ Result<Drawn> drawn_bodies(const robot::Robot& robot, Progress& progress) {
 
 }  // namespace
 
-Result<std::string> draw_thumbnail(const std::string& text, const std::filesystem::path& file) {
+PictureStyle first_picture_style(bool dark) {
+    using report::Colour;
+    // As RobotView::lookAt('home') in web/src/simulate/view.ts and --stage-top, --stage-bottom in web/src/style.css.
+    PictureStyle style{720, 480, Vec3{0.55, -1.25, 0.62}, {0.13, 0.13, 0.13, 0.13}, {}};
+    style.backdrop = dark ? std::pair{Colour{0.137, 0.157, 0.180}, Colour{0.078, 0.090, 0.102}}
+                          : std::pair{Colour{0.984, 0.980, 0.973}, Colour{0.890, 0.890, 0.875}};
+    return style;
+}
+
+Result<std::string> draw_robot(const std::string& text, const std::filesystem::path& file, const PictureStyle& style,
+                               std::stop_token stop) {
     const Result<robot::Robot> robot = robot::parse_robot(text, file);
     if (!robot) return tl::unexpected(robot.error());
-    Hurry hurry;
+    Hurry hurry(std::move(stop));
     const Result<Drawn> drawn = drawn_bodies(*robot, hurry);
     if (!drawn) return tl::unexpected(drawn.error());
     const report::Surface surface = report::rigid_surface(drawn->surface);
@@ -77,23 +92,30 @@ Result<std::string> draw_thumbnail(const std::string& text, const std::filesyste
     for (const Vec3& p : drawn->surface.points) box.add(p);
     scene.floor_z_m = box.low.z;
     scene.cable_radius_m = 0.006 * box.diagonal();
-    const report::Camera camera = report::fitted(report::choose_view(drawn->surface.points, {}), seen,
-                                                 static_cast<double>(width_px) / height_px, {0.07, 0.07, 0.10, 0.07});
-    const Result<report::Image> image = report::render(scene, camera, width_px, height_px, hurry);
+    if (style.backdrop) std::tie(scene.backdrop_top, scene.backdrop_bottom) = *style.backdrop;
+    const report::Camera side =
+        style.towards_eye ? report::view_from(*style.towards_eye) : report::choose_view(drawn->surface.points, {});
+    const double aspect = static_cast<double>(style.width_px) / style.height_px;
+    const report::Camera camera = report::fitted(side, seen, aspect, style.margins);
+    const Result<report::Image> image = report::render(scene, camera, style.width_px, style.height_px, hurry);
     if (!image) return tl::unexpected(image.error());
-    report::Canvas canvas(width_px, height_px, scene.backdrop_top);
+    report::Canvas canvas(style.width_px, style.height_px, scene.backdrop_top);
     canvas.image(*image, 0, 0);
     return canvas.png();
 }
 
 std::shared_ptr<const std::string> Thumbnails::of(const std::string& text, const std::filesystem::path& file,
-                                                  const ProjectFolder& folder) {
-    const std::string key = text + folder.stamps_of(text, file);
+                                                  const ProjectFolder& folder, const PictureStyle& style,
+                                                  const std::stop_token& stop) {
+    const std::string key =
+        fmt::format("{} {} {}\n", style.width_px, style.height_px, style.backdrop ? style.backdrop->first.r : 0) +
+        text + folder.stamps_of(text, file);
     const std::lock_guard lock(mutex_);
     if (const auto known = known_.find(key); known != known_.end()) return known->second;
     std::shared_ptr<const std::string> picture;
     if (folder.texts_leading_outside(text, file).empty()) {
-        Result<std::string> png = draw_thumbnail(text, file);
+        Result<std::string> png = draw_robot(text, file, style, stop);
+        if (!png && stop.stop_requested()) return nullptr;
         if (png) picture = std::make_shared<const std::string>(std::move(*png));
     }
     if (known_.size() >= most_kept) known_.clear();

@@ -33,6 +33,7 @@ import { CanvasBeside, Compare, Compared, comparing, ranges, tellRange } from '.
 import { Build, draft, placed, takePlace } from './build';
 import { Editor, Materials, pinNow, text } from './editor';
 import { film, filming, gif, stopFilming } from './film';
+import { FirstPicture } from './first_picture';
 import { Goal, path } from './goal';
 import { Identify } from './identify';
 import { Plots } from './plots';
@@ -590,6 +591,7 @@ export function Simulate() {
     <main class="simulate">
       <h2 class="unseen">Simulate</h2>
       <section class="stage">
+        <FirstPicture />
         <div class={comparing.value ? 'views two' : 'views'}>
           <Canvas />
           {comparing.value && <CanvasBeside options={options} />}

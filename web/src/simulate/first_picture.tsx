@@ -1,0 +1,21 @@
+// The robot as the server draws it, which index.html shows from the start, until the 3D view has drawn it.
+import { signal } from '@preact/signals';
+import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
+import { frame } from '../store';
+import { theme } from '../theme';
+import { onDrawn } from './the_view';
+
+// The element itself moves into the page: a new one would have to load the picture again.
+const picture = document.querySelector<HTMLElement>('.first-picture');
+const shown = signal(picture !== null);
+
+export function FirstPicture() {
+  const place = useRef<HTMLDivElement>(null);
+  useLayoutEffect(() => {
+    const source = picture?.querySelector('source'), dark = theme.value === 'dark';
+    if (source && matchMedia(source.media).matches !== dark) source.media = dark ? 'all' : 'not all';
+    if (picture) place.current?.append(picture);
+  }, []);
+  useEffect(() => (shown.value ? onDrawn(() => (shown.value = shown.value && !frame.value)) : undefined), [shown.value]);
+  return shown.value ? <div ref={place} /> : null;
+}
