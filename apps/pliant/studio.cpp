@@ -4,9 +4,11 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <future>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -95,7 +97,14 @@ Result<int> run_studio(const Options& options) {
     Result<std::unique_ptr<studio::Studio>> studio =
         studio::Studio::open({options.file, PLIANT_VERSION, options.notify, options.webcam});
     if (!studio) return tl::unexpected(studio.error());
-    const std::jthread ahead([&studio](const std::stop_token& stop) { (*studio)->draw_ahead(stop); });
+    // What a page shows first is drawn before its address is told, while no browser wants the same processors.
+    std::promise<void> light;
+    const std::jthread ahead([&studio, &light](const std::stop_token& stop) {
+        (void)(*studio)->first_picture(false, stop);
+        light.set_value();
+        (void)(*studio)->first_picture(true, stop);
+    });
+    (void)light.get_future().wait_for(std::chrono::milliseconds(500));
     const Result<std::string> token = choose_token(options);
     if (!token) return tl::unexpected(token.error());
     std::error_code error;

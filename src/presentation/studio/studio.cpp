@@ -88,10 +88,6 @@ std::shared_ptr<const std::string> Studio::first_picture(bool dark, const std::s
     return thumbnails_.of(d.text, d.file, folder_, first_picture_style(dark), stop);
 }
 
-void Studio::draw_ahead(const std::stop_token& stop) {
-    for (const bool dark : {false, true}) (void)first_picture(dark, stop);
-}
-
 Studio::Document Studio::document() {
     const std::lock_guard lock(mutex_);
     return document_;

@@ -58,8 +58,6 @@ public:
     [[nodiscard]] Thumbnails& thumbnails() { return thumbnails_; }
     /// PNG of the robot as drawn, which a page shows until its 3D view is ready. Null: there is none.
     [[nodiscard]] std::shared_ptr<const std::string> first_picture(bool dark, const std::stop_token& stop = {});
-    /// Draws both in advance, for the page that is about to be opened.
-    void draw_ahead(const std::stop_token& stop);
     [[nodiscard]] MakeSession& make() { return *make_; }
     [[nodiscard]] PrintSession& print() { return *print_; }
     [[nodiscard]] PrintQueue& queue() { return *queue_; }

@@ -476,7 +476,6 @@ TEST_CASE("robots have thumbnails; invalid files have none") {
 TEST_CASE("the robot has a picture before it is built, in light and dark; one with an error has none") {
     const Project project;
     const auto owner = opened(project);
-    owner->draw_ahead({});
     const auto picture = [&](const std::string& theme) {
         Request request{"GET", "/api/picture"};
         request.query = {{"theme", theme}};
