@@ -21,7 +21,7 @@ public:
     virtual void solve(std::span<double> right_hand_sides, int columns) = 0;
     /// True if some of it was made for an earlier matrix, and rotated.
     [[nodiscard]] virtual bool is_turned() const { return false; }
-    /// Makes all of it for the present matrix; false: not positive definite.
+    /// Makes all of it anew, for the present matrix; false: not positive definite. Precondition: is_turned().
     [[nodiscard]] virtual bool build() { return true; }
 };
 

@@ -74,19 +74,21 @@ bool SmoothedLevels::prepare() {
         find_largest_by_powers();
     else
         find_largest_by_lanczos();
-    if (!built_ || !space_->turn(positions_)) return build();
+    if (!built_ || !space_->turn(positions_)) return set_coarse();
     turned_ = true;
     return true;
 }
 
+/// Makes the coarse level for the present matrix and positions.
+bool SmoothedLevels::set_coarse() {
+    space_->set({matrix_, positions_, inverse_diagonal_.data(), 4.0F / 3 / upper()});
+    turned_ = false;
+    built_ = coarse_->set(space_->values(), space_->positions());
+    return built_;
+}
+
 bool SmoothedLevels::build() {
-    if (!built_ || turned_ || !coarse_->is_turned()) {
-        space_->set({matrix_, positions_, inverse_diagonal_.data(), 4.0F / 3 / upper()});
-        turned_ = false;
-        built_ = coarse_->set(space_->values(), space_->positions());
-        return built_;
-    }
-    return coarse_->build();
+    return turned_ ? set_coarse() : coarse_->build();
 }
 
 bool SmoothedLevels::invert_diagonal() {

@@ -32,7 +32,7 @@ public:
     /// See TwoLevel.
     void take(std::span<const double> values, std::span<const double> positions);
     [[nodiscard]] bool move_towards(std::span<const double> values, double share);
-    /// Builds the coarse level for the present matrix and positions; false: not positive definite.
+    /// Makes a level that was turned anew; false: not positive definite. Precondition: is_turned().
     [[nodiscard]] bool build();
     /// True if a coarse level was made for an earlier matrix, and rotated.
     [[nodiscard]] bool is_turned() const { return turned_ || coarse_->is_turned(); }
@@ -47,6 +47,7 @@ private:
     using Rough = Interleaved<float>;
     enum class Start { zero, where_it_is };
     [[nodiscard]] bool prepare();
+    [[nodiscard]] bool set_coarse();
     void set_columns(std::size_t count);
     [[nodiscard]] bool invert_diagonal();
     void apply_inverse_diagonal(const Rough& from, Rough& to) const;
