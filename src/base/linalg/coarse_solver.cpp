@@ -1,6 +1,5 @@
 #include "base/linalg/coarse_solver.hpp"
 
-#include <algorithm>
 #include <cstddef>
 
 #include "base/linalg/cholesky.hpp"
@@ -40,19 +39,16 @@ public:
         return levels_.set(values, positions);
     }
     void solve(std::span<double> right_hand_sides, int columns) override {
-        const std::size_t size = levels_.size();
-        for (std::size_t c = 0; c < static_cast<std::size_t>(columns); c += most_columns) {
-            const std::size_t count = std::min(most_columns, static_cast<std::size_t>(columns) - c);
-            double* const sides = right_hand_sides.data() + c * size;
-            right_.resize(count * size);
-            for_numbers(size, [&](std::size_t i) {
-                for (std::size_t k = 0; k < count; ++k) right_[count * i + k] = sides[k * size + i];
-            });
-            const Interleaved<float>& found = levels_.apply(right_, count);
-            for_numbers(size, [&](std::size_t i) {
-                for (std::size_t k = 0; k < count; ++k) sides[k * size + i] = static_cast<double>(found[count * i + k]);
-            });
-        }
+        const std::size_t size = levels_.size(), count = static_cast<std::size_t>(columns);
+        right_.resize(count * size);
+        for_numbers(size, [&](std::size_t i) {
+            for (std::size_t k = 0; k < count; ++k) right_[count * i + k] = right_hand_sides[k * size + i];
+        });
+        const Interleaved<float>& found = levels_.apply(right_, count);
+        for_numbers(size, [&](std::size_t i) {
+            for (std::size_t k = 0; k < count; ++k)
+                right_hand_sides[k * size + i] = static_cast<double>(found[count * i + k]);
+        });
     }
     [[nodiscard]] bool is_turned() const override { return levels_.is_turned(); }
     [[nodiscard]] bool build() override { return levels_.build(); }

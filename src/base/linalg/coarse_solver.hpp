@@ -16,7 +16,7 @@ public:
     /// `values` belong to the pattern and must stay valid until the next call; `positions` (nodes, 3) are those of its
     /// nodes. False: not positive definite.
     [[nodiscard]] virtual bool set(std::span<const double> values, std::span<const double> positions) = 0;
-    /// In place, for `columns` right-hand sides stored one after the other: the same symmetric and positive definite
+    /// In place, for one or two right-hand sides stored one after the other: the same symmetric and positive definite
     /// operator until the next set() or build(), to single precision.
     virtual void solve(std::span<double> right_hand_sides, int columns) = 0;
     /// True if some of it was made for an earlier matrix, and rotated.

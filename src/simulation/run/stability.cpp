@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -85,9 +84,9 @@ void Stability::assemble(const State& state, const Controls& controls, bool proj
 /// positive projection.
 bool Stability::take_metric(const State& state, const Controls& controls) {
     const Eigen::VectorXd positions = system_->free_positions(state.x);
-    const std::optional<linalg::Nesting> corners = nest_in_corners(system_->model());
-    auto inverse = levels_are_quicker(layout_->pattern, corners.has_value(), laplacian_->work())
-                       ? make_levels_inverse(layout_->pattern, corners)
+    // Only a factor finds every negative direction of a metric: levels serve where it would be far too large.
+    auto inverse = levels_are_quicker(layout_->pattern, false, laplacian_->work())
+                       ? make_levels_inverse(layout_->pattern, nest_in_corners(system_->model()))
                        : make_direct_inverse(laplacian_->analysis(), false);
     AlignedArray<double> values(stiffness_.size());
     std::ranges::copy(stiffness_.span(), values.span().begin());

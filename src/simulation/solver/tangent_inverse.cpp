@@ -173,10 +173,12 @@ std::unique_ptr<TangentInverse> make_direct_inverse(std::shared_ptr<const linalg
 
 std::unique_ptr<TangentInverse> make_levels_inverse(const linalg::SymmetricPattern& pattern,
                                                     const std::optional<linalg::Nesting>& corners) {
-    // Ten iterations do in a usual body. With more corners than most_factored_corners, a factor is no alternative.
-    constexpr int most_on_groups = 100, most_on_corners = 40;
-    if (!corners) return std::make_unique<LevelsInverse>(linalg::TwoLevel(pattern), most_on_groups);
-    return std::make_unique<LevelsInverse>(linalg::TwoLevel(pattern, *corners), most_on_corners);
+    // Ten iterations do in a usual body. Of a body of few corners a factor would be faster than more than 40.
+    constexpr int usual_limit = 100, limit_of_few_corners = 40;
+    if (!corners) return std::make_unique<LevelsInverse>(linalg::TwoLevel(pattern), usual_limit);
+    const bool few = corners->coarse_nodes <= linalg::most_factored_corners;
+    return std::make_unique<LevelsInverse>(linalg::TwoLevel(pattern, *corners),
+                                           few ? limit_of_few_corners : usual_limit);
 }
 
 bool levels_are_quicker(const linalg::SymmetricPattern& pattern, bool nested, double factor_work) {

@@ -5,7 +5,7 @@ import { frame } from '../store';
 import { theme } from '../theme';
 import { onDrawn } from './the_view';
 
-// The element itself moves into the page: a new one would have to load the picture again.
+// The element itself moves into the page: it shows the picture throughout, and a new one would begin empty.
 const picture = document.querySelector<HTMLElement>('.first-picture');
 const shown = signal(picture !== null);
 
