@@ -63,10 +63,10 @@ export async function openPage(browser, address, t, options = {}) {
   return { page, context, wrong };
 }
 
-/// Closes a page as a person does: the helm is free at once.
+/// Closes a page as a person does: the helm is free at once, unless the studio has ended before.
 async function leave({ page, context }) {
   await page.evaluate(() => window.pliant.send({ type: 'steer', action: 'leave' })).catch(() => {});
-  await page.waitForFunction(() => !window.pliant.helm.value.you, undefined, { timeout: 10_000 }).catch(() => {});
+  await page.waitForFunction(() => !window.pliant.online.value || !window.pliant.helm.value.you, undefined, { timeout: 10_000 }).catch(() => {});
   await context.close().catch(() => {});
 }
 
