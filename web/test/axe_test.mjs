@@ -228,6 +228,8 @@ test('axe finds no problem in building and analysing robots, at any width', asyn
   assert.deepEqual(wrong, []);
 });
 
+const speedUp = (page, speed) => page.evaluate((s) => fetch('/api/print/speed', { method: 'POST', headers: { 'X-Pliant-Page': window.pliant.page }, body: JSON.stringify({ speed: s }) }), speed);
+
 /// Every state of preparing and printing, one after the other.
 async function* steps(page) {
   await page.getByTestId('section-make').click();
@@ -236,7 +238,7 @@ async function* steps(page) {
   yield 'placement';
   await page.getByTestId('lay-on-face').click();
   await page.evaluate(() => document.querySelectorAll('.make details').forEach((d) => (d.open = true)));
-  await page.getByTestId('option-copies').fill('500');
+  await page.getByTestId('option-copies').fill('24');
   await page.getByTestId('option-copies').blur();
   await page.waitForSelector('[data-testid=bed][data-fits=false]');
   yield 'placement, all options, too many copies, a face is to be picked';
@@ -272,6 +274,7 @@ async function* steps(page) {
   await startPrint(page);
   await page.getByTestId('enlarge-light').waitFor({ timeout: 60_000 });
   await page.evaluate(() => document.querySelectorAll('.print details').forEach((d) => (d.open = true)));
+  await speedUp(page, 10); // slow enough to be looked at
   yield 'a print';
   await page.getByTestId('enlarge-light').click();
   yield 'the light enlarged';
@@ -279,7 +282,7 @@ async function* steps(page) {
   await page.getByTestId('pause').click();
   await page.getByTestId('resume').waitFor({ timeout: 60_000 });
   yield 'paused';
-  await page.evaluate(() => fetch('/api/print/speed', { method: 'POST', headers: { 'X-Pliant-Page': window.pliant.page }, body: '{"speed":3000}' }));
+  await speedUp(page, 3000);
   await page.getByTestId('resume').click();
   await page.getByTestId('verdict').waitFor({ timeout: 120_000 });
   await page.locator('.notice').waitFor({ state: 'detached', timeout: 20_000 });

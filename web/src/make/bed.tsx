@@ -53,13 +53,14 @@ class BedView {
   private normals = new Float32Array(0);
   private plain = new Float32Array(0); // colours without paint
   private codes = new Uint8Array(0); // paint code of each corner
+  private fine = false; // the triangles are small enough to be painted
   private list: Touch[] = [];
   private down = new THREE.Vector3(); // downward direction of the platform, in the coordinates of the drawn part
   private flattest = -1; // degrees: undersides flatter than this are highlighted; below 0: none
   private held: { at: THREE.Vector3 } | null = null;
   private last: Touch | null = null;
 
-  constructor(private readonly canvas: HTMLCanvasElement, part: Scene, private readonly hands: Hands) {
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly part: Scene, private readonly hands: Hands) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.camera.up.set(0, 0, 1);
     this.world.add(new THREE.HemisphereLight(0xffffff, 0x8a8f98, 1.9));
@@ -70,7 +71,7 @@ class BedView {
     this.ring.visible = false;
     this.ring.renderOrder = 2;
     this.world.add(key, below, this.parts, this.ring);
-    this.build(part);
+    this.build(false);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.draw());
     // Registered before those of the controls, which would rotate the view.
@@ -97,13 +98,19 @@ class BedView {
     this.resize.observe(canvas.parentElement!);
   }
 
-  private build(part: Scene) {
+  /// The part's triangles as they are, or divided into small ones, which take paint at its place. Small ones are many, and
+  /// are drawn once per copy: they are made for the first touch of a brush.
+  private build(fine: boolean) {
+    const part = this.part;
     const colours = part.head.materials.map((m) => new THREE.Color(m.colour));
     const material = part.u32('material');
     const rest = part.f32('rest');
     const triangles = part.u32('triangles');
     const box = new THREE.Box3().setFromArray(rest as unknown as number[]);
-    const { points, from } = refined(rest, triangles, Math.max(box.getSize(new THREE.Vector3()).length() / 130, 0.4));
+    const side = fine ? Math.max(box.getSize(new THREE.Vector3()).length() / 130, 0.4) : Infinity;
+    const { points, from } = refined(rest, triangles, side);
+    this.fine = fine;
+    this.geometry.dispose();
     this.points = points;
     this.plain = new Float32Array(points.length);
     this.normals = new Float32Array(points.length);
@@ -162,7 +169,9 @@ class BedView {
 
   /// `flattest`: undersides flatter than this angle, in degrees, are highlighted; below 0: none.
   paint(list: Touch[], flattest: number) {
-    const grows = list.length >= this.list.length && this.list.every((t, k) => t === list[k]);
+    const refines = list.length > 0 && !this.fine;
+    if (refines) this.build(true);
+    const grows = !refines && list.length >= this.list.length && this.list.every((t, k) => t === list[k]);
     if (!grows) this.codes.fill(0);
     painted(this.points, this.normals, list, this.codes, grows ? this.list.length : 0);
     this.list = list;
