@@ -109,13 +109,20 @@ std::vector<std::string> ProjectFolder::texts_leading_outside(std::string_view t
     return outside;
 }
 
+std::string ProjectFolder::unknown_text_leading_outside(std::string_view toml, const fs::path& file,
+                                                        std::span<const std::string> known) const {
+    for (std::string& text : texts_leading_outside(toml, file))
+        if (std::find(known.begin(), known.end(), text) == known.end()) return std::move(text);
+    return {};
+}
+
 std::string ProjectFolder::stamps_of(std::string_view toml, const fs::path& file) const {
     std::string stamps;
     const Result<config::Document> document = config::parse(toml, file);
     if (!document) return stamps;
     visit_texts(document->root, [&](const std::string& text) {
         std::error_code error;
-        if (text.empty() || text.size() > longest_path || !holds(file.parent_path() / text)) return;
+        if (text.empty() || text.size() > longest_path) return;
         const fs::path path = file.parent_path() / text;
         if (!fs::is_regular_file(path, error)) return;
         const auto size = fs::file_size(path, error);

@@ -84,6 +84,9 @@ surface = "link.toml"
 up = "..")";
     CHECK(folder->texts_leading_outside(toml, place.project / "a.toml") ==
           std::vector<std::string>{"../project_secret/s.toml", "/etc/passwd", "link.toml", ".."});
+    const std::vector<std::string> known = {"..", "/etc/passwd", "link.toml"};
+    CHECK(folder->unknown_text_leading_outside(toml, place.project / "a.toml", known) == "../project_secret/s.toml");
+    CHECK(folder->unknown_text_leading_outside("up = \"..\"", place.project / "a.toml", known).empty());
     CHECK(folder->texts_leading_outside("x = \"" + std::string(5000, 'a') + "\"", place.project / "a.toml").empty());
     CHECK(folder->texts_leading_outside("not toml", place.project / "a.toml").empty());
 }

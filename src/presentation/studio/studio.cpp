@@ -85,7 +85,7 @@ Status Studio::start(const std::filesystem::path& file) {
 
 std::shared_ptr<const std::string> Studio::first_picture(bool dark, const std::stop_token& stop) {
     const Document d = document();
-    return thumbnails_.of(d.text, d.file, folder_, first_picture_style(dark), stop);
+    return thumbnails_.of(d.text, d.file, folder_, first_picture_style(dark), d.outside, stop);
 }
 
 Studio::Document Studio::document() {
@@ -100,12 +100,9 @@ void Studio::rebuild(After after) {
 
 /// A text received over the network must not make the program read files outside the folder.
 Status Studio::check_files(const std::string& text) const {
-    for (const std::string& path : folder_.texts_leading_outside(text, document_.file)) {
-        const auto& known = document_.outside;
-        if (std::find(known.begin(), known.end(), path) != known.end()) continue;
-        return input_error("\"{}\" lies outside of the project folder {}", path, folder_.path().string());
-    }
-    return {};
+    const std::string path = folder_.unknown_text_leading_outside(text, document_.file, document_.outside);
+    if (path.empty()) return {};
+    return input_error("\"{}\" lies outside of the project folder {}", path, folder_.path().string());
 }
 
 Status Studio::edit(const std::string& text) {

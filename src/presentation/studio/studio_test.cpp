@@ -502,6 +502,37 @@ TEST_CASE("the robot has a picture before it is built, in light and dark; one wi
     CHECK(picture("light").status == 204);
 }
 
+TEST_CASE("the robot has a picture although it names a file outside the folder, but text from a page gets none") {
+    const Project project;
+    std::ofstream solid(project.base / "tetra.stl");
+    solid << "solid tetra\n";
+    for (const char* facet : {"0 0 0|0 9 0|9 0 0", "0 0 0|9 0 0|0 0 9", "0 0 0|0 0 9|0 9 0", "9 0 0|0 9 0|0 0 9"}) {
+        solid << "facet normal 0 0 0\nouter loop\nvertex ";
+        for (const char* c = facet; *c != 0; ++c) *c == '|' ? solid << "\nvertex " : solid << *c;
+        solid << "\nendloop\nendfacet\n";
+    }
+    solid << "endsolid tetra\n";
+    solid.close();
+    std::string outside = bar;
+    const std::string geometry = "{ box = [[0, 0, 0], [40, 10, 10]] }";
+    outside.replace(outside.find(geometry), geometry.size(), "\"../tetra.stl\"");
+    std::ofstream(project.base / "project" / "outside.toml") << outside;
+    const auto owner = opened(project.base / "project" / "outside.toml");
+    const auto first = owner->first_picture(false);
+    REQUIRE(first != nullptr);
+    CHECK(ask(*owner, "GET", "/api/thumbnail?file=outside.toml").status >= 400);
+
+    fs::copy_file(project.base / "tetra.stl", project.base / "secret.stl");
+    std::string secret = outside;
+    secret.replace(secret.find("tetra.stl"), 9, "secret.stl");
+    Thumbnails pictures;
+    const fs::path file = project.base / "project" / "outside.toml";
+    const std::vector<std::string> known = {"../tetra.stl"};
+    CHECK(pictures.of(outside, file, owner->folder(), {}, known) != nullptr);
+    CHECK(pictures.of(secret, file, owner->folder(), {}, known) == nullptr);
+    CHECK(pictures.of(outside, file, owner->folder(), {}) == nullptr);
+}
+
 TEST_CASE("a second robot is shown beside the first, and follows the same inputs") {
     const Project project;
     const auto owner = built(project);

@@ -106,18 +106,17 @@ Result<std::string> draw_robot(const std::string& text, const std::filesystem::p
 
 std::shared_ptr<const std::string> Thumbnails::of(const std::string& text, const std::filesystem::path& file,
                                                   const ProjectFolder& folder, const PictureStyle& style,
-                                                  const std::stop_token& stop) {
+                                                  std::span<const std::string> outside, const std::stop_token& stop) {
+    if (!folder.unknown_text_leading_outside(text, file, outside).empty()) return nullptr;
     const std::string key =
         fmt::format("{} {} {}\n", style.width_px, style.height_px, style.backdrop ? style.backdrop->first.r : 0) +
         text + folder.stamps_of(text, file);
     const std::lock_guard lock(mutex_);
     if (const auto known = known_.find(key); known != known_.end()) return known->second;
     std::shared_ptr<const std::string> picture;
-    if (folder.texts_leading_outside(text, file).empty()) {
-        Result<std::string> png = draw_robot(text, file, style, stop);
-        if (!png && stop.stop_requested()) return nullptr;
-        if (png) picture = std::make_shared<const std::string>(std::move(*png));
-    }
+    Result<std::string> png = draw_robot(text, file, style, stop);
+    if (!png && stop.stop_requested()) return nullptr;
+    if (png) picture = std::make_shared<const std::string>(std::move(*png));
     if (known_.size() >= most_kept) known_.clear();
     known_.emplace(key, picture);
     return picture;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -36,10 +37,11 @@ struct PictureStyle {
 
 class Thumbnails {
 public:
-    /// Null if there is none: the robot has errors, takes too long, or names files outside the folder. Redrawn if the
-    /// text or a file that it names has changed.
+    /// Null if there is none: the robot has errors, takes too long, or names files outside the folder that are not
+    /// among `outside`. Redrawn if the text or a file that it names has changed.
     [[nodiscard]] std::shared_ptr<const std::string> of(const std::string& text, const std::filesystem::path& file,
                                                         const ProjectFolder& folder, const PictureStyle& style = {},
+                                                        std::span<const std::string> outside = {},
                                                         const std::stop_token& stop = {});
 
 private:
