@@ -68,23 +68,29 @@ async function compared(page, shot, other) {
   );
 }
 
+/// The page as it is now, scrolled to its top.
+async function shot(page) {
+  await page.evaluate(() => {
+    document.activeElement?.blur();
+    for (const e of document.querySelectorAll('main, aside, .steer')) e.scrollTo({ top: 0, behavior: 'instant' });
+    window.scrollTo({ top: 0, behavior: 'instant' });
+    // Where form and picture stand one below the other, the picture is what is looked at.
+    if (window.innerWidth <= 900) document.querySelector('.make .stage')?.scrollIntoView({ behavior: 'instant' });
+    return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done())));
+  });
+  const mask = changing.map((selector) => page.locator(selector));
+  return (await page.screenshot({ mask, maskColor: '#888888', animations: 'disabled' })).toString('base64');
+}
+
 /// Taken when the page has come to rest: two pictures one after the other are the same.
 async function picture(page) {
-  const mask = changing.map((selector) => page.locator(selector));
   await page.waitForFunction(() => !/loading|Building/.test(document.querySelector('.layer-info')?.textContent ?? ''));
   let last = '';
   for (let k = 0; k < 20; ++k) {
-    await page.evaluate(() => {
-      document.activeElement?.blur();
-      for (const e of document.querySelectorAll('main, aside, .steer')) e.scrollTo({ top: 0, behavior: 'instant' });
-      window.scrollTo({ top: 0, behavior: 'instant' });
-      // Where form and picture stand one below the other, the picture is what is looked at.
-      if (window.innerWidth <= 900) document.querySelector('.make .stage')?.scrollIntoView({ behavior: 'instant' });
-    });
     await page.waitForTimeout(300);
-    const shot = (await page.screenshot({ mask, maskColor: '#888888', animations: 'disabled' })).toString('base64');
-    if (shot === last) return shot;
-    last = shot;
+    const next = await shot(page);
+    if (next === last) return next;
+    last = next;
   }
   return last;
 }
@@ -93,6 +99,8 @@ async function picture(page) {
 async function look(page, name) {
   const file = join(approved, `${name}.png`);
   const known = existsSync(file) ? readFileSync(file).toString('base64') : '';
+  // A page that looks as approved has come to rest.
+  if (known && !approve && (await compared(page, await shot(page), known)).share <= most) return '';
   const { png, share } = await compared(page, await picture(page), known);
   if (approve) {
     if (share > most) {
