@@ -154,6 +154,51 @@ TEST_CASE("cavities look inwards, and every chord of a curve keeps to the tolera
     CHECK(farthest < 0.01);
 }
 
+TEST_CASE("small balls in a large body get what their own radius needs, and no more") {
+    const auto pitted = [](double side) {
+        return without(box({0, 0, 0}, {side, side, side}), solid(SphereSolid{{side / 2, side / 2, side}, 1.5}));
+    };
+    const Result<TriMesh> small = tessellate(pitted(4), 0.01), large = tessellate(pitted(400), 0.01);
+    REQUIRE(small);
+    REQUIRE(large);
+    CHECK(check_closed(*large));
+    CHECK(large->triangles.size() < 1.5 * static_cast<double>(small->triangles.size()));
+    double farthest = 0;
+    for (const auto& [a, b, c] : large->triangles) {
+        const Vec3 &p = large->points[a], &q = large->points[b], &r = large->points[c];
+        const Vec3 middle{200, 200, 400};
+        if (norm(p - middle) > 1.6 || norm(q - middle) > 1.6 || norm(r - middle) > 1.6) continue;
+        if (p.z > 399.999 && q.z > 399.999 && r.z > 399.999) continue;
+        farthest = std::max(farthest, 1.5 - norm((1.0 / 3) * (p + q + r) - middle));
+    }
+    CHECK(farthest > 0);
+    CHECK(farthest < 0.01);
+}
+
+TEST_CASE("the long edge of a rod that is cut obliquely keeps to the tolerance") {
+    const Solid rod = solid(CylinderSolid{{0, 0, -40}, {0, 0, 40}, 2});
+    const Solid half = solid(RotatedSolid{box({-100, -100, -100}, {100, 100, 0}), {0, 0, 0}, {0, 1, 0}, 1.35});
+    const Result<TriMesh> cut =
+        tessellate(solid(CombinedSolid{CombinedSolid::Operation::intersect, {rod, half}}), 0.01);
+    REQUIRE_MESSAGE(cut, (cut ? "" : cut.error().message));
+    CHECK(check_closed(*cut));
+    const auto radius = [](const Vec3& p) { return std::hypot(p.x, p.y); };
+    // Inclined by 1.35 about y: the plane of the cut contains the direction (sin, 0, cos) of its long axis.
+    const auto on_cut = [](const Vec3& p) { return std::fabs(std::sin(1.35) * p.x + std::cos(1.35) * p.z) < 1e-6; };
+    double farthest = 0;
+    int edges = 0;
+    for (const auto& triangle : cut->triangles)
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 &p = cut->points[triangle[k]], &q = cut->points[triangle[(k + 1) % 3]];
+            const bool rim = on_cut(p) && on_cut(q) && radius(p) > 1.999 && radius(q) > 1.999;
+            if (!rim || p.y * q.y < 0) continue;
+            ++edges;
+            farthest = std::max(farthest, 2 - radius(0.5 * (p + q)));
+        }
+    CHECK(edges > 20);
+    CHECK(farthest < 0.01);
+}
+
 TEST_CASE("a thin curved wall is meshed finer than its element size asks for") {
     const Solid tube =
         without(solid(CylinderSolid{{0, 0, 0}, {0, 0, 10}, 5}), solid(CylinderSolid{{0, 0, -1}, {0, 0, 11}, 4.8}));

@@ -53,6 +53,12 @@ Projection get_closest_point(int dimension, int tag, std::vector<double> coordin
     return found;
 }
 
+std::string get_type(int dimension, int tag) {
+    std::string type;
+    api::getType(dimension, tag, type);
+    return type;
+}
+
 std::vector<double> get_curvature(int tag, const std::vector<double>& parameters) {
     std::vector<double> curvatures;
     api::getCurvature(2, tag, parameters, curvatures);
