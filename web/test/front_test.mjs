@@ -75,7 +75,7 @@ test('before slicing, the robot is shown on the platform: rotated, laid on a fac
   await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2 - 40);
   await page.waitForFunction(() => /· 12 layers/.test(document.querySelector('[data-testid=estimate]')?.textContent ?? ''));
   await page.getByTestId('group-turn').locator('summary').click();
-  await page.getByTestId('option-copies').fill('24');
+  await page.getByTestId('option-copies').fill('200');
   await page.getByTestId('option-copies').blur();
   await page.waitForSelector('[data-testid=bed][data-fits=false]');
   await page.getByTestId('option-copies').fill('1');
