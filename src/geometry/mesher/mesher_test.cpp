@@ -175,6 +175,27 @@ TEST_CASE("small balls in a large body get what their own radius needs, and no m
     CHECK(farthest < 0.01);
 }
 
+TEST_CASE("a face that is less curved than its body is large is no flat face, beside balls and alone") {
+    // A slab of 40 mm whose top is part of a cylinder of radius 60 mm.
+    const Solid rod = solid(CylinderSolid{{0, -30, 0}, {0, 30, 0}, 60});
+    const Solid block = box({-20, -20, 40}, {20, 20, 62});
+    const Solid slab = solid(CombinedSolid{CombinedSolid::Operation::intersect, {block, rod}});
+    const Solid pitted = without(slab, solid(SphereSolid{{0, 0, 40}, 1.5}));
+    for (const Solid& body : {slab, pitted}) {
+        const Result<TriMesh> surface = tessellate(body, 0.01);
+        REQUIRE_MESSAGE(surface, (surface ? "" : surface.error().message));
+        double farthest = 0;
+        for (const auto& [a, b, c] : surface->triangles) {
+            const Vec3 middle = (1.0 / 3) * (surface->points[a] + surface->points[b] + surface->points[c]);
+            const double radius = std::hypot(middle.x, middle.z);
+            const bool top = radius > 59 && std::fabs(middle.x) < 19.9 && std::fabs(middle.y) < 19.9;
+            if (top) farthest = std::max(farthest, 60 - radius);
+        }
+        CHECK(farthest > 0);
+        CHECK(farthest < 0.03);
+    }
+}
+
 TEST_CASE("the long edge of a rod that is cut obliquely keeps to the tolerance") {
     const Solid rod = solid(CylinderSolid{{0, 0, -40}, {0, 0, 40}, 2});
     const Solid half = solid(RotatedSolid{box({-100, -100, -100}, {100, 100, 0}), {0, 0, 0}, {0, 1, 0}, 1.35});

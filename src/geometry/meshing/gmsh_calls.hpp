@@ -32,7 +32,7 @@ struct Projection {
 };
 Projection get_closest_point(int dimension, int tag, std::vector<double> coordinates);
 std::vector<double> get_normal(int tag, std::vector<double> parameters);
-/// What an entity is: "Plane", "Sphere", "Cylinder", "Line", "Circle" or another of Gmsh's words.
+/// What an entity is, in Gmsh's words, as "Plane", "Sphere" or "Cylinder".
 std::string get_type(int dimension, int tag);
 /// The largest curvature of a surface at each of its parameters (2 n); 0 where it is flat.
 std::vector<double> get_curvature(int tag, const std::vector<double>& parameters);

@@ -638,13 +638,17 @@ namespace {
 
 struct RoundFace {
     double area, least_radius, largest_radius;
-    bool is_even;  ///< of a ball or a cylinder: the radii are the same at all points
+};
+
+struct RoundFaces {
+    std::vector<RoundFace> faces;
+    bool only_balls_and_cylinders = true;  ///< of radii up to `reach`: known at every point, not at the samples alone
 };
 
 /// The faces of the volumes that are not flat, with their radii at a grid of points, at most `reach`.
-std::vector<RoundFace> round_faces(const Entities& volumes, double reach) {
+RoundFaces round_faces(const Entities& volumes, double reach) {
     constexpr int grid = 4;
-    std::vector<RoundFace> faces;
+    RoundFaces round;
     for (const auto& [dimension, tag] : gmsh::model::get_boundary(volumes, false)) {
         const auto [low, high] = gmsh::model::get_parametrization_bounds(dimension, tag);
         std::vector<double> places;
@@ -653,16 +657,18 @@ std::vector<RoundFace> round_faces(const Entities& volumes, double reach) {
             places.push_back(low[0] + u * (high[0] - low[0]));
             places.push_back(low[1] + v * (high[1] - low[1]));
         }
-        const std::string type = gmsh::model::get_type(dimension, tag);
-        RoundFace face{occ::get_mass(dimension, tag), reach, 0, type == "Sphere" || type == "Cylinder"};
+        RoundFace face{occ::get_mass(dimension, tag), reach, 0};
         for (const double curvature : gmsh::model::get_curvature(tag, places)) {
             if (!(std::fabs(curvature) * reach > 1)) continue;
             face.least_radius = std::min(face.least_radius, 1 / std::fabs(curvature));
             face.largest_radius = std::max(face.largest_radius, 1 / std::fabs(curvature));
         }
-        if (face.largest_radius > 0) faces.push_back(face);
+        if (face.largest_radius > 0) round.faces.push_back(face);
+        const std::string type = gmsh::model::get_type(dimension, tag);
+        const bool is_known = (type == "Sphere" || type == "Cylinder") && face.largest_radius > 0;
+        round.only_balls_and_cylinders = round.only_balls_and_cylinders && (is_known || type == "Plane");
     }
-    return faces;
+    return round;
 }
 
 /// How many triangles, about, the round faces get with so many chords per turn.
@@ -683,17 +689,17 @@ struct Chords {
 /// So many chords per turn that those of an arc of radius r deviate by tolerance / 2; the other half is for triangles,
 /// which deviate more from a ball than their edges do. Gmsh divides arcs of all radii into equally many: what the
 /// largest one needs would make a long thin rod a matter of hours, so where that is too much, only what the radii at
-/// hand need, or even less. So it is too where these are known at every point, from the radii of balls and cylinders.
+/// hand need, or even less. So it is too where these are known at every point.
 Chords chords_for(const Entities& volumes, double reach, double tolerance) {
     constexpr double least = 24, most = 2000, too_many_triangles = 5e5, many_triangles = 2e5;
     constexpr double finer = 1.5, few_triangles = 5e4;  // 2.25 times nearer than asked, where it costs little
     const auto needed = [&](double radius) {
         return std::clamp(2 * std::numbers::pi / std::sqrt(4 * tolerance / radius), least, most);
     };
-    const std::vector<RoundFace> faces = round_faces(volumes, reach);
+    const auto [faces, only_balls_and_cylinders] = round_faces(volumes, reach);
     double radius = tolerance;
     for (const RoundFace& face : faces) radius = std::max(radius, face.largest_radius);
-    if (std::all_of(faces.begin(), faces.end(), [](const RoundFace& face) { return face.is_even; })) {
+    if (only_balls_and_cylinders) {
         for (const auto& [factor, limit] : {std::pair(finer, few_triangles), std::pair(1.0, too_many_triangles)}) {
             const double chords = std::min(factor * needed(radius), needed(reach));
             if (triangles_of(faces, chords) <= limit) return {chords, tolerance};
