@@ -5,7 +5,7 @@ import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, program, says, settled, startBrowser, startStudio, unzipped, readRobot, typeRobot } from './studio.mjs';
+import { openPage, program, says, settled, startBrowser, startStudio, unzipped, readRobot, redrawn, typeRobot } from './studio.mjs';
 
 const robot = new URL('../../examples/tutorial/finger.toml', import.meta.url).pathname;
 let folder;
@@ -134,7 +134,7 @@ test('a dragged marker moves its cable, stays where it is released, and shows it
   await page.getByTestId('rest').click();
   await page.waitForFunction(() => window.pliant.frame.value.head.cables[0].ratio > 0.9999);
   await settled(page);
-  await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+  await redrawn(page);
   const dot = async () => {
     const label = await page.locator('.labels span', { hasText: 'tip' }).boundingBox();
     return [label.x - 9, label.y + 10];

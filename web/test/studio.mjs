@@ -106,6 +106,12 @@ export async function settled(page) {
   await page.waitForSelector('[data-testid=status][data-state=arrived]', { timeout: 90_000 });
 }
 
+/// The page has drawn what it knows.
+export const redrawn = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done()))));
+
+/// The speed of the virtual print, also beyond what the page offers.
+export const setSpeed = (page, speed) => page.evaluate((s) => fetch('/api/print/speed', { method: 'POST', headers: { 'X-Pliant-Page': window.pliant.page }, body: JSON.stringify({ speed: s }) }), speed);
+
 /// Takes the virtual printer for the job at hand. A print that was interrupted before is discarded, unless `goOn`.
 export async function takeTwin(page, speed, { goOn = false } = {}) {
   await page.getByTestId('take-speed').selectOption(speed);

@@ -6,7 +6,7 @@ import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync,
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, settled, startBrowser, startPrint, startStudio, takeTwin } from './studio.mjs';
+import { openPage, redrawn, settled, startBrowser, startPrint, startStudio, takeTwin } from './studio.mjs';
 
 const approved = new URL('approved/', import.meta.url).pathname;
 const approve = Boolean(process.env.PLIANT_APPROVE);
@@ -76,20 +76,20 @@ async function shot(page) {
     window.scrollTo({ top: 0, behavior: 'instant' });
     // Where form and picture stand one below the other, the picture is what is looked at.
     if (window.innerWidth <= 900) document.querySelector('.make .stage')?.scrollIntoView({ behavior: 'instant' });
-    return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done())));
   });
+  await redrawn(page);
   const mask = changing.map((selector) => page.locator(selector));
   return (await page.screenshot({ mask, maskColor: '#888888', animations: 'disabled' })).toString('base64');
 }
 
-/// Taken when the page has come to rest: two pictures one after the other are the same.
-async function picture(page) {
+/// Taken when the page has come to rest: two pictures one after the other are the same, or one is `asWanted`.
+async function picture(page, asWanted = async () => false) {
   await page.waitForFunction(() => !/loading|Building/.test(document.querySelector('.layer-info')?.textContent ?? ''));
   let last = '';
   for (let k = 0; k < 20; ++k) {
     await page.waitForTimeout(300);
     const next = await shot(page);
-    if (next === last) return next;
+    if (next === last || (await asWanted(next))) return next;
     last = next;
   }
   return last;
@@ -99,9 +99,9 @@ async function picture(page) {
 async function look(page, name) {
   const file = join(approved, `${name}.png`);
   const known = existsSync(file) ? readFileSync(file).toString('base64') : '';
-  // A page that looks as approved has come to rest.
-  if (known && !approve && (await compared(page, await shot(page), known)).share <= most) return '';
-  const { png, share } = await compared(page, await picture(page), known);
+  let seen;
+  await picture(page, async (next) => (seen = await compared(page, next, known)).share <= most);
+  const { png, share } = seen;
   if (approve) {
     if (share > most) {
       mkdirSync(approved, { recursive: true });

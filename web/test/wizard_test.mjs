@@ -5,7 +5,7 @@ import { existsSync, mkdtempSync, readFileSync, realpathSync, rmSync } from 'nod
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, program, startBrowser, startStudio } from './studio.mjs';
+import { openPage, program, setSpeed, startBrowser, startStudio } from './studio.mjs';
 
 const printer = new URL('../../examples/printers/tower.toml', import.meta.url).pathname;
 let folder;
@@ -150,7 +150,7 @@ test('axes on the virtual printer: home, jog and swap; the emergency stop stays 
   await page.getByTestId('wizard-file').selectOption('mine.toml');
   await page.getByTestId('axes-twin').click();
   await page.getByTestId('axes-connected').waitFor({ timeout: 120_000 });
-  await page.evaluate(() => fetch('/api/print/speed', { method: 'POST', headers: { 'X-Pliant-Page': window.pliant.page }, body: JSON.stringify({ speed: 3000 }) }));
+  await setSpeed(page, 3000);
   assert.ok(await page.getByTestId('emergency').isVisible());
   await next(page, 1);
   assert.ok(await page.getByTestId('wizard-next').isDisabled(), 'nothing has moved, nothing is homed');

@@ -109,10 +109,12 @@ std::vector<std::string> ProjectFolder::texts_leading_outside(std::string_view t
     return outside;
 }
 
-std::string ProjectFolder::unknown_text_leading_outside(std::string_view toml, const fs::path& file,
-                                                        std::span<const std::string> known) const {
-    for (std::string& text : texts_leading_outside(toml, file))
-        if (std::find(known.begin(), known.end(), text) == known.end()) return std::move(text);
+Status ProjectFolder::check_texts(std::string_view toml, const fs::path& file,
+                                  std::span<const std::string> known) const {
+    for (const std::string& text : texts_leading_outside(toml, file)) {
+        if (std::find(known.begin(), known.end(), text) != known.end()) continue;
+        return input_error("\"{}\" lies outside of the project folder {}", text, root_.string());
+    }
     return {};
 }
 

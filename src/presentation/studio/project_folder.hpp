@@ -30,9 +30,9 @@ public:
     /// the document names is read. Empty for an invalid document.
     [[nodiscard]] std::vector<std::string> texts_leading_outside(std::string_view toml,
                                                                  const std::filesystem::path& file) const;
-    /// The first of them that is not among `known`, the ones that the user's own file named; empty: there is none.
-    [[nodiscard]] std::string unknown_text_leading_outside(std::string_view toml, const std::filesystem::path& file,
-                                                           std::span<const std::string> known) const;
+    /// Error: one of them is not among `known`, those that the user's own file named.
+    [[nodiscard]] Status check_texts(std::string_view toml, const std::filesystem::path& file,
+                                     std::span<const std::string> known = {}) const;
     /// A fingerprint that changes when a file that the document, beside `file`, names changes: "" if it names none.
     [[nodiscard]] std::string stamps_of(std::string_view toml, const std::filesystem::path& file) const;
 

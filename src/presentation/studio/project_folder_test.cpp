@@ -85,8 +85,11 @@ up = "..")";
     CHECK(folder->texts_leading_outside(toml, place.project / "a.toml") ==
           std::vector<std::string>{"../project_secret/s.toml", "/etc/passwd", "link.toml", ".."});
     const std::vector<std::string> known = {"..", "/etc/passwd", "link.toml"};
-    CHECK(folder->unknown_text_leading_outside(toml, place.project / "a.toml", known) == "../project_secret/s.toml");
-    CHECK(folder->unknown_text_leading_outside("up = \"..\"", place.project / "a.toml", known).empty());
+    const auto unknown = folder->check_texts(toml, place.project / "a.toml", known);
+    REQUIRE_FALSE(unknown);
+    CHECK(unknown.error().message.find("\"../project_secret/s.toml\" lies outside of the project folder") == 0);
+    CHECK(folder->check_texts("up = \"..\"", place.project / "a.toml", known));
+    CHECK_FALSE(folder->check_texts("up = \"..\"", place.project / "a.toml"));
     CHECK(folder->texts_leading_outside("x = \"" + std::string(5000, 'a') + "\"", place.project / "a.toml").empty());
     CHECK(folder->texts_leading_outside("not toml", place.project / "a.toml").empty());
 }

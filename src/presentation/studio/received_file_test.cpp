@@ -10,29 +10,15 @@
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
 #include "base/core/test_text.hpp"
+#include "presentation/studio/test_surface.hpp"
 
 using namespace pliant;
 using namespace pliant::studio;
+using pliant::studio::test::tetra;
 using pliant::test::holds;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A tetrahedron with legs of `size` along the axes, as text.
-std::string tetra(int size) {
-    const std::string o = "0 0 0", x = fmt::format("{} 0 0", size), y = fmt::format("0 {} 0", size),
-                      z = fmt::format("0 0 {}", size);
-    std::string text = "solid t\n";
-    const auto facet = [&](const std::string& a, const std::string& b, const std::string& c) {
-        text += fmt::format("facet normal 0 0 0\nouter loop\nvertex {}\nvertex {}\nvertex {}\nendloop\nendfacet\n", a,
-                            b, c);
-    };
-    facet(o, y, x);
-    facet(o, x, z);
-    facet(o, z, y);
-    facet(x, y, z);
-    return text + "endsolid t\n";
-}
 
 struct Bench {
     pliant::test::Folder folder{"received"};

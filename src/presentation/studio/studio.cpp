@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -100,9 +99,7 @@ void Studio::rebuild(After after) {
 
 /// A text received over the network must not make the program read files outside the folder.
 Status Studio::check_files(const std::string& text) const {
-    const std::string path = folder_.unknown_text_leading_outside(text, document_.file, document_.outside);
-    if (path.empty()) return {};
-    return input_error("\"{}\" lies outside of the project folder {}", path, folder_.path().string());
+    return folder_.check_texts(text, document_.file, document_.outside);
 }
 
 Status Studio::edit(const std::string& text) {
@@ -236,8 +233,7 @@ Status Studio::compare(const std::string& name, const std::string& example) {
         Result<std::string> text = read_file(*path, largest_robot);
         if (!text) return tl::unexpected(text.error());
         if (Status status = check_kind(*text, *path); !status) return status;
-        for (const std::string& outside : folder_.texts_leading_outside(*text, *path))
-            return input_error("\"{}\" lies outside of the project folder {}", outside, folder_.path().string());
+        if (Status status = folder_.check_texts(*text, *path); !status) return status;
         source = {*path, std::move(*text)};
     }
     auto session = std::make_shared<SimulationSession>(events_beside());

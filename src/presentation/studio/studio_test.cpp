@@ -13,6 +13,7 @@
 #include "base/core/test_folder.hpp"
 #include "presentation/studio/make_session.hpp"
 #include "presentation/studio/test_sessions.hpp"
+#include "presentation/studio/test_surface.hpp"
 
 using namespace pliant;
 using namespace pliant::studio;
@@ -504,22 +505,13 @@ TEST_CASE("the robot has a picture before it is built, in light and dark; one wi
 
 TEST_CASE("the robot has a picture although it names a file outside the folder, but text from a page gets none") {
     const Project project;
-    std::ofstream solid(project.base / "tetra.stl");
-    solid << "solid tetra\n";
-    for (const char* facet : {"0 0 0|0 9 0|9 0 0", "0 0 0|9 0 0|0 0 9", "0 0 0|0 0 9|0 9 0", "9 0 0|0 9 0|0 0 9"}) {
-        solid << "facet normal 0 0 0\nouter loop\nvertex ";
-        for (const char* c = facet; *c != 0; ++c) *c == '|' ? solid << "\nvertex " : solid << *c;
-        solid << "\nendloop\nendfacet\n";
-    }
-    solid << "endsolid tetra\n";
-    solid.close();
+    std::ofstream(project.base / "tetra.stl") << studio::test::tetra(9);
     std::string outside = bar;
     const std::string geometry = "{ box = [[0, 0, 0], [40, 10, 10]] }";
     outside.replace(outside.find(geometry), geometry.size(), "\"../tetra.stl\"");
     std::ofstream(project.base / "project" / "outside.toml") << outside;
     const auto owner = opened(project.base / "project" / "outside.toml");
-    const auto first = owner->first_picture(false);
-    REQUIRE(first != nullptr);
+    CHECK(owner->first_picture(false) != nullptr);
     CHECK(ask(*owner, "GET", "/api/thumbnail?file=outside.toml").status >= 400);
 
     fs::copy_file(project.base / "tetra.stl", project.base / "secret.stl");

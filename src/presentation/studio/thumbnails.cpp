@@ -107,7 +107,7 @@ Result<std::string> draw_robot(const std::string& text, const std::filesystem::p
 std::shared_ptr<const std::string> Thumbnails::of(const std::string& text, const std::filesystem::path& file,
                                                   const ProjectFolder& folder, const PictureStyle& style,
                                                   std::span<const std::string> outside, const std::stop_token& stop) {
-    if (!folder.unknown_text_leading_outside(text, file, outside).empty()) return nullptr;
+    if (!folder.check_texts(text, file, outside)) return nullptr;
     const std::string key =
         fmt::format("{} {} {}\n", style.width_px, style.height_px, style.backdrop ? style.backdrop->first.r : 0) +
         text + folder.stamps_of(text, file);
