@@ -3,6 +3,7 @@
 #
 #   pliant_module(USES <what its headers need> PRIVATE_USES <the rest> TEST_USES <more, for its tests>
 #                 SOURCES <generated files> EXCEPT <files of other targets of this folder>
+#                 ALONE <files that no group can have: with definitions or system headers of their own>
 #                 QUICK: compiled quickly, see below; PLAIN: without what the others share)
 #
 # Other modules are named by their folders, WING/ROOM; everything else is the name of a target. A module sees the
@@ -79,6 +80,43 @@ function(pliant_compile target kind)
   endif()
 endfunction()
 
+# Most of the compiler's time goes into headers, Eigen's above all, once for every file. So the sources of a room are
+# compiled in groups: files of the build folder that include several of them. Within a group all unnamed namespaces are
+# one; tools/check_names sees to it that no name is in two files. PLIANT_GROUPS=0, as in the preset dev, compiles each
+# source alone: after an edit only that file is compiled again, clang-tidy finds the command of each, and a file that
+# forgot to include a header does not compile.
+set(PLIANT_GROUPS 8 CACHE STRING "Compile at most so many sources of a room together; 0: each alone")
+
+# pliant_grouped(RESULT NAME FILE...): what is compiled for these files of this folder.
+function(pliant_grouped result name)
+  list(LENGTH ARGN count)
+  if(PLIANT_GROUPS LESS 2 OR count LESS 2)
+    set(${result} ${ARGN} PARENT_SCOPE)
+    return()
+  endif()
+  # Groups of one size, within a file.
+  math(EXPR groups "(${count} + ${PLIANT_GROUPS} - 1) / ${PLIANT_GROUPS}")
+  set(grouped)
+  set(begin 0)
+  foreach(group RANGE 1 ${groups})
+    math(EXPR end "${group} * ${count} / ${groups}")
+    math(EXPR size "${end} - ${begin}")
+    list(SUBLIST ARGN ${begin} ${size} members)
+    set(begin ${end})
+    set(file ${CMAKE_CURRENT_BINARY_DIR}/groups/${name}_${group}.cpp)
+    set(text)
+    foreach(member IN LISTS members)
+      # Not by its full path: another clone finds the object in the compiler's cache.
+      cmake_path(ABSOLUTE_PATH member)
+      cmake_path(RELATIVE_PATH member BASE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/groups)
+      string(APPEND text "#include \"${member}\"\n")
+    endforeach()
+    file(CONFIGURE OUTPUT ${file} CONTENT "${text}" @ONLY)
+    list(APPEND grouped ${file})
+  endforeach()
+  set(${result} ${grouped} PARENT_SCOPE)
+endfunction()
+
 # The main function of all test programs, with the code of doctest, compiled once.
 if(PLIANT_TESTS)
   add_library(pliant_test_main STATIC ${PROJECT_SOURCE_DIR}/src/test_main.cpp)
@@ -130,7 +168,7 @@ function(pliant_part name)
 endfunction()
 
 function(pliant_module)
-  cmake_parse_arguments(M "QUICK;PLAIN" "" "SOURCES;EXCEPT;USES;PRIVATE_USES;TEST_USES" ${ARGN})
+  cmake_parse_arguments(M "QUICK;PLAIN" "" "SOURCES;EXCEPT;ALONE;USES;PRIVATE_USES;TEST_USES" ${ARGN})
   set(kind)
   foreach(option IN ITEMS QUICK PLAIN)
     if(M_${option})
@@ -143,20 +181,24 @@ function(pliant_module)
   set(tests ${files})
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
   list(FILTER files EXCLUDE REGEX "^test_.*|_test\\.cpp$")
-  foreach(file IN LISTS M_EXCEPT)
-    list(REMOVE_ITEM files ${file})
-  endforeach()
-  pliant_part(${library} ${kind} SOURCES ${files} ${M_SOURCES} USES ${M_USES} PRIVATE_USES ${M_PRIVATE_USES})
+  list(REMOVE_ITEM files ${M_EXCEPT} ${M_ALONE} "")
+  pliant_grouped(files sources ${files})
+  pliant_part(${library} ${kind} SOURCES ${files} ${M_ALONE} ${M_SOURCES} USES ${M_USES} PRIVATE_USES ${M_PRIVATE_USES})
   if(PLIANT_TESTS AND tests)
-    pliant_test_program(${folder} TESTS ${tests} USES ${library} ${M_PRIVATE_USES} ${M_TEST_USES})
+    pliant_test_program(${folder} GROUPED TESTS ${tests} USES ${library} ${M_PRIVATE_USES} ${M_TEST_USES})
   endif()
 endfunction()
 
-# pliant_test_program(WING/ROOM TESTS a_test.cpp ... USES <what they need>): one program, an entry for each file.
+# pliant_test_program(WING/ROOM TESTS a_test.cpp ... USES <what they need> GROUPED: compiled in groups): one program, an
+# entry for each file.
 function(pliant_test_program folder)
-  cmake_parse_arguments(T "" "" "TESTS;USES" ${ARGN})
+  cmake_parse_arguments(T "GROUPED" "" "TESTS;USES" ${ARGN})
   string(REPLACE "/" "_" program pliant_${folder}_test)
-  add_executable(${program} ${T_TESTS})
+  set(sources ${T_TESTS})
+  if(T_GROUPED)
+    pliant_grouped(sources ${program} ${T_TESTS})
+  endif()
+  add_executable(${program} ${sources})
   pliant_link(${program} PRIVATE pliant_test_main pliant_flags ${T_USES})
   if(NOT "CGAL::CGAL" IN_LIST T_USES) # its flags are not those of the shared headers
     pliant_compile(${program} test)

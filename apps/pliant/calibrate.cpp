@@ -24,7 +24,7 @@ struct Files {
     Output output;
 };
 
-Status write_results(const Files& files, const std::string& json, const std::string& csv, const report::Plot& plot) {
+Status write_fit(const Files& files, const std::string& json, const std::string& csv, const report::Plot& plot) {
     if (files.folder.empty()) return {};
     const Result<std::string> png = report::plot_png(plot);
     if (!png) return tl::unexpected(png.error());
@@ -35,7 +35,7 @@ Status write_results(const Files& files, const std::string& json, const std::str
     });
 }
 
-void print(const Files& files, const std::string& text, const std::string& json) {
+void print_fit(const Files& files, const std::string& text, const std::string& json) {
     if (files.output.json)
         fmt::print("{}\n", json);
     else if (!files.output.quiet)
@@ -123,8 +123,8 @@ Status run_ratio(RatioCommand& command) {
         runs.emplace_back(command.options, std::move(*result));
     }
     const std::string json = ratio_jsons(runs);
-    print(command, ratio_texts(runs), json);
-    return write_results(command, json, ratio_csvs(runs), ratio_plot(runs));
+    print_fit(command, ratio_texts(runs), json);
+    return write_fit(command, json, ratio_csvs(runs), ratio_plot(runs));
 }
 
 struct TensileCommand : Files {
@@ -187,8 +187,8 @@ Status run_tensile(TensileCommand& command) {
     const auto fit = calibrate::fit(test, command.options);
     if (!fit) return tl::unexpected(Error{fit.error().cause, command.file + ": " + fit.error().message});
     const std::string json = calibrate::fit_json(*fit, test);
-    print(command, calibrate::fit_text(*fit) + "\n" + calibrate::material_toml(*fit, command.name), json);
-    return write_results(command, json, tensile_csv(test, *fit), tensile_plot(command, test, *fit));
+    print_fit(command, calibrate::fit_text(*fit) + "\n" + calibrate::material_toml(*fit, command.name), json);
+    return write_fit(command, json, tensile_csv(test, *fit), tensile_plot(command, test, *fit));
 }
 
 struct ElongationCommand : Files {
@@ -252,8 +252,8 @@ Status run_elongation(const ElongationCommand& command) {
         (*rows)[i].shape_parameter = *match;
     }
     const std::string json = calibrate::elongation_json(*rows);
-    print(command, calibrate::elongation_text(*rows), json);
-    return write_results(command, json, calibrate::elongation_csv(*rows), elongation_plot(*rows));
+    print_fit(command, calibrate::elongation_text(*rows), json);
+    return write_fit(command, json, calibrate::elongation_csv(*rows), elongation_plot(*rows));
 }
 
 void add_files(CLI::App& command, Files& files) {

@@ -30,7 +30,7 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct CheckOptions {
     std::vector<std::string> files;
     std::string printer;
     std::string port;
@@ -75,7 +75,7 @@ Result<std::string> check_toml(const std::string& file, Progress& progress) {
     return check_robot(file, progress);
 }
 
-Result<std::string> check_job(const std::string& file, const Options& options) {
+Result<std::string> check_job(const std::string& file, const CheckOptions& options) {
     std::optional<machine::Printer> other;
     if (!options.printer.empty()) {
         Result<machine::Printer> printer = read_printer(options.printer);
@@ -96,7 +96,7 @@ Result<std::string> check_job(const std::string& file, const Options& options) {
 }
 
 /// Checks any G-code against the machine that is to run it.
-Result<std::string> check_program(const std::string& file, const Options& options) {
+Result<std::string> check_program(const std::string& file, const CheckOptions& options) {
     if (options.printer.empty()) return input_error("{}: give --printer, the machine that is to run it", file);
     const Result<machine::Printer> printer = read_printer(options.printer);
     if (!printer) return tl::unexpected(printer.error());
@@ -124,7 +124,7 @@ Result<std::string> check_firmware(const std::string& where, const Result<std::s
     return fmt::format("firmware \"{}\" fits {}", board.name, printer.name);
 }
 
-Result<std::string> check_boards(const std::string& file, const Options& options) {
+Result<std::string> check_boards(const std::string& file, const CheckOptions& options) {
     if (options.printer.empty())
         return input_error("--firmware: give --printer, the machine that the board is to drive");
     const Result<machine::Printer> printer = read_printer(options.printer);
@@ -134,7 +134,7 @@ Result<std::string> check_boards(const std::string& file, const Options& options
     return check_firmware(file, read_file(file, 1 << 20), *printer);
 }
 
-Result<std::string> check(const std::string& file, const Options& options, Progress& progress) {
+Result<std::string> check(const std::string& file, const CheckOptions& options, Progress& progress) {
     if (options.firmware) return check_boards(file, options);
     const std::string extension = std::filesystem::path(file).extension().string();
     if (extension == ".toml") return check_toml(file, progress);
@@ -151,7 +151,7 @@ nlohmann::json result_json(const std::string& file, const Result<std::string>& t
 }  // namespace
 
 void add_check(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CheckOptions>();
     CLI::App* command = app.add_subcommand("check", "validate robot, printer, job, G-code and mesh files");
     command->add_option("files", options->files, "files to check");
     command->add_flag("--firmware", options->firmware,

@@ -74,19 +74,19 @@ CommandEntry entry_of(const CLI::App& command, const std::string& name) {
     return entry;
 }
 
-Json json_of(const OptionEntry& entry) {
+Json table_entry(const OptionEntry& entry) {
     return {{"names", entry.names},  {"value", entry.value},       {"range", entry.range},
             {"usual", entry.usual},  {"help", entry.help},         {"choices", entry.choices},
             {"open", entry.open},    {"required", entry.required}, {"repeated", entry.repeated},
             {"values", entry.values}};
 }
 
-Json json_of(const CommandEntry& entry) {
+Json table_entry(const CommandEntry& entry) {
     Json json = {{"name", entry.name},         {"help", entry.help},       {"footer", entry.footer},
                  {"arguments", Json::array()}, {"options", Json::array()}, {"below", Json::array()}};
-    for (const OptionEntry& argument : entry.arguments) json["arguments"].push_back(json_of(argument));
-    for (const OptionEntry& option : entry.options) json["options"].push_back(json_of(option));
-    for (const CommandEntry& below : entry.below) json["below"].push_back(json_of(below));
+    for (const OptionEntry& argument : entry.arguments) json["arguments"].push_back(table_entry(argument));
+    for (const OptionEntry& option : entry.options) json["options"].push_back(table_entry(option));
+    for (const CommandEntry& below : entry.below) json["below"].push_back(table_entry(below));
     return json;
 }
 
@@ -105,7 +105,7 @@ CommandEntry command_table(const CLI::App& program) {
 }
 
 std::string table_json(const CommandEntry& table) {
-    return json_of(table).dump(1);
+    return table_entry(table).dump(1);
 }
 
 }  // namespace pliant::app

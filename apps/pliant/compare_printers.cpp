@@ -13,13 +13,13 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct ComparisonOptions {
     std::vector<std::string> files;
     std::string page;
     Output output;
 };
 
-Status compare(const Options& options) {
+Status compare(const ComparisonOptions& options) {
     std::vector<machine::Printer> printers;
     for (const std::string& file : options.files) {
         Result<machine::Printer> printer = read_printer(file);
@@ -41,7 +41,7 @@ Status compare(const Options& options) {
 }  // namespace
 
 void add_compare_printers(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ComparisonOptions>();
     CLI::App* command = app.add_subcommand("compare-printers", "compare printers: swaps, cleaning, packing");
     command->add_option("printers", options->files, "printer files (TOML)")->required();
     command->add_option("-o,--output", options->page, "HTML report (.html)");

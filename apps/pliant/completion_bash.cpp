@@ -7,7 +7,7 @@ namespace pliant::app {
 namespace {
 
 /// The word before the cursor word; bash splits `--law=yeoh` into three words.
-constexpr const char* head = R"(# bash completion for pliant, written by "pliant completion bash"
+constexpr const char* bash_head = R"(# bash completion for pliant, written by "pliant completion bash"
 _pliant() {
     local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command='' i
     if [[ $word == = ]]; then
@@ -68,7 +68,7 @@ std::string arguments_of(const CommandEntry& entry) {
 }  // namespace
 
 std::string bash_completion(const CommandEntry& program) {
-    std::string text = head;
+    std::string text = bash_head;
     for (const CommandEntry* command : all_commands(program)) {
         const auto [above, last] = parted(command->name);
         text += fmt::format("        {}) command={} ;;\n", in_quotes(above + "/" + last), in_quotes(command->name));

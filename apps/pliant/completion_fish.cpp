@@ -9,7 +9,7 @@ namespace pliant::app {
 namespace {
 
 /// True if the words before the cursor name exactly this command.
-constexpr const char* head = R"(# fish completion for pliant, written by "pliant completion fish"
+constexpr const char* fish_head = R"(# fish completion for pliant, written by "pliant completion fish"
 function __pliant_at
     set -l command
     for word in (commandline -opc)[2..-1]
@@ -60,7 +60,7 @@ std::string fish_completion(const CommandEntry& program) {
     std::string text = "set -g __pliant_commands";
     for (const CommandEntry* command : all_commands(program)) text += " " + in_quotes(command->name);
     text += "\n";
-    text += head + command_lines(program);
+    text += fish_head + command_lines(program);
     for (const CommandEntry* command : all_commands(program)) text += command_lines(*command);
     return text;
 }

@@ -17,7 +17,7 @@ Lines lines_of(std::string_view text) {
     return lines;
 }
 
-std::string text_of(const Lines& lines) {
+std::string joined(const Lines& lines) {
     std::string text;
     for (const std::string& line : lines) text += line + "\n";
     return text;
@@ -99,7 +99,7 @@ private:
         const std::size_t first = at_ + 1;
         for (++at_; at_ < lines_.size() && !is_fence(lines_[at_]); ++at_) block.push_back(lines_[at_]);
         if (!next_.file.empty()) {
-            next_.text = text_of(block);
+            next_.text = joined(block);
             take(next_.text);
             return {};
         }
@@ -273,7 +273,7 @@ std::string updated(std::string_view text, const std::vector<DocumentStep>& step
         const auto at = lines.erase(first, first + static_cast<std::ptrdiff_t>(step.output.size()));
         lines.insert(at, printed[i].begin(), printed[i].end());
     }
-    return text_of(lines);
+    return joined(lines);
 }
 
 }  // namespace pliant::app

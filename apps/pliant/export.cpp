@@ -11,12 +11,12 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct ExportOptions {
     std::string job, format, folder;
     Output output;
 };
 
-Status run(const Options& options) {
+Status export_robot(const ExportOptions& options) {
     const Result<job::Format> format = job::format_from(options.format);
     if (!format) return input_error("--as: {}", format.error().message);
     const Result<job::Archive> archive = read_archive(options.job);
@@ -36,7 +36,7 @@ Status run(const Options& options) {
 }  // namespace
 
 void add_export(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ExportOptions>();
     CLI::App* command = app.add_subcommand("export", "export a job's images in formats of other programs");
     command->add_option("job", options->job, "job file (.zip)")->required();
     command->add_option("--as", options->format, "sl1, nanodlp, zip or vats")->required();
@@ -44,7 +44,7 @@ void add_export(CLI::App& app, int& status) {
         ->required();
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant export gripper.zip --as sl1 -o stacks");
-    on_call(*command, status, [options] { return run(*options); });
+    on_call(*command, status, [options] { return export_robot(*options); });
 }
 
 }  // namespace pliant::app

@@ -15,7 +15,7 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct FirmwareOptions {
     std::string printer, release, save, marlin, write;
     Output output;
 };
@@ -49,7 +49,7 @@ Status check_target(const std::filesystem::path& folder) {
     return {};
 }
 
-Status write_marlin(const Options& options, const machine::Printer& printer) {
+Status write_marlin(const FirmwareOptions& options, const machine::Printer& printer) {
     const auto settings = machine::firmware_settings(printer);
     if (!settings) return input_error("{}: {}", options.printer, settings.error().message);
     const auto configuration = read_marlin_file(options.marlin, "Configuration.h");
@@ -86,7 +86,7 @@ Status write_marlin(const Options& options, const machine::Printer& printer) {
     return {};
 }
 
-Status print_json(const machine::Printer& printer, const std::vector<machine::FirmwareSetting>& settings) {
+Status print_settings(const machine::Printer& printer, const std::vector<machine::FirmwareSetting>& settings) {
     nlohmann::json list = nlohmann::json::array();
     for (const machine::FirmwareSetting& s : settings)
         list.push_back({{"name", s.name}, {"value", s.value}, {"reason", s.reason}});
@@ -97,7 +97,7 @@ Status print_json(const machine::Printer& printer, const std::vector<machine::Fi
     return {};
 }
 
-Status run_firmware(const Options& options) {
+Status run_firmware(const FirmwareOptions& options) {
     Result<machine::Printer> printer = read_printer(options.printer);
     if (!printer) return tl::unexpected(printer.error());
     if (!options.release.empty()) {
@@ -118,7 +118,7 @@ Status run_firmware(const Options& options) {
     if (options.output.json) {
         const auto settings = machine::firmware_settings(*printer);
         if (!settings) return input_error("{}: {}", options.printer, settings.error().message);
-        return print_json(*printer, *settings);
+        return print_settings(*printer, *settings);
     }
     fmt::print("{}", *ini);
     return {};
@@ -127,7 +127,7 @@ Status run_firmware(const Options& options) {
 }  // namespace
 
 void add_firmware(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<FirmwareOptions>();
     CLI::App* command = app.add_subcommand("firmware", "list the build settings of Marlin that a machine needs");
     command->add_option("printer", options->printer, "printer file (TOML)")->required();
     command->add_option("--release", options->release,

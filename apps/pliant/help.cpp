@@ -25,7 +25,7 @@ Result<const CLI::App*> command_below(const CLI::App& app, const std::string& pa
 }
 
 /// What the help says, for programs: name, text, options and commands.
-nlohmann::ordered_json json_of(const CLI::App& command, const std::string& name) {
+nlohmann::ordered_json help_json(const CLI::App& command, const std::string& name) {
     nlohmann::ordered_json json = {{"command", name}, {"text", command.get_description()}};
     json["options"] = json["commands"] = nlohmann::ordered_json::array();
     for (const CLI::Option* option : command.get_options()) {
@@ -52,7 +52,7 @@ Status help(const CLI::App& app, const std::vector<std::string>& words, bool as_
         full += " " + word;
     }
     if (as_json) {
-        fmt::print("{}\n", json_of(*command, full).dump(1));
+        fmt::print("{}\n", help_json(*command, full).dump(1));
         return {};
     }
     // Not command->help(), which prints the help of the running command.

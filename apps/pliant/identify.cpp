@@ -19,7 +19,7 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct IdentifyOptions {
     std::string robot;
     std::string measured;
     std::vector<std::string> unknowns;
@@ -40,7 +40,7 @@ Result<JudgeOn> read_judge(const std::string& text) {
     return input_error("--judge-on: \"{}\" is neither every-second nor second-half", text);
 }
 
-Result<int> identify(const Options& options) {
+Result<int> identify(const IdentifyOptions& options) {
     const Result<JudgeOn> judge = read_judge(options.judge_on);
     if (!judge) return tl::unexpected(judge.error());
     if (Status status = expect(FileKind::robot, options.robot); !status) return tl::unexpected(status.error());
@@ -63,7 +63,7 @@ Result<int> identify(const Options& options) {
 }  // namespace
 
 void add_identify(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<IdentifyOptions>();
     CLI::App* command = app.add_subcommand("identify", "find parameters of a robot from measurements");
     command->add_option("robot", options->robot, "robot file")->required();
     command->add_option("--measured", options->measured, "CSV of measurements, each row at a time of the program")

@@ -17,7 +17,7 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct InverseArguments {
     std::string robot;
     std::string folder;
     InverseOptions search;
@@ -25,13 +25,13 @@ struct Options {
     Output output;
 };
 
-void print_text(const Options& options, const Model& model, const InverseResult& result) {
+void print_text(const InverseArguments& options, const Model& model, const InverseResult& result) {
     fmt::print("{}, {}\n{}", counted(model.node_count(), "node"),
                counted(model.tet_count(), model.order() == 2 ? "quadratic tet" : "linear tet"), result.text());
     if (!options.folder.empty()) fmt::print("results: {}, open report.html there\n", options.folder);
 }
 
-Result<int> inverse(const Options& options) {
+Result<int> inverse(const InverseArguments& options) {
     if (Status status = expect(FileKind::robot, options.robot); !status) return tl::unexpected(status.error());
     auto progress = terminal_progress(options.output);
     const Watch watch = watch_of(*progress);
@@ -55,7 +55,7 @@ Result<int> inverse(const Options& options) {
 }  // namespace
 
 void add_inverse(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<InverseArguments>();
     CLI::App* command =
         app.add_subcommand("inverse", "find the inputs of the actuators with which the robot meets its goals");
     command->add_option("robot", options->robot, "robot file (TOML) with [[goal]], and ranges of actuators")

@@ -57,7 +57,7 @@ struct Wanted {
 }
 
 template <class T>
-T need(Result<T> result) {
+T checked(Result<T> result) {
     if (!result) stop(result.error().message);
     return std::move(*result);
 }
@@ -66,7 +66,7 @@ using Job = app::SmallJob;
 
 /// A small job on the tower of the thesis.
 Job make_job(const fs::path& folder) {
-    return need(app::write_small_job(folder, need(read_file("examples/printers/tower.toml")), {layers, 1, 6, 1}));
+    return checked(app::write_small_job(folder, checked(read_file("examples/printers/tower.toml")), {layers, 1, 6, 1}));
 }
 
 twin::Options booting(machine::MarlinRelease release) {
@@ -81,8 +81,8 @@ class Machine {
 public:
     Machine(const machine::Printer& printer, const fs::path& folder, double speed, machine::MarlinRelease release)
         : shown_(folder / "shown.png"),
-          clock_(need(operate::ClockFile::create(folder / "clock"))),
-          pty_(need(twin::Pty::open())),
+          clock_(checked(operate::ClockFile::create(folder / "clock"))),
+          pty_(checked(twin::Pty::open())),
           twin_(printer, booting(release)),
           thread_([this, speed] {
               twin::ServeOptions options;
@@ -260,7 +260,7 @@ private:
     std::string judge(twin::Twin& twin, Count& count) {
         const twin::Judgement judgement{{}, 0.05 * wanted_.speed};  // a busy computer may be late by 50 ms
         const twin::Report report =
-            need(twin::inspect(twin, job_.manifest, twin::ImageSource(app::halves::image), judgement));
+            checked(twin::inspect(twin, job_.manifest, twin::ImageSource(app::halves::image), judgement));
         for (const twin::CuredLayer& layer : twin.cured().layers()) {
             for (const twin::VatLayer& vat : layer.vats) {
                 for (const twin::Lit& lit : vat.lit) count.pieces += lit.pieces > 1 ? 1 : 0;
@@ -278,13 +278,13 @@ private:
     double print_s_;
 };
 
-void tell(const Count& count) {
+void tell_count(const Count& count) {
     fmt::print(
         "{} kills, {} resets in {} prints: {} wrong, {} refused (vat half-way on the hooks), {} lights in pieces\n",
         count.kills, count.resets, count.prints, count.wrong, count.refused, count.pieces);
 }
 
-int run(const Wanted& wanted) {
+int kill_and_resume(const Wanted& wanted) {
     constexpr int tell_every = 20;
     const pliant::test::Folder own("kill");
     const fs::path& folder = own.path();
@@ -305,10 +305,10 @@ int run(const Wanted& wanted) {
         const std::string wrong = round.print(std::min(left, wanted.per_print), resets, count);
         ++count.prints;
         if (!wrong.empty()) ++count.wrong, fmt::print("print {}: {}\n", count.prints, wrong);
-        if (count.prints % tell_every == 0) tell(count);
+        if (count.prints % tell_every == 0) tell_count(count);
         std::fflush(stdout);
     }
-    tell(count);
+    tell_count(count);
     Wanted slow = wanted;  // parking must last until the second signal
     slow.speed = std::min(wanted.speed, 50.0);
     Round twice(slow, job, folder, random, print_s * wanted.speed / slow.speed);
@@ -333,5 +333,5 @@ int main(int argc, char** argv) {
         if (key == "--seed") wanted.seed = static_cast<unsigned>(value);
         if (key == "--per-print") wanted.per_print = static_cast<int>(value);
     }
-    return run(wanted);
+    return kill_and_resume(wanted);
 }

@@ -9,12 +9,12 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct MaterialsOptions {
     std::vector<std::string> names;
     Output output;
 };
 
-Status list(const Options& options) {
+Status list(const MaterialsOptions& options) {
     std::vector<std::string> names = options.names;
     if (names.empty()) {
         for (const robot::LibraryFile& file : robot::library_files()) names.emplace_back(file.name);
@@ -34,7 +34,7 @@ Status list(const Options& options) {
 }  // namespace
 
 void add_materials(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<MaterialsOptions>();
     CLI::App* command = app.add_subcommand("materials", "list the library of materials that robot files may name");
     command->add_option("names", options->names, "show these materials with constants and sources");
     add_output_options(*command, options->output, true);

@@ -22,7 +22,7 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct MeshOptions {
     std::vector<std::string> files;
     std::string output_file;
     std::string picture_file;
@@ -33,7 +33,7 @@ struct Options {
     Output output;
 };
 
-mesh::Encoding encoding(const Options& options) {
+mesh::Encoding encoding(const MeshOptions& options) {
     return options.text ? mesh::Encoding::text : mesh::Encoding::binary;
 }
 
@@ -41,14 +41,14 @@ bool is_robot_file(const std::string& file) {
     return std::filesystem::path(file).extension() == ".toml";
 }
 
-Result<robot::Robot> load(const Options& options) {
+Result<robot::Robot> load(const MeshOptions& options) {
     if (!options.from_unit.empty() || !options.to_unit.empty())
         return input_error("--from and --to are for mesh files; a robot's mesh is written in its length_unit");
     return read_robot(options.files.front(), options.assignments);
 }
 
 /// A robot is more than its mesh: as .inp it is written as a deck that CalculiX can run.
-Status write_robot(const Options& options, const robot::Robot& robot, const mesh::TetMesh& mesh_m) {
+Status write_robot(const MeshOptions& options, const robot::Robot& robot, const mesh::TetMesh& mesh_m) {
     if (std::filesystem::path(options.output_file).extension() != ".inp") {
         // Files use the robot's own length unit, as the drawing did.
         return mesh::write_tet_mesh(options.output_file, mesh::scaled(mesh_m, 1 / robot.unit_m), encoding(options));
@@ -61,7 +61,7 @@ Status write_robot(const Options& options, const robot::Robot& robot, const mesh
 }
 
 /// Mesh files have no unit: to convert, both units must be given.
-Result<double> scale(const Options& options) {
+Result<double> scale(const MeshOptions& options) {
     if (options.from_unit.empty() && options.to_unit.empty()) return 1.0;
     if (options.from_unit.empty() || options.to_unit.empty())
         return input_error("mesh files carry no unit; give both --from and --to, as in --from m --to mm");
@@ -72,7 +72,7 @@ Result<double> scale(const Options& options) {
     return *from / *to;
 }
 
-Result<mesh::TetMesh> read(const Options& options) {
+Result<mesh::TetMesh> read(const MeshOptions& options) {
     const Result<double> factor = scale(options);
     if (!factor) return tl::unexpected(factor.error());
     Result<mesh::TetMesh> mesh = mesh::read_tet_mesh(options.files.front());
@@ -80,27 +80,27 @@ Result<mesh::TetMesh> read(const Options& options) {
     return *factor == 1 ? std::move(*mesh) : mesh::scaled(std::move(*mesh), *factor);
 }
 
-void print(const Options& options, const std::string& file, const mesh::MeshReport& report) {
+void print_report(const MeshOptions& options, const std::string& file, const mesh::MeshReport& report) {
     if (options.output.json)
         fmt::print("{}\n", mesh::report_json(report));
     else if (!options.output.quiet)
         fmt::print("{}: {}\n", file, mesh::report_text(report));
 }
 
-Status draw(const Options& options, const std::string& title, const mesh::MeshReport& report) {
+Status draw(const MeshOptions& options, const std::string& title, const mesh::MeshReport& report) {
     if (options.picture_file.empty()) return {};
     const Result<std::string> png = report::mesh_picture_png(title, report);
     if (!png) return tl::unexpected(png.error());
     return write_file(options.picture_file, *png);
 }
 
-Status tell(const Options& options, const mesh::TetMesh& mesh) {
+Status tell_mesh(const MeshOptions& options, const mesh::TetMesh& mesh) {
     const mesh::MeshReport report = mesh::report_on(mesh);
-    print(options, options.output_file, report);
+    print_report(options, options.output_file, report);
     return draw(options, options.output_file, report);
 }
 
-Status build(const Options& options) {
+Status build(const MeshOptions& options) {
     auto progress = terminal_progress(options.output);
     on_signal(OnSignal::leave);  // no output is written while meshing
     const Result<robot::Robot> robot = load(options);
@@ -110,21 +110,21 @@ Status build(const Options& options) {
     on_signal(OnSignal::ask_twice);
     if (Status status = write_robot(options, *robot, *mesh); !status) return status;
     progress.reset();
-    return tell(options, mesh::scaled(*mesh, 1 / robot->unit_m));
+    return tell_mesh(options, mesh::scaled(*mesh, 1 / robot->unit_m));
 }
 
-Status convert(const Options& options) {
+Status convert(const MeshOptions& options) {
     const Result<mesh::TetMesh> mesh = read(options);
     if (!mesh) return tl::unexpected(mesh.error());
     if (Status status = mesh::write_tet_mesh(options.output_file, *mesh, encoding(options)); !status) return status;
-    return tell(options, *mesh);
+    return tell_mesh(options, *mesh);
 }
 
-Status describe(const Options& options, const std::string& file) {
+Status describe(const MeshOptions& options, const std::string& file) {
     if (options.output.json || !options.picture_file.empty()) {
         const Result<mesh::MeshReport> report = mesh::report_on_file(file);
         if (!report) return tl::unexpected(report.error());
-        print(options, file, *report);
+        print_report(options, file, *report);
         return draw(options, file, *report);
     }
     const Result<std::string> text = mesh::describe_mesh_file(file);
@@ -133,7 +133,7 @@ Status describe(const Options& options, const std::string& file) {
     return {};
 }
 
-Status run(const Options& options) {
+Status mesh_file(const MeshOptions& options) {
     if (options.files.size() > 1 &&
         (!options.output_file.empty() || !options.picture_file.empty() || options.output.json))
         return input_error("-o, --picture and --json need exactly one robot or mesh file");
@@ -146,7 +146,7 @@ Status run(const Options& options) {
     return {};
 }
 
-void add_options(CLI::App& command, Options& options) {
+void add_options(CLI::App& command, MeshOptions& options) {
     command.add_option("files", options.files, "a robot file with -o, or mesh files (.vtk, .msh, .stl, .off, ...)")
         ->required();
     command.add_option("-o,--output", options.output_file,
@@ -164,14 +164,14 @@ void add_options(CLI::App& command, Options& options) {
 }  // namespace
 
 void add_mesh(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<MeshOptions>();
     CLI::App* command =
         app.add_subcommand("mesh", "build the tet mesh of a robot file, convert a mesh file, or report on mesh files");
     add_options(*command, *options);
     command->footer(
         "Example: pliant mesh examples/cable_gripper/gripper.toml -o gripper.vtk\n"
         "         pliant mesh gripper.vtk -o gripper.msh --from mm --to m");
-    on_call(*command, status, [options] { return run(*options); });
+    on_call(*command, status, [options] { return mesh_file(*options); });
 }
 
 }  // namespace pliant::app

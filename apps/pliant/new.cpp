@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct NewOptions {
     std::string robot, printer, file, name;
     Output output;
 };
@@ -39,7 +39,7 @@ std::string renamed(std::string_view text, std::string_view name) {
     return std::string(text.substr(0, at)) + std::string(name) + std::string(text.substr(at + title.size()));
 }
 
-nlohmann::json json_of(std::span<const studio::BuiltInFile> files) {
+nlohmann::json list_json(std::span<const studio::BuiltInFile> files) {
     nlohmann::json list = nlohmann::json::array();
     for (const studio::BuiltInFile& file : files)
         list.push_back({{"template", file.name}, {"name", title_of(file.text)}});
@@ -51,10 +51,10 @@ void print_list(const char* heading, std::span<const studio::BuiltInFile> files)
     for (const studio::BuiltInFile& file : files) fmt::print("  {:<18} {}\n", file.name, title_of(file.text));
 }
 
-Status list(const Options& options) {
+Status list_built_in(const NewOptions& options) {
     if (options.output.json) {
-        fmt::print("{}\n", nlohmann::json{{"robots", json_of(studio::example_robots())},
-                                          {"printers", json_of(studio::example_printers())}}
+        fmt::print("{}\n", nlohmann::json{{"robots", list_json(studio::example_robots())},
+                                          {"printers", list_json(studio::example_printers())}}
                                .dump(1));
         return {};
     }
@@ -76,7 +76,7 @@ Status check_name(const std::string& name) {
     return input_error("--name {}: must have no quotes, backslashes or line breaks", name);
 }
 
-Status make(const Options& options) {
+Status make(const NewOptions& options) {
     if (!options.robot.empty() && !options.printer.empty())
         return input_error("give the template of a robot, or --printer with that of a printer");
     const bool of_robots = options.printer.empty();
@@ -104,7 +104,7 @@ Status make(const Options& options) {
 }  // namespace
 
 void add_new(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<NewOptions>();
     CLI::App* command = app.add_subcommand("new", "write a robot file or a printer file from a template");
     command->add_option("template", options->robot, "template of a robot; without it all templates are listed");
     command->add_option("--printer", options->printer, "write a printer file instead, from this template");
@@ -112,8 +112,9 @@ void add_new(CLI::App& app, int& status) {
     command->add_option("--name", options->name, "name of the robot, or of the printer, in the file");
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant new cable_gripper --name \"my gripper\" -o my_gripper.toml");
-    on_call(*command, status,
-            [options] { return options->robot.empty() && options->printer.empty() ? list(*options) : make(*options); });
+    on_call(*command, status, [options] {
+        return options->robot.empty() && options->printer.empty() ? list_built_in(*options) : make(*options);
+    });
 }
 
 }  // namespace pliant::app

@@ -15,7 +15,7 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct PlanOptions {
     std::string job;
     std::string printer;
     std::string picture_file;
@@ -24,7 +24,7 @@ struct Options {
     Output output;
 };
 
-Status make_plan(const Options& options) {
+Status make_plan(const PlanOptions& options) {
     if (Status named = check_ending("-o", options.picture_file, "a picture", ".png"); !named) return named;
     if (Status named = check_ending("--spray-picture", options.spray.picture_file, "a picture", ".png"); !named)
         return named;
@@ -61,7 +61,7 @@ Status make_plan(const Options& options) {
 }  // namespace
 
 void add_plan(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<PlanOptions>();
     CLI::App* command = app.add_subcommand("plan", "plan a job: vats, swaps, times, resin");
     command->add_option("job", options->job, "job file (.zip)")->required();
     command->add_option("--printer", options->printer, "printer file in place of the job's own, to compare");

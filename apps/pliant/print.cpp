@@ -16,7 +16,7 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct PrintOptions {
     LiveOptions live;
     std::string report_file;
     std::vector<std::string> accepted, faults;
@@ -46,7 +46,7 @@ int list_ports(const Output& output) {
     return exit_done;
 }
 
-Result<int> print(Options& options) {
+Result<int> print(PrintOptions& options) {
     if (options.list_ports) return list_ports(options.live.output);
     if (options.live.job.empty()) return input_error("name the job to print, such as gripper.zip");
     if (!options.twin && options.live.port.empty() && !options.live.report.empty())
@@ -76,7 +76,7 @@ Result<int> print(Options& options) {
 }  // namespace
 
 void add_print(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<PrintOptions>();
     LiveOptions& live = options->live;
     CLI::App* command = app.add_subcommand("print", "print a job on a machine, or on the virtual printer");
     command->add_option("job", live.job, "job file (.zip)");

@@ -162,7 +162,7 @@ struct Ended {
     host::Snapshot last;
 };
 
-Result<Ended> run(host::Control& control, const LiveOptions& options, operate::ReadyJob& ready) {
+Result<Ended> print_to_end(host::Control& control, const LiveOptions& options, operate::ReadyJob& ready) {
     if (Status status = control.load(ready.job); !status) return tl::unexpected(status.error());
     control.serve_until_idle();
     host::StartOptions start;
@@ -240,7 +240,7 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
         operate::port_setup(machine.device(), options.speed, ready.printer, machine.light, clock, nullptr);
     setup.after_layer = layer_hook(options);
     host::Control control(std::move(setup));
-    const Result<Ended> ended = run(control, options, ready);
+    const Result<Ended> ended = print_to_end(control, options, ready);
     if (!ended) return tl::unexpected(ended.error());
     if (!options.journal.empty()) {
         const Status kept = read_file(journal->path()).and_then([&](const std::string& text) {
@@ -258,7 +258,7 @@ Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready) 
     host::ControlSetup setup = (*station)->setup(ready.printer);
     setup.after_layer = layer_hook(options);
     host::Control control(std::move(setup));
-    const Result<Ended> ended = run(control, options, ready);
+    const Result<Ended> ended = print_to_end(control, options, ready);
     if (!ended) return tl::unexpected(ended.error());
     if (Status written = write_report(options, ready, ended->last, nullptr); !written)
         return tl::unexpected(written.error());

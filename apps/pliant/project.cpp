@@ -20,7 +20,7 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct ProjectOptions {
     std::string where = "0";
     std::string printer, pattern, image, readings, save;
     std::vector<double> measured_mm;
@@ -37,7 +37,7 @@ struct Setting {
 };
 
 /// Size and scale from the printer file, or as given.
-Result<Setting> read_setting(const Options& options) {
+Result<Setting> read_setting(const ProjectOptions& options) {
     Setting setting;
     if (!options.printer.empty()) {
         Result<machine::Printer> printer = read_printer(options.printer);
@@ -78,7 +78,7 @@ Status list_displays(const Output& output) {
     return {};
 }
 
-Status release(const Options& options) {
+Status release(const ProjectOptions& options) {
     const std::optional<int> display = host::display_number(options.where);
     if (!display)
         return input_error("--release: \"{}\" is not a display; displays are numbers (--list)", options.where);
@@ -92,7 +92,7 @@ Status release(const Options& options) {
 }
 
 /// Converts measured distances to the printer file's pixel size.
-Status calibrate_size(const Options& options, const Setting& setting) {
+Status calibrate_size(const ProjectOptions& options, const Setting& setting) {
     const auto& p = setting.pattern;
     if (p.width_px == 0) return input_error("--measured: give --printer, or --size");
     const auto size = host::pixel_size(p.width_px, p.height_px, options.measured_mm[0], options.measured_mm[1]);
@@ -116,7 +116,7 @@ Status calibrate_size(const Options& options, const Setting& setting) {
     return {};
 }
 
-Status make_mask(const Options& options, const Setting& setting) {
+Status make_mask(const ProjectOptions& options, const Setting& setting) {
     const auto& p = setting.pattern;
     if (p.width_px == 0) return input_error("--mask-from: give --printer, or --size");
     if (options.save.empty()) return input_error("--mask-from: give -o, the file for the mask (.png)");
@@ -147,13 +147,13 @@ Result<job::Image> read_image(const std::string& file) {
     return job::decode_any_png(*bytes, *size, file);
 }
 
-Result<job::Image> wanted_image(const Options& options, const host::PatternOptions& pattern) {
+Result<job::Image> wanted_image(const ProjectOptions& options, const host::PatternOptions& pattern) {
     if (!options.image.empty()) return read_image(options.image);
     return host::test_pattern(options.pattern, pattern);
 }
 
 /// Runs until the time is over or Ctrl-C is pressed. The projector itself ends an exposure of limited time.
-Status light(const Options& options, Setting setting) {
+Status light(const ProjectOptions& options, Setting setting) {
     host::ScreenOptions screen;
     screen.width_px = setting.pattern.width_px;
     screen.height_px = setting.pattern.height_px;
@@ -197,14 +197,14 @@ Status light(const Options& options, Setting setting) {
     return {};
 }
 
-Status save_pattern(const Options& options, const Setting& setting) {
+Status save_pattern(const ProjectOptions& options, const Setting& setting) {
     if (setting.pattern.width_px == 0) return input_error("-o: give --printer, or --size");
     const Result<job::Image> image = wanted_image(options, setting.pattern);
     if (!image) return tl::unexpected(image.error());
     return write_file(options.save, job::encode_png(*image));
 }
 
-Status run_project(const Options& options) {
+Status run_project(const ProjectOptions& options) {
     if (options.list) return list_displays(options.output);
     if (options.release && options.pattern.empty() && options.image.empty()) return release(options);
     if (!(options.seconds >= 0 && options.seconds <= 86400))
@@ -224,7 +224,7 @@ Status run_project(const Options& options) {
 }  // namespace
 
 void add_project(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ProjectOptions>();
     CLI::App* command =
         app.add_subcommand("project", "show test patterns and images on the projector, and calibrate it");
     command->add_option("projector", options->where, "number of a display (0), or a folder for the images");

@@ -17,7 +17,7 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct ReduceOptions {
     std::string robot;
     std::string file;
     ReductionOptions reduction;
@@ -52,7 +52,8 @@ Summary summary_of(const std::vector<ReductionCheck>& checks) {
     return all;
 }
 
-void print_text(const Options& options, const ReducedModel& reduced, const std::vector<ReductionCheck>& checks) {
+void print_reduction(const ReduceOptions& options, const ReducedModel& reduced,
+                     const std::vector<ReductionCheck>& checks) {
     fmt::print("{} instead of {}, {} of {}, from {}\n", counted(reduced.mode_count(), "mode"),
                counted(reduced.whole().node_count(), "node"), counted(reduced.tet_count(), "tet"),
                reduced.whole().tet_count(), counted(reduced.sample_count(), "sample"));
@@ -71,7 +72,8 @@ void print_text(const Options& options, const ReducedModel& reduced, const std::
     if (!options.file.empty()) fmt::print("reduced model: {}\n", options.file);
 }
 
-void print_json(const Options& options, const ReducedModel& reduced, const std::vector<ReductionCheck>& checks) {
+void print_reduction_json(const ReduceOptions& options, const ReducedModel& reduced,
+                          const std::vector<ReductionCheck>& checks) {
     using Json = nlohmann::ordered_json;
     Json inputs = Json::array(), rows = Json::array();
     for (const SteeredInput& input : reduced.inputs())
@@ -102,7 +104,7 @@ void print_json(const Options& options, const ReducedModel& reduced, const std::
     fmt::print("{}\n", json.dump(2));
 }
 
-Result<int> reduce(const Options& options) {
+Result<int> reduce(const ReduceOptions& options) {
     if (Status status = expect(FileKind::robot, options.robot); !status) return tl::unexpected(status.error());
     if (Status status = check_ending("-o", options.file, "a reduced model", ".reduced"); !status)
         return tl::unexpected(status.error());
@@ -114,9 +116,9 @@ Result<int> reduce(const Options& options) {
     if (!options.file.empty()) reduced.save(options.file);
     progress.reset();
     if (options.output.json)
-        print_json(options, reduced, checks);
+        print_reduction_json(options, reduced, checks);
     else if (!options.output.quiet)
-        print_text(options, reduced, checks);
+        print_reduction(options, reduced, checks);
     for (const std::string& note : reduced.notes()) fmt::print(stderr, "{}: note: {}\n", options.robot, note);
     const bool all = std::ranges::all_of(checks, [](const ReductionCheck& check) { return check.found; });
     return all ? exit_done : exit_failed;
@@ -125,7 +127,7 @@ Result<int> reduce(const Options& options) {
 }  // namespace
 
 void add_reduce(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ReduceOptions>();
     CLI::App* command =
         app.add_subcommand("reduce", "make a reduced-order model for control loops, and compare it with the robot");
     command->add_option("robot", options->robot, "robot file (TOML) with ranges of actuators")->required();

@@ -24,7 +24,7 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct SimulateOptions {
     std::string robot;
     std::string folder;
     int steps = 0;
@@ -93,13 +93,13 @@ Result<Point> read_view(const std::string& text) {
 }
 
 /// Empty: that of the robot file. More than one: a comparison.
-Result<std::vector<sim::Solver>> asked_solvers(const Options& options) {
+Result<std::vector<sim::Solver>> asked_solvers(const SimulateOptions& options) {
     if (options.compare) return std::vector(sim::all_solvers.begin(), sim::all_solvers.end());
     if (options.solvers.empty()) return std::vector<sim::Solver>{};
     return read_solvers(options.solvers);
 }
 
-Result<ResultsOptions> read_pictures(const Options& options) {
+Result<ResultsOptions> read_pictures(const SimulateOptions& options) {
     constexpr std::array<std::pair<std::string_view, Pictures>, 3> sets = {{
         {"none", Pictures::none},
         {"few", Pictures::few},
@@ -123,7 +123,8 @@ Result<ResultsOptions> read_pictures(const Options& options) {
 }
 
 /// While files are written, the first signal skips the pictures; only the second cancels. False: without pictures.
-bool write_results(const Options& options, const ResultsOptions& pictures, ProgramResult& result, Progress& progress) {
+bool write_results(const SimulateOptions& options, const ResultsOptions& pictures, ProgramResult& result,
+                   Progress& progress) {
     on_signal(OnSignal::ask_twice);
     return result.write(options.folder, pictures, [&](std::string_view stage, double share) {
         progress.advance(stage, share);
@@ -132,7 +133,7 @@ bool write_results(const Options& options, const ResultsOptions& pictures, Progr
 }
 
 /// Prints the results, and returns the exit status.
-int tell(const Options& options, const Model& model, const ProgramResult& result, bool all_drawn) {
+int tell_result(const SimulateOptions& options, const Model& model, const ProgramResult& result, bool all_drawn) {
     if (options.output.json)
         fmt::print("{}\n", result.summary_json());
     else if (!options.output.quiet)
@@ -149,14 +150,14 @@ int tell(const Options& options, const Model& model, const ProgramResult& result
 }
 
 /// All overrides of the robot file from the command line.
-std::vector<std::string> all_assignments(const Options& options, const std::vector<sim::Solver>& solvers) {
+std::vector<std::string> all_assignments(const SimulateOptions& options, const std::vector<sim::Solver>& solvers) {
     std::vector<std::string> assignments = options.assignments;
     if (solvers.size() == 1) assignments.push_back(fmt::format("program.solver={}", sim::name(solvers.front())));
     if (options.steps > 0) assignments.push_back(fmt::format("program.steps={}", options.steps));
     return assignments;
 }
 
-RunOptions run_options(const Options& options, const Robot& robot) {
+RunOptions run_options(const SimulateOptions& options, const Robot& robot) {
     RunOptions run{
         .measured = options.measured, .checkpoint_every = options.checkpoint_every, .resume = options.resume};
     if (options.checkpoint_every == 0 && !options.resume) return run;
@@ -169,14 +170,14 @@ RunOptions run_options(const Options& options, const Robot& robot) {
 }
 
 /// Removes the checkpoint: it is useless after the results are written, unless the run was cancelled.
-void put_away(const Options& options, const ProgramResult& result) {
+void put_away(const SimulateOptions& options, const ProgramResult& result) {
     if (!interrupted()) return result.remove_checkpoint();
     if (options.checkpoint_every == 0 && !options.resume) return;
     if (!options.output.quiet && !options.output.json)
         fmt::print("checkpoint: {}.checkpoint; the same command with --resume continues from there\n", options.folder);
 }
 
-Status check_options(const Options& options, const std::vector<sim::Solver>& solvers) {
+Status check_options(const SimulateOptions& options, const std::vector<sim::Solver>& solvers) {
     const bool kept = options.checkpoint_every > 0 || options.resume;
     if (kept && options.folder.empty())
         return input_error("--{} needs --output: the checkpoint is kept next to that folder",
@@ -188,7 +189,7 @@ Status check_options(const Options& options, const std::vector<sim::Solver>& sol
     return expect(FileKind::robot, options.robot);
 }
 
-Result<int> simulate(const Options& options) {
+Result<int> simulate(const SimulateOptions& options) {
     const Result<ResultsOptions> pictures = read_pictures(options);
     if (!pictures) return tl::unexpected(pictures.error());
     const Result<std::vector<sim::Solver>> solvers = asked_solvers(options);
@@ -207,13 +208,13 @@ Result<int> simulate(const Options& options) {
     const bool all_drawn = options.folder.empty() || write_results(options, *pictures, result, *progress);
     progress.reset();
     put_away(options, result);
-    return tell(options, model, result, all_drawn);
+    return tell_result(options, model, result, all_drawn);
 }
 
 }  // namespace
 
 void add_simulate(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<SimulateOptions>();
     CLI::App* command = app.add_subcommand("simulate", "run the actuation program of a robot file");
     command->add_option("robot", options->robot, "robot file (TOML)")->required();
     command->add_option("-o,--output", options->folder, "folder for the results; without it only a summary is printed");

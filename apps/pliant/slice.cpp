@@ -45,8 +45,8 @@ std::string parts_text(const job::Material& material) {
     return text.empty() ? text : text + " mm^3";
 }
 
-void print_summary(const SliceOptions& options, const job::Manifest& manifest, const plan::Plan& plan,
-                   const std::vector<std::string>& notes) {
+void print_job(const SliceOptions& options, const job::Manifest& manifest, const plan::Plan& plan,
+               const std::vector<std::string>& notes) {
     if (options.output.quiet) return;
     fmt::print("{}: {} of {}, {} x {} px of {:.6g} um\n", options.job, counted(manifest.layers.size(), "layer"),
                heights_text(manifest), manifest.width_px, manifest.height_px, manifest.pixel_um);
@@ -62,8 +62,8 @@ void print_summary(const SliceOptions& options, const job::Manifest& manifest, c
 }
 
 /// The plan is that of `pliant plan --json`.
-void print_json(const SliceOptions& options, const job::Manifest& manifest, const plan::Plan& plan,
-                const std::vector<std::string>& notes) {
+void print_job_json(const SliceOptions& options, const job::Manifest& manifest, const plan::Plan& plan,
+                    const std::vector<std::string>& notes) {
     nlohmann::json materials = nlohmann::json::array();
     for (const job::Material& m : manifest.materials)
         materials.push_back({{"name", m.name},
@@ -147,9 +147,9 @@ Status slice(SliceOptions& options) {
     progress.reset();
     if (!status) return status;
     if (options.output.json)
-        print_json(options, made->manifest, made->plan, made->notes);
+        print_job_json(options, made->manifest, made->plan, made->notes);
     else
-        print_summary(options, made->manifest, made->plan, made->notes);
+        print_job(options, made->manifest, made->plan, made->notes);
     return status;
 }
 

@@ -24,7 +24,7 @@ namespace {
 
 constexpr int usual_port = 7117;
 
-struct Options {
+struct StudioOptions {
     std::string file;
     int port = -1;  ///< -1: the default one, or any free one if that is taken
     std::string address = "127.0.0.1";
@@ -35,7 +35,7 @@ struct Options {
 };
 
 /// A requested port is used as given; otherwise the default one or, if that is taken, any free one.
-Result<std::unique_ptr<studio::Server>> start(studio::Studio& studio, const Options& options,
+Result<std::unique_ptr<studio::Server>> start(studio::Studio& studio, const StudioOptions& options,
                                               studio::ServerSettings settings) {
     settings.port = options.port >= 0 ? options.port : usual_port;
     auto server = studio::Server::start(studio, settings);
@@ -50,7 +50,7 @@ void wait_for_interrupt(const sigset_t& signals) {
 }
 
 /// The host part of the address: the computer's name if bound to all of its addresses.
-std::string host_name(const std::string& address) {
+std::string host_of(const std::string& address) {
     std::array<char, 256> name{};
     if ((address == "0.0.0.0" || address == "::") && ::gethostname(name.data(), name.size() - 1) == 0)
         return name.data();
@@ -59,7 +59,7 @@ std::string host_name(const std::string& address) {
 
 /// A token generated for this run is printed as part of the address; one from a file is not, because others might read
 /// it.
-void tell(const Options& options, const std::string& address) {
+void tell(const StudioOptions& options, const std::string& address) {
     if (options.output.json) {
         fmt::print("{}\n", nlohmann::json{{"address", address}}.dump());
     } else if (options.output.quiet) {
@@ -78,12 +78,12 @@ void open_browser(const std::string& address) {
     if (browser) std::thread([process = *browser] { ::waitpid(process, nullptr, 0); }).detach();
 }
 
-Result<std::string> choose_token(const Options& options) {
+Result<std::string> choose_token(const StudioOptions& options) {
     if (!options.token_file.empty()) return studio::read_or_make_token(options.token_file);
     return studio::is_loopback(options.address) ? "" : studio::random_key();
 }
 
-Result<int> run_studio(const Options& options) {
+Result<int> run_studio(const StudioOptions& options) {
     if (!options.webcam.empty() && studio::origin_of(options.webcam).empty())
         return input_error("--webcam {}: an address is needed, as in http://camera:8080/stream", options.webcam);
     if (kind_of(options.file) == FileKind::geometry)
@@ -111,7 +111,7 @@ Result<int> run_studio(const Options& options) {
     const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
     const auto server = start(**studio, options, {options.address, 0, *token, program.parent_path()});
     if (!server) return tl::unexpected(server.error());
-    const std::string address = fmt::format("http://{}:{}/", host_name(options.address), (*server)->port());
+    const std::string address = fmt::format("http://{}:{}/", host_of(options.address), (*server)->port());
     const std::string with_token = token->empty() ? address : address + "?token=" + *token;
     tell(options, options.token_file.empty() ? with_token : address);
     if (options.open) open_browser(with_token);
@@ -122,7 +122,7 @@ Result<int> run_studio(const Options& options) {
 }  // namespace
 
 void add_studio(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<StudioOptions>();
     CLI::App* command = app.add_subcommand("studio", "web interface: simulate a robot live, slice it and print it");
     command->add_option("file", options->file, "robot file (TOML) or job (.zip); without it an example");
     command->add_option("--port", options->port, "port to listen on; 0: any (7117, or any if that is taken)")

@@ -34,7 +34,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct StudyOptions {
     std::string study;
     std::string folder;
     std::string on = "local";
@@ -90,7 +90,7 @@ study::RunSettings run_settings(int jobs, bool own_cores) {
             .place = host_name()};
 }
 
-Result<study::RunAccount> run_here(const Options& options, const study::Plan& plan, const fs::path& folder,
+Result<study::RunAccount> run_here(const StudyOptions& options, const study::Plan& plan, const fs::path& folder,
                                    Progress& progress) {
     const auto leader = study::lead(folder);
     if (!leader) return tl::unexpected(leader.error());
@@ -100,7 +100,7 @@ Result<study::RunAccount> run_here(const Options& options, const study::Plan& pl
     return study::run_rows(plan, folder, settings, progress);
 }
 
-Result<study::RunAccount> run_as_rank(const Options& options, const study::Plan& plan, const fs::path& folder,
+Result<study::RunAccount> run_as_rank(const StudyOptions& options, const study::Plan& plan, const fs::path& folder,
                                       Rank rank, Progress& progress) {
     study::RunSettings settings = run_settings(std::max(options.jobs, 1), true);
     settings.chunks = study::all_chunks(plan, rank.rank, rank.size);
@@ -108,7 +108,7 @@ Result<study::RunAccount> run_as_rank(const Options& options, const study::Plan&
     return study::run_rows(plan, folder, settings, progress);
 }
 
-Status run_by_slurm(const Options& options, const study::Plan& plan, const fs::path& folder, Progress& progress) {
+Status run_by_slurm(const StudyOptions& options, const study::Plan& plan, const fs::path& folder, Progress& progress) {
     const auto leader = study::lead(folder);
     if (!leader) return tl::unexpected(leader.error());
     const auto account = study::run_on_slurm(plan, folder, {this_program(), options.jobs}, progress);
@@ -117,7 +117,7 @@ Status run_by_slurm(const Options& options, const study::Plan& plan, const fs::p
 }
 
 /// A task on a cluster: runs the rows of one or a few chunks of a study that another process manages.
-Result<int> run_chunk(const Options& options) {
+Result<int> run_chunk(const StudyOptions& options) {
     const auto plan = study::load_plan(options.study);
     if (!plan) return tl::unexpected(plan.error());
     if (plan->version != PLIANT_VERSION)
@@ -167,7 +167,7 @@ Status draw_plots(const study::Plan& plan, const study::Collected& rows, const f
 }
 
 /// Writes and prints the results, and returns the exit status.
-Result<int> finish(const Options& options, const study::Plan& plan, const fs::path& folder,
+Result<int> finish(const StudyOptions& options, const study::Plan& plan, const fs::path& folder,
                    const study::RunAccount* account) {
     const auto rows = study::collect(plan, folder);
     if (!rows) return tl::unexpected(rows.error());
@@ -191,7 +191,7 @@ Result<int> finish(const Options& options, const study::Plan& plan, const fs::pa
     return exit_failed;
 }
 
-fs::path results_folder(const Options& options) {
+fs::path results_folder(const StudyOptions& options) {
     if (!options.folder.empty()) return options.folder;
     return fs::path(options.study).stem().string() + "_study";
 }
@@ -207,7 +207,7 @@ tl::unexpected<Error> stopped(const study::Plan& plan, const fs::path& folder, c
 }
 
 /// For unknown schedulers: prints what they have to run.
-int tell_plan(const Options& options, const study::Plan& plan, const fs::path& folder) {
+int tell_plan(const StudyOptions& options, const study::Plan& plan, const fs::path& folder) {
     if (options.output.json)
         fmt::print(
             "{}\n",
@@ -220,7 +220,7 @@ int tell_plan(const Options& options, const study::Plan& plan, const fs::path& f
     return exit_done;
 }
 
-Result<int> run_study(const Options& options) {
+Result<int> run_study(const StudyOptions& options) {
     const std::vector<std::string> commands = commands_of_studies();
     const auto asked = study::load_study(options.study, {commands, PLIANT_VERSION});
     if (!asked) return tl::unexpected(asked.error());
@@ -250,7 +250,7 @@ Result<int> run_study(const Options& options) {
     return finish(options, *plan, folder, mpi ? nullptr : &*account);
 }
 
-Result<int> study_command(const Options& options) {
+Result<int> study_command(const StudyOptions& options) {
     std::error_code error;
     const bool is_folder = fs::is_directory(options.study, error);
     if (options.chunk >= 0 && !is_folder)
@@ -266,7 +266,7 @@ Result<int> study_command(const Options& options) {
 }  // namespace
 
 void add_study(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<StudyOptions>();
     CLI::App* command = app.add_subcommand("study", "run any command over a plan of experiments, here or on a cluster");
     command->add_option("study", options->study, "study file (TOML); with --chunk the folder of a study")->required();
     command->add_option("-o,--output", options->folder, "folder for rows and results (STUDY_study)");

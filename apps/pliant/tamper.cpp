@@ -66,7 +66,7 @@ bool replace_all(Lines& lines, const std::string& what, const std::string& with)
     return any;
 }
 
-Tampering light(const char* name, std::function<void(machine::Expose&)> change) {
+Tampering other_light(const char* name, std::function<void(machine::Expose&)> change) {
     return {name, Kind::meaning, [change = std::move(change)](Parts& p) {
                 const Found at = middle_light(p);
                 if (!at) return false;
@@ -119,14 +119,14 @@ std::vector<Tampering> of_lights() {
                     return p.gcode[i].starts_with(";@expose") && p.gcode[i].find(layer) != std::string::npos;
                 }),
         dropped("all lights dropped", [](const Parts& p, std::size_t i) { return p.gcode[i].starts_with(";@expose"); }),
-        light("a light of half the time", [](machine::Expose& e) { e.seconds /= 2; }),
-        light("a light of twice the time", [](machine::Expose& e) { e.seconds *= 2; }),
-        light("a light of ten times the time", [](machine::Expose& e) { e.seconds *= 10; }),
-        light("a light 5 ms too short", [](machine::Expose& e) { e.seconds -= 0.005; }),
-        light("a light of another layer's number", [](machine::Expose& e) { e.layer += 1; }),
-        light("a light of a layer that is not there", [](machine::Expose& e) { e.layer += 100000; }),
-        light("a light of a material that is not there", [](machine::Expose& e) { e.material += 7; }),
-        light("a light of another image", [](machine::Expose& e) { e.image = "layers/00000_x.png"; }),
+        other_light("a light of half the time", [](machine::Expose& e) { e.seconds /= 2; }),
+        other_light("a light of twice the time", [](machine::Expose& e) { e.seconds *= 2; }),
+        other_light("a light of ten times the time", [](machine::Expose& e) { e.seconds *= 10; }),
+        other_light("a light 5 ms too short", [](machine::Expose& e) { e.seconds -= 0.005; }),
+        other_light("a light of another layer's number", [](machine::Expose& e) { e.layer += 1; }),
+        other_light("a light of a layer that is not there", [](machine::Expose& e) { e.layer += 100000; }),
+        other_light("a light of a material that is not there", [](machine::Expose& e) { e.material += 7; }),
+        other_light("a light of another image", [](machine::Expose& e) { e.image = "layers/00000_x.png"; }),
     };
     list.push_back({"every light a tenth shorter", Kind::meaning, [](Parts& p) {
                         for (const std::size_t at : find_all(p.gcode, ";@expose")) {

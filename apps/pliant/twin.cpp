@@ -23,7 +23,7 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct TwinOptions {
     std::string printer;
     std::string link;
     std::string projector;
@@ -38,7 +38,7 @@ struct Options {
     Output output;
 };
 
-Result<twin::Options> twin_options(const Options& options) {
+Result<twin::Options> twin_options(const TwinOptions& options) {
     twin::Options result;
     result.advanced_ok = options.advanced_ok;
     result.z_sync = options.z_sync;
@@ -113,7 +113,7 @@ void print_end_json(twin::Twin& twin) {
     fmt::print("{}\n", json.dump(1));
 }
 
-Status run_twin(const Options& options) {
+Status run_twin(const TwinOptions& options) {
     if (!(options.speed > 0 && options.speed <= 1e6))
         return input_error("--speed {}: must be above 0, at most 1e6", options.speed);
     const Result<machine::Printer> printer = read_printer(options.printer);
@@ -161,7 +161,7 @@ Status run_twin(const Options& options) {
 }  // namespace
 
 void add_twin(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<TwinOptions>();
     CLI::App* command = app.add_subcommand(
         "twin", "run the virtual printer as a serial device that speaks Marlin, in real time or faster");
     command->add_option("--printer", options->printer, "printer file (TOML)")->required();

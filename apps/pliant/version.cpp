@@ -26,12 +26,12 @@ std::vector<Entry> libraries(std::string_view text) {
     return entries;
 }
 
-void print_text(const std::vector<Entry>& used) {
+void print_libraries(const std::vector<Entry>& used) {
     fmt::print("pliant {}\nbuilt with {}\nlibraries\n", PLIANT_VERSION, PLIANT_COMPILER);
     for (const auto& [name, version] : used) fmt::print("  {:<14} {}\n", name, version);
 }
 
-Status tell(const Output& output) {
+Status tell_version(const Output& output) {
     const std::vector<Entry> used = libraries(PLIANT_LIBRARIES);
     if (output.json) {
         nlohmann::ordered_json json = {{"pliant", PLIANT_VERSION}, {"compiler", PLIANT_COMPILER}};
@@ -40,7 +40,7 @@ Status tell(const Output& output) {
     } else if (output.quiet) {
         fmt::print("{}\n", PLIANT_VERSION);
     } else {
-        print_text(used);
+        print_libraries(used);
     }
     return {};
 }
@@ -53,7 +53,7 @@ void add_version(CLI::App& app, int& status) {
     command->add_flag("-q,--quiet", output->quiet, "print the version only");
     command->add_flag("--json", output->json, "print the result as JSON");
     command->footer("Example: pliant version --json");
-    on_call(*command, status, [output] { return tell(*output); });
+    on_call(*command, status, [output] { return tell_version(*output); });
 }
 
 }  // namespace pliant::app

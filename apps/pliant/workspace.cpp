@@ -15,7 +15,7 @@
 namespace pliant::app {
 namespace {
 
-struct Options {
+struct WorkspaceArguments {
     std::string robot;
     std::string folder;
     WorkspaceOptions search;
@@ -24,7 +24,7 @@ struct Options {
 };
 
 /// Completed pieces are stored beside the results until these are written.
-Result<WorkspaceOptions> search_options(const Options& options) {
+Result<WorkspaceOptions> search_options(const WorkspaceArguments& options) {
     WorkspaceOptions search = options.search;
     if (options.folder.empty() && search.resume)
         return input_error("--resume needs --output: the checkpoint is kept next to that folder");
@@ -32,7 +32,7 @@ Result<WorkspaceOptions> search_options(const Options& options) {
     return search;
 }
 
-int tell_cancelled(const Options& options, const WorkspaceOptions& search) {
+int tell_cancelled(const WorkspaceArguments& options, const WorkspaceOptions& search) {
     fmt::print(stderr, "{}: cancelled{}\n", options.robot,
                search.checkpoint.empty()
                    ? ""
@@ -40,7 +40,7 @@ int tell_cancelled(const Options& options, const WorkspaceOptions& search) {
     return exit_failed;
 }
 
-Result<int> workspace(const Options& options) {
+Result<int> workspace(const WorkspaceArguments& options) {
     if (Status status = expect(FileKind::robot, options.robot); !status) return tl::unexpected(status.error());
     const Result<WorkspaceOptions> search = search_options(options);
     if (!search) return tl::unexpected(search.error());
@@ -66,7 +66,7 @@ Result<int> workspace(const Options& options) {
 }  // namespace
 
 void add_workspace(CLI::App& app, int& status) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<WorkspaceArguments>();
     CLI::App* command =
         app.add_subcommand("workspace", "find where markers can get within the ranges of the actuators");
     command->add_option("robot", options->robot, "robot file (TOML) with ranges of actuators")->required();

@@ -56,8 +56,8 @@ std::vector<State> states_of(const std::vector<State*>& states) {
     return copies;
 }
 
-std::vector<StepResult> step(Many& many, const std::vector<State*>& states, const std::vector<Inputs>& inputs,
-                             py::object progress) {
+std::vector<StepResult> step_all(Many& many, const std::vector<State*>& states, const std::vector<Inputs>& inputs,
+                                 py::object progress) {
     Watcher watcher(std::move(progress));
     const Watch watch = watcher.watch();
     std::vector<State> next = states_of(states);
@@ -75,14 +75,14 @@ std::vector<StepResult> step(Many& many, const std::vector<State*>& states, cons
     return results;
 }
 
-std::vector<StepResult> step_to(Many& many, const std::vector<State*>& states, const std::vector<InputTuple>& inputs,
-                                py::object progress) {
+std::vector<StepResult> step_all_to(Many& many, const std::vector<State*>& states,
+                                    const std::vector<InputTuple>& inputs, py::object progress) {
     if (inputs.size() != many.models.size())
         throw Failure(Failure::Kind::input,
                       std::to_string(inputs.size()) + " inputs for " + std::to_string(many.models.size()) + " robots");
     std::vector<Inputs> wanted;
     for (std::size_t i = 0; i < inputs.size(); ++i) wanted.push_back(inputs_of(many.models[i], inputs[i]));
-    return step(many, states, wanted, std::move(progress));
+    return step_all(many, states, wanted, std::move(progress));
 }
 
 py::list observe(Many& many, const std::vector<State*>& states) {
@@ -107,7 +107,7 @@ void add_batch(py::module_& module) {
         .def_property_readonly("size", [](const Many& many) { return many.batch.size(); })
         .def_property_readonly("threads", [](const Many& many) { return many.batch.threads(); })
         .def("rest", [](const Many& many) { return many.batch.rest(); })
-        .def("step", &step_to)
+        .def("step", &step_all_to)
         .def("observe", &observe);
 }
 

@@ -28,13 +28,13 @@ auto watched(py::object progress, const Make& make) {
     return make(watch);
 }
 
-py::list list_of(const std::vector<SteeredInput>& inputs) {
+py::list steered_list(const std::vector<SteeredInput>& inputs) {
     py::list list;
     for (const SteeredInput& input : inputs) list.append(py::make_tuple(input.name, input.unit, input.low, input.high));
     return list;
 }
 
-py::tuple tuple_of(Waypoint w) {
+py::tuple waypoint_tuple(Waypoint w) {
     py::list goals;
     for (GoalResult& goal : w.goals)
         goals.append(py::make_tuple(goal.name, goal.reached, goal.error, goal.unit, array_of(std::move(goal.wanted)),
@@ -43,7 +43,7 @@ py::tuple tuple_of(Waypoint w) {
                           array_of(std::move(w.positions)), w.forward_solutions, w.wall_s);
 }
 
-py::tuple tuple_of(WorkspaceSample s) {
+py::tuple sample_tuple(WorkspaceSample s) {
     return py::make_tuple(s.piece, array_of(std::move(s.inputs)), s.found, array_of(std::move(s.markers)),
                           array_of(std::move(s.tensions_N)), array_of(std::move(s.pressures_Pa)));
 }
@@ -53,10 +53,10 @@ void add_inverse_result(py::module_& module) {
         .def_property_readonly("reached", &InverseResult::reached)
         .def_property_readonly("message", &InverseResult::message)
         .def_property_readonly("notes", &InverseResult::notes)
-        .def("inputs", [](const InverseResult& result) { return list_of(result.inputs()); })
+        .def("inputs", [](const InverseResult& result) { return steered_list(result.inputs()); })
         .def_property_readonly("waypoints_wanted", &InverseResult::waypoints_wanted)
         .def_property_readonly("waypoint_count", &InverseResult::waypoint_count)
-        .def("waypoint", [](const InverseResult& result, std::size_t k) { return tuple_of(result.waypoint(k)); })
+        .def("waypoint", [](const InverseResult& result, std::size_t k) { return waypoint_tuple(result.waypoint(k)); })
         .def("text", &InverseResult::text)
         .def("json", &InverseResult::json)
         .def("write", [](const InverseResult& result, const std::filesystem::path& folder, py::object progress) {
@@ -69,9 +69,9 @@ void add_inverse_result(py::module_& module) {
 
 void add_workspace(py::module_& module) {
     py::class_<Workspace>(module, "Workspace")
-        .def("inputs", [](const Workspace& space) { return list_of(space.inputs()); })
+        .def("inputs", [](const Workspace& space) { return steered_list(space.inputs()); })
         .def_property_readonly("sample_count", &Workspace::sample_count)
-        .def("sample", [](const Workspace& space, std::size_t k) { return tuple_of(space.sample(k)); })
+        .def("sample", [](const Workspace& space, std::size_t k) { return sample_tuple(space.sample(k)); })
         .def("sheets",
              [](const Workspace& space, std::size_t marker) {
                  Surface sheets = space.sheets(marker);
@@ -99,7 +99,7 @@ JudgeOn judge_of(const std::string& name) {
                   "judge is \"nothing\", \"every_second\" or \"second_half\", not \"" + name + "\"");
 }
 
-py::list list_of(const std::vector<FitError>& errors) {
+py::list error_list(const std::vector<FitError>& errors) {
     py::list list;
     for (const FitError& e : errors) list.append(py::make_tuple(e.unit, e.values, e.before, e.after));
     return list;
@@ -124,8 +124,8 @@ void add_identification(py::module_& module) {
                          py::make_tuple(c.line, c.time, c.quantity, c.unit, c.judged, c.measured, c.before, c.after));
                  return list;
              })
-        .def("fitted", [](const Identification& found) { return list_of(found.fitted()); })
-        .def("judged", [](const Identification& found) { return list_of(found.judged()); })
+        .def("fitted", [](const Identification& found) { return error_list(found.fitted()); })
+        .def("judged", [](const Identification& found) { return error_list(found.judged()); })
         .def_property_readonly("warnings", &Identification::warnings)
         .def_property_readonly("trials", &Identification::trials)
         .def("changes", &Identification::changes)
@@ -164,23 +164,17 @@ private:
     Watcher& watcher_;
 };
 
-py::list list_of(const std::vector<Parameter>& all) {
-    py::list list;
-    for (const Parameter& one : all) list.append(py::make_tuple(one.name, one.unit, one.value));
-    return list;
-}
-
-py::dict dict_of(ProgramGradient g) {
+py::dict gradient_dict(ProgramGradient g) {
     using namespace py::literals;
     py::list tets, instants, guides;
     for (GuidePoint& p : g.guide_points) guides.append(py::make_tuple(std::move(p.name), p.place));
     for (TetGradient& t : g.by_tets) tets.append(py::make_tuple(t.name, t.unit, array_of(std::move(t.values))));
     for (auto& i : g.instants) instants.append(py::make_tuple(i.step, i.time, array_of(std::move(i.by_inputs))));
-    return py::dict("value"_a = g.value, "values"_a = g.values, "parameters"_a = list_of(g.parameters),
+    return py::dict("value"_a = g.value, "values"_a = g.values, "parameters"_a = parameter_list(g.parameters),
                     "by_parameters"_a = array_of(std::move(g.by_parameters)),
                     "by_rest_positions"_a = array_of(std::move(g.by_rest_positions)), "guide_points"_a = guides,
                     "by_guide_points"_a = array_of(std::move(g.by_guide_points)), "by_tets"_a = tets,
-                    "by_numbers"_a = array_of(std::move(g.by_numbers)), "inputs"_a = list_of(g.inputs),
+                    "by_numbers"_a = array_of(std::move(g.by_numbers)), "inputs"_a = parameter_list(g.inputs),
                     "instants"_a = instants);
 }
 
@@ -202,7 +196,7 @@ py::dict program_gradient(const Model& model, const std::vector<MeasureTuple>& m
         watcher.rethrow();
         throw;
     }
-    return dict_of(std::move(*found));
+    return gradient_dict(std::move(*found));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "arrays.hpp"
 #include "measures.hpp"
 #include "parts.hpp"
+#include "values.hpp"
 
 namespace pliant::python {
 namespace {
@@ -26,18 +27,12 @@ auto locked(Shared& shared, const Use& use) {
     return use(shared.at);
 }
 
-py::list list_of(const std::vector<Parameter>& all) {
-    py::list list;
-    for (const Parameter& one : all) list.append(py::make_tuple(one.name, one.unit, one.value));
-    return list;
-}
-
-py::tuple tuple_of(Change change) {
+py::tuple change_tuple(Change change) {
     return py::make_tuple(array_of(std::move(change.positions)), array_of(std::move(change.tensions_N)),
                           array_of(std::move(change.pressures_Pa)));
 }
 
-py::tuple tuple_of(Linearisation::Gradient g) {
+py::tuple gradient_tuple(Linearisation::Gradient g) {
     return py::make_tuple(array_of(std::move(g.inputs)), array_of(std::move(g.parameters)),
                           array_of(std::move(g.rest_positions)), array_of(std::move(g.guide_points)));
 }
@@ -51,19 +46,19 @@ py::array solution(Shared& shared, const Numbers& b) {
     return array_of(locked(shared, [&](Linearisation& at) { return (at.*Solution)(span_of(b)); }));
 }
 
-std::vector<double> list_of(const Numbers& numbers) {
+std::vector<double> numbers_of(const Numbers& numbers) {
     return {numbers.data(), numbers.data() + numbers.size()};
 }
 
 py::tuple gradient(Shared& shared, const Numbers& by_positions, const Numbers& by_tensions, const Numbers& by_pressures,
                    bool guide_points) {
-    const Quantity quantity{points_of(by_positions), list_of(by_tensions), list_of(by_pressures)};
-    return tuple_of(locked(shared, [&](Linearisation& at) { return at.gradient(quantity, {guide_points}); }));
+    const Quantity quantity{points_of(by_positions), numbers_of(by_tensions), numbers_of(by_pressures)};
+    return gradient_tuple(locked(shared, [&](Linearisation& at) { return at.gradient(quantity, {guide_points}); }));
 }
 
 py::tuple gradient_of(Shared& shared, const MeasureTuple& measure, bool guide_points) {
     const Measure wanted = measure_of(measure);
-    return tuple_of(locked(shared, [&](Linearisation& at) { return at.gradient(wanted, {guide_points}); }));
+    return gradient_tuple(locked(shared, [&](Linearisation& at) { return at.gradient(wanted, {guide_points}); }));
 }
 
 double dot(const std::vector<Point>& a, const std::vector<Point>& b) {
@@ -105,13 +100,13 @@ void add_linearisation(py::module_& module) {
         .def("solve_transposed", &solution<&Linearisation::solve_transposed>)
         .def("change",
              [](Shared& shared, const Numbers& unknowns) {
-                 return tuple_of(locked(shared, [&](Linearisation& at) { return at.change(span_of(unknowns)); }));
+                 return change_tuple(locked(shared, [&](Linearisation& at) { return at.change(span_of(unknowns)); }));
              })
-        .def("inputs", [](const Shared& shared) { return list_of(shared.at.inputs()); })
-        .def("parameters", [](const Shared& shared) { return list_of(shared.at.parameters()); })
+        .def("inputs", [](const Shared& shared) { return parameter_list(shared.at.inputs()); })
+        .def("parameters", [](const Shared& shared) { return parameter_list(shared.at.parameters()); })
         .def("response_to_input",
              [](Shared& shared, std::size_t input) {
-                 return tuple_of(locked(shared, [&](Linearisation& at) { return at.response_to_input(input); }));
+                 return change_tuple(locked(shared, [&](Linearisation& at) { return at.response_to_input(input); }));
              })
         .def("guide_points",
              [](Shared& shared) {
@@ -120,11 +115,11 @@ void add_linearisation(py::module_& module) {
                      list.append(py::make_tuple(one.name, one.place));
                  return list;
              })
-        .def(
-            "response_to_parameter",
-            [](Shared& shared, std::size_t parameter) {
-                return tuple_of(locked(shared, [&](Linearisation& at) { return at.response_to_parameter(parameter); }));
-            })
+        .def("response_to_parameter",
+             [](Shared& shared, std::size_t parameter) {
+                 return change_tuple(
+                     locked(shared, [&](Linearisation& at) { return at.response_to_parameter(parameter); }));
+             })
         .def("gradient", &gradient)
         .def("gradient_of", &gradient_of)
         .def("value",

@@ -11,7 +11,7 @@
 namespace pliant::python {
 namespace {
 
-py::dict dict_of(const PrintPlan& plan) {
+py::dict plan_dict(const PrintPlan& plan) {
     using namespace py::literals;
     py::list vats;
     for (const PrintPlan::Vat& vat : plan.vats)
@@ -35,7 +35,7 @@ py::dict slice(std::vector<std::string> inputs, const std::filesystem::path& pri
         const py::gil_scoped_release unlocked;
         plan = slice_job(options, job, watch);
     }
-    return dict_of(plan);
+    return plan_dict(plan);
 }
 
 py::dict plan(const std::filesystem::path& job) {
@@ -44,7 +44,7 @@ py::dict plan(const std::filesystem::path& job) {
         const py::gil_scoped_release unlocked;
         plan = plan_job(job);
     }
-    return dict_of(plan);
+    return plan_dict(plan);
 }
 
 /// (layers, y, x) voxels with their resins.

@@ -42,7 +42,7 @@ std::unique_ptr<ReducedEngine> reduce_model(const Model& model, int samples, dou
     return std::make_unique<ReducedEngine>(reduce(model, {samples, basis_error, force_error, most_modes}, watch));
 }
 
-py::tuple step(ReducedEngine& engine, const ReducedState& state, const InputTuple& inputs) {
+py::tuple step_reduced(ReducedEngine& engine, const ReducedState& state, const InputTuple& inputs) {
     const Inputs wanted = inputs_of(engine.model().whole(), inputs);
     ReducedState next = state;
     const ReducedStep done = engine.with([&](ReducedStepper& stepper) { return stepper.step(next, wanted); });
@@ -104,7 +104,7 @@ void add_reduced(py::module_& module) {
              })
         .def("start",
              [](ReducedEngine& engine) { return engine.with([](ReducedStepper& stepper) { return stepper.start(); }); })
-        .def("step", &step)
+        .def("step", &step_reduced)
         .def("estimate", &estimate)
         .def("exact", &exact)
         .def("check", &check)

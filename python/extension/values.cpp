@@ -86,4 +86,10 @@ py::dict dict_of(const Observation& seen) {
         "kinetic_energy_J"_a = seen.kinetic_energy_J, "min_J"_a = seen.min_J);
 }
 
+py::list parameter_list(const std::vector<Parameter>& all) {
+    py::list list;
+    for (const Parameter& one : all) list.append(py::make_tuple(one.name, one.unit, one.value));
+    return list;
+}
+
 }  // namespace pliant::python

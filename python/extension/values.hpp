@@ -8,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include "pliant/linearisation.hpp"
 #include "pliant/simulation.hpp"
 
 namespace pliant::python {
@@ -21,5 +22,7 @@ using InputTuple = std::tuple<double, std::vector<std::string>, std::vector<doub
 [[nodiscard]] Inputs inputs_of(const Model& model, const InputTuple& tuple);
 [[nodiscard]] py::dict dict_of(const StepResult& result);
 [[nodiscard]] py::dict dict_of(const Observation& seen);
+/// A tuple (name, unit, value) each.
+[[nodiscard]] py::list parameter_list(const std::vector<Parameter>& all);
 
 }  // namespace pliant::python

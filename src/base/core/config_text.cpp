@@ -23,7 +23,7 @@ std::string toml_string(std::string_view text) {
     return out + '"';
 }
 
-std::string key_text(const std::string& key) {
+std::string bare_or_quoted(const std::string& key) {
     const bool bare = !key.empty() && std::ranges::all_of(key, [](char c) {
         return is_letter(c) || is_digit(c) || c == '_' || c == '-';
     });
@@ -54,7 +54,7 @@ struct InlineText {
     std::string operator()(const std::string& value) const { return toml_string(value); }
     std::string operator()(const Array& list) const { return fmt::format("[{}]", joined(list, inline_text)); }
     std::string operator()(const Table& table) const {
-        const auto entry = [](const Entry& e) { return key_text(e.first) + " = " + inline_text(e.second); };
+        const auto entry = [](const Entry& e) { return bare_or_quoted(e.first) + " = " + inline_text(e.second); };
         return table.empty() ? "{}" : fmt::format("{{ {} }}", joined(table, entry));
     }
 };
@@ -77,7 +77,7 @@ bool is_table_of_tables(const Table& table) {
 
 std::string lines_of(const Table& table) {
     std::string text;
-    for (const auto& [key, value] : table) text += fmt::format("{} = {}\n", key_text(key), inline_text(value));
+    for (const auto& [key, value] : table) text += fmt::format("{} = {}\n", bare_or_quoted(key), inline_text(value));
     return text;
 }
 
@@ -88,15 +88,15 @@ std::string toml_text(const Value& root) {
     for (const auto& [key, value] : std::get<Table>(root.data)) {
         if (const auto* table = std::get_if<Table>(&value.data); table != nullptr && is_table_of_tables(*table)) {
             for (const auto& [name, entry] : *table)
-                tables +=
-                    fmt::format("\n[{}.{}]\n{}", key_text(key), key_text(name), lines_of(std::get<Table>(entry.data)));
+                tables += fmt::format("\n[{}.{}]\n{}", bare_or_quoted(key), bare_or_quoted(name),
+                                      lines_of(std::get<Table>(entry.data)));
         } else if (table != nullptr) {
-            tables += fmt::format("\n[{}]\n{}", key_text(key), lines_of(*table));
+            tables += fmt::format("\n[{}]\n{}", bare_or_quoted(key), lines_of(*table));
         } else if (is_list_of_tables(value)) {
             for (const Value& entry : std::get<Array>(value.data))
-                tables += fmt::format("\n[[{}]]\n{}", key_text(key), lines_of(std::get<Table>(entry.data)));
+                tables += fmt::format("\n[[{}]]\n{}", bare_or_quoted(key), lines_of(std::get<Table>(entry.data)));
         } else {
-            plain += fmt::format("{} = {}\n", key_text(key), inline_text(value));
+            plain += fmt::format("{} = {}\n", bare_or_quoted(key), inline_text(value));
         }
     }
     return plain + tables;

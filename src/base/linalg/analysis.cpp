@@ -8,7 +8,7 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::size_t grain = 64;  // supernodes per parallel piece
+constexpr std::size_t supernodes_at_once = 64;  // in a parallel piece
 
 void find_sources(Analysis& a) {
     const Elimination& e = a.e;
@@ -31,7 +31,7 @@ void find_sources(Analysis& a) {
     visit([&](int s, int k, int low, int high, bool transpose) {
         a.sources[next[s]++] = {k, high, low - e.first[s], transpose};
     });
-    parallel_for(static_cast<std::size_t>(e.supernodes()), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(static_cast<std::size_t>(e.supernodes()), supernodes_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) {
             for (int k = a.source_start[s]; k < a.source_start[s + 1]; ++k)
                 a.sources[k].row = a.local_row(static_cast<int>(s), a.sources[k].row);
@@ -79,7 +79,7 @@ std::shared_ptr<const Analysis> analyse(const SymmetricPattern& pattern) {
         if (parent >= 0) a.children[parent].push_back(s);
     }
     a.stretches.resize(a.children.size());
-    parallel_for(a.stretches.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(a.stretches.size(), supernodes_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) {
             const int parent = a.e.parent[s];
             if (parent >= 0) a.stretches[s] = stretches_of(a, static_cast<int>(s), parent);

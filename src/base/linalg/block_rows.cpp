@@ -9,7 +9,7 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::size_t grain = 1024;  // rows per parallel piece
+constexpr std::size_t rows_at_once = 1024;  // in a parallel piece
 
 }  // namespace
 
@@ -54,7 +54,7 @@ void BlockRows::for_blocks(std::span<const double> values, const Visit& visit) c
     const auto symmetric = [](const Eigen::Matrix3d& block) -> Eigen::Matrix3d {
         return block.selfadjointView<Eigen::Lower>();
     };
-    parallel_for(diagonal_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(diagonal_.size(), rows_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const int diagonal = diagonal_[i], first = first_pair_[i];
             for (int k = start[i]; k < diagonal; ++k) visit(k, given(left_[k - first]));
@@ -85,12 +85,12 @@ void BlockRows::move_towards(std::span<const double> values, double share) {
 }
 
 void BlockRows::multiply(const double* x, double* y, int columns) const {
-    parallel_for(diagonal_.size(), grain,
+    parallel_for(diagonal_.size(), rows_at_once,
                  [&](std::size_t begin, std::size_t end) { multiply_rows(blocks(), begin, end, columns, x, y); });
 }
 
 void BlockRows::multiply(const float* x, float* y, int columns) const {
-    parallel_for(diagonal_.size(), grain,
+    parallel_for(diagonal_.size(), rows_at_once,
                  [&](std::size_t begin, std::size_t end) { multiply_rows(blocks(), begin, end, columns, x, y); });
 }
 

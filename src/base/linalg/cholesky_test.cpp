@@ -14,7 +14,7 @@ using namespace pliant::linalg;
 namespace {
 
 /// A chain of nodes with random symmetric blocks, made diagonally dominant; returned dense as the independent answer.
-Eigen::MatrixXd fill(const SymmetricPattern& pattern, std::vector<double>& values, double diagonal) {
+Eigen::MatrixXd fill_with_random_blocks(const SymmetricPattern& pattern, std::vector<double>& values, double diagonal) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(-1, 1);
     const int b = pattern.block;
@@ -34,7 +34,7 @@ Eigen::MatrixXd fill(const SymmetricPattern& pattern, std::vector<double>& value
 }
 
 /// Grid cells as cliques, as in a hexahedral mesh; large enough for branches, a trunk and wide panels.
-SymmetricPattern grid(int nx, int ny, int nz, int block) {
+SymmetricPattern hexahedra(int nx, int ny, int nz, int block) {
     std::vector<std::vector<int>> cliques;
     const auto node = [&](int i, int j, int k) { return (i * ny + j) * nz + k; };
     for (int i = 0; i + 1 < nx; ++i) {
@@ -86,7 +86,7 @@ TEST_CASE("grids of many shapes agree with Eigen's solver, for one to seven righ
     };
     int count = 1;
     for (const Shape& g : {Shape{2, 2, 2, 3}, {40, 3, 3, 3}, {13, 12, 11, 3}, {30, 30, 2, 1}, {17, 16, 15, 1}}) {
-        const auto pattern = grid(g.nx, g.ny, g.nz, g.block);
+        const auto pattern = hexahedra(g.nx, g.ny, g.nz, g.block);
         std::vector<double> values;
         const auto matrix = springs(pattern, values, 1e-3);
         const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> independent(matrix);
@@ -109,7 +109,7 @@ TEST_CASE("grids of many shapes agree with Eigen's solver, for one to seven righ
 
 TEST_CASE("fields of three components agree with Eigen's solver, in both precisions, on one core and on several") {
     for (const auto& [nx, ny, nz] : {std::array{2, 2, 2}, {60, 3, 3}, {17, 16, 12}}) {
-        const auto pattern = grid(nx, ny, nz, 1);
+        const auto pattern = hexahedra(nx, ny, nz, 1);
         std::vector<double> values;
         const auto matrix = springs(pattern, values, 1e-1);
         const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> independent(matrix);
@@ -140,7 +140,7 @@ TEST_CASE("fields of three components agree with Eigen's solver, in both precisi
 TEST_CASE("single precision: accuracy, and refinement to a tolerance") {
     int count = 1;
     for (const int block : {1, 3}) {
-        const auto pattern = grid(13, 12, 11, block);
+        const auto pattern = hexahedra(13, 12, 11, block);
         std::vector<double> values;
         const auto matrix = springs(pattern, values, 1e-1);
         const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> independent(matrix);
@@ -196,7 +196,7 @@ TEST_CASE("pieces that are not connected") {
 }
 
 TEST_CASE("one bad pivot anywhere is noticed") {
-    const auto pattern = grid(14, 12, 10, 3);
+    const auto pattern = hexahedra(14, 12, 10, 3);
     std::vector<double> good;
     springs(pattern, good, 1e-3);
     Cholesky cholesky(pattern);
@@ -211,7 +211,7 @@ TEST_CASE("one bad pivot anywhere is noticed") {
 }
 
 TEST_CASE("the same bits on any number of threads") {
-    const auto pattern = grid(26, 24, 22, 3);
+    const auto pattern = hexahedra(26, 24, 22, 3);
     std::vector<double> values;
     springs(pattern, values, 1e-3);
     const auto solve_on = [&](std::size_t threads) {
@@ -231,7 +231,7 @@ TEST_CASE("solutions agree with a dense solver, for blocks of 1 and 3") {
     for (const int block : {1, 3}) {
         const auto pattern = make_pattern(9, block, {{0, 4, 2}, {4, 5, 8, 2}, {-1, 7, 6}, {1, 3, 0}, {6, 5, 3}});
         std::vector<double> values;
-        const Eigen::MatrixXd dense = fill(pattern, values, 12.0);
+        const Eigen::MatrixXd dense = fill_with_random_blocks(pattern, values, 12.0);
         Cholesky cholesky(pattern);
         REQUIRE(cholesky.factorise(values));
         Eigen::MatrixXd rhs = Eigen::MatrixXd::Random(pattern.size(), 4);
@@ -245,9 +245,9 @@ TEST_CASE("an indefinite matrix is reported, and the object can be used again") 
     const auto pattern = make_pattern(4, 3, {{0, 1, 2, 3}});
     std::vector<double> values;
     Cholesky cholesky(pattern);
-    fill(pattern, values, -1.0);
+    fill_with_random_blocks(pattern, values, -1.0);
     CHECK_FALSE(cholesky.factorise(values));
-    const Eigen::MatrixXd dense = fill(pattern, values, 15.0);
+    const Eigen::MatrixXd dense = fill_with_random_blocks(pattern, values, 15.0);
     REQUIRE(cholesky.factorise(values));
     Eigen::VectorXd rhs = Eigen::VectorXd::Ones(12);
     const Eigen::VectorXd expected = dense.llt().solve(rhs);

@@ -12,7 +12,7 @@ namespace pliant::linalg {
 namespace {
 
 constexpr int modes = RigidMotions::count;
-constexpr std::size_t grain = 512;
+constexpr std::size_t coarsening_grain = 512;  // nodes, or groups, per parallel piece
 constexpr std::size_t restricting_pieces = 8;
 
 using Block36 = Eigen::Matrix<float, 3, modes>;
@@ -111,7 +111,7 @@ void CoarseSpace::set(const Fine& fine) {
 
 /// Translations, and rotations about the centre of each group, orthonormalised.
 void CoarseSpace::set_rigid_motions(std::span<const double> positions) {
-    parallel_for(static_cast<std::size_t>(groups_.count), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(static_cast<std::size_t>(groups_.count), coarsening_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end; ++g) {
             const RigidMotions motions(members_[g], positions);
             for (int c = 0; c < modes; ++c) dropped_[g * modes + c] = motions.dropped(c) ? 1 : 0;
@@ -124,7 +124,7 @@ void CoarseSpace::set_rigid_motions(std::span<const double> positions) {
 /// P = (1 - damping D^-1 A) rigid motions.
 void CoarseSpace::smooth(const BlockRows& matrix, const float* inverse_diagonal, float damping) {
     const auto nodes = static_cast<std::size_t>(matrix.rows());
-    parallel_for(nodes, grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(nodes, coarsening_grain, [&](std::size_t begin, std::size_t end) {
         std::vector<int> slot(static_cast<std::size_t>(groups_.count));
         for (std::size_t i = begin; i < end; ++i) {
             for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e) {
@@ -153,7 +153,7 @@ Eigen::Map<CoarseSpace::Pull> CoarseSpace::pull(int entry) const {
 /// A P.
 void CoarseSpace::find_pulls(const BlockRows& matrix) {
     const auto nodes = static_cast<std::size_t>(matrix.rows());
-    parallel_for(nodes, grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(nodes, coarsening_grain, [&](std::size_t begin, std::size_t end) {
         std::vector<int> slot(static_cast<std::size_t>(groups_.count));
         for (std::size_t i = begin; i < end; ++i) {
             for (int e = pulling_.start[i]; e < pulling_.start[i + 1]; ++e) {
@@ -214,7 +214,7 @@ void CoarseSpace::put(std::size_t group, std::span<const Matrix6> sums) {
 }
 
 bool CoarseSpace::turn(std::span<const double> positions) {
-    parallel_for(turns_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(turns_.size(), coarsening_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end; ++g)
             turns_[g] = rotation_between(members_[g], positions_, positions).cast<float>();
     });
@@ -246,7 +246,7 @@ void CoarseSpace::restrict(const float* fine, double* coarse) {
 
 void CoarseSpace::add_prolonged(const double* coarse, float* fine) const {
     using Motions = Eigen::Map<const Eigen::Matrix<double, modes, 1>>;
-    parallel_for(groups_.of_node.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(groups_.of_node.size(), coarsening_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Eigen::Vector3f motion = Eigen::Vector3f::Zero();
             for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e)

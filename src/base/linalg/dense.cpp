@@ -50,10 +50,15 @@ VectorXd shortest_least_squares(const MatrixXd& A, const VectorXd& b) {
     return A.completeOrthogonalDecomposition().solve(b);
 }
 
-MatrixXd pseudo_inverse(const MatrixXd& A, std::optional<double> threshold) {
+PseudoInverse pseudo_inverse_and_rank(const MatrixXd& A, std::optional<double> threshold) {
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition(A.rows(), A.cols());
     if (threshold) decomposition.setThreshold(*threshold);
-    return decomposition.compute(A).pseudoInverse();
+    decomposition.compute(A);
+    return {decomposition.pseudoInverse(), decomposition.rank()};
+}
+
+MatrixXd pseudo_inverse(const MatrixXd& A, std::optional<double> threshold) {
+    return pseudo_inverse_and_rank(A, threshold).inverse;
 }
 
 MatrixXd column_basis(const MatrixXd& A, double threshold) {

@@ -41,6 +41,11 @@ enum class SvdParts {
 [[nodiscard]] Eigen::VectorXd shortest_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 /// Pivots below `threshold` of the largest count as zero; without it, those that are within rounding.
 [[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& A, std::optional<double> threshold = {});
+struct PseudoInverse {
+    Eigen::MatrixXd inverse;
+    Eigen::Index rank;
+};
+[[nodiscard]] PseudoInverse pseudo_inverse_and_rank(const Eigen::MatrixXd& A, std::optional<double> threshold = {});
 
 /// Orthonormal columns that span those of A; what sticks out by less than `threshold` of the longest is left out.
 [[nodiscard]] Eigen::MatrixXd column_basis(const Eigen::MatrixXd& A, double threshold);

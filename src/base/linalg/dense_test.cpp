@@ -10,7 +10,7 @@ using Eigen::VectorXd;
 namespace {
 
 /// Pseudo-random numbers in [-1, 1].
-MatrixXd numbers(Eigen::Index rows, Eigen::Index columns, unsigned seed) {
+MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, unsigned seed) {
     MatrixXd A(rows, columns);
     for (double& a : A.reshaped()) {
         seed = seed * 1664525U + 1013904223U;
@@ -26,7 +26,7 @@ double off(const MatrixXd& a, const MatrixXd& b) {
 }  // namespace
 
 TEST_CASE("eigenpairs of a symmetric matrix give it back") {
-    const MatrixXd A = numbers(7, 7, 1), S = A + A.transpose();
+    const MatrixXd A = random_matrix(7, 7, 1), S = A + A.transpose();
     const Eigenpairs found = symmetric_eigenpairs(S);
     CHECK(off(found.vectors * found.values.asDiagonal() * found.vectors.transpose(), S) < 1e-13);
     CHECK(off(found.vectors.transpose() * found.vectors, MatrixXd::Identity(7, 7)) < 1e-13);
@@ -34,7 +34,7 @@ TEST_CASE("eigenpairs of a symmetric matrix give it back") {
 }
 
 TEST_CASE("generalized eigenpairs satisfy their equation, and need a positive definite M") {
-    const MatrixXd A = numbers(5, 5, 2), B = numbers(9, 5, 3), K = A + A.transpose(), M = B.transpose() * B;
+    const MatrixXd A = random_matrix(5, 5, 2), B = random_matrix(9, 5, 3), K = A + A.transpose(), M = B.transpose() * B;
     const auto found = generalized_eigenpairs(K, M);
     REQUIRE(found);
     CHECK(off(K * found->vectors, M * found->vectors * found->values.asDiagonal()) < 1e-12);
@@ -43,7 +43,7 @@ TEST_CASE("generalized eigenpairs satisfy their equation, and need a positive de
 }
 
 TEST_CASE("the positive part keeps positive eigenvalues and drops the others") {
-    const MatrixXd Q = symmetric_eigenpairs(numbers(4, 4, 4) + numbers(4, 4, 4).transpose()).vectors;
+    const MatrixXd Q = symmetric_eigenpairs(random_matrix(4, 4, 4) + random_matrix(4, 4, 4).transpose()).vectors;
     const auto with = [&](Eigen::Vector4d values) -> MatrixXd { return Q * values.asDiagonal() * Q.transpose(); };
     CHECK(off(positive_part(with({-3, -1, 2, 5})), with({0, 0, 2, 5})) < 1e-13);
     CHECK(off(positive_part(with({1, 2, 3, 4})), with({1, 2, 3, 4})) < 1e-13);
@@ -51,7 +51,7 @@ TEST_CASE("the positive part keeps positive eigenvalues and drops the others") {
 
 TEST_CASE("a singular value decomposition gives the matrix back, with the parts that were asked for") {
     for (const auto& [rows, columns] : {std::pair{6, 3}, {3, 6}}) {
-        const MatrixXd A = numbers(rows, columns, 5);
+        const MatrixXd A = random_matrix(rows, columns, 5);
         const Svd square = svd(A, SvdParts::square);
         MatrixXd sigma = MatrixXd::Zero(rows, columns);
         sigma.diagonal() = square.sigma;
@@ -69,8 +69,8 @@ TEST_CASE("a singular value decomposition gives the matrix back, with the parts 
 }
 
 TEST_CASE("least squares: the remainder is orthogonal to all columns") {
-    const MatrixXd A = numbers(8, 3, 6);
-    const VectorXd b = numbers(8, 1, 7);
+    const MatrixXd A = random_matrix(8, 3, 6);
+    const VectorXd b = random_matrix(8, 1, 7);
     const VectorXd x = least_squares(A, b);
     CHECK((A.transpose() * (A * x - b)).norm() < 1e-13);
     const auto unique = unique_least_squares(A, b);

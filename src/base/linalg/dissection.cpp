@@ -20,14 +20,14 @@ namespace {
 
 using Point = Eigen::Vector3f;
 
-constexpr int leaf = 64;                     // pieces of at most this many nodes are not cut further
+constexpr int leaf_nodes = 64;               // pieces of at most this many nodes are not cut further
 constexpr int worth_sharing = 4096;          // smallest piece whose two parts go to two cores
 constexpr double least_side = 0.1;           // smallest part, as a fraction of the nodes
 constexpr std::size_t nodes_at_once = 4096;  // nodes per parallel piece
 constexpr int buckets = 256;
-constexpr std::size_t planes = 6;       // number of directions in which a piece is cut
-constexpr std::size_t levels = planes;  // index of the last field: distances along edges
-constexpr std::size_t fields = 8;       // these seven and a 0, to fill a SIMD register
+constexpr std::size_t planes = 6;            // number of directions in which a piece is cut
+constexpr std::size_t level_field = planes;  // index of the last field: distances along edges
+constexpr std::size_t fields = 8;            // these seven and a 0, to fill a SIMD register
 
 /// Some of the nodes, ascending, and their subgraph.
 struct Piece {
@@ -129,7 +129,7 @@ public:
 private:
     /// Assigns to the nodes of a piece the positions from `first` on. Calls have disjoint positions.
     void order(Piece piece, int first) {
-        if (piece.size() <= leaf) return order_leaf(piece, first);
+        if (piece.size() <= leaf_nodes) return order_leaf(piece, first);
         std::vector<int> part;
         int parts = components(piece.graph, part);
         if (parts == 1) {
@@ -297,7 +297,7 @@ private:
         const std::vector<int> level = distances(graph, order.back(), order);
         const float scale = (buckets - 1.0F) / std::max(1.0F, static_cast<float>(level[order.back()]));
         for (std::size_t i = 0; i < heights.size(); ++i)
-            heights[i][levels] = static_cast<std::uint8_t>(static_cast<float>(level[i]) * scale);
+            heights[i][level_field] = static_cast<std::uint8_t>(static_cast<float>(level[i]) * scale);
     }
 
     /// The number of nodes in each bucket of a field, how many of them are at the rim of the piece, and for which cuts

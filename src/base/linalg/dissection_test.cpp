@@ -60,7 +60,7 @@ bool is_permutation(std::vector<int> position) {
 }
 
 /// Entries of the factor including its diagonal, by naive elimination.
-double fill(const Graph& graph, const std::vector<int>& position) {
+double factor_entries(const Graph& graph, const std::vector<int>& position) {
     std::vector<std::set<int>> later(position.size());
     for (int i = 0; i < graph.nodes(); ++i) {
         for (int k = graph.start[i]; k < graph.start[i + 1]; ++k)
@@ -118,25 +118,25 @@ TEST_CASE("the fill of a square is that of George 1973, that of a chain or star 
     for (const int n : {15, 31, 63}) {
         const Grid square = grid(n, n, 1);
         const double bound = 7.75 * n * n * std::log2(n);
-        CHECK(fill(square.graph, dissect(square.graph, square.points)) < bound);
-        CHECK(fill(square.graph, dissect(square.graph)) < bound);
+        CHECK(factor_entries(square.graph, dissect(square.graph, square.points)) < bound);
+        CHECK(factor_entries(square.graph, dissect(square.graph)) < bound);
     }
     Edges chain, star;
     for (int a = 0; a < 1000; ++a) {
         chain.insert({a, a + 1});
         star.insert({a, 1000});
     }
-    CHECK(fill(graph_of_edges(1001, chain), dissect(graph_of_edges(1001, chain))) < 3.5 * 1001);
-    CHECK(fill(graph_of_edges(1001, star), dissect(graph_of_edges(1001, star))) == 2 * 1001 - 1);
+    CHECK(factor_entries(graph_of_edges(1001, chain), dissect(graph_of_edges(1001, chain))) < 3.5 * 1001);
+    CHECK(factor_entries(graph_of_edges(1001, star), dissect(graph_of_edges(1001, star))) == 2 * 1001 - 1);
 }
 
 TEST_CASE("a cube has no more fill than with mid-planes, and less than with rows") {
     const Grid cube = grid(15, 15, 15);
     std::vector<int> rows(cube.points.size());
     for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = static_cast<int>(k);
-    const double by_rows = fill(cube.graph, rows);
-    CHECK(fill(cube.graph, dissect(cube.graph, cube.points)) < 0.5 * by_rows);
-    CHECK(fill(cube.graph, dissect(cube.graph)) < 0.6 * by_rows);
+    const double by_rows = factor_entries(cube.graph, rows);
+    CHECK(factor_entries(cube.graph, dissect(cube.graph, cube.points)) < 0.5 * by_rows);
+    CHECK(factor_entries(cube.graph, dissect(cube.graph)) < 0.6 * by_rows);
 }
 
 TEST_CASE("the order is the same on any number of cores") {

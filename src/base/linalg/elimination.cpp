@@ -12,7 +12,7 @@ namespace pliant::linalg {
 namespace {
 
 /// Neighbours of each node, without itself.
-Graph neighbours(const SymmetricPattern& pattern) {
+Graph graph_of_pattern(const SymmetricPattern& pattern) {
     return graph_of(pattern.nodes, [&](const auto& use) {
         for (int j = 0; j < pattern.nodes; ++j) {
             for (int k = pattern.node_start[j] + 1; k < pattern.node_start[j + 1]; ++k) {
@@ -209,7 +209,7 @@ void fill_rows(const Graph& upper, const std::vector<int>& tree, Elimination& e)
 
 Elimination eliminate(const SymmetricPattern& pattern) {
     Elimination e;
-    e.position = dissect(neighbours(pattern), pattern.points);
+    e.position = dissect(graph_of_pattern(pattern), pattern.points);
     const std::vector<int> order = post_order(elimination_tree(upper_part(pattern, e.position)));
     std::vector<int> moved(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) moved[order[k]] = static_cast<int>(k);

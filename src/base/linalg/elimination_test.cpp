@@ -11,7 +11,7 @@ using namespace pliant::linalg;
 namespace {
 
 /// Fill of each column, by naive elimination.
-std::vector<std::set<int>> fill(const SymmetricPattern& pattern, const std::vector<int>& position) {
+std::vector<std::set<int>> rows_of_factor(const SymmetricPattern& pattern, const std::vector<int>& position) {
     std::vector<std::set<int>> rows(position.size());
     for (int j = 0; j < pattern.nodes; ++j) {
         for (int k = pattern.node_start[j] + 1; k < pattern.node_start[j + 1]; ++k) {
@@ -35,7 +35,7 @@ void check(const SymmetricPattern& pattern) {
     std::vector<int> sorted = e.position;
     std::sort(sorted.begin(), sorted.end());
     for (int k = 0; k < pattern.nodes; ++k) REQUIRE(sorted[k] == k);
-    const auto rows = fill(pattern, e.position);
+    const auto rows = rows_of_factor(pattern, e.position);
     for (int s = 0; s < e.supernodes(); ++s) {
         std::set<int> below;
         double filled = 0;

@@ -18,9 +18,9 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::size_t grain = 4096;   // nodes per parallel piece
-constexpr int few_nodes = 20000;      // these are factorised
-constexpr int most_iterations = 100;  // some ten do
+constexpr std::size_t nodes_per_sum = 4096;  // in a parallel piece
+constexpr int few_nodes = 20000;             // these are factorised
+constexpr int most_iterations = 100;         // some ten do
 
 // With each row divided by the sum of its magnitudes, no eigenvalue is above 1, and damping below 2 is stable.
 constexpr float smoothing = 1.8F;
@@ -188,7 +188,7 @@ double FieldLevels::Solution::precondition() {
             Eigen::Array4f(static_cast<float>(from[0]), static_cast<float>(from[1]), static_cast<float>(from[2]), 0.0F);
     });
     apply(0);
-    return parallel_sum(nodes, grain, [&](std::size_t begin, std::size_t end) {
+    return parallel_sum(nodes, nodes_per_sum, [&](std::size_t begin, std::size_t end) {
         double sum = 0;
         for (std::size_t i = begin; i < end; ++i)
             for (std::size_t k = 0; k < 3; ++k) sum += residual_[3 * i + k] * static_cast<double>(first.x[4 * i + k]);

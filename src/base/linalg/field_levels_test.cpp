@@ -18,7 +18,7 @@ using namespace pliant::linalg;
 
 namespace {
 
-struct Problem {
+struct ScalarProblem {
     SymmetricPattern pattern;
     std::vector<double> values;
     Nesting corners;
@@ -42,8 +42,8 @@ struct Spring {
     double stiffness;
 };
 
-Problem of_springs(int nodes, const std::vector<Spring>& springs, int held) {
-    Problem p;
+ScalarProblem of_springs(int nodes, const std::vector<Spring>& springs, int held) {
+    ScalarProblem p;
     std::vector<std::vector<int>> cliques;
     for (const Spring& s : springs) cliques.push_back({s.a, s.b});
     p.pattern = make_pattern(nodes, 1, cliques);
@@ -62,7 +62,7 @@ Problem of_springs(int nodes, const std::vector<Spring>& springs, int held) {
 
 /// Springs along the edges of unit cells, a thousand times stiffer in the second half, held at one end; with
 /// `mid_nodes`, two in a row and one beside them.
-Problem lattice(int along, int across, bool mid_nodes) {
+ScalarProblem lattice(int along, int across, bool mid_nodes) {
     const int side = across + 1, corners = (along + 1) * side * side;
     const auto node = [&](int i, int j, int k) { return (i * side + j) * side + k; };
     std::vector<Spring> springs;
@@ -85,7 +85,7 @@ Problem lattice(int along, int across, bool mid_nodes) {
             }
         }
     }
-    Problem p = of_springs(static_cast<int>(nesting.ends.size()), springs, side * side);
+    ScalarProblem p = of_springs(static_cast<int>(nesting.ends.size()), springs, side * side);
     p.corners = std::move(nesting);
     return p;
 }
@@ -101,12 +101,12 @@ std::vector<double> forces_on(int nodes, int count) {
 
 TEST_CASE("fields on levels have the asked error in the energy norm, after few iterations") {
     struct Case {
-        Problem problem;
+        ScalarProblem problem;
         bool nested;
     };
     for (const Case& c : {Case{lattice(40, 24, false), false}, {lattice(24, 16, true), true}}) {
         CAPTURE(c.nested);
-        const Problem& p = c.problem;
+        const ScalarProblem& p = c.problem;
         REQUIRE(p.pattern.nodes > 22000);  // more than one level
         FieldLevels levels(p.pattern, p.values, c.nested ? &p.corners : nullptr);
         Cholesky factor(p.pattern);
@@ -125,7 +125,7 @@ TEST_CASE("fields on levels have the asked error in the energy norm, after few i
 }
 
 TEST_CASE("several fields are solved as each one alone, with the same bits on any number of threads") {
-    const Problem p = lattice(40, 24, false);
+    const ScalarProblem p = lattice(40, 24, false);
     const auto solved = [&](std::size_t threads, int count) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
         FieldLevels levels(p.pattern, p.values);
@@ -148,14 +148,14 @@ TEST_CASE("several fields are solved as each one alone, with the same bits on an
 }
 
 TEST_CASE("no force, no motion; nodes without neighbours move by their own stiffness") {
-    const Problem p = lattice(40, 24, false);
+    const ScalarProblem p = lattice(40, 24, false);
     FieldLevels levels(p.pattern, p.values);
     std::vector<double> nothing(3 * static_cast<std::size_t>(p.pattern.nodes), 0.0);
     CHECK(levels.solve(nothing, 1, 1e-5) == 0);
     CHECK(nothing == std::vector<double>(nothing.size(), 0.0));
 
     constexpr int alone = 30000;
-    const Problem loose = of_springs(alone, {}, alone);
+    const ScalarProblem loose = of_springs(alone, {}, alone);
     FieldLevels each(loose.pattern, loose.values);
     std::vector<double> fields(std::size_t{3} * alone, 2.5);
     each.solve(fields, 1, 1e-5);
@@ -165,7 +165,7 @@ TEST_CASE("no force, no motion; nodes without neighbours move by their own stiff
 TEST_CASE("the estimated size of a factor is near that of its analysis, for bulky, slender and flat bodies") {
     for (const auto& [along, across] : {std::pair{30, 24}, {2000, 3}, {3, 80}}) {
         CAPTURE(along);
-        const Problem p = lattice(along, across, false);
+        const ScalarProblem p = lattice(along, across, false);
         const FactorSize size = estimate_factor_size(p.pattern);
         const Cholesky factor(p.pattern);
         CHECK(size.entries > factor.factor_entries() / 2);

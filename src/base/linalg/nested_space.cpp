@@ -10,7 +10,7 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t node_grain = 1024;  // per parallel piece
 
 /// Calls visit(pair, column, a, b) for each pair of fine nodes, each moving end a of its row and b of its column.
 template <class Visit>
@@ -65,7 +65,7 @@ void NestedSpace::find_pattern(const SymmetricPattern& fine) {
 
 void NestedSpace::set(const Fine& fine) {
     positions_.resize(3 * corner_.size());
-    parallel_for(corner_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(corner_.size(), node_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) {
             std::copy_n(fine.positions.data() + 3 * static_cast<std::size_t>(corner_[c]), 3, positions_.data() + 3 * c);
             const auto first = static_cast<std::size_t>(pattern_.node_start[c]);
@@ -93,7 +93,7 @@ void NestedSpace::add_row(const BlockRows& matrix, int coarse, int fine, double*
 }
 
 void NestedSpace::restrict(const float* fine, double* coarse) {
-    parallel_for(static_cast<std::size_t>(nesting_.coarse_nodes), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(static_cast<std::size_t>(nesting_.coarse_nodes), node_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) {
             std::array<float, 3> sum{};
             for (const int i : on_[c]) {
@@ -106,7 +106,7 @@ void NestedSpace::restrict(const float* fine, double* coarse) {
 }
 
 void NestedSpace::add_prolonged(const double* coarse, float* fine) const {
-    parallel_for(nesting_.ends.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(nesting_.ends.size(), node_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             for (const int c : nesting_.ends[i]) {
                 for (std::size_t k = 0; c >= 0 && k < 3; ++k)

@@ -38,7 +38,7 @@ struct Matrix {
 };
 
 /// Pseudo-random values; the upper triangle of diagonal blocks is ignored.
-Matrix numbers(const SymmetricPattern& p) {
+Matrix random_blocks(const SymmetricPattern& p) {
     Matrix m{std::vector<double>(p.entries()), Eigen::MatrixXd::Zero(3 * p.nodes, 3 * p.nodes)};
     for (std::size_t k = 0; k < m.values.size(); ++k) m.values[k] = std::sin(12.9898 * static_cast<double>(k) + 1);
     for (int j = 0; j < p.nodes; ++j) {
@@ -71,7 +71,7 @@ void set(NestedSpace& space, const SymmetricPattern& pattern, const Matrix& m) {
 
 TEST_CASE("the coarse matrix is exact for motions of the corners") {
     const SymmetricPattern fine = pattern();
-    const Matrix m = numbers(fine);
+    const Matrix m = random_blocks(fine);
     NestedSpace space(fine, nesting);
     set(space, fine, m);
     const Eigen::MatrixXd P = prolongation();

@@ -13,8 +13,8 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::size_t grain = 4096;     // nodes per parallel piece
-constexpr int degree = 2;               // of the smoothing polynomial
+constexpr std::size_t smoothing_grain = 4096;  // nodes per parallel piece
+constexpr int degree = 2;                      // of the smoothing polynomial
 constexpr float smoothed_part = 0.06F;  // lower end of the part of the spectrum that is smoothed, of its upper end
 constexpr int first_powers = 12, later_powers = 1;
 constexpr int lanczos_steps = 6;
@@ -93,7 +93,7 @@ bool SmoothedLevels::build() {
 
 bool SmoothedLevels::invert_diagonal() {
     std::vector<char> definite(size_ / 3);
-    parallel_for(size_ / 3, grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(size_ / 3, smoothing_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Eigen::Matrix3d block = matrix_.diagonal(static_cast<int>(i));
             const Eigen::LLT<Eigen::Matrix3d> llt(block);
@@ -105,7 +105,7 @@ bool SmoothedLevels::invert_diagonal() {
 }
 
 void SmoothedLevels::apply_inverse_diagonal(const Rough& from, Rough& to) const {
-    parallel_for(size_ / 3, grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(size_ / 3, smoothing_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Eigen::Map<const Eigen::Matrix3f> inverse(inverse_diagonal_.data() + 9 * i);
             Eigen::Map<Eigen::Vector3f>(to.data() + 3 * i).noalias() =
@@ -200,7 +200,7 @@ void SmoothedLevels::advance_columns(Rough& x, Start start, float keep, float sh
     using At = Eigen::Map<Block>;
     const bool from_zero = start == Start::zero;
     if (!from_zero) matrix_.multiply(x.data(), rest_.data(), static_cast<int>(count));
-    parallel_for(size_ / 3, grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(size_ / 3, smoothing_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t at = 3 * count * i;
             Block left = At(side_.data() + at), now = Block::Zero(), go = Block::Zero();

@@ -31,11 +31,11 @@ Problem beam(int along, int across, const Eigen::Matrix3d& turn = Eigen::Matrix3
     Problem p;
     const int side = across + 1, nodes = (along + 1) * side * side;
     const auto node = [&](int i, int j, int k) { return (i * side + j) * side + k; };
-    struct Spring {
+    struct DirectedSpring {
         int a, b;
         double stiffness;
     };
-    std::vector<Spring> springs;
+    std::vector<DirectedSpring> springs;
     std::vector<std::vector<int>> cliques;
     std::vector<Eigen::Vector3d> at(static_cast<std::size_t>(nodes));
     const auto join = [&](int a, int b, int i) {
@@ -63,7 +63,7 @@ Problem beam(int along, int across, const Eigen::Matrix3d& turn = Eigen::Matrix3
     }
     p.pattern = make_pattern(nodes, 3, cliques);
     p.values.assign(p.pattern.entries(), 0.0);
-    for (const Spring& s : springs) {
+    for (const DirectedSpring& s : springs) {
         const Eigen::Vector3d d = (at[static_cast<std::size_t>(s.b)] - at[static_cast<std::size_t>(s.a)]).normalized();
         const Eigen::Matrix3d K = s.stiffness * d * d.transpose();
         p.pattern.add_block(p.values, s.a, s.a, K);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -10,6 +11,9 @@
 #include "base/core/vec3.hpp"
 
 namespace pliant::mesh {
+
+/// Gmsh's place of each node of our 10-node tet, and the reverse: its last two mid-edge nodes are swapped.
+inline constexpr std::array<std::size_t, 10> gmsh_order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 
 using TenNodes = std::array<std::int64_t, 10>;
 

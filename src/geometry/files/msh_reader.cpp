@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "geometry/files/mid_edge_order.hpp"
 #include "geometry/files/msh_input.hpp"
 #include "geometry/files/numbered_points.hpp"
 #include "geometry/files/tet_collector.hpp"
@@ -14,9 +15,6 @@ namespace {
 
 constexpr std::int64_t gmsh_tetra = 4;
 constexpr std::int64_t gmsh_quadratic_tetra = 11;
-
-/// Maps Gmsh's 10-node tet to ours: its last two mid-edge nodes are swapped.
-constexpr std::array<std::size_t, 10> gmsh_order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 
 bool is_tet(std::int64_t type) {
     return type == gmsh_tetra || type == gmsh_quadratic_tetra;

@@ -10,7 +10,7 @@ using pliant::test::replaced;
 
 namespace {
 
-std::string problem(std::string_view text) {
+std::string msh_problem(std::string_view text) {
     const Result<TetMesh> mesh = parse_msh(text, "a.msh");
     return mesh ? "" : mesh.error().message;
 }
@@ -121,20 +121,24 @@ TEST_CASE("quadratic tets: the last two mid-edge nodes change places") {
 }
 
 TEST_CASE("damaged files give a reason with the line, and stated sizes are not trusted") {
-    CHECK(problem("$MeshFormat\n4.1 1 8\n$EndMeshFormat\n").find("a.msh: byte 24: the whole number 1 is needed") == 0);
-    CHECK(problem("$MeshFormat\n1.0 0 8\n$EndMeshFormat\n").find("version \"1.0\"") != std::string::npos);
-    CHECK(problem("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n").find("holds no tetrahedra") != std::string::npos);
-    CHECK(problem(replaced(version_2, "$Nodes\n6", "$Nodes\n6000000000000")).find("more than the file can hold") !=
+    CHECK(msh_problem("$MeshFormat\n4.1 1 8\n$EndMeshFormat\n").find("a.msh: byte 24: the whole number 1 is needed") ==
+          0);
+    CHECK(msh_problem("$MeshFormat\n1.0 0 8\n$EndMeshFormat\n").find("version \"1.0\"") != std::string::npos);
+    CHECK(msh_problem("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n").find("holds no tetrahedra") != std::string::npos);
+    CHECK(msh_problem(replaced(version_2, "$Nodes\n6", "$Nodes\n6000000000000")).find("more than the file can hold") !=
           std::string::npos);
-    CHECK(problem(replaced(version_2, "40 0 0 1\n", "40 0 zero 1\n")) == "a.msh:15: \"zero\" is not a finite number");
-    CHECK(problem(replaced(version_2, "40 0 0 1\n", "30 0 0 1\n")).find("node 30 comes twice") != std::string::npos);
-    CHECK(problem(replaced(version_2, "10 20 30 40", "10 20 30 41")).find("names node 41, there is none") !=
+    CHECK(msh_problem(replaced(version_2, "40 0 0 1\n", "40 0 zero 1\n")) ==
+          "a.msh:15: \"zero\" is not a finite number");
+    CHECK(msh_problem(replaced(version_2, "40 0 0 1\n", "30 0 0 1\n")).find("node 30 comes twice") !=
           std::string::npos);
-    CHECK(problem(replaced(version_2, "10 20 30 40", "10 20 30 30")).find("twice") != std::string::npos);
-    CHECK(problem(replaced(version_2, "\"grip\"", "grip")).find("a name in quotes") != std::string::npos);
-    CHECK(problem(replaced(version_4, "0 1 0 1\n1\n", "0 1 0 999999999\n1\n")).find("more than the file can hold") !=
+    CHECK(msh_problem(replaced(version_2, "10 20 30 40", "10 20 30 41")).find("names node 41, there is none") !=
           std::string::npos);
-    CHECK(problem(replaced(version_4, "$Entities\n1 0 1 2", "$Entities\n1 0 1 2000000000")).find("a.msh:") == 0);
+    CHECK(msh_problem(replaced(version_2, "10 20 30 40", "10 20 30 30")).find("twice") != std::string::npos);
+    CHECK(msh_problem(replaced(version_2, "\"grip\"", "grip")).find("a name in quotes") != std::string::npos);
+    CHECK(
+        msh_problem(replaced(version_4, "0 1 0 1\n1\n", "0 1 0 999999999\n1\n")).find("more than the file can hold") !=
+        std::string::npos);
+    CHECK(msh_problem(replaced(version_4, "$Entities\n1 0 1 2", "$Entities\n1 0 1 2000000000")).find("a.msh:") == 0);
     for (const std::string& whole : {version_2, version_4}) {
         for (std::size_t length = 0; length < whole.size(); ++length) (void)parse_msh(whole.substr(0, length), "a.msh");
     }

@@ -1,17 +1,14 @@
 // Gmsh mesh files, 4.1. Format: Gmsh reference manual, "MSH file format".
 #include <fmt/format.h>
 
-#include <array>
 #include <bit>
 #include <cstring>
 
+#include "geometry/files/mid_edge_order.hpp"
 #include "geometry/files/tet_writer.hpp"
 
 namespace pliant::mesh {
 namespace {
-
-/// Maps our 10-node tet to Gmsh's: the last two mid-edge nodes are swapped.
-constexpr std::array<std::size_t, 10> gmsh_order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
 
 class MshWriter {
 public:

@@ -6,18 +6,15 @@
 #include "base/core/near.hpp"
 #include "base/core/test_text.hpp"
 #include "geometry/files/surface_file.hpp"
+#include "geometry/files/test_surfaces.hpp"
 #include "geometry/repair/surface_check.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using pliant::mesh::test::surface_problem;
 using pliant::test::replaced;
 
 namespace {
-
-std::string problem(std::string_view text) {
-    const Result<SurfaceFile> file = parse_surface(text, "a");
-    return file ? "" : file.error().message;
-}
 
 /// A cube of edge 2 with square faces.
 const std::string obj = R"(# a cube
@@ -105,22 +102,24 @@ TEST_CASE("OBJ: a backslash continues a line, but not a comment or a name") {
     CHECK(file->mesh.triangles.size() == 12);
     CHECK(signed_volume(file->mesh) == near(8, {.relative = 1e-12}));
     // Lines are counted correctly after a continuation.
-    CHECK(problem(replaced(text, "f 3 4 8 7", "f 3 4 8 9")) == "a:21: a face names vertex 9, there are 8 so far");
+    CHECK(surface_problem(replaced(text, "f 3 4 8 7", "f 3 4 8 9")) ==
+          "a:21: a face names vertex 9, there are 8 so far");
     std::string old_mac;
     for (const char c : obj) old_mac += c == '\n' ? '\r' : c;
     CHECK(signed_volume(parse_surface(old_mac, "a.obj")->mesh) == near(8, {.relative = 1e-12}));
-    CHECK(problem("v 1 2 3\\").find("not a finite number") != std::string::npos);
-    CHECK(problem("v 0 0 0\nf 1 1 \\\n").find("a face has 2 corners") != std::string::npos);
+    CHECK(surface_problem("v 1 2 3\\").find("not a finite number") != std::string::npos);
+    CHECK(surface_problem("v 0 0 0\nf 1 1 \\\n").find("a face has 2 corners") != std::string::npos);
 }
 
 TEST_CASE("OBJ: broken files give a reason with the line") {
-    CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 7 9")) == "a:16: a face names vertex 9, there are 8 so far");
-    CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 7 0")).find("names vertex 0") != std::string::npos);
-    CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 7 -9")).find("names vertex -9") != std::string::npos);
-    CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3")).find("a face has 2 corners") != std::string::npos);
-    CHECK(problem(replaced(obj, "f 2 3 7 6", "f 2 3 x")).find("\"x\" is not a corner") != std::string::npos);
-    CHECK(problem(replaced(obj, "v 2 0 0", "v 2 0 nan")).find("a:5: \"nan\" is not a finite number") == 0);
-    CHECK(problem("v 1 2 3\n").find("holds no faces") != std::string::npos);
+    CHECK(surface_problem(replaced(obj, "f 2 3 7 6", "f 2 3 7 9")) ==
+          "a:16: a face names vertex 9, there are 8 so far");
+    CHECK(surface_problem(replaced(obj, "f 2 3 7 6", "f 2 3 7 0")).find("names vertex 0") != std::string::npos);
+    CHECK(surface_problem(replaced(obj, "f 2 3 7 6", "f 2 3 7 -9")).find("names vertex -9") != std::string::npos);
+    CHECK(surface_problem(replaced(obj, "f 2 3 7 6", "f 2 3")).find("a face has 2 corners") != std::string::npos);
+    CHECK(surface_problem(replaced(obj, "f 2 3 7 6", "f 2 3 x")).find("\"x\" is not a corner") != std::string::npos);
+    CHECK(surface_problem(replaced(obj, "v 2 0 0", "v 2 0 nan")).find("a:5: \"nan\" is not a finite number") == 0);
+    CHECK(surface_problem("v 1 2 3\n").find("holds no faces") != std::string::npos);
 }
 
 TEST_CASE("PLY: text and bytes of both orders give the same surface") {
@@ -134,15 +133,18 @@ TEST_CASE("PLY: text and bytes of both orders give the same surface") {
 }
 
 TEST_CASE("PLY: damaged files give a reason, and stated sizes are not trusted") {
-    CHECK(problem(replaced(ply, "face 4", "face 4000000000000")).find("more than the file can hold") !=
+    CHECK(surface_problem(replaced(ply, "face 4", "face 4000000000000")).find("more than the file can hold") !=
           std::string::npos);
-    CHECK(problem(replaced(ply, "face 4", "face 5")).find("the file ends") != std::string::npos);
-    CHECK(problem(replaced(ply, "3 1 2 3", "3 1 2 4")).find("face 2 names vertex 4, there are 4") != std::string::npos);
-    CHECK(problem(replaced(ply, "3 1 2 3", "2 1 2 3")).find("face 2 has 2 corners") != std::string::npos);
-    CHECK(problem(replaced(ply, "double z", "quad z")).find("unknown type \"quad\"") != std::string::npos);
-    CHECK(problem(replaced(ply, "format ascii 1.0\n", "")).find("names no format") != std::string::npos);
-    CHECK(problem(replaced(ply, "end_header\n", "end\n")).find("no place in a PLY header") != std::string::npos);
-    CHECK(problem(replaced(ply, "list uchar int", "list float int")).find("whole numbers") != std::string::npos);
+    CHECK(surface_problem(replaced(ply, "face 4", "face 5")).find("the file ends") != std::string::npos);
+    CHECK(surface_problem(replaced(ply, "3 1 2 3", "3 1 2 4")).find("face 2 names vertex 4, there are 4") !=
+          std::string::npos);
+    CHECK(surface_problem(replaced(ply, "3 1 2 3", "2 1 2 3")).find("face 2 has 2 corners") != std::string::npos);
+    CHECK(surface_problem(replaced(ply, "double z", "quad z")).find("unknown type \"quad\"") != std::string::npos);
+    CHECK(surface_problem(replaced(ply, "format ascii 1.0\n", "")).find("names no format") != std::string::npos);
+    CHECK(surface_problem(replaced(ply, "end_header\n", "end\n")).find("no place in a PLY header") !=
+          std::string::npos);
+    CHECK(surface_problem(replaced(ply, "list uchar int", "list float int")).find("whole numbers") !=
+          std::string::npos);
     const std::string bytes = binary_ply(false);
     for (std::size_t length = 4; length < bytes.size(); ++length)
         CHECK_FALSE(parse_surface(std::string_view(bytes).substr(0, length), "a.ply"));

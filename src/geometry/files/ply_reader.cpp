@@ -1,21 +1,15 @@
 // PLY, the Stanford polygon format: a text header that lists elements and their properties, then their values.
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 
+#include "geometry/files/number_type.hpp"
 #include "geometry/files/surface_collector.hpp"
 
 namespace pliant::mesh {
 namespace {
 
-struct NumberType {
-    std::size_t width = 0;
-    bool floating = false;
-    bool is_signed = true;
-};
-
-std::optional<NumberType> number_type(std::string_view name) {
+std::optional<NumberType> ply_number_type(std::string_view name) {
     if (name == "char" || name == "int8") return NumberType{1, false, true};
     if (name == "uchar" || name == "uint8") return NumberType{1, false, false};
     if (name == "short" || name == "int16") return NumberType{2, false, true};
@@ -56,11 +50,7 @@ public:
             bits = bits << 8U | static_cast<unsigned char>(bytes_[at_ + k]);
         }
         at_ += type.width;
-        if (type.floating && type.width == 4) return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
-        if (type.floating) return std::bit_cast<double>(bits);
-        if (!type.is_signed) return static_cast<double>(bits);
-        const std::uint64_t sign = std::uint64_t{1} << (8 * type.width - 1);
-        return static_cast<double>(static_cast<std::int64_t>((bits ^ sign) - sign));
+        return number_of_bits(type, bits);
     }
     /// With the line for text; binary values have none.
     tl::unexpected<Error> error(std::string_view text) const { return scan_.error(text); }
@@ -147,12 +137,12 @@ private:
         Property property;
         std::string_view type = scan_.word_of_line();
         if (type == "list") {
-            property.count = number_type(scan_.word_of_line());
+            property.count = ply_number_type(scan_.word_of_line());
             if (!property.count || property.count->floating)
                 return scan_.error("the length of a list needs a type of whole numbers");
             type = scan_.word_of_line();
         }
-        const auto known = number_type(type);
+        const auto known = ply_number_type(type);
         if (!known) return scan_.error(fmt::format("unknown type \"{}\"", type.substr(0, 40)));
         property.type = *known;
         property.name = scan_.word_of_line();

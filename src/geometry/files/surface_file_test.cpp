@@ -5,25 +5,19 @@
 #include <cstring>
 #include <limits>
 
-#include "base/core/files.hpp"
 #include "base/core/near.hpp"
-#include "base/core/test_folder.hpp"
+#include "geometry/files/test_surfaces.hpp"
 #include "geometry/mesh/test_shapes.hpp"
 #include "geometry/repair/surface_check.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using pliant::mesh::test::binary_stl;
 using pliant::mesh::test::tetrahedron;
 
 namespace {
 
-std::string binary_stl(const TriMesh& mesh) {
-    const pliant::test::Folder folder("stl");
-    REQUIRE(write_stl(folder / "a.stl", mesh));
-    return read_file(folder / "a.stl").value();
-}
-
-std::string problem(std::string_view bytes) {
+std::string stl_problem(std::string_view bytes) {
     const Result<SurfaceFile> file = parse_stl(bytes, "a.stl");
     return file ? "" : file.error().message;
 }
@@ -65,13 +59,13 @@ TEST_CASE("binary files with small faults are read with a warning; others are re
     std::string nan = bytes;
     const float value = std::numeric_limits<float>::quiet_NaN();
     std::memcpy(nan.data() + 84 + 50 + 12, &value, 4);
-    CHECK(problem(nan) == "a.stl: facet 2: vertex 1 is not finite");
-    CHECK(problem("") == "a.stl: the file is empty");
-    CHECK(problem(std::string(84, '\0')).find("no facets") != std::string::npos);
-    CHECK(problem(bytes.substr(0, bytes.size() - 20)).find("announces 4 facets and has room for 3") !=
+    CHECK(stl_problem(nan) == "a.stl: facet 2: vertex 1 is not finite");
+    CHECK(stl_problem("") == "a.stl: the file is empty");
+    CHECK(stl_problem(std::string(84, '\0')).find("no facets") != std::string::npos);
+    CHECK(stl_problem(bytes.substr(0, bytes.size() - 20)).find("announces 4 facets and has room for 3") !=
           std::string::npos);
-    CHECK(problem("hello").find("not an STL") != std::string::npos);
-    CHECK(problem(std::string(5000, 'h')).find("not an STL") != std::string::npos);
+    CHECK(stl_problem("hello").find("not an STL") != std::string::npos);
+    CHECK(stl_problem(std::string(5000, 'h')).find("not an STL") != std::string::npos);
 }
 
 TEST_CASE("text STL is read in any case and with any line ends; errors name the line") {
@@ -84,13 +78,13 @@ TEST_CASE("text STL is read in any case and with any line ends; errors name the 
     CHECK(parse_stl(ascii + ascii, "a.stl")->mesh.triangles.size() == 2);
     std::string missing = ascii;
     missing.replace(missing.find("  vertex 1 0 0\n"), 15, "");
-    CHECK(problem(missing) == "a.stl:6: \"vertex\" is needed here, a facet has three; found \"endloop\"");
+    CHECK(stl_problem(missing) == "a.stl:6: \"vertex\" is needed here, a facet has three; found \"endloop\"");
     std::string word = ascii;
     word.replace(word.find("1.0e+0"), 6, "one");
-    CHECK(problem(word) == "a.stl:5: \"one\" is not a finite number");
-    CHECK(problem("solid empty\nendsolid empty\n").find("no facets") != std::string::npos);
-    CHECK(problem("solid x\n<html>").find("has no place here") != std::string::npos);
-    CHECK(problem(ascii.substr(0, 60)).find("a.stl:") == 0);
+    CHECK(stl_problem(word) == "a.stl:5: \"one\" is not a finite number");
+    CHECK(stl_problem("solid empty\nendsolid empty\n").find("no facets") != std::string::npos);
+    CHECK(stl_problem("solid x\n<html>").find("has no place here") != std::string::npos);
+    CHECK(stl_problem(ascii.substr(0, 60)).find("a.stl:") == 0);
 }
 
 TEST_CASE("text STL with other line ends, on one line, or with words after endfacet is read") {
@@ -104,7 +98,7 @@ TEST_CASE("text STL with other line ends, on one line, or with words after endfa
     std::string missing = ascii;
     missing.replace(missing.find("  vertex 1 0 0\n"), 15, "");
     for (const char* end : {"\r", "\r\n"})
-        CHECK(problem(with_ends(missing, end)) ==
+        CHECK(stl_problem(with_ends(missing, end)) ==
               "a.stl:6: \"vertex\" is needed here, a facet has three; found \"endloop\"");
     std::string one_line = ascii.substr(ascii.find("facet normal nan"));
     one_line = "solid\n" + with_ends(one_line, " ") + with_ends(one_line, " ");
@@ -118,7 +112,7 @@ TEST_CASE("text STL with other line ends, on one line, or with words after endfa
     REQUIRE(file->warnings.size() == 1);
     CHECK(file->warnings[0] == "a.stl: 4 word(s) after \"endfacet\" were passed over");
     stray.replace(stray.find(" attributes"), 1, "\n");
-    CHECK(problem(stray) == "a.stl:9: \"attributes\" has no place here; this is not a complete STL file");
+    CHECK(stl_problem(stray) == "a.stl:9: \"attributes\" has no place here; this is not a complete STL file");
 }
 
 TEST_CASE("open, inverted, doubled and empty surfaces are refused with the reason") {

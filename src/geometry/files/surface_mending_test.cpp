@@ -7,10 +7,9 @@
 #include <numbers>
 #include <random>
 
-#include "base/core/files.hpp"
 #include "base/core/near.hpp"
-#include "base/core/test_folder.hpp"
 #include "base/core/test_text.hpp"
+#include "geometry/files/test_surfaces.hpp"
 #include "geometry/mesh/test_shapes.hpp"
 #include "geometry/repair/surface_check.hpp"
 
@@ -76,12 +75,6 @@ TriMesh jittered(const TriMesh& mesh, double share, int steps, unsigned seed) {
         soup.triangles.push_back({n - 3, n - 2, n - 1});
     }
     return soup;
-}
-
-std::string binary_stl(const TriMesh& soup) {
-    const pliant::test::Folder folder("stl");
-    REQUIRE(write_stl(folder / "a.stl", soup));
-    return read_file(folder / "a.stl").value();
 }
 
 /// Text whose numbers are formatted by `print`.

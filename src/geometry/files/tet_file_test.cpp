@@ -14,17 +14,17 @@ using namespace pliant::mesh;
 
 namespace {
 
-TetMesh two_tets() {
+TetMesh oddly_named_tets() {
     return mesh::test::two_tets("soft foam 50%", "grip");
 }
 
-std::string problem(std::string_view text) {
+std::string vtk_problem(std::string_view text) {
     const Result<TetMesh> mesh = parse_vtk(text, "a.vtk");
     return mesh ? "" : mesh.error().message;
 }
 
 template <class Number>
-void put(std::string& bytes, Number value) {
+void put_big_endian(std::string& bytes, Number value) {
     std::array<char, sizeof(Number)> raw = std::bit_cast<std::array<char, sizeof(Number)>>(value);
     bytes.append(raw.rbegin(), raw.rend());  // big endian
 }
@@ -34,7 +34,7 @@ const std::string head = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNST
 }  // namespace
 
 TEST_CASE("linear and quadratic meshes are read back as written") {
-    for (const TetMesh& mesh : {two_tets(), to_quadratic(two_tets())}) {
+    for (const TetMesh& mesh : {oddly_named_tets(), to_quadratic(oddly_named_tets())}) {
         const Result<TetMesh> back = parse_vtk(vtk_bytes(mesh, Encoding::text), "a.vtk");
         REQUIRE_MESSAGE(back, (back ? "" : back.error().message));
         CHECK(back->order == mesh.order);
@@ -51,7 +51,7 @@ TEST_CASE("linear and quadratic meshes are read back as written") {
 }
 
 TEST_CASE("names of regions are read back, whatever their characters and length") {
-    TetMesh mesh = two_tets();
+    TetMesh mesh = oddly_named_tets();
     for (const std::string& name : {std::string("a, b"), std::string("100%,\n\xc3\xa9"), std::string(400, 'n')}) {
         mesh.region_names[1] = name;
         const Result<TetMesh> back = parse_vtk(vtk_bytes(mesh, Encoding::text), "a.vtk");
@@ -63,14 +63,15 @@ TEST_CASE("names of regions are read back, whatever their characters and length"
 TEST_CASE("binary files, other cells, unused points and inverted tets are read") {
     std::string bytes = "# vtk DataFile Version 2.0\ntitle\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 6 double\n";
     for (const Vec3& p : {Vec3{9, 9, 9}, Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}, Vec3{8, 8, 8}}) {
-        for (const double c : {p.x, p.y, p.z}) put(bytes, c);
+        for (const double c : {p.x, p.y, p.z}) put_big_endian(bytes, c);
     }
     bytes += "\nCELLS 3 11\n";
-    for (const std::int32_t i : {1, 0, 3, 1, 2, 3, 4, 1, 3, 2, 4}) put(bytes, i);  // vertex, triangle, inverted tet
+    for (const std::int32_t i : {1, 0, 3, 1, 2, 3, 4, 1, 3, 2, 4})
+        put_big_endian(bytes, i);  // vertex, triangle, inverted tet
     bytes += "\nCELL_TYPES 3\n";
-    for (const std::int32_t type : {1, 5, 10}) put(bytes, type);
+    for (const std::int32_t type : {1, 5, 10}) put_big_endian(bytes, type);
     bytes += "\nCELL_DATA 3\nSCALARS material int 1\nLOOKUP_TABLE default\n";
-    for (const std::int32_t value : {0, 0, 7}) put(bytes, value);
+    for (const std::int32_t value : {0, 0, 7}) put_big_endian(bytes, value);
     const Result<TetMesh> mesh = parse_vtk(bytes, "a.vtk");
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(mesh->points.size() == 4);
@@ -91,7 +92,7 @@ TEST_CASE("version 5 files store offsets and connectivity separately") {
 }
 
 TEST_CASE("an inside-out quadratic tet keeps its mid-edge nodes at their edges") {
-    TetMesh mesh = to_quadratic(two_tets());
+    TetMesh mesh = to_quadratic(oddly_named_tets());
     // Mirror the node order of a tet: corners 1 and 2, and the edges at them.
     std::swap(mesh.nodes[1], mesh.nodes[2]);
     std::swap(mesh.nodes[4], mesh.nodes[6]);
@@ -109,22 +110,23 @@ TEST_CASE("an inside-out quadratic tet keeps its mid-edge nodes at their edges")
 }
 
 TEST_CASE("damaged files give a reason with the line, and stated sizes are not trusted") {
-    CHECK(problem("hello").find("not a legacy VTK file") != std::string::npos);
-    CHECK(problem(head).find("holds no tetrahedra") != std::string::npos);
-    CHECK(problem(head + "POINTS 4000000000000 double\n1 2 3\n").find("a.vtk:") == 0);
-    CHECK(problem(head + "POINTS 2 double\n0 0 0 1 0\n").find("ends") != std::string::npos);
-    CHECK(problem(head + "POINTS 1 double\n0 zero 0\n").find("\"zero\" is not a number") != std::string::npos);
-    CHECK(problem(head + "POINTS 1 double\n0 inf 0\n").find("not finite") != std::string::npos);
+    CHECK(vtk_problem("hello").find("not a legacy VTK file") != std::string::npos);
+    CHECK(vtk_problem(head).find("holds no tetrahedra") != std::string::npos);
+    CHECK(vtk_problem(head + "POINTS 4000000000000 double\n1 2 3\n").find("a.vtk:") == 0);
+    CHECK(vtk_problem(head + "POINTS 2 double\n0 0 0 1 0\n").find("ends") != std::string::npos);
+    CHECK(vtk_problem(head + "POINTS 1 double\n0 zero 0\n").find("\"zero\" is not a number") != std::string::npos);
+    CHECK(vtk_problem(head + "POINTS 1 double\n0 inf 0\n").find("not finite") != std::string::npos);
     const std::string points = head + "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n";
-    CHECK(problem(points + "CELLS 1 5\n4 0 1 2 9\nCELL_TYPES 1\n10\n").find("names point 9") != std::string::npos);
-    CHECK(problem(points + "CELLS 1 5\n9 0 1 2 3\nCELL_TYPES 1\n10\n").find("runs past the end") != std::string::npos);
-    CHECK(problem(points + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n10\n").find("has 3 nodes") != std::string::npos);
-    CHECK(problem(points + "CELLS 1 5\n4 0 1 2 3\n").find("0 cell types") != std::string::npos);
-    CHECK(problem(points + "GARBAGE\n").find("\"GARBAGE\" is not understood") != std::string::npos);
+    CHECK(vtk_problem(points + "CELLS 1 5\n4 0 1 2 9\nCELL_TYPES 1\n10\n").find("names point 9") != std::string::npos);
+    CHECK(vtk_problem(points + "CELLS 1 5\n9 0 1 2 3\nCELL_TYPES 1\n10\n").find("runs past the end") !=
+          std::string::npos);
+    CHECK(vtk_problem(points + "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n10\n").find("has 3 nodes") != std::string::npos);
+    CHECK(vtk_problem(points + "CELLS 1 5\n4 0 1 2 3\n").find("0 cell types") != std::string::npos);
+    CHECK(vtk_problem(points + "GARBAGE\n").find("\"GARBAGE\" is not understood") != std::string::npos);
 }
 
 TEST_CASE("an unknown file extension is refused when writing") {
-    CHECK(write_tet_mesh("/tmp/a.xyz", two_tets()).error().message.find(".vtk, .vtu, .msh, .mesh or .inp") !=
+    CHECK(write_tet_mesh("/tmp/a.xyz", oddly_named_tets()).error().message.find(".vtk, .vtu, .msh, .mesh or .inp") !=
           std::string::npos);
 }
 
@@ -147,13 +149,13 @@ TEST_CASE("names in binary files come with their length") {
     bytes += "foam";
     bytes += std::string{static_cast<char>(0x80), static_cast<char>(0x46)};  // two bytes: length 70
     bytes += std::string(70, 'g') + "\nPOINTS 4 float\n";
-    for (const float c : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F}) put(bytes, c);
+    for (const float c : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 1.F}) put_big_endian(bytes, c);
     bytes += "\nCELLS 1 5\n";
-    for (const std::int32_t i : {4, 0, 1, 2, 3}) put(bytes, i);
+    for (const std::int32_t i : {4, 0, 1, 2, 3}) put_big_endian(bytes, i);
     bytes += "\nCELL_TYPES 1\n";
-    put(bytes, std::int32_t{10});
+    put_big_endian(bytes, std::int32_t{10});
     bytes += "\nCELL_DATA 1\nSCALARS region int 1\nLOOKUP_TABLE default\n";
-    put(bytes, std::int32_t{1});
+    put_big_endian(bytes, std::int32_t{1});
     const Result<TetMesh> mesh = parse_vtk(bytes, "a.vtk");
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(mesh->region_names == std::vector<std::string>{std::string(70, 'g')});

@@ -19,7 +19,7 @@ using pliant::test::replaced;
 namespace {
 
 /// Region names that are difficult in every format, and a coordinate that needs all digits.
-TetMesh two_tets() {
+TetMesh difficult_tets() {
     TetMesh mesh = mesh::test::two_tets("soft foam, 50%", "grip");
     mesh.points[3].z = 0.1;
     return mesh;
@@ -27,12 +27,12 @@ TetMesh two_tets() {
 
 /// Mid-edge nodes off the midpoints, so that a wrong order is detected.
 TetMesh curved_tets() {
-    TetMesh mesh = to_quadratic(two_tets());
+    TetMesh mesh = to_quadratic(difficult_tets());
     for (std::size_t i = 5; i < mesh.points.size(); ++i) mesh.points[i].x += 0.003 * static_cast<double>(i);
     return mesh;
 }
 
-std::string problem(std::string_view bytes) {
+std::string tet_problem(std::string_view bytes) {
     const Result<TetMesh> mesh = parse_tet_mesh(bytes, "a");
     return mesh ? "" : mesh.error().message;
 }
@@ -79,7 +79,7 @@ anything
 }  // namespace
 
 TEST_CASE("every format is read back as written: linear and quadratic, text and binary") {
-    for (const TetMesh& mesh : {two_tets(), curved_tets()}) {
+    for (const TetMesh& mesh : {difficult_tets(), curved_tets()}) {
         for (const Encoding encoding : {Encoding::binary, Encoding::text}) {
             check_same(parse_tet_mesh(vtk_bytes(mesh, encoding), "a"), mesh);
             check_same(parse_tet_mesh(msh_bytes(mesh, encoding), "a"), mesh);
@@ -187,15 +187,17 @@ TEST_CASE("Abaqus: sections, then sets of element cards, then the smallest set g
 }
 
 TEST_CASE("Abaqus: errors name the line") {
-    CHECK(problem(replaced(deck, "20, 2, 3, 4, 9", "20, 2, 3, 4, 5")).find("a:16: element 20 names node 5") == 0);
-    CHECK(problem(replaced(deck, "20, 2, 3, 4, 9", "20, 2, 3, 4")).find("a:16: an element of 4 nodes has 3") == 0);
-    CHECK(problem(replaced(deck, "3, 4\n*ELEMENT", "*ELEMENT")).find("a:14: the nodes of an element are missing") == 0);
-    CHECK(problem(replaced(deck, "1.D0", "nan")).find("a:8: \"nan\" is not a finite number") == 0);
-    CHECK(problem(replaced(deck, "9, 1., 1., 1.", "4, 1., 1., 1.")).find("a:9: node 4 comes twice") == 0);
-    CHECK(problem(replaced(deck, "*MATERIAL, NAME=M", "*INCLUDE, INPUT=b.inp")).find("*INCLUDE") != std::string::npos);
-    CHECK(problem(replaced(deck, "10, 20, 10", "10, 20, 0")).find("GENERATE") != std::string::npos);
-    CHECK(problem("*HEADING\n").find("holds no tetrahedra") != std::string::npos);
-    CHECK(problem(deck.substr(0, deck.find("3, 4\n*ELEM"))).find("ends in the middle") != std::string::npos);
+    CHECK(tet_problem(replaced(deck, "20, 2, 3, 4, 9", "20, 2, 3, 4, 5")).find("a:16: element 20 names node 5") == 0);
+    CHECK(tet_problem(replaced(deck, "20, 2, 3, 4, 9", "20, 2, 3, 4")).find("a:16: an element of 4 nodes has 3") == 0);
+    CHECK(tet_problem(replaced(deck, "3, 4\n*ELEMENT", "*ELEMENT")).find("a:14: the nodes of an element are missing") ==
+          0);
+    CHECK(tet_problem(replaced(deck, "1.D0", "nan")).find("a:8: \"nan\" is not a finite number") == 0);
+    CHECK(tet_problem(replaced(deck, "9, 1., 1., 1.", "4, 1., 1., 1.")).find("a:9: node 4 comes twice") == 0);
+    CHECK(tet_problem(replaced(deck, "*MATERIAL, NAME=M", "*INCLUDE, INPUT=b.inp")).find("*INCLUDE") !=
+          std::string::npos);
+    CHECK(tet_problem(replaced(deck, "10, 20, 10", "10, 20, 0")).find("GENERATE") != std::string::npos);
+    CHECK(tet_problem("*HEADING\n").find("holds no tetrahedra") != std::string::npos);
+    CHECK(tet_problem(deck.substr(0, deck.find("3, 4\n*ELEM"))).find("ends in the middle") != std::string::npos);
 }
 
 TEST_CASE("Medit: unknown keywords are ignored; P2 and references are read") {
@@ -205,12 +207,13 @@ TEST_CASE("Medit: unknown keywords are ignored; P2 and references are read") {
     const Result<TetMesh> mesh = parse_medit(text, "a.mesh");
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(mesh->region_names == std::vector<std::string>{"12"});
-    CHECK(problem(replaced(text, "1 2 3 4 12", "1 2 3 5 12")).find("a:15: a tetrahedron names node 5") == 0);
-    CHECK(problem(replaced(text, "Tetrahedra\n1", "Tetrahedra\n99999999")).find("a:14: 99999999 are announced") == 0);
-    CHECK(problem(replaced(text, "0 0 1 0", "0 0 inf 0")).find("a:10: \"inf\"") == 0);
-    CHECK(problem(replaced(text, "Dimension\n3", "Dimension\n2")).find("dimension 2") != std::string::npos);
-    CHECK(problem(replaced(text, "1 2 3 4 12", "1 2 3 4 12\n1 2 3 4 12")).find("a:16: there is more") == 0);
-    CHECK(problem("MeshVersionFormatted 1\nDimension 3\n").find("holds no tetrahedra") != std::string::npos);
+    CHECK(tet_problem(replaced(text, "1 2 3 4 12", "1 2 3 5 12")).find("a:15: a tetrahedron names node 5") == 0);
+    CHECK(tet_problem(replaced(text, "Tetrahedra\n1", "Tetrahedra\n99999999")).find("a:14: 99999999 are announced") ==
+          0);
+    CHECK(tet_problem(replaced(text, "0 0 1 0", "0 0 inf 0")).find("a:10: \"inf\"") == 0);
+    CHECK(tet_problem(replaced(text, "Dimension\n3", "Dimension\n2")).find("dimension 2") != std::string::npos);
+    CHECK(tet_problem(replaced(text, "1 2 3 4 12", "1 2 3 4 12\n1 2 3 4 12")).find("a:16: there is more") == 0);
+    CHECK(tet_problem("MeshVersionFormatted 1\nDimension 3\n").find("holds no tetrahedra") != std::string::npos);
 }
 
 TEST_CASE("GiD: several blocks, materials and block names are read") {
@@ -223,10 +226,10 @@ TEST_CASE("GiD: several blocks, materials and block names are read") {
     const Result<TetMesh> mesh = parse_gid(text, "a.gid");
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(mesh->region_names == std::vector<std::string>{"left part", "31"});
-    CHECK(problem(replaced(text, "1 1 2 3 4", "1 1 2 3 8")).find("a:10: a tetrahedron names node 8") == 0);
-    CHECK(problem(replaced(text, "Nnode 4", "Nnode 5")).find("a:2: tetrahedra of 5 nodes") == 0);
-    CHECK(problem(replaced(text, " 3 0 1 0", " 3 0 one 0")).find("a:5: \"one\"") == 0);
-    CHECK(problem(text.substr(0, text.find("End Coordinates"))).find("file ends") != std::string::npos);
+    CHECK(tet_problem(replaced(text, "1 1 2 3 4", "1 1 2 3 8")).find("a:10: a tetrahedron names node 8") == 0);
+    CHECK(tet_problem(replaced(text, "Nnode 4", "Nnode 5")).find("a:2: tetrahedra of 5 nodes") == 0);
+    CHECK(tet_problem(replaced(text, " 3 0 1 0", " 3 0 one 0")).find("a:5: \"one\"") == 0);
+    CHECK(tet_problem(text.substr(0, text.find("End Coordinates"))).find("file ends") != std::string::npos);
 }
 
 TEST_CASE("binary .msh: both byte orders are read; wrong counts and cut files are refused") {
@@ -235,12 +238,12 @@ TEST_CASE("binary .msh: both byte orders are read; wrong counts and cut files ar
     std::string lying = bytes;
     const std::size_t nodes = lying.find("$Nodes\n") + 7;
     lying[nodes + 32 + 12 + 6] = 0x7f;  // the count of the first block, above 2^54
-    CHECK(problem(lying).find("are announced, more than the file can hold") != std::string::npos);
+    CHECK(tet_problem(lying).find("are announced, more than the file can hold") != std::string::npos);
     std::string order = bytes;
     order[order.find(" 8\n") + 3] = 2;
-    CHECK(problem(order).find("in either byte order") != std::string::npos);
+    CHECK(tet_problem(order).find("in either byte order") != std::string::npos);
     std::string nan = bytes;
     const std::size_t first_x = nodes + 32 + 12 + 8 + 8 * curved_tets().points.size();
     std::fill_n(nan.begin() + static_cast<std::ptrdiff_t>(first_x), 8, '\xff');
-    CHECK(problem(nan).find("not finite") != std::string::npos);
+    CHECK(tet_problem(nan).find("not finite") != std::string::npos);
 }

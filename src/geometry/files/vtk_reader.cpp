@@ -14,13 +14,11 @@
 #include "geometry/files/tet_collector.hpp"
 #include "geometry/files/tet_file.hpp"
 #include "geometry/files/tet_writer.hpp"
+#include "geometry/files/vtk_cells.hpp"
 #include "geometry/files/vtk_stream.hpp"
 
 namespace pliant::mesh {
 namespace {
-
-constexpr int vtk_tetra = 10;
-constexpr int vtk_quadratic_tetra = 24;
 
 /// Reads the sections of a legacy VTK file in order.
 class VtkReader {

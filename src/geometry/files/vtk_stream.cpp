@@ -3,24 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <map>
 
 #include "base/core/byte_order.hpp"
+#include "geometry/files/number_type.hpp"
 
 namespace pliant::mesh {
 namespace {
 
-/// A number type, by its name in a file. Width 0: unknown.
-struct NumberType {
-    std::size_t width = 0;
-    bool floating = false;
-    bool is_signed = true;
-};
-NumberType number_type(const std::string& name) {
+/// By its name in a file. Width 0: unknown.
+NumberType vtk_number_type(const std::string& name) {
     static const std::map<std::string, NumberType> types = {
         {"float", {4, true}},
         {"double", {8, true}},
@@ -42,7 +37,7 @@ NumberType number_type(const std::string& name) {
 }
 
 /// The first `width` bytes, big-endian.
-std::uint64_t bits(std::string_view bytes, std::size_t width) {
+std::uint64_t big_endian_bits(std::string_view bytes, std::size_t width) {
     if (width == 8) {
         std::uint64_t value = 0;
         std::memcpy(&value, bytes.data(), 8);
@@ -56,15 +51,6 @@ std::uint64_t bits(std::string_view bytes, std::size_t width) {
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < width; ++i) value = value << 8U | static_cast<unsigned char>(bytes[i]);
     return value;
-}
-
-double decode(const NumberType& type, std::string_view bytes) {
-    const std::uint64_t value = bits(bytes, type.width);
-    if (type.floating && type.width == 4) return std::bit_cast<float>(static_cast<std::uint32_t>(value));
-    if (type.floating) return std::bit_cast<double>(value);
-    if (!type.is_signed) return static_cast<double>(value);
-    const std::uint64_t sign = std::uint64_t{1} << (8 * type.width - 1);
-    return static_cast<double>(static_cast<std::int64_t>((value ^ sign) - sign));
 }
 
 }  // namespace
@@ -97,7 +83,7 @@ Status VtkStream::read_count(std::size_t& count) {
 }
 
 Result<std::vector<double>> VtkStream::read_numbers(std::size_t count, const std::string& type_name) {
-    const NumberType type = number_type(type_name);
+    const NumberType type = vtk_number_type(type_name);
     const std::size_t width = type.width;
     if (width == 0) return error(fmt::format("unknown data type \"{}\"", type_name.substr(0, 40)));
     if (binary_ && at_ < bytes_.size() && bytes_[at_] == '\r') ++at_;
@@ -108,7 +94,7 @@ Result<std::vector<double>> VtkStream::read_numbers(std::size_t count, const std
         if (count > left / width) return error(fmt::format("{} values are announced, the file ends before", count));
         numbers.reserve(count);
         for (std::size_t i = 0; i < count; ++i, at_ += width)
-            numbers.push_back(decode(type, bytes_.substr(at_, width)));
+            numbers.push_back(number_of_bits(type, big_endian_bits(bytes_.substr(at_, width), width)));
         return numbers;
     }
     if (count > left / 2 + 1) return error(fmt::format("{} values are announced, the file ends before", count));

@@ -6,6 +6,7 @@
 
 #include "base/core/byte_order.hpp"
 #include "geometry/files/tet_writer.hpp"
+#include "geometry/files/vtk_cells.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -49,9 +50,9 @@ std::string head(const TetMesh& mesh, Encoding encoding) {
 }
 
 /// Appends numbers as text, `per_line` on a line, or as big-endian bytes.
-class Numbers {
+class NumberWriter {
 public:
-    Numbers(std::string& out, Encoding encoding) : out_(out), encoding_(encoding) {}
+    NumberWriter(std::string& out, Encoding encoding) : out_(out), encoding_(encoding) {}
 
     void integer(int value, char separator) {
         if (encoding_ == Encoding::text)
@@ -88,7 +89,7 @@ std::string vtk_bytes(const TetMesh& mesh, Encoding encoding) {
     const std::size_t tets = mesh.tet_count();
     const auto width = static_cast<std::size_t>(mesh.nodes_per_tet());
     text.reserve(text.size() + 24 * mesh.points.size() + (4 * width + 12) * tets + 1000);
-    Numbers numbers(text, encoding);
+    NumberWriter numbers(text, encoding);
     text += fmt::format("POINTS {} double\n", mesh.points.size());
     for (const Vec3& p : mesh.points) {
         numbers.real(p.x, ' ');
@@ -103,7 +104,7 @@ std::string vtk_bytes(const TetMesh& mesh, Encoding encoding) {
     }
     numbers.end_of_array();
     text += fmt::format("CELL_TYPES {}\n", tets);
-    for (std::size_t t = 0; t < tets; ++t) numbers.integer(mesh.order == 2 ? 24 : 10, '\n');
+    for (std::size_t t = 0; t < tets; ++t) numbers.integer(mesh.order == 2 ? vtk_quadratic_tetra : vtk_tetra, '\n');
     numbers.end_of_array();
     text += fmt::format("CELL_DATA {}\nSCALARS region int 1\nLOOKUP_TABLE default\n", tets);
     for (const int region : mesh.region) numbers.integer(region, '\n');

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -131,15 +130,6 @@ std::optional<std::string> decompressed(const VtuSource& source, const VtuEncodi
     return out;
 }
 
-double decode(std::string_view bytes, const VtuNumberType& type, bool big_endian) {
-    const std::uint64_t value = bits(bytes, big_endian);
-    if (type.floating && type.width == 4) return std::bit_cast<float>(static_cast<std::uint32_t>(value));
-    if (type.floating) return std::bit_cast<double>(value);
-    if (!type.is_signed) return static_cast<double>(value);
-    const std::uint64_t sign = std::uint64_t{1} << (8 * type.width - 1);
-    return static_cast<double>(static_cast<std::int64_t>((value ^ sign) - sign));
-}
-
 /// Numbers [begin, end) of a native type.
 template <class T>
 void copy_numbers(std::string_view bytes, std::size_t begin, std::size_t end, std::vector<double>& numbers) {
@@ -151,7 +141,7 @@ void copy_numbers(std::string_view bytes, std::size_t begin, std::size_t end, st
 }
 
 /// Common types are copied, any other is assembled from its bytes.
-void decode(std::string_view bytes, const VtuNumberType& type, bool big_endian, std::size_t begin, std::size_t end,
+void decode(std::string_view bytes, const NumberType& type, bool big_endian, std::size_t begin, std::size_t end,
             std::vector<double>& numbers) {
     if (!big_endian && type.floating && type.width == 8) return copy_numbers<double>(bytes, begin, end, numbers);
     if (!big_endian && type.floating) return copy_numbers<float>(bytes, begin, end, numbers);
@@ -159,25 +149,25 @@ void decode(std::string_view bytes, const VtuNumberType& type, bool big_endian, 
     if (!big_endian && type.is_signed && type.width == 4) return copy_numbers<std::int32_t>(bytes, begin, end, numbers);
     if (!type.is_signed && type.width == 1) return copy_numbers<std::uint8_t>(bytes, begin, end, numbers);
     for (std::size_t i = begin; i < end; ++i)
-        numbers[i] = decode(bytes.substr(i * type.width, type.width), type, big_endian);
+        numbers[i] = number_of_bits(type, bits(bytes.substr(i * type.width, type.width), big_endian));
 }
 
 }  // namespace
 
-std::optional<VtuNumberType> vtu_number_type(std::string_view name) {
-    if (name == "Float32") return VtuNumberType{4, true, true};
-    if (name == "Float64") return VtuNumberType{8, true, true};
-    if (name == "String") return VtuNumberType{1, false, false};
+std::optional<NumberType> vtu_number_type(std::string_view name) {
+    if (name == "Float32") return NumberType{4, true, true};
+    if (name == "Float64") return NumberType{8, true, true};
+    if (name == "String") return NumberType{1, false, false};
     const bool is_signed = !name.starts_with("U");
     if (!is_signed) name.remove_prefix(1);
-    if (name == "Int8") return VtuNumberType{1, false, is_signed};
-    if (name == "Int16") return VtuNumberType{2, false, is_signed};
-    if (name == "Int32") return VtuNumberType{4, false, is_signed};
-    if (name == "Int64") return VtuNumberType{8, false, is_signed};
+    if (name == "Int8") return NumberType{1, false, is_signed};
+    if (name == "Int16") return NumberType{2, false, is_signed};
+    if (name == "Int32") return NumberType{4, false, is_signed};
+    if (name == "Int64") return NumberType{8, false, is_signed};
     return std::nullopt;
 }
 
-std::optional<std::vector<double>> vtu_numbers(const VtuSource& source, const VtuNumberType& type,
+std::optional<std::vector<double>> vtu_numbers(const VtuSource& source, const NumberType& type,
                                                const VtuEncoding& encoding) {
     const auto bytes = encoding.compressed ? decompressed(source, encoding) : plain(source, encoding);
     if (!bytes) return std::nullopt;

@@ -7,16 +7,12 @@
 #include <string_view>
 #include <vector>
 
+#include "geometry/files/number_type.hpp"
+
 namespace pliant::mesh {
 
-struct VtuNumberType {
-    std::size_t width = 0;  ///< bytes
-    bool floating = false;
-    bool is_signed = false;
-};
-
 /// From the value of the attribute "type", such as "Float64"; nothing if unknown.
-[[nodiscard]] std::optional<VtuNumberType> vtu_number_type(std::string_view name);
+[[nodiscard]] std::optional<NumberType> vtu_number_type(std::string_view name);
 
 /// Settings shared by all arrays of a file.
 struct VtuEncoding {
@@ -33,7 +29,7 @@ struct VtuSource {
 
 /// All numbers of an array, decoded on all cores. Nothing if the data are damaged or truncated. Memory is bounded by
 /// what the actual bytes can hold.
-[[nodiscard]] std::optional<std::vector<double>> vtu_numbers(const VtuSource& source, const VtuNumberType& type,
+[[nodiscard]] std::optional<std::vector<double>> vtu_numbers(const VtuSource& source, const NumberType& type,
                                                              const VtuEncoding& encoding);
 
 }  // namespace pliant::mesh

@@ -8,14 +8,12 @@
 
 #include "geometry/files/tet_collector.hpp"
 #include "geometry/files/tet_file.hpp"
+#include "geometry/files/vtk_cells.hpp"
 #include "geometry/files/vtu_arrays.hpp"
 #include "geometry/files/vtu_skeleton.hpp"
 
 namespace pliant::mesh {
 namespace {
-
-constexpr int vtk_tetra = 10;
-constexpr int vtk_quadratic_tetra = 24;
 
 using Numbers = std::vector<double>;
 

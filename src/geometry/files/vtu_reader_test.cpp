@@ -17,11 +17,11 @@ using pliant::test::replaced;
 
 namespace {
 
-TetMesh two_tets() {
+TetMesh tets_with_markup() {
     return mesh::test::two_tets("soft foam", "grip & <tip>");
 }
 
-std::string problem(std::string_view text) {
+std::string vtu_problem(std::string_view text) {
     const Result<TetMesh> mesh = parse_vtu(text, "a.vtu");
     return mesh ? "" : mesh.error().message;
 }
@@ -41,7 +41,7 @@ std::string bytes_of(const std::vector<Number>& values, bool big_endian) {
 
 /// A 32-bit byte count, then the bytes.
 template <class Number>
-std::string block(const std::vector<Number>& values, bool big_endian) {
+std::string counted_bytes(const std::vector<Number>& values, bool big_endian) {
     const std::string bytes = bytes_of(values, big_endian);
     return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(bytes.size())}, big_endian) + bytes;
 }
@@ -57,10 +57,11 @@ std::string file(bool big_endian, const Array& array, const std::string& appende
     return std::string("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" byte_order=\"") +
            (big_endian ? "BigEndian" : "LittleEndian") +
            "\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"5\" NumberOfCells=\"2\">\n<Points>\n" +
-           array("Float32", "Points", block(points, big_endian)) + "</Points>\n<Cells>\n" +
-           array("Int64", "connectivity", block(connectivity, big_endian)) +
-           array("Int64", "offsets", block(offsets, big_endian)) + array("UInt8", "types", block(types, big_endian)) +
-           "</Cells>\n</Piece>\n</UnstructuredGrid>\n" + appended + "</VTKFile>\n";
+           array("Float32", "Points", counted_bytes(points, big_endian)) + "</Points>\n<Cells>\n" +
+           array("Int64", "connectivity", counted_bytes(connectivity, big_endian)) +
+           array("Int64", "offsets", counted_bytes(offsets, big_endian)) +
+           array("UInt8", "types", counted_bytes(types, big_endian)) + "</Cells>\n</Piece>\n</UnstructuredGrid>\n" +
+           appended + "</VTKFile>\n";
 }
 
 std::string inline_base64(const std::string& type, const std::string& name, const std::string& bytes) {
@@ -79,7 +80,7 @@ const std::string text_file =
 }  // namespace
 
 TEST_CASE("compressed files are read back as written, with region names") {
-    for (const TetMesh& mesh : {two_tets(), to_quadratic(two_tets())}) {
+    for (const TetMesh& mesh : {tets_with_markup(), to_quadratic(tets_with_markup())}) {
         VtuData data;
         data.cells.push_back({"region", 1, std::vector<std::int32_t>(mesh.region.begin(), mesh.region.end())});
         data.region_names = mesh.region_names;
@@ -143,33 +144,37 @@ TEST_CASE("text arrays and several pieces are read") {
 }
 
 TEST_CASE("damaged files give a reason, and stated sizes are not trusted") {
-    CHECK(problem("<VTKFile type=\"UnstructuredGrid\">\n<oops></VTKFile>").find("a.vtu:2: is not well-formed") == 0);
-    CHECK(problem("<VTKFile type=\"PolyData\"><PolyData/></VTKFile>").find("only VTKFile type=\"UnstructuredGrid\"") !=
+    CHECK(vtu_problem("<VTKFile type=\"UnstructuredGrid\">\n<oops></VTKFile>").find("a.vtu:2: is not well-formed") ==
+          0);
+    CHECK(vtu_problem("<VTKFile type=\"PolyData\"><PolyData/></VTKFile>")
+              .find("only VTKFile type=\"UnstructuredGrid\"") != std::string::npos);
+    CHECK(vtu_problem(replaced(text_file, "0 1 2 3<", "0 1 2 9<")).find("names point 9, there are 4") !=
           std::string::npos);
-    CHECK(problem(replaced(text_file, "0 1 2 3<", "0 1 2 9<")).find("names point 9, there are 4") != std::string::npos);
-    CHECK(problem(replaced(text_file, "0 1 2 3<", "0 1 2 2<")).find("point 2 twice") != std::string::npos);
-    CHECK(problem(replaced(text_file, "0 1 2 3<", "0 1 2 x<")).find("a.vtu:5: \"x\" is not a number") == 0);
-    CHECK(problem(replaced(text_file, "0 0 0 1 0", "nan 0 0 1 0")).find("point 0 is not finite") != std::string::npos);
-    CHECK(problem(replaced(text_file, ">4<", ">400<")).find("offsets of the cells do not fit") != std::string::npos);
-    CHECK(problem(replaced(text_file, ">4<", ">3<")).find("has 3 nodes") != std::string::npos);
-    CHECK(problem(replaced(text_file, ">10<", ">12<")).find("holds no tetrahedra") != std::string::npos);
-    CHECK(problem(replaced(text_file, "connectivity", "connections")).find("Cells connectivity is missing") !=
+    CHECK(vtu_problem(replaced(text_file, "0 1 2 3<", "0 1 2 2<")).find("point 2 twice") != std::string::npos);
+    CHECK(vtu_problem(replaced(text_file, "0 1 2 3<", "0 1 2 x<")).find("a.vtu:5: \"x\" is not a number") == 0);
+    CHECK(vtu_problem(replaced(text_file, "0 0 0 1 0", "nan 0 0 1 0")).find("point 0 is not finite") !=
           std::string::npos);
-    CHECK(problem(replaced(text_file, "Int32", "Int24")).find("unknown type \"Int24\"") != std::string::npos);
-    CHECK(problem("<VTKFile compressor=\"vtkLZ4DataCompressor\"><UnstructuredGrid/></VTKFile>").find("LZ4") !=
+    CHECK(vtu_problem(replaced(text_file, ">4<", ">400<")).find("offsets of the cells do not fit") !=
+          std::string::npos);
+    CHECK(vtu_problem(replaced(text_file, ">4<", ">3<")).find("has 3 nodes") != std::string::npos);
+    CHECK(vtu_problem(replaced(text_file, ">10<", ">12<")).find("holds no tetrahedra") != std::string::npos);
+    CHECK(vtu_problem(replaced(text_file, "connectivity", "connections")).find("Cells connectivity is missing") !=
+          std::string::npos);
+    CHECK(vtu_problem(replaced(text_file, "Int32", "Int24")).find("unknown type \"Int24\"") != std::string::npos);
+    CHECK(vtu_problem("<VTKFile compressor=\"vtkLZ4DataCompressor\"><UnstructuredGrid/></VTKFile>").find("LZ4") !=
           std::string::npos);
     const std::string claims = bytes_of<std::uint32_t>({0xffffffffu, 0xffffffffu, 0, 8}, false);
     const std::string packed =
         replaced(file(false, inline_base64), "byte_order", "compressor=\"vtkZLibDataCompressor\" byte_order");
-    CHECK(problem(packed).find("damaged") != std::string::npos);
+    CHECK(vtu_problem(packed).find("damaged") != std::string::npos);
     for (const std::string& header : {claims, bytes_of<std::uint32_t>({1, 0xffffffffu, 0, 4, 0}, false)}) {
-        const std::string good = base64(block(points, false));
-        CHECK(problem(replaced(packed, good, base64(header))).find("damaged or cut off") != std::string::npos);
+        const std::string good = base64(counted_bytes(points, false));
+        CHECK(vtu_problem(replaced(packed, good, base64(header))).find("damaged or cut off") != std::string::npos);
     }
 }
 
 TEST_CASE("arrays of many blocks, and errors after them name their line") {
-    TetMesh many = two_tets();
+    TetMesh many = tets_with_markup();
     const TetMesh two = many;
     for (int copy = 1; copy < 30000; ++copy) {
         const auto first = static_cast<int>(many.points.size());
@@ -188,17 +193,18 @@ TEST_CASE("arrays of many blocks, and errors after them name their line") {
     const auto line_of = [&](std::string_view word) {
         return std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<long>(text.find(word)), '\n'));
     };
-    CHECK(problem(replaced(text, "</CellData>", "</Oops>")).find("a.vtu:" + line_of("</CellData>") + ": is not") == 0);
+    CHECK(vtu_problem(replaced(text, "</CellData>", "</Oops>")).find("a.vtu:" + line_of("</CellData>") + ": is not") ==
+          0);
     const std::string types = "type=\"UInt8\" Name=\"types\"";
-    CHECK(problem(replaced(text, types, "type=\"UInt9\" Name=\"types\"")).find("a.vtu:" + line_of(types)) == 0);
+    CHECK(vtu_problem(replaced(text, types, "type=\"UInt9\" Name=\"types\"")).find("a.vtu:" + line_of(types)) == 0);
     // A byte of a block in the middle of the connectivity.
     std::string damaged = text;
     damaged[text.find("Name=\"connectivity\"") + 40000] ^= 1;
-    CHECK(problem(damaged).find("damaged or cut off") != std::string::npos);
+    CHECK(vtu_problem(damaged).find("damaged or cut off") != std::string::npos);
 }
 
 TEST_CASE("no truncated file crashes the reader") {
-    const TetMesh mesh = two_tets();
+    const TetMesh mesh = tets_with_markup();
     const std::string whole = *vtu_text(mesh, mesh.points, {});
     for (std::size_t length = 0; length < whole.size() - 12; ++length)
         CHECK_FALSE(parse_vtu(whole.substr(0, length), "a"));

@@ -10,6 +10,7 @@
 
 #include "base/core/base64.hpp"
 #include "base/core/files.hpp"
+#include "geometry/files/vtk_cells.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -18,8 +19,6 @@ static_assert(std::endian::native == std::endian::little, "the files are declare
 
 constexpr std::size_t block_bytes = std::size_t{1} << 18;
 constexpr int compression_level = 1;
-constexpr std::uint8_t vtk_tetra = 10;
-constexpr std::uint8_t vtk_quadratic_tetra = 24;
 
 template <class T>
 std::string_view as_bytes(const std::vector<T>& values) {

@@ -10,19 +10,19 @@ using namespace pliant::mesh;
 
 namespace {
 
-TetMesh two_tets() {
+TetMesh two_quadratic_tets() {
     return to_quadratic(mesh::test::two_tets());
 }
 
 }  // namespace
 
 TEST_CASE("a straight tet has a constant Jacobian") {
-    const TetMesh mesh = two_tets();
+    const TetMesh mesh = two_quadratic_tets();
     for (std::size_t t = 0; t < 2; ++t) CHECK(worst_scaled_jacobian(mesh, t) == near(1, {.relative = 1e-12}));
 }
 
 TEST_CASE("the Jacobian of a tet with one moved mid-edge node") {
-    TetMesh mesh = two_tets();
+    TetMesh mesh = two_quadratic_tets();
     // Node 4 of tet 0 is the middle of its edge 0-1 along x. With x = b1 + 4 d b0 b1 the determinant is dx/db1 =
     // 1 + 4 d (b0 - b1) where b0 = 1 - b1: between 1 - 4 d and 1 + 4 d.
     mesh.points[mesh.nodes[4]].x += 0.1;
@@ -33,7 +33,7 @@ TEST_CASE("the Jacobian of a tet with one moved mid-edge node") {
 }
 
 TEST_CASE("only folded tets are straightened") {
-    TetMesh mesh = two_tets();
+    TetMesh mesh = two_quadratic_tets();
     const int folded = mesh.nodes[4];
     const int curved = mesh.nodes[10 + 7];  // on edge 0-3 of the second tet, away from the first
     mesh.points[folded].x += 0.4;

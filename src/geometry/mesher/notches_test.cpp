@@ -32,7 +32,7 @@ std::vector<double> volumes(const Solid& body, const std::vector<Vec3>& path) {
 }
 
 const Solid bar = box({0, 0, 0}, {40, 20, 15});
-const std::vector<Vec3> path = {{-5, 10, 13}, {40, 10, 13}};
+const std::vector<Vec3> cable = {{-5, 10, 13}, {40, 10, 13}};
 
 }  // namespace
 
@@ -45,22 +45,22 @@ TEST_CASE("a V, box, half-round or skewed notch is filled up to its mouth and en
         REQUIRE(found.size() == 1);
         return found[0];
     };
-    CHECK(only(volumes(without(bar, v), path)) == near(0.5 * 10 * 10 * 20, {.relative = 1e-12}));
-    CHECK(only(volumes(without(bar, u), path)) == near(4 * 10 * 20, {.relative = 1e-12}));
-    CHECK(only(volumes(without(bar, round), path)) == near(0.5 * std::numbers::pi * 36 * 20, {.relative = 1e-12}));
+    CHECK(only(volumes(without(bar, v), cable)) == near(0.5 * 10 * 10 * 20, {.relative = 1e-12}));
+    CHECK(only(volumes(without(bar, u), cable)) == near(4 * 10 * 20, {.relative = 1e-12}));
+    CHECK(only(volumes(without(bar, round), cable)) == near(0.5 * std::numbers::pi * 36 * 20, {.relative = 1e-12}));
     const double top = (22.0 + 10) - (20 - 10.0 / 11);
-    CHECK(only(volumes(without(bar, skewed), path)) == near(0.5 * (2 + top) * 10 * 20, {.relative = 1e-12}));
+    CHECK(only(volumes(without(bar, skewed), cable)) == near(0.5 * (2 + top) * 10 * 20, {.relative = 1e-12}));
 }
 
 TEST_CASE("a bore for the cable through the notches' flanks stays empty, and every notch is found once") {
     const Solid notch = solid(PrismSolid{{{10, 5}, {12, 15.1}, {8, 15.1}}, {0, 2, 1}, -1, 21});
     const Solid notches = solid(RepeatedSolid{notch, 3, {10, 0, 0}});
     const Solid bore = solid(CylinderSolid{{-1, 10, 13}, {41, 10, 13}, 0.5});
-    const auto plain = volumes(without(bar, notches), path);
+    const auto plain = volumes(without(bar, notches), cable);
     REQUIRE(plain.size() == 3);
     for (const double volume : plain) CHECK(volume == near(0.5 * 2 * (2.0 * 10 / 10.1) * 10 * 20, {.relative = 1e-12}));
     // Inside its bore the cable does not leave material: the flanks, and so the notches, are not found.
-    CHECK(volumes(without(without(bar, notches), bore), path).empty());
+    CHECK(volumes(without(without(bar, notches), bore), cable).empty());
     const std::vector<Vec3> beside = {{-5, 4, 13}, {45, 4, 13}};
     const auto bored = volumes(without(without(bar, notches), bore), beside);
     REQUIRE(bored.size() == 3);

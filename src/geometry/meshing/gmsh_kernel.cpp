@@ -342,9 +342,8 @@ void set_size(double size) {
     gmsh::option::set_number("Mesh.MeshSizeExtendFromBoundary", 1);
 }
 
-/// A tet with a smaller dihedral angle is a sliver, which makes a simulation stiff and slow.
-constexpr double sliver_deg = 5;
-constexpr double wanted_deg = 1.4 * sliver_deg;
+/// Tets with smaller dihedral angles are improved after Gmsh.
+constexpr double improved_below_deg = 1.4 * sliver_deg;
 
 /// Slivers are due to chance: a slightly smaller size gives other points, and usually no slivers. `attempt(factor)`
 /// meshes with sizes times `factor`; `best` is its result for 1.
@@ -389,7 +388,7 @@ Result<TetMesh> generate(const std::map<int, int>& body_of_volume, int order) {
     return mesh;
 }
 
-double surface_area(const Entities& volumes) {
+double boundary_area(const Entities& volumes) {
     double sum = 0;
     for (const auto& [dimension, tag] : gmsh::model::get_boundary(volumes, false)) sum += occ::get_mass(dimension, tag);
     return sum;
@@ -540,7 +539,7 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
         occ::synchronize();
         Entities joined;
         for (const auto& [tag, solid] : solid_of_volume) joined.emplace_back(3, tag);
-        if (Status status = check_tet_count(volume, surface_area(joined), size); !status)
+        if (Status status = check_tet_count(volume, boundary_area(joined), size); !status)
             return tl::unexpected(status.error());
         set_size(size);
         gmsh::option::set_number("Mesh.MeshSizeFromCurvature", 8 * refinement);
@@ -550,7 +549,7 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
             follow_size(size_at, solids_of_entities(solid_of_volume), size);
         }
         Result<TetMesh> mesh = generate(solid_of_volume, order);
-        if (mesh) improve_drawn_tets(*mesh, wanted_deg);
+        if (mesh) improve_drawn_tets(*mesh, improved_below_deg);
         if (mesh && order == 2) straighten_folded_tets(*mesh, least_jacobian);
         if (mesh) mesh->notes.insert(mesh->notes.begin(), notes.begin(), notes.end());
         return mesh;
@@ -616,7 +615,7 @@ Result<TetMesh> try_mesh_surface(const TriMesh& surface, double size, double ang
             mesh->notes.push_back(fmt::format(
                 "the surface keeps the triangles that it was drawn with, whatever the mesh size ({})", reason));
     }
-    if (mesh) improve_tets(*mesh, {.wanted_deg = wanted_deg, .feature_deg = angle_deg});
+    if (mesh) improve_tets(*mesh, {.wanted_deg = improved_below_deg, .feature_deg = angle_deg});
     if (mesh || mesh.error().message.find("PLC Error") == std::string::npos) return mesh;
     return input_error("the surface cuts through itself; repair it in the program that drew it ({})",
                        mesh.error().message);
@@ -727,7 +726,7 @@ Result<TriMesh> tessellate(const Solid& solid, double tolerance) {
         TriMesh surface = collect_surface(volumes);
         const double exact = mass(volumes);
         const double found = signed_volume(surface);
-        if (std::fabs(found - exact) > 4 * deviation * surface_area(volumes) + 1e-6 * exact)
+        if (std::fabs(found - exact) > 4 * deviation * boundary_area(volumes) + 1e-6 * exact)
             return failure("the surface encloses {:.6g} where the solid has {:.6g}", found, exact);
         return surface;
     });

@@ -26,6 +26,9 @@ struct NamedSolid {
     return tl::unexpected(std::move(error));
 }
 
+/// A tet with a smaller dihedral angle is a sliver, which makes a simulation stiff and slow.
+inline constexpr double sliver_deg = 5;
+
 /// Target edge length in solid i at a point; empty: the mesh size everywhere.
 using SizeAt = std::function<double(std::size_t, const Vec3&)>;
 

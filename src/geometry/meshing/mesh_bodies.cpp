@@ -9,6 +9,7 @@
 #include "geometry/meshing/gmsh_kernel.hpp"
 #include "geometry/meshing/size_field.hpp"
 #include "geometry/meshing/touching_bodies.hpp"
+#include "geometry/meshing/triangle_corners.hpp"
 #include "geometry/meshing/walls.hpp"
 #include "geometry/meshing/winding_mesher.hpp"
 #include "geometry/repair/narrow_gaps.hpp"
@@ -110,17 +111,6 @@ Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshS
     return Part{std::move(*mesh)};
 }
 
-double surface_area(const TriMesh& surface) {
-    double sum = 0;
-    for (const auto& [a, b, c] : surface.triangles) {
-        const Vec3& p = surface.points[static_cast<std::size_t>(a)];
-        sum += norm(cross(surface.points[static_cast<std::size_t>(b)] - p,
-                          surface.points[static_cast<std::size_t>(c)] - p)) /
-               2;
-    }
-    return sum;
-}
-
 /// A body whose surface is closed and simple: one mesh per solid piece.
 Result<std::vector<TetMesh>> mesh_pieces(const TriMesh& surface, const MeshSettings& settings, const SizeAt& size_at) {
     if (Status status = check_closed(surface); !status) return tl::unexpected(status.error());
@@ -145,9 +135,6 @@ Result<std::vector<TetMesh>> mesh_pieces(const TriMesh& surface, const MeshSetti
     }
     return meshes;
 }
-
-/// A tet with a smaller dihedral angle is a sliver, which makes a simulation stiff and slow.
-constexpr double sliver_deg = 5;
 
 /// If Gmsh had to keep the drawn triangles, and they are too slender: uses a mesh from the winding number instead, if
 /// that is better.

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "geometry/mesh/triangle_tree.hpp"
+#include "geometry/meshing/triangle_corners.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -50,14 +51,6 @@ std::vector<Crossing> crossings(const TriangleTree& tree, const std::vector<Vec3
     return found;
 }
 
-using Corners = std::array<Vec3, 3>;
-
-Corners corners(const TriMesh& surface, std::size_t t) {
-    const auto& [a, b, c] = surface.triangles[t];
-    const auto at = [&](int n) { return surface.points[static_cast<std::size_t>(n)]; };
-    return {at(a), at(b), at(c)};
-}
-
 Vec3 area_normal(const Corners& t) {
     return 0.5 * cross(t[1] - t[0], t[2] - t[0]);
 }
@@ -87,13 +80,13 @@ EdgeTriangles triangles_of_edges(const TriMesh& surface) {
 }
 
 /// A face of the surface: its position, and its projected size along the path.
-struct Face {
+struct NotchFace {
     std::vector<Vec3> points;
     double seen_area = 0;
 };
 
 /// The face connected to the triangle at `p` whose triangles look along `direction`.
-Face face_at(const TriMesh& surface, const EdgeTriangles& edges, const Vec3& p, const Vec3& direction) {
+NotchFace face_at(const TriMesh& surface, const EdgeTriangles& edges, const Vec3& p, const Vec3& direction) {
     constexpr double looks_along = 0.1;  // cosine; a face that the path only grazes is not a flank
     const auto facing = [&](std::size_t t) {
         const Vec3 n = area_normal(corners(surface, t));
@@ -109,7 +102,7 @@ Face face_at(const TriMesh& surface, const EdgeTriangles& edges, const Vec3& p, 
             seed = t;
         }
     }
-    Face face;
+    NotchFace face;
     if (seed == surface.triangles.size()) return face;
     std::vector<bool> seen(surface.triangles.size(), false);
     std::vector<std::size_t> open = {seed};
@@ -231,8 +224,8 @@ std::optional<Notch> notch_at(const TriangleTree& tree, const EdgeTriangles& edg
     const TriMesh& surface = tree.surface();
     const Vec3 along = crossing.to - crossing.from;
     const double width = norm(along);
-    const Face left = face_at(surface, edges, crossing.from, along / width);
-    const Face entered = face_at(surface, edges, crossing.to, -1 * along / width);
+    const NotchFace left = face_at(surface, edges, crossing.from, along / width);
+    const NotchFace entered = face_at(surface, edges, crossing.to, -1 * along / width);
     if (left.points.empty() || entered.points.empty()) return std::nullopt;
     std::vector<Vec3> points = left.points;
     points.insert(points.end(), entered.points.begin(), entered.points.end());
@@ -244,7 +237,7 @@ std::optional<Notch> notch_at(const TriangleTree& tree, const EdgeTriangles& edg
     if (planes.empty()) return std::nullopt;
     for (Plane& plane : planes) plane.material = material_behind(tree, plane, away);
     planes = without_chords(std::move(planes));
-    const Face& smaller = left.seen_area < entered.seen_area ? left : entered;
+    const NotchFace& smaller = left.seen_area < entered.seen_area ? left : entered;
     if (std::max(left.seen_area, entered.seen_area) > 1.5 * smaller.seen_area) {
         const std::vector<Plane> sides = prism_sides(smaller.points, along / width, size);
         planes.insert(planes.end(), sides.begin(), sides.end());

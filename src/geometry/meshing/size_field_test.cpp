@@ -5,15 +5,13 @@
 #include <cmath>
 
 #include "base/core/near.hpp"
+#include "geometry/mesh/test_shapes.hpp"
 
 using namespace pliant;
 using namespace pliant::mesh;
+using pliant::mesh::test::box;
 
 namespace {
-
-Solid box(const Vec3& low, const Vec3& high) {
-    return std::make_shared<const SolidNode>(SolidNode{BoxSolid{low, high}});
-}
 
 TetMesh mesh_of(const std::vector<BodyGeometry>& bodies, const MeshSettings& settings) {
     Progress silent;

@@ -12,7 +12,7 @@ using namespace pliant::mesh;
 
 namespace {
 
-TetMesh mesh_of(std::vector<Vec3> points, const std::vector<std::array<int, 4>>& tets) {
+TetMesh mesh_of_tets(std::vector<Vec3> points, const std::vector<std::array<int, 4>>& tets) {
     TetMesh mesh;
     mesh.points = std::move(points);
     for (auto n : tets) {
@@ -59,7 +59,7 @@ TetMesh shaken_block(double by) {
             }
         }
     }
-    return mesh_of(std::move(points), tets);
+    return mesh_of_tets(std::move(points), tets);
 }
 
 }  // namespace
@@ -108,13 +108,14 @@ TEST_CASE("an interface between two regions stays flat") {
 
 TEST_CASE("a flat tet on a flat face is removed") {
     // A tall tet over a square, its base split so that a sliver lies below one half.
-    TetMesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0.8}}, {{0, 1, 2, 4}, {0, 2, 3, 4}});
+    TetMesh mesh =
+        mesh_of_tets({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0.8}}, {{0, 1, 2, 4}, {0, 2, 3, 4}});
     const TetMesh good = mesh;
     improve_tets(mesh, {});
     CHECK(mesh.nodes == good.nodes);  // nothing to do
     // The same pyramid with both diagonals of its square: four nodes coplanar up to 1e-7.
     mesh.points[3].z = -1e-7;
-    mesh = mesh_of(mesh.points, {{0, 1, 3, 4}, {1, 2, 3, 4}, {0, 1, 2, 3}});
+    mesh = mesh_of_tets(mesh.points, {{0, 1, 3, 4}, {1, 2, 3, 4}, {0, 1, 2, 3}});
     REQUIRE(smallest_dihedral_deg(mesh) < 1e-3);
     improve_tets(mesh, {});
     CHECK(mesh.tet_count() == 2);

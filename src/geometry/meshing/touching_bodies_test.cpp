@@ -26,7 +26,7 @@ TriMesh fine(const Solid& solid, double tolerance) {
     return *surface;
 }
 
-TetMesh mesh_of(const std::vector<BodyGeometry>& bodies, double size, int order = 1) {
+TetMesh sliver_free_mesh(const std::vector<BodyGeometry>& bodies, double size, int order = 1) {
     Progress silent;
     Result<TetMesh> mesh = mesh_bodies(bodies, {.size = size, .order = order}, silent);
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
@@ -49,7 +49,7 @@ double outer_area(const TetMesh& mesh) {
 TEST_CASE("a ball in a matching hole, triangulated differently, gives one mesh with its block") {
     const Solid ball = solid(SphereSolid{{10, 10, 10}, 6});
     const Solid block = without(box({0, 0, 0}, {20, 20, 20}), ball);
-    const TetMesh mesh = mesh_of({{"block", fine(block, 0.03)}, {"ball", fine(ball, 0.01), false, 1.5}}, 3);
+    const TetMesh mesh = sliver_free_mesh({{"block", fine(block, 0.03)}, {"ball", fine(ball, 0.01), false, 1.5}}, 3);
     CHECK(mesh.region_names == std::vector<std::string>{"block", "ball"});
     CHECK(volume(mesh, 0) == near(8000 - 288 * pi, {.relative = 0.01}));
     CHECK(volume(mesh, 1) == near(288 * pi, {.relative = 0.03}));  // chords of 1.5 around a radius of 6
@@ -58,7 +58,7 @@ TEST_CASE("a ball in a matching hole, triangulated differently, gives one mesh w
     CHECK(mesh.notes[0].starts_with("bodies that touch were meshed together from their winding numbers"));
     CHECK(mesh.notes[0].find("body \"ball\" ") != std::string::npos);
     // The ball's own mesh size is used.
-    const TetMesh coarse = mesh_of({{"block", fine(block, 0.03)}, {"ball", fine(ball, 0.01)}}, 3);
+    const TetMesh coarse = sliver_free_mesh({{"block", fine(block, 0.03)}, {"ball", fine(ball, 0.01)}}, 3);
     const auto tets = [](const TetMesh& m) { return std::count(m.region.begin(), m.region.end(), 1); };
     CHECK(tets(mesh) > 3 * tets(coarse));
 }
@@ -67,17 +67,17 @@ TEST_CASE("an overlap of a drawn solid and a surface goes to the later one; sepa
     const TriMesh ball = fine(solid(SphereSolid{{7, 5, 5}, 4}), 0.005);
     const double cap = pi * (12 - 1) / 3;
     const BodyGeometry drawn{"drawn", box({10, 0, 0}, {20, 10, 10})};
-    const TetMesh drawn_last = mesh_of({{"ball", ball}, drawn}, 2);
+    const TetMesh drawn_last = sliver_free_mesh({{"ball", ball}, drawn}, 2);
     CHECK(volume(drawn_last, 0) == near(256 * pi / 3 - cap, {.relative = 0.05}));  // chords of 2 around 4
     CHECK(volume(drawn_last, 1) == near(1000, {.relative = 0.01}));
-    const TetMesh ball_last = mesh_of({drawn, {"ball", ball}}, 2, 2);
+    const TetMesh ball_last = sliver_free_mesh({drawn, {"ball", ball}}, 2, 2);
     CHECK(volume(ball_last, 0) == near(1000 - cap, {.relative = 0.01}));
     CHECK(ball_last.order == 2);
     const double whole = 600 + 64 * pi;
     const double covered = 2 * (7 * pi);  // the circle of intersection
     CHECK(outer_area(drawn_last) == near(whole - covered - 8 * pi + 7 * pi, {.relative = 0.03}));
 
-    const TetMesh apart = mesh_of({drawn, {"ball", fine(solid(SphereSolid{{5, 5, 5}, 4}), 0.005)}}, 2);
+    const TetMesh apart = sliver_free_mesh({drawn, {"ball", fine(solid(SphereSolid{{5, 5, 5}, 4}), 0.005)}}, 2);
     CHECK(apart.notes.empty());
     CHECK(outer_area(apart) == near(whole, {.relative = 0.02}));
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/meshing/triangle_corners.hpp"
 #include "geometry/repair/surface_seams.hpp"
 
 namespace pliant::mesh {
@@ -16,23 +17,6 @@ constexpr double most_work = 5e7;
 constexpr std::size_t crowd = 48;
 /// Border edges per triangle: with more, the caps cost as much as the surface.
 constexpr double longest_border = 0.25;
-
-using Corners = std::array<Vec3, 3>;
-
-Corners corners(const TriMesh& surface, int triangle) {
-    const auto& [a, b, c] = surface.triangles[static_cast<std::size_t>(triangle)];
-    const auto& p = surface.points;
-    return {p[static_cast<std::size_t>(a)], p[static_cast<std::size_t>(b)], p[static_cast<std::size_t>(c)]};
-}
-
-double area(const TriMesh& surface) {
-    double sum = 0;
-    for (int i = 0; i < static_cast<int>(surface.triangles.size()); ++i) {
-        const Corners t = corners(surface, i);
-        sum += norm(cross(t[1] - t[0], t[2] - t[0])) / 2;
-    }
-    return sum;
-}
 
 Box3 box_of(const Corners& t) {
     Box3 box;
@@ -57,7 +41,7 @@ Side side(double value, double rounding) {
 
 /// Change of the winding number from `a` to `b` due to one triangle; nothing if rounding could decide the crossing. Two
 /// triangles decide consistently at their common edge.
-std::optional<int> growth(const Corners& t, const Vec3& a, const Vec3& b) {
+std::optional<int> winding_change(const Corners& t, const Vec3& a, const Vec3& b) {
     constexpr double rounding = 1e-13;
     const Vec3 way = b - a;
     const std::array<Vec3, 3> u{t[0] - a, t[1] - a, t[2] - a};
@@ -141,7 +125,7 @@ void WindingGrid::choose_cells() {
     constexpr double least = 32;
     const Vec3 size = box_.size();
     const double longest = std::max({size.x, size.y, size.z});
-    const double triangle = std::sqrt(area(closed_) / static_cast<double>(closed_.triangles.size()));
+    const double triangle = std::sqrt(surface_area(closed_) / static_cast<double>(closed_.triangles.size()));
     double wanted = std::min(triangle, longest / least);
     while (true) {
         double cells = 1;
@@ -157,7 +141,7 @@ void WindingGrid::choose_cells() {
 
 double WindingGrid::work() const {
     double sum = 0;
-    for (int i = 0; i < static_cast<int>(closed_.triangles.size()); ++i) {
+    for (std::size_t i = 0; i < closed_.triangles.size(); ++i) {
         const auto [low, high] = places_of(box_of(corners(closed_, i)));
         double cells = 1;
         for (std::size_t k = 0; k < 3; ++k) cells *= high[k] - low[k] + 1;
@@ -174,7 +158,7 @@ void WindingGrid::list_triangles() {
     const double rounding = 1e-12 * (norm(box_.low) + norm(box_.high));
     const Vec3 margin = 1e-9 * side_ + Vec3{rounding, rounding, rounding};
     const auto for_each_pair = [&](const auto& take) {
-        for (int i = 0; i < static_cast<int>(closed_.triangles.size()); ++i) {
+        for (std::size_t i = 0; i < closed_.triangles.size(); ++i) {
             const Corners t = corners(closed_, i);
             const Box3 around = box_of(t);
             const auto [low, high] = places_of({around.low - margin, around.high + margin});
@@ -183,7 +167,8 @@ void WindingGrid::list_triangles() {
                 for (at[1] = low[1]; at[1] <= high[1]; ++at[1]) {
                     for (at[0] = low[0]; at[0] <= high[0]; ++at[0]) {
                         const Box3 cell = cell_box(at);
-                        if (plane_meets(t, {cell.low - margin, cell.high + margin})) take(index(at), i);
+                        if (plane_meets(t, {cell.low - margin, cell.high + margin}))
+                            take(index(at), static_cast<int>(i));
                     }
                 }
             }
@@ -226,7 +211,7 @@ void WindingGrid::find_references() {
 std::optional<int> WindingGrid::change(std::size_t cell, const Vec3& a, const Vec3& b) const {
     int sum = 0;
     for (const int triangle : triangles(cell)) {
-        const std::optional<int> more = growth(corners(closed_, triangle), a, b);
+        const std::optional<int> more = winding_change(corners(closed_, static_cast<std::size_t>(triangle)), a, b);
         if (!more) return std::nullopt;
         sum += *more;
     }

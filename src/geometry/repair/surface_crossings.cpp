@@ -12,7 +12,7 @@
 namespace pliant::mesh {
 namespace {
 
-constexpr double rounding = 1e-7;  // of a height or of an edge: smaller distances count as touching
+constexpr double touching_share = 1e-7;  // of a height or of an edge: smaller distances count as touching
 
 struct Corners {
     std::array<Vec3, 3> p;
@@ -27,7 +27,7 @@ bool has_node(const Corners& t, int node) {
 /// True if the edge a-b meets a triangle.
 bool passes(const Vec3& a, const Vec3& b, const std::array<Vec3, 3>& t) {
     const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
-    const double reach = rounding * norm(n) * std::max({norm(b - a), norm(t[1] - t[0]), norm(t[2] - t[0])});
+    const double reach = touching_share * norm(n) * std::max({norm(b - a), norm(t[1] - t[0]), norm(t[2] - t[0])});
     const double da = dot(n, a - t[0]);
     const double db = dot(n, b - t[0]);
     if ((da > reach && db > reach) || (da < -reach && db < -reach)) return false;
@@ -36,7 +36,7 @@ bool passes(const Vec3& a, const Vec3& b, const std::array<Vec3, 3>& t) {
     const double twice = dot(n, n);
     for (std::size_t k = 0; k < 3; ++k) {
         const double share = dot(n, cross(t[(k + 1) % 3] - t[k], p - t[k])) / twice;
-        if (share < -rounding) return false;
+        if (share < -touching_share) return false;
     }
     return true;
 }
@@ -65,7 +65,7 @@ bool overlap(const Corners& one, const Corners& other) {
     const Vec3 n = normal(one);
     const double size = norm(one.box.size()) + norm(other.box.size());
     for (const Vec3& p : other.p) {
-        if (std::fabs(dot(n, p - one.p[0])) > rounding * size) return false;
+        if (std::fabs(dot(n, p - one.p[0])) > touching_share * size) return false;
     }
     for (const Corners* t : {&one, &other}) {
         for (std::size_t k = 0; k < 3; ++k) {

@@ -14,7 +14,7 @@
 namespace pliant::mesh {
 namespace {
 
-constexpr std::size_t most_shells = 10000;
+constexpr std::size_t most_nested_shells = 10000;
 
 struct Neighbour {
     int triangle = -1;  ///< -1: the edge does not have exactly two triangles
@@ -62,7 +62,7 @@ Neighbours neighbours_of(const TriMesh& surface) {
     return neighbours;
 }
 
-struct Shell {
+struct NestedShell {
     std::vector<std::size_t> triangles;
     bool closed = true;  ///< and of two sides
     double volume = 0;
@@ -72,9 +72,9 @@ struct Shell {
 };
 
 /// Orients the shell of a triangle consistently: the smaller part by area is flipped. `side` becomes 1 or -1.
-Shell walk(TriMesh& surface, const Neighbours& neighbours, std::size_t first, std::vector<std::int8_t>& side,
-           TurnedShells& count) {
-    Shell shell;
+NestedShell walk(TriMesh& surface, const Neighbours& neighbours, std::size_t first, std::vector<std::int8_t>& side,
+                 TurnedShells& count) {
+    NestedShell shell;
     shell.triangles = {first};
     side[first] = 1;
     for (std::size_t i = 0; i < shell.triangles.size(); ++i) {
@@ -110,7 +110,7 @@ Shell walk(TriMesh& surface, const Neighbours& neighbours, std::size_t first, st
     return shell;
 }
 
-void measure(const TriMesh& surface, Shell& shell) {
+void measure(const TriMesh& surface, NestedShell& shell) {
     const auto at = [&](int corner) { return surface.points[static_cast<std::size_t>(corner)]; };
     const Vec3 origin = at(surface.triangles[shell.triangles.front()][0]);
     for (const std::size_t t : shell.triangles) {
@@ -126,7 +126,7 @@ bool lies_in(const Box3& inner, const Box3& outer) {
 
 class Nesting {
 public:
-    Nesting(const TriMesh& surface, std::vector<Shell>& shells) : surface_(surface), shells_(shells) {}
+    Nesting(const TriMesh& surface, std::vector<NestedShell>& shells) : surface_(surface), shells_(shells) {}
 
     /// The number of shells that contain the shell.
     int depth(std::size_t s) {
@@ -147,7 +147,7 @@ public:
 
 private:
     const TriangleTree& tree(std::size_t s) {
-        Shell& shell = shells_[s];
+        NestedShell& shell = shells_[s];
         if (!shell.tree) shell.tree = std::make_unique<TriangleTree>(part_of(surface_, shell.triangles));
         return *shell.tree;
     }
@@ -155,7 +155,7 @@ private:
         return edges_meet(shells_[a], tree(b), shells_[b].box) || edges_meet(shells_[b], tree(a), shells_[a].box);
     }
     /// Whether an edge of a shell meets another one's triangles; touching counts.
-    bool edges_meet(const Shell& shell, const TriangleTree& other, const Box3& box) const {
+    bool edges_meet(const NestedShell& shell, const TriangleTree& other, const Box3& box) const {
         constexpr double touching = 1e-7;  // of the edge
         for (const std::size_t t : shell.triangles) {
             const auto at = [&](std::size_t k) {
@@ -174,11 +174,11 @@ private:
     }
 
     const TriMesh& surface_;
-    std::vector<Shell>& shells_;
+    std::vector<NestedShell>& shells_;
 };
 
 /// Decides from the original shells; none is flipped before all are decided.
-void decide(const TriMesh& surface, std::vector<Shell>& shells, TurnedShells& count) {
+void decide(const TriMesh& surface, std::vector<NestedShell>& shells, TurnedShells& count) {
     Nesting nesting(surface, shells);
     for (std::size_t s = 0; s < shells.size(); ++s) {
         const bool cavity = nesting.depth(s) % 2 == 1;
@@ -195,16 +195,16 @@ TurnedShells orient_by_nesting(TriMesh& surface) {
     TurnedShells count;
     const Neighbours neighbours = neighbours_of(surface);
     std::vector<std::int8_t> side(surface.triangles.size(), 0);
-    std::vector<Shell> shells;
-    for (std::size_t t = 0; t < side.size() && shells.size() < most_shells; ++t) {
+    std::vector<NestedShell> shells;
+    for (std::size_t t = 0; t < side.size() && shells.size() < most_nested_shells; ++t) {
         if (side[t] != 0) continue;
-        Shell shell = walk(surface, neighbours, t, side, count);
+        NestedShell shell = walk(surface, neighbours, t, side, count);
         if (!shell.closed) continue;
         measure(surface, shell);
         shells.push_back(std::move(shell));
     }
     decide(surface, shells, count);
-    for (const Shell& shell : shells) {
+    for (const NestedShell& shell : shells) {
         if (!shell.turn) continue;
         for (const std::size_t t : shell.triangles) std::swap(surface.triangles[t][1], surface.triangles[t][2]);
     }

@@ -14,7 +14,7 @@ namespace pliant::mesh {
 namespace {
 
 /// As a fraction of the surface's size: 32-bit floats have an error of 6e-8, plus that of earlier computations.
-constexpr double rounding = 1e-6;
+constexpr double float_rounding = 1e-6;
 
 std::vector<int> ends_of(const std::vector<BorderEdge>& edges) {
     std::vector<int> points;
@@ -199,7 +199,7 @@ ClosedSeams close_seams(TriMesh& surface, double reach) {
 }
 
 ClosedSeams close_seams(TriMesh& surface) {
-    return close_seams(surface, rounding * bounds(surface).diagonal());
+    return close_seams(surface, float_rounding * bounds(surface).diagonal());
 }
 
 }  // namespace pliant::mesh

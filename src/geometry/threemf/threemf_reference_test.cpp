@@ -24,13 +24,13 @@ fs::path folder() {
     return fs::path(std::getenv("PLIANT_REFERENCE_DATA")) / "3mf";
 }
 
-ThreeMf read(const std::string& file) {
+ThreeMf read_reference(const std::string& file) {
     const auto result = read_3mf(folder() / file);
     REQUIRE_MESSAGE(result.has_value(), file << ": " << (result ? "" : result.error().message));
     return *result;
 }
 
-std::string refused(const std::string& file) {
+std::string refused_reference(const std::string& file) {
     const auto result = read_3mf(folder() / file);
     REQUIRE_MESSAGE(!result.has_value(), file << " was read");
     return result.error().message;
@@ -72,7 +72,7 @@ TEST_CASE("synthetic files have their bodies, materials and volumes") {
                               {"stack4", 4, 4, 3200},
                               {"alternating_bands", 10, 2, 4000},
                               {"checker8", 32, 8, 4000}}) {
-        const ThreeMf file = read(fmt::format("synthetic/{}.3mf", e.file));
+        const ThreeMf file = read_reference(fmt::format("synthetic/{}.3mf", e.file));
         CHECK(file.bodies.size() == e.bodies);
         std::map<std::string, double> volume_of;
         for (const Body& b : file.bodies) volume_of[b.material] += mesh::signed_volume(b.mesh_mm);
@@ -86,30 +86,31 @@ TEST_CASE("synthetic files have their bodies, materials and volumes") {
 }
 
 TEST_CASE("consortium files: core, units, colours and production have their volumes") {
-    CHECK(volume(read("consortium/core_box.3mf")) == near(6000, {.relative = 1e-12}));
-    CHECK(volume(read("consortium/core_sphere.3mf")) == near(4172.803, {.relative = 1e-6}));
-    const ThreeMf cylinders = read("consortium/core_multiple_cylinders.3mf");
+    CHECK(volume(read_reference("consortium/core_box.3mf")) == near(6000, {.relative = 1e-12}));
+    CHECK(volume(read_reference("consortium/core_sphere.3mf")) == near(4172.803, {.relative = 1e-6}));
+    const ThreeMf cylinders = read_reference("consortium/core_multiple_cylinders.3mf");
     CHECK(cylinders.bodies.size() == 6);
     CHECK(cylinders.bodies[0].material == "BaseMaterial");
     CHECK(volume(cylinders) == near(6 * 6198.102, {.relative = 1e-5}));
-    const ThreeMf gears = read("consortium/core_cube_gears.3mf");
+    const ThreeMf gears = read_reference("consortium/core_cube_gears.3mf");
     CHECK(gears.bodies.size() == 17);
     CHECK(volume(gears) == near(112366.3, {.relative = 1e-6}));
-    CHECK(volume(read("consortium/core_heartgears.3mf")) == near(120179.298, {.relative = 1e-6}));
-    const ThreeMf colours = read("consortium/material_rhombicuboctahedron_color.3mf");
+    CHECK(volume(read_reference("consortium/core_heartgears.3mf")) == near(120179.298, {.relative = 1e-6}));
+    const ThreeMf colours = read_reference("consortium/material_rhombicuboctahedron_color.3mf");
     CHECK(colours.bodies.size() == 1);
     CHECK(volume(colours) == near(1089262.183, {.relative = 1e-6}));
     REQUIRE(colours.warnings.size() == 1);
     CHECK(colours.warnings[0].find("do not bound volumes") != std::string::npos);
-    CHECK(volume(read("consortium/material_multiprop-opaque.3mf")) == near(1e6, {.relative = 1e-12}));
+    CHECK(volume(read_reference("consortium/material_multiprop-opaque.3mf")) == near(1e6, {.relative = 1e-12}));
     // Its objects are in other parts of the package.
-    const ThreeMf production = read("consortium/production_cube_gears_prod_req.3mf");
+    const ThreeMf production = read_reference("consortium/production_cube_gears_prod_req.3mf");
     CHECK(production.bodies.size() == 17);
     CHECK(volume(production) == near(112366.3, {.relative = 1e-6}));
 }
 
 TEST_CASE("consortium: slice stacks have the volume of the bodies they were made from") {
-    const ThreeMf box = read("consortium/slices_box_sliced.3mf"), sphere = read("consortium/slices_sphere_sliced.3mf");
+    const ThreeMf box = read_reference("consortium/slices_box_sliced.3mf"),
+                  sphere = read_reference("consortium/slices_sphere_sliced.3mf");
     REQUIRE(box.bodies.size() == 1);
     CHECK(stack_volume(box.bodies[0]) == near(6173.54, {.relative = 1e-5}));
     CHECK(stack_volume(sphere.bodies[0]) == near(4303.07, {.relative = 1e-5}));
@@ -118,8 +119,9 @@ TEST_CASE("consortium: slice stacks have the volume of the bodies they were made
 }
 
 TEST_CASE("objects that must not be built are refused by name") {
-    CHECK(refused("consortium/beam_lattice_pyramid.3mf").find("requires the extension b") != std::string::npos);
-    CHECK(refused("consortium/material_multiprop-metallic.3mf").find(":62: ") != std::string::npos);
+    CHECK(refused_reference("consortium/beam_lattice_pyramid.3mf").find("requires the extension b") !=
+          std::string::npos);
+    CHECK(refused_reference("consortium/material_multiprop-metallic.3mf").find(":62: ") != std::string::npos);
 }
 
 TEST_CASE("conformance: every file that must pass opens, every file that must fail is refused") {
@@ -145,9 +147,9 @@ TEST_CASE("conformance: every file that must pass opens, every file that must fa
 }
 
 TEST_CASE("files of other programs are read") {
-    const ThreeMf pyramids = read("mit_models/pyramids.3mf");
+    const ThreeMf pyramids = read_reference("mit_models/pyramids.3mf");
     CHECK(pyramids.bodies.size() >= 9);
-    const ThreeMf two = read("mit_models/cube_and_sphere_same_name.3mf");
+    const ThreeMf two = read_reference("mit_models/cube_and_sphere_same_name.3mf");
     REQUIRE(two.bodies.size() == 2);
     CHECK(two.bodies[0].material == "Green");
     CHECK(two.bodies[1].material == "#00A0E8");
@@ -163,7 +165,7 @@ TEST_CASE("closed bodies are meshed without a dihedral angle under 5 degrees") {
           "consortium/mustpass/Chapter4.2_Components.3mf", "consortium/material_rhombicuboctahedron_color.3mf",
           "mit_models/pyramids.3mf", "mit_models/cube_and_sphere_same_name.3mf"}) {
         CAPTURE(file);
-        for (const Body& body : read(file).bodies) {
+        for (const Body& body : read_reference(file).bodies) {
             CAPTURE(body.name);
             REQUIRE(mesh::check_closed(body.mesh_mm));
             const Vec3 d = mesh::bounds(body.mesh_mm).size();

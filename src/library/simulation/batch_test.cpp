@@ -15,7 +15,7 @@ using test::bar;
 namespace {
 
 /// Each robot is pulled by another length.
-std::vector<Inputs> pulled(const std::vector<State>& states, double shortening_m) {
+std::vector<Inputs> pulled_each(const std::vector<State>& states, double shortening_m) {
     std::vector<Inputs> inputs;
     for (const State& state : states) {
         inputs.push_back(state.inputs());
@@ -36,7 +36,7 @@ TEST_CASE("a batch gives the bits of its robots solved one after another, on any
         CHECK(batch.threads() == threads);
         std::vector<State> states = batch.rest();
         for (int k = 0; k < 2; ++k)
-            for (const StepResult& result : batch.step(states, pulled(states, 2e-4))) CHECK(result.arrived);
+            for (const StepResult& result : batch.step(states, pulled_each(states, 2e-4))) CHECK(result.arrived);
         ends.push_back(std::move(states));
     }
     for (std::size_t i = 0; i < models.size(); ++i) {
@@ -55,7 +55,7 @@ TEST_CASE("a batch names the robot that cannot be stepped, and changes no state"
     const Model model(bar());
     Batch batch({model, model, model}, {}, 2);
     std::vector<State> states = batch.rest();
-    std::vector<Inputs> inputs = pulled(states, 1e-4);
+    std::vector<Inputs> inputs = pulled_each(states, 1e-4);
     inputs[1].cables.clear();
     const std::vector<State> before = states;
     CHECK_THROWS_WITH_AS(batch.step(states, inputs),
@@ -75,7 +75,7 @@ TEST_CASE("a batch calls its watch on the calling thread only, and can be cancel
     std::atomic<int> elsewhere = 0;
     const auto kind_of = [&](const Watch& watch) {
         try {
-            (void)batch.step(states, pulled(states, 1e-3), watch);
+            (void)batch.step(states, pulled_each(states, 1e-3), watch);
         } catch (const Failure& failure) {
             return failure.kind();
         }
@@ -86,7 +86,7 @@ TEST_CASE("a batch calls its watch on the calling thread only, and can be cancel
               return false;
           }) == Failure::Kind::cancelled);
     CHECK(elsewhere == 0);
-    CHECK_THROWS_AS(batch.step(states, pulled(states, 1e-3),
+    CHECK_THROWS_AS(batch.step(states, pulled_each(states, 1e-3),
                                [](std::string_view, double) -> bool { throw std::runtime_error("enough"); }),
                     std::runtime_error);
 }

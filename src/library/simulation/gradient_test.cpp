@@ -15,9 +15,9 @@ using test::bar;
 
 namespace {
 
-const char* const short_program = "program = { steps = 4, tolerance = 1e-10 }\n";
+const char* const four_steps = "program = { steps = 4, tolerance = 1e-10 }\n";
 
-std::size_t index_of(const std::vector<Parameter>& all, const std::string& name) {
+std::size_t index_with(const std::vector<Parameter>& all, const std::string& name) {
     for (std::size_t k = 0; k < all.size(); ++k)
         if (all[k].name.find(name) != std::string::npos) return k;
     FAIL("there is no parameter " << name);
@@ -35,18 +35,18 @@ Objective at_end() {
 }
 
 double value_with(const std::string& change) {
-    const Robot given = bar(short_program);
-    return gradient(Model(change.empty() ? given : Robot::parse(test::bar_text(short_program), {}, {change})), at_end())
+    const Robot given = bar(four_steps);
+    return gradient(Model(change.empty() ? given : Robot::parse(test::bar_text(four_steps), {}, {change})), at_end())
         .value;
 }
 
 }  // namespace
 
 TEST_CASE("the gradient of a program agrees with finite differences") {
-    const ProgramGradient of = gradient(Model(bar(short_program)), at_end(), {.rest_positions = true, .tets = true});
+    const ProgramGradient of = gradient(Model(bar(four_steps)), at_end(), {.rest_positions = true, .tets = true});
     REQUIRE(of.values.size() == 4);
     CHECK(of.value == near(value_with(""), {.relative = 1e-12}));
-    const std::size_t E = index_of(of.parameters, "youngs_modulus");
+    const std::size_t E = index_with(of.parameters, "youngs_modulus");
     const double by_E =
         (value_with("material.soft.youngs_modulus=1.001MPa") - value_with("material.soft.youngs_modulus=0.999MPa")) /
         2e3;
@@ -57,16 +57,16 @@ TEST_CASE("the gradient of a program agrees with finite differences") {
             for (const double by_tet : one.values) sum += by_tet;
     CHECK(sum == near(of.by_parameters[E], {.relative = 1e-9}));
     REQUIRE(of.instants.size() >= 4);
-    const std::size_t length = index_of(of.inputs, "length");
+    const std::size_t length = index_with(of.inputs, "length");
     const double by_length =
         (value_with("cable.flexor.target.shortening=4.002mm") - value_with("cable.flexor.target.shortening=3.998mm")) /
         -4e-6;
     CHECK(of.instants.back().by_inputs[length] == near(by_length, {.relative = 1e-5}));
-    CHECK(of.by_rest_positions.size() == Model(bar(short_program)).node_count());
+    CHECK(of.by_rest_positions.size() == Model(bar(four_steps)).node_count());
 }
 
 TEST_CASE("a measure at a state has the observed value, and a gradient that agrees with finite differences") {
-    const Model model(bar(short_program));
+    const Model model(bar(four_steps));
     Stepper stepper(model, {.tolerance = 1e-11});
     State state = stepper.rest();
     Inputs inputs = stepper.program(1);
@@ -75,7 +75,7 @@ TEST_CASE("a measure at a state has the observed value, and a gradient that agre
     const Measure tension{Measure::Of::tension, "flexor", {}};
     CHECK(at.value(tension) == near(stepper.observe(state).cables[0].tension_N, {.relative = 1e-12}));
     const std::vector<double> by = at.gradient(tension).inputs;
-    const std::size_t length = index_of(at.inputs(), "length");
+    const std::size_t length = index_with(at.inputs(), "length");
     const auto with = [&](double change) {
         State moved = state;
         Inputs other = inputs;
@@ -185,7 +185,7 @@ TEST_CASE("guide points at a state: cable length held in m, or as a share of its
 }
 
 TEST_CASE("an exception of the objective is passed on, and gradients of the wrong size are refused") {
-    const Model model(bar(short_program));
+    const Model model(bar(four_steps));
     Objective objective = at_end();
     objective.judge = [](int, std::span<const double>) -> Judgement { throw std::out_of_range("mine"); };
     CHECK_THROWS_WITH_AS((void)gradient(model, objective), "mine", std::out_of_range);
@@ -233,7 +233,7 @@ TEST_CASE("parameters of the drawing have derivatives through everything that fo
     CHECK_THROWS_WITH_AS((void)gradient(Model(Robot::parse(text)), at_end(), {.numbers = {"hight"}}),
                          "[parameters] has no number \"hight\"; did you mean \"height\"?", Failure);
     CHECK_THROWS_AS((void)gradient(Model(Robot::parse(text)), at_end(), {.numbers = {"twice"}}), Failure);
-    CHECK_THROWS_WITH_AS((void)gradient(Model(bar(short_program)), at_end(), {.numbers = {"height"}}),
+    CHECK_THROWS_WITH_AS((void)gradient(Model(bar(four_steps)), at_end(), {.numbers = {"height"}}),
                          "the robot file has no [parameters] that are numbers", Failure);
 }
 

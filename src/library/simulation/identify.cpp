@@ -25,7 +25,7 @@ sim::identify::Source source_of(const std::shared_ptr<const Robot::Data>& robot,
             library::value_of(std::move(made))};
 }
 
-std::vector<FitError> shown(const std::vector<sim::identify::Errors>& errors) {
+std::vector<FitError> fit_errors(const std::vector<sim::identify::Errors>& errors) {
     std::vector<FitError> out;
     for (const sim::identify::Errors& one : errors) out.push_back({one.unit, one.values, one.before, one.after});
     return out;
@@ -92,10 +92,10 @@ std::vector<Comparison> Identification::comparisons() const {
 }
 
 std::vector<FitError> Identification::fitted() const {
-    return shown(data_->found.fitted);
+    return fit_errors(data_->found.fitted);
 }
 std::vector<FitError> Identification::judged() const {
-    return shown(data_->found.judged);
+    return fit_errors(data_->found.judged);
 }
 const std::vector<std::string>& Identification::warnings() const {
     return data_->found.warnings;

@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-const char* unit_of(const sim::Goal& goal) {
+const char* unit_of_goal(const sim::Goal& goal) {
     switch (goal.kind) {
         case sim::GoalKind::direction:
             return "rad";
@@ -30,7 +30,7 @@ GoalResult goal_result(const sim::Goal& goal, const sim::inverse::GoalState& sta
     return {goal.name,
             state.reached,
             state.error,
-            unit_of(goal),
+            unit_of_goal(goal),
             library::points_of(goal.at(waypoint)),
             library::points_of(state.got)};
 }

@@ -12,7 +12,7 @@
 namespace pliant::library {
 namespace {
 
-using Kind = sim::Measure::Kind;
+using MeasureKind = sim::Measure::Kind;
 
 template <class List>
 std::vector<std::string> names_in(const List& list) {
@@ -30,7 +30,7 @@ std::vector<std::string> obstacles_of(const sim::Description& d) {
 
 /// Things that a measure may be of.
 struct Choice {
-    Kind kind;
+    MeasureKind kind;
     const char* what;
     std::vector<std::string> names;
 };
@@ -38,34 +38,34 @@ struct Choice {
 Choice choice_of(const sim::Description& d, Measure::Of of) {
     switch (of) {
         case Measure::Of::marker:
-            return {Kind::marker, "marker", names_in(d.markers)};
+            return {MeasureKind::marker, "marker", names_in(d.markers)};
         case Measure::Of::tension:
-            return {Kind::tension, "cable", names_in(d.cables)};
+            return {MeasureKind::tension, "cable", names_in(d.cables)};
         case Measure::Of::length:
-            return {Kind::length, "cable", names_in(d.cables)};
+            return {MeasureKind::length, "cable", names_in(d.cables)};
         case Measure::Of::length_ratio:
-            return {Kind::length_ratio, "cable", names_in(d.cables)};
+            return {MeasureKind::length_ratio, "cable", names_in(d.cables)};
         case Measure::Of::pressure:
-            return {Kind::pressure, "chamber", names_in(d.chambers)};
+            return {MeasureKind::pressure, "chamber", names_in(d.chambers)};
         case Measure::Of::volume:
-            return {Kind::volume, "chamber", names_in(d.chambers)};
+            return {MeasureKind::volume, "chamber", names_in(d.chambers)};
         case Measure::Of::volume_ratio:
-            return {Kind::volume_ratio, "chamber", names_in(d.chambers)};
+            return {MeasureKind::volume_ratio, "chamber", names_in(d.chambers)};
         case Measure::Of::spring_length:
-            return {Kind::spring_length, "spring", names_in(d.springs)};
+            return {MeasureKind::spring_length, "spring", names_in(d.springs)};
         case Measure::Of::spring_force:
-            return {Kind::spring_force, "spring", names_in(d.springs)};
+            return {MeasureKind::spring_force, "spring", names_in(d.springs)};
         case Measure::Of::reaction:
-            return {Kind::reaction, "support", names_in(d.supports)};
+            return {MeasureKind::reaction, "support", names_in(d.supports)};
         case Measure::Of::contact_force:
-            return {Kind::contact_force, "obstacle", obstacles_of(d)};
+            return {MeasureKind::contact_force, "obstacle", obstacles_of(d)};
         case Measure::Of::self_contact:
             break;
     }
-    return {Kind::self_contact, "self-contact", {}};
+    return {MeasureKind::self_contact, "self-contact", {}};
 }
 
-[[noreturn]] void refuse(const Choice& choice, const std::string& name) {
+[[noreturn]] void refuse_name(const Choice& choice, const std::string& name) {
     if (choice.names.empty())
         throw Failure(Failure::Kind::input,
                       fmt::format("there is no {} \"{}\": the robot has none", choice.what, name));
@@ -84,7 +84,7 @@ sim::Measure measure_for(const sim::Model& model, const Measure& asked) {
     const Vec3 direction{asked.direction[0], asked.direction[1], asked.direction[2]};
     if (!is_finite(direction)) throw Failure(Failure::Kind::input, "the direction of a measure is not finite");
     sim::Measure measure{choice.kind, 0, direction, {}, false};
-    if (choice.kind == Kind::self_contact) return measure;
+    if (choice.kind == MeasureKind::self_contact) return measure;
     const auto index_in = [&](const std::vector<std::string>& names) {
         return static_cast<std::size_t>(std::ranges::find(names, asked.name) - names.begin());
     };
@@ -92,7 +92,7 @@ sim::Measure measure_for(const sim::Model& model, const Measure& asked) {
     if (measure.index < choice.names.size()) return measure;
     const std::vector<std::string> loads = names_in(d.pressures);
     measure.index = index_in(loads);
-    if (asked.of != Measure::Of::pressure || measure.index == loads.size()) refuse(choice, asked.name);
+    if (asked.of != Measure::Of::pressure || measure.index == loads.size()) refuse_name(choice, asked.name);
     measure.pressure_load = true;
     return measure;
 }

@@ -77,7 +77,7 @@ ProgramStep program_step(const sim::Step& step) {
             library::points_of(step.positions)};
 }
 
-report::PictureChoice choice_of(const ResultsOptions& options) {
+report::PictureChoice picture_choice(const ResultsOptions& options) {
     const auto set = static_cast<report::PictureSet>(options.pictures);
     report::PictureChoice choice{set, report::usual_size(set)};
     choice.film = options.film;
@@ -180,7 +180,7 @@ std::string ProgramResult::summary_json() const {
 }
 
 bool ProgramResult::write(const std::filesystem::path& folder, const ResultsOptions& options, const Watch& watch) {
-    const report::PictureChoice choice = choice_of(options);
+    const report::PictureChoice choice = picture_choice(options);
     library::WatchedProgress writing(watch);
     Drawing drawing(writing, options.enough_pictures);
     bool stopped = false;

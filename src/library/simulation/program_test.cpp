@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const char* const short_program = "program = { steps = 6 }\n";
+const char* const six_steps = "program = { steps = 6 }\n";
 
 /// A watch that cancels when a step is reached.
 Watch until(int step, const int& reached) {
@@ -27,7 +27,7 @@ Watch until(int step, const int& reached) {
 }  // namespace
 
 TEST_CASE("the steps of a program can be read after its end") {
-    const ProgramResult result = run(Model(bar(short_program)));
+    const ProgramResult result = run(Model(bar(six_steps)));
     CHECK(result.converged());
     CHECK(result.message().empty());
     CHECK(result.solver() == "newton");
@@ -41,7 +41,7 @@ TEST_CASE("the steps of a program can be read after its end") {
 
 TEST_CASE("a cancelled run resumes from its checkpoint to the same steps") {
     const test::Folder folder;
-    const Model model(bar(short_program));
+    const Model model(bar(six_steps));
     const ProgramResult whole = run(model);
     int reached = 0, resumed = -1;
     RunOptions options{.on_step = [&](const ProgramStep& step) { reached = step.index; },
@@ -52,7 +52,7 @@ TEST_CASE("a cancelled run resumes from its checkpoint to the same steps") {
     CHECK(first.step_count() == 4);
     options.resume = true;
     options.on_resume = [&](int step) { resumed = step; };
-    const ProgramResult second = run(Model(bar(short_program)), options);
+    const ProgramResult second = run(Model(bar(six_steps)), options);
     CHECK(resumed == 3);
     REQUIRE(second.converged());
     REQUIRE(second.step_count() == 7);
@@ -67,7 +67,7 @@ TEST_CASE("a cancelled run resumes from its checkpoint to the same steps") {
 
 TEST_CASE("results are written whole, without pictures if they are not wanted, or not at all") {
     const test::Folder folder;
-    ProgramResult result = run(Model(bar(short_program)));
+    ProgramResult result = run(Model(bar(six_steps)));
     CHECK(result.write(folder / "all", {.picture_size_px = {200, 120}}));
     for (const char* file : {"summary.json", "steps.csv", "markers.csv", "robot.glb", "report.html",
                              "pictures/final.png", "frames/frame_0006.vtu"})
@@ -88,7 +88,7 @@ TEST_CASE("results are written whole, without pictures if they are not wanted, o
 
 TEST_CASE("measured markers are read before anything is solved, and compared with the simulated ones") {
     const test::Folder folder;
-    const Model model(bar(short_program));
+    const Model model(bar(six_steps));
     REQUIRE(write_file(folder / "good.csv", "tip_x_mm,tip_y_mm,tip_z_mm\n60,5,5\n60,5,6\n"));
     const ProgramResult result = run(model, {.measured = folder / "good.csv"});
     REQUIRE(result.deviations().size() == 1);

@@ -20,7 +20,7 @@
 namespace pliant {
 namespace {
 
-sim::StepperOptions options_for(const Model::Data& model) {
+sim::StepperOptions options_of_program(const Model::Data& model) {
     sim::StepperOptions options = sim::stepper_options(model.scene.robot.program);
     options.most_past = 1;
     return options;
@@ -35,7 +35,7 @@ std::string origin_of(const Model::Data& model) {
     return model.robot->origin() + "\n" + sim::mesh_digest(model.scene.model.mesh());
 }
 
-void check_options(const ReductionOptions& options) {
+void check_reduction_options(const ReductionOptions& options) {
     constexpr int most_samples = 100000, most_modes = 1000;
     const auto is_share = [](double error) { return error > 0 && error < 1; };
     if (options.samples < 0 || options.samples > most_samples)
@@ -96,12 +96,12 @@ ReducedModel ready(const Model& model, sim::reduced::Reduction reduction, std::v
 }  // namespace
 
 ReducedModel reduce(const Model& model, const ReductionOptions& options, const Watch& watch) {
-    check_options(options);
+    check_reduction_options(options);
     const Model::Data& data = *model.data();
     const sim::InverseTask task = task_for(data);
     library::WatchedProgress progress(watch);
     auto reduction =
-        sim::reduced::reduce(data.scene.model, options_for(data), task,
+        sim::reduced::reduce(data.scene.model, options_of_program(data), task,
                              {options.samples, options.basis_error, options.force_error, options.most_modes}, progress);
     progress.rethrow();
     sim::reduced::Reduction made = library::value_of(std::move(reduction));
@@ -194,7 +194,7 @@ struct ReducedStepper::Work {
     /// Made when it is first asked for: a control loop that does without never pays for it.
     struct Whole {
         explicit Whole(const ReducedModel::Data& data)
-            : stepper(data.model.whole(), options_for(*data.whole.data())), estimator(data.model, stepper) {}
+            : stepper(data.model.whole(), options_of_program(*data.whole.data())), estimator(data.model, stepper) {}
         sim::Stepper stepper;
         sim::reduced::ErrorEstimator estimator;
     };
@@ -259,7 +259,8 @@ std::vector<ReductionCheck> check_reduction(const ReducedModel& model, int count
         throw Failure(Failure::Kind::input, fmt::format("{} checks are not possible; 0 to {} are", count, most));
     const Model::Data& data = *model.data()->whole.data();
     library::WatchedProgress progress(watch);
-    auto rows = sim::reduced::check_reduction(model.data()->model, options_for(data), task_for(data), count, progress);
+    auto rows =
+        sim::reduced::check_reduction(model.data()->model, options_of_program(data), task_for(data), count, progress);
     progress.rethrow();
     std::vector<ReductionCheck> checks;
     for (sim::reduced::CheckedInputs& row : library::value_of(std::move(rows)))

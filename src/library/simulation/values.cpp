@@ -12,16 +12,16 @@ namespace pliant {
 namespace {
 
 using By = Drive::By;
-using Kind = sim::Drive::Kind;
+using DriveKind = sim::Drive::Kind;
 
 /// A chamber's multiplier is minus its pressure.
 Drive drive_of(const sim::Drive& drive, bool cable) {
     switch (drive.kind) {
-        case Kind::measure:
+        case DriveKind::measure:
             return {cable ? By::length : By::volume, drive.value};
-        case Kind::multiplier:
+        case DriveKind::multiplier:
             return {cable ? By::tension : By::pressure, cable ? drive.value : 0 - drive.value};
-        case Kind::gas:
+        case DriveKind::gas:
             break;
     }
     return {By::gas, drive.value};
@@ -38,9 +38,9 @@ sim::Drive drive_for(const Drive& drive, const std::string& name, bool cable) {
     if (positive ? !(drive.value > 0) : cable && !(drive.value >= 0))
         wrong(
             fmt::format("{:g} is not possible: it must {}", drive.value, positive ? "be above 0" : "not be negative"));
-    if (drive.by == By::length || drive.by == By::volume) return {Kind::measure, drive.value};
-    if (drive.by == By::gas) return {Kind::gas, drive.value};
-    return {Kind::multiplier, cable ? drive.value : -drive.value};
+    if (drive.by == By::length || drive.by == By::volume) return {DriveKind::measure, drive.value};
+    if (drive.by == By::gas) return {DriveKind::gas, drive.value};
+    return {DriveKind::multiplier, cable ? drive.value : -drive.value};
 }
 
 }  // namespace

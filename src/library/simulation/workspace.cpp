@@ -62,7 +62,7 @@ private:
     fs::path folder_;
 };
 
-std::optional<KeptPieces> open_checkpoint(const Model::Data& model, const WorkspaceOptions& options) {
+std::optional<KeptPieces> open_pieces(const Model::Data& model, const WorkspaceOptions& options) {
     if (options.checkpoint.empty()) {
         if (options.resume)
             throw Failure(Failure::Kind::input, "a search is to be gone on with, but no checkpoint is named");
@@ -102,7 +102,7 @@ Workspace workspace(const Model& model, const WorkspaceOptions& options, const W
     check_options(options);
     const robot::Scene& scene = model.data()->scene;
     sim::InverseTask task = library::value_of(robot::build_goals(scene.robot, scene.model, false));
-    const std::optional<KeptPieces> kept = open_checkpoint(*model.data(), options);
+    const std::optional<KeptPieces> kept = open_pieces(*model.data(), options);
     library::WatchedProgress progress(watch);
     auto found = sim::inverse::find_workspace(
         scene.model, sim::stepper_options(scene.robot.program), task, {options.side, options.between},

@@ -26,7 +26,7 @@ double number(std::string_view path) {
     return *found;
 }
 
-std::string mistake(std::string_view path) {
+std::string path_mistake(std::string_view path) {
     const auto parsed = JsonPath::parse(path);
     if (!parsed) return parsed.error().message;
     const auto found = parsed->number_in(sample());
@@ -54,21 +54,22 @@ TEST_CASE("true is 1, null is not a number") {
 }
 
 TEST_CASE("a missing path is reported with the keys that exist") {
-    CHECK(mistake("cables.flexr.tension_N") ==
+    CHECK(path_mistake("cables.flexr.tension_N") ==
           "steps[-1].cables has no \"flexr\"; did you mean \"flexor\"?: there is flexor and left one");
-    CHECK(mistake("steps[2].markers") == "steps has no [2]: it is a list of 2, [0] to [1]");
-    CHECK(mistake("markers.tip") == "steps[-1].markers.tip is not a number: it is a list of 3, [0] to [2]");
-    CHECK(mistake("robot") == "robot is not a number: it is a text");
-    CHECK(mistake("nodes.more") == "nodes has no \"more\": there is a single value");
-    CHECK(mistake("tension") == "the result has no \"tension\": there is converged, energy, nodes, robot and steps");
+    CHECK(path_mistake("steps[2].markers") == "steps has no [2]: it is a list of 2, [0] to [1]");
+    CHECK(path_mistake("markers.tip") == "steps[-1].markers.tip is not a number: it is a list of 3, [0] to [2]");
+    CHECK(path_mistake("robot") == "robot is not a number: it is a text");
+    CHECK(path_mistake("nodes.more") == "nodes has no \"more\": there is a single value");
+    CHECK(path_mistake("tension") ==
+          "the result has no \"tension\": there is converged, energy, nodes, robot and steps");
 }
 
 TEST_CASE("an invalid path is reported with the position") {
-    CHECK(mistake("").starts_with("\"\": a key is missing at letter 1"));
-    CHECK(mistake("steps.").starts_with("\"steps.\": a key is missing at letter 7"));
-    CHECK(mistake("steps[x]").starts_with("\"steps[x]\": a whole number and ] are expected at letter 7"));
-    CHECK(mistake("steps[1").starts_with("\"steps[1\": a whole number and ]"));
-    CHECK(mistake("steps[1]x").starts_with("\"steps[1]x\": a dot or [ is expected at letter 9"));
-    CHECK(mistake("a..b").starts_with("\"a..b\": a key is expected at letter 3"));
-    CHECK(mistake(std::string(2000, 'a')).starts_with("a path of 2000 letters"));
+    CHECK(path_mistake("").starts_with("\"\": a key is missing at letter 1"));
+    CHECK(path_mistake("steps.").starts_with("\"steps.\": a key is missing at letter 7"));
+    CHECK(path_mistake("steps[x]").starts_with("\"steps[x]\": a whole number and ] are expected at letter 7"));
+    CHECK(path_mistake("steps[1").starts_with("\"steps[1\": a whole number and ]"));
+    CHECK(path_mistake("steps[1]x").starts_with("\"steps[1]x\": a dot or [ is expected at letter 9"));
+    CHECK(path_mistake("a..b").starts_with("\"a..b\": a key is expected at letter 3"));
+    CHECK(path_mistake(std::string(2000, 'a')).starts_with("a path of 2000 letters"));
 }

@@ -27,7 +27,7 @@ Plan three_rows() {
     return plan;
 }
 
-Collected collected() {
+Collected three_collected() {
     Collected all;
     all.rows = {RowRecord{0, true, false, "", {1.5, 0.1}, 1, 0.5},
                 RowRecord{1, false, false, "step 3: no \"balance\", sorry", {9, 9}, 2, 1},
@@ -41,7 +41,7 @@ Collected collected() {
 }  // namespace
 
 TEST_CASE("results.csv has keys with units, results of finished rows, and reasons of failures") {
-    CHECK(results_csv(three_rows(), collected()) ==
+    CHECK(results_csv(three_rows(), three_collected()) ==
           "row,modulus (MPa),law,tension,\"tip, up\",status,reason\n"
           "0,5,yeoh,1.5,0.1,done,\n"
           "1,10,neo-hookean,,,failed,\"step 3: no \"\"balance\"\", sorry\"\n"
@@ -50,7 +50,8 @@ TEST_CASE("results.csv has keys with units, results of finished rows, and reason
 
 TEST_CASE("the summary counts rows, and adds up the time of each machine") {
     const Plan plan = three_rows();
-    const auto json = nlohmann::json::parse(summary_json(plan, collected(), figures_of(plan, collected()), nullptr));
+    const auto json =
+        nlohmann::json::parse(summary_json(plan, three_collected(), figures_of(plan, three_collected()), nullptr));
     CHECK(json["rows"] == 3);
     CHECK(json["done"] == 2);
     CHECK(json["failed"] == 1);
@@ -78,9 +79,9 @@ TEST_CASE("arrays have the bytes that numpy writes") {
 }
 
 TEST_CASE("all tables are written, and the archive holds every key and result") {
-    const test::Folder folder("outcome");
+    const pliant::test::Folder folder("outcome");
     const Plan plan = three_rows();
-    REQUIRE(write_outcome(plan, folder.path(), collected(), figures_of(plan, collected()), "{}"));
+    REQUIRE(write_outcome(plan, folder.path(), three_collected(), figures_of(plan, three_collected()), "{}"));
     const auto zip = ZipReader::open(folder / "results.npz");
     REQUIRE(zip);
     for (const char* name :

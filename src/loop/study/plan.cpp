@@ -15,7 +15,7 @@ std::string replaced(std::string word, const std::string& what, const std::strin
     return word;
 }
 
-nlohmann::json json_of(const SlurmOptions& slurm) {
+nlohmann::json slurm_json(const SlurmOptions& slurm) {
     return {{"partition", slurm.partition}, {"account", slurm.account}, {"time", slurm.time},
             {"memory", slurm.memory},       {"options", slurm.options}, {"cpus_per_task", slurm.cpus_per_task}};
 }
@@ -126,7 +126,7 @@ std::string plan_json(const Plan& plan) {
                                  {"rows", plan.rows},
                                  {"row_limit_s", plan.row_limit_s},
                                  {"rows_per_chunk", plan.rows_per_chunk},
-                                 {"slurm", json_of(plan.slurm)}};
+                                 {"slurm", slurm_json(plan.slurm)}};
     return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

@@ -33,7 +33,7 @@ std::string chunk_text(const Plan& plan) {
     return records_header(plan, 1) + begun_line(4) + record_line(record(4)) + begun_line(6) + record_line(record(6));
 }
 
-Result<ChunkRecords> parsed(const Plan& plan, std::string_view text) {
+Result<ChunkRecords> read_back(const Plan& plan, std::string_view text) {
     return parse_records(text, "00001.rows", records_header(plan, 1), 4, 8, 2);
 }
 
@@ -43,7 +43,7 @@ TEST_CASE("records are read back bit for bit") {
     const Plan plan = ten_rows();
     RowRecord failed{5, false, true, "no convergence: \"x\"\n at step 3", {NAN, -0.0}, 1, 2};
     const TaskRecord task{"node1 job 7_3", 3, 2.5, 2.25};
-    const auto found = parsed(plan, chunk_text(plan) + record_line(failed) + record_line(task));
+    const auto found = read_back(plan, chunk_text(plan) + record_line(failed) + record_line(task));
     REQUIRE(found);
     REQUIRE(found->rows.size() == 3);
     CHECK(found->rows[0] == record(4));
@@ -62,7 +62,7 @@ TEST_CASE("of a file that is cut off anywhere, the complete lines are read and n
     const std::string text = chunk_text(plan);
     for (std::size_t size = 0; size <= text.size(); ++size) {
         const std::string_view part = std::string_view(text).substr(0, size);
-        const auto found = parsed(plan, part);
+        const auto found = read_back(plan, part);
         REQUIRE(found);
         CHECK(found->damaged == 0);
         const std::size_t last = part.rfind('\n');
@@ -78,7 +78,7 @@ TEST_CASE("any flipped bit of a record is noticed, and only that record is lost"
         for (const int bit : {0, 3, 7}) {
             std::string broken = text;
             broken[at] = static_cast<char>(broken[at] ^ (1 << bit));
-            const auto found = parsed(plan, broken);
+            const auto found = read_back(plan, broken);
             REQUIRE(found);
             for (const RowRecord& row : found->rows) CHECK(row == record(row.row));
             CHECK(found->rows.size() >= 1);
@@ -90,14 +90,14 @@ TEST_CASE("records of another study are refused") {
     const Plan plan = ten_rows();
     Plan other = plan;
     other.fingerprint = "0000000000000001";
-    const auto found = parsed(plan, records_header(other, 1) + record_line(record(4)));
+    const auto found = read_back(plan, records_header(other, 1) + record_line(record(4)));
     REQUIRE_FALSE(found);
     CHECK(found.error().message == "00001.rows: holds records of another study");
 }
 
 TEST_CASE("rows of other chunks and repeated records are not counted") {
     const Plan plan = ten_rows();
-    const auto found = parsed(plan, chunk_text(plan) + record_line(record(9)) + record_line(record(4)));
+    const auto found = read_back(plan, chunk_text(plan) + record_line(record(9)) + record_line(record(4)));
     REQUIRE(found);
     CHECK(found->rows.size() == 2);
     CHECK(found->damaged == 1);
@@ -107,13 +107,13 @@ TEST_CASE("rows of other chunks and repeated records are not counted") {
 TEST_CASE("a row that was begun and did not end is reported, unless it was given up properly") {
     const Plan plan = ten_rows();
     const auto found =
-        parsed(plan, chunk_text(plan) + begun_line(5) + begun_line(5) + begun_line(7) + given_up_line(7));
+        read_back(plan, chunk_text(plan) + begun_line(5) + begun_line(5) + begun_line(7) + given_up_line(7));
     REQUIRE(found);
     CHECK(found->begun == std::vector<std::size_t>{5, 5});
 }
 
 TEST_CASE("a chunk has one writer at a time; the next one continues after the last complete line") {
-    const test::Folder folder("records");
+    const pliant::test::Folder folder("records");
     fs::create_directory(folder / "records");
     const Plan plan = ten_rows();
     {

@@ -63,7 +63,7 @@ void check_squares(const Plan& plan, const Collected& found, std::size_t except 
 
 /// Runs a study in which row 3 fails, and returns the recorded reason.
 std::string reason_of_row_3(Plan plan) {
-    const test::Folder folder("study");
+    const pliant::test::Folder folder("study");
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
     const auto account = run(plan, folder / "s", settings(plan));
     REQUIRE_MESSAGE(account, (account ? "" : account.error().message));
@@ -86,7 +86,7 @@ private:
 }  // namespace
 
 TEST_CASE("rows run in parallel, each once, several in one process") {
-    const test::Folder folder("study");
+    const pliant::test::Folder folder("study");
     const Plan plan = squares("plain", 40);
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
     const auto account = run(plan, folder / "s", settings(plan, 3));
@@ -125,7 +125,7 @@ TEST_CASE("a row that takes too long is ended") {
 }
 
 TEST_CASE("a missing result stops a study at its first row, with the nearest name") {
-    const test::Folder folder("study");
+    const pliant::test::Folder folder("study");
     Plan plan = squares("plain");
     plan.results[0].path = "sqare";
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
@@ -139,7 +139,7 @@ TEST_CASE("a missing result stops a study at its first row, with the nearest nam
 }
 
 TEST_CASE("a program that cannot serve rows is an error at once") {
-    const test::Folder folder("study");
+    const pliant::test::Folder folder("study");
     const Plan plan = squares("plain");
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
     RunSettings how = settings(plan);
@@ -150,14 +150,14 @@ TEST_CASE("a program that cannot serve rows is an error at once") {
 }
 
 TEST_CASE("a cancelled study resumes where it was, and leaves no processes") {
-    const test::Folder folder("study");
+    const pliant::test::Folder folder("study");
     const Plan plan = squares("slow", 60);
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
     StopAfter stop(0.3);
     const auto first = run_rows(plan, folder / "s", settings(plan), stop);
     REQUIRE_FALSE(first);
     CHECK(first.error().cause == Cause::cancelled);
-    CHECK(test::children_of(::getpid(), "pliant_test_row").empty());
+    CHECK(pliant::test::children_of(::getpid(), "pliant_test_row").empty());
     const Collected part = collected(plan, folder / "s");
     CHECK(part.recorded() >= 18);
     CHECK(part.recorded() < 60);
@@ -170,7 +170,7 @@ TEST_CASE("a cancelled study resumes where it was, and leaves no processes") {
 }
 
 TEST_CASE("killed again and again at any time, a study loses and repeats no row") {
-    const test::Folder folder("study");
+    const pliant::test::Folder folder("study");
     const Plan plan = squares("slow", 120);
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
     int kills = 0;
@@ -194,7 +194,7 @@ TEST_CASE("killed again and again at any time, a study loses and repeats no row"
 }
 
 TEST_CASE("several processes share the chunks of one folder; others take over those of a killed one") {
-    const test::Folder folder("study");
+    const pliant::test::Folder folder("study");
     const Plan plan = squares("slow", 60);
     std::vector<pid_t> ranks;
     for (std::size_t rank = 0; rank < 3; ++rank) {
@@ -219,7 +219,7 @@ TEST_CASE("several processes share the chunks of one folder; others take over th
 }
 
 TEST_CASE("a row that ends its whole task several times is recorded as failed") {
-    const test::Folder folder("study");
+    const pliant::test::Folder folder("study");
     const Plan plan = squares("plain");
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
     {
@@ -237,7 +237,7 @@ TEST_CASE("a row that ends its whole task several times is recorded as failed") 
 }
 
 TEST_CASE("a folder with another study or other files is not changed") {
-    const test::Folder folder("study");
+    const pliant::test::Folder folder("study");
     Plan plan = squares("plain");
     REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
     plan.fingerprint = "ffffffffffffffff";

@@ -98,7 +98,7 @@ TEST_CASE("rows per chunk: at most 1000 chunks for an array, hundreds of rows ea
 }
 
 TEST_CASE("a table of rows: its columns are keys of the robot file, or keys of the study by name") {
-    const test::Folder folder("study");
+    const pliant::test::Folder folder("study");
     const auto file = folder / "s.toml";
     const std::string text = head + "plan = \"table\"\ntable = \"designs.csv\"\n" + tension;
     REQUIRE(write_file(folder / "designs.csv", "material.soft.youngs_modulus (MPa),mesh.order\n5,1\n20,2\n"));
@@ -149,7 +149,7 @@ TEST_CASE("a grid that is too big is refused before it is built") {
 }
 
 TEST_CASE("a change of text, table, robot file or version gives another fingerprint") {
-    const test::Folder folder("study");
+    const pliant::test::Folder folder("study");
     const auto file = folder / "s.toml";
     const std::string text = head + "plan = \"grid\"\n" + modulus + tension;
     REQUIRE(write_file(folder / "finger.toml", "name = \"a\"\n"));

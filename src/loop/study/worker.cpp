@@ -98,7 +98,7 @@ FileHandle memory_file(const char* name) {
     return FileHandle(::memfd_create(name, MFD_CLOEXEC));
 }
 
-std::string contents(int file) {
+std::string file_contents(int file) {
     std::string text;
     std::array<char, 65536> piece{};
     off_t at = 0;
@@ -159,8 +159,8 @@ CommandOutcome captured(const std::function<int()>& work) {
         std::fflush(stdout);
         std::fflush(stderr);
     }
-    outcome.output = contents(output.number());
-    outcome.errors = contents(errors.number());
+    outcome.output = file_contents(output.number());
+    outcome.errors = file_contents(errors.number());
     return outcome;
 }
 

@@ -27,7 +27,7 @@ double advance_width(cairo_t* cairo, const std::string& text, const Font& font) 
     return extents.x_advance;
 }
 
-cairo_status_t append(void* out, const unsigned char* data, unsigned int length) {
+cairo_status_t append_png(void* out, const unsigned char* data, unsigned int length) {
     static_cast<std::string*>(out)->append(reinterpret_cast<const char*>(data), length);
     return CAIRO_STATUS_SUCCESS;
 }
@@ -173,7 +173,7 @@ Image Canvas::pixels() const {
 
 Result<std::string> Canvas::png() const {
     std::string bytes;
-    const cairo_status_t code = cairo_surface_write_to_png_stream(state_->surface.get(), &append, &bytes);
+    const cairo_status_t code = cairo_surface_write_to_png_stream(state_->surface.get(), &append_png, &bytes);
     if (code != CAIRO_STATUS_SUCCESS) return failure("picture: {}", cairo_status_to_string(code));
     return bytes;
 }

@@ -21,7 +21,7 @@ struct CloseGif {
     }
 };
 
-int append(GifFileType* file, const GifByteType* bytes, int count) {
+int append_gif(GifFileType* file, const GifByteType* bytes, int count) {
     static_cast<std::string*>(file->UserData)
         ->append(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count));
     return count;
@@ -142,7 +142,7 @@ Result<std::string> animated_gif(std::span<const Image> frames, int frame_ms, in
     if (!palette) return tl::unexpected(palette.error());
     std::string bytes;
     int error = 0;
-    std::unique_ptr<GifFileType, CloseGif> file(EGifOpen(&bytes, append, &error));
+    std::unique_ptr<GifFileType, CloseGif> file(EGifOpen(&bytes, append_gif, &error));
     if (!file) return failure("film: {}", GifErrorString(error));
     EGifSetGifVersion(file.get(), true);
     const std::unique_ptr<ColorMapObject, void (*)(ColorMapObject*)> map(GifMakeMapObject(256, palette->colours()),

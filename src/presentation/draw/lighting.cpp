@@ -12,7 +12,7 @@ constexpr int sky_rays = 128, key_rays = 48;               // on the robot
 constexpr int floor_sky_rays = 512, floor_key_rays = 128;  // on the floor, where steps in the light would be visible
 constexpr double key_radius = 0.16;                        // tangent of the key light's angular radius
 constexpr double ground_radiance = 0.50;                   // light reflected from below, relative to the zenith
-constexpr Vec3 up{0, 0, 1};
+constexpr Vec3 upwards{0, 0, 1};
 constexpr double golden_angle = 2.399963229728653;  // pi (3 - sqrt 5)
 
 /// Sorts rays so that eight consecutive ones have similar directions: they are traced as a packet.
@@ -65,7 +65,7 @@ Lighting::Lighting(const Camera& camera, double reach_m)
       key_(key(key_rays, key_axis_)),
       floor_sky_(sky(floor_sky_rays)),
       floor_key_(key(floor_key_rays, key_axis_)),
-      on_free_floor_{gathered({}, up, floor_sky_, {}), gathered({}, up, floor_key_, {})},
+      on_free_floor_{gathered({}, upwards, floor_sky_, {}), gathered({}, upwards, floor_key_, {})},
       reach_m_(reach_m) {}
 
 /// Sum of radiance times cosine over the unblocked rays; the cosines are relative to `normal`.
@@ -101,8 +101,8 @@ Light Lighting::at(const EmbreeScene& scene, const Vec3& point, const Vec3& norm
 }
 
 Light Lighting::on_floor(const EmbreeScene& scene, const Vec3& point) const {
-    return {gathered(point, up, floor_sky_, Blocking{&scene, reach_m_}) / on_free_floor_.sky,
-            gathered(point, up, floor_key_, Blocking{&scene, 10 * reach_m_}) / on_free_floor_.key};
+    return {gathered(point, upwards, floor_sky_, Blocking{&scene, reach_m_}) / on_free_floor_.sky,
+            gathered(point, upwards, floor_key_, Blocking{&scene, 10 * reach_m_}) / on_free_floor_.key};
 }
 
 Light Lighting::unshadowed(const Vec3& normal) const {

@@ -26,7 +26,7 @@ TEST_CASE("a disc lies on its plane, faces along its normal, and has a disc's ar
 }
 
 TEST_CASE("an obstacle needs a position at every step, and a point for every triangle corner") {
-    const test::Robot robot = test::bent_bar(4, 1);
+    const report::test::Robot robot = report::test::bent_bar(4, 1);
     Simulation s = robot.simulation();
     s.obstacles = {{"floor", disc({}, {0, 0, 1}, 0.1), true, std::vector<Vec3>(4)}};
     CHECK(check(s).error().message == "report: obstacle \"floor\" has 4 places, the result 5 steps");

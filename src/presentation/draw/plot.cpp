@@ -10,8 +10,8 @@ namespace pliant::report {
 namespace {
 
 constexpr Colour white = {1, 1, 1};
-constexpr Colour grid = {0.87, 0.88, 0.90};
-constexpr Colour frame = {0.35, 0.38, 0.42};
+constexpr Colour grid_colour = {0.87, 0.88, 0.90};
+constexpr Colour frame_colour = {0.35, 0.38, 0.42};
 // Position of the axes; the canvas is 1500 by 1000.
 constexpr double left = 140, right = 1460, top = 90, bottom = 880;
 
@@ -52,15 +52,15 @@ std::string label(const Axis& axis, double value) {
 
 void draw_grid(Canvas& canvas, const Axis& x, const Axis& y) {
     for (const double value : x.marks) {
-        canvas.line(std::array{Point2{x.at(value), top}, Point2{x.at(value), bottom}}, 1.5, grid);
+        canvas.line(std::array{Point2{x.at(value), top}, Point2{x.at(value), bottom}}, 1.5, grid_colour);
         canvas.text({x.at(value), bottom + 34}, label(x, value), {.size = 24, .align = Align::centre});
     }
     for (const double value : y.marks) {
-        canvas.line(std::array{Point2{left, y.at(value)}, Point2{right, y.at(value)}}, 1.5, grid);
+        canvas.line(std::array{Point2{left, y.at(value)}, Point2{right, y.at(value)}}, 1.5, grid_colour);
         canvas.text({left - 14, y.at(value) + 8}, label(y, value), {.size = 24, .align = Align::right});
     }
     const std::array corner = {Point2{left, top}, Point2{left, bottom}, Point2{right, bottom}};
-    canvas.line(corner, 2.5, frame);
+    canvas.line(corner, 2.5, frame_colour);
 }
 
 void draw_series(Canvas& canvas, const Plot& plot, std::size_t index, const Axis& x, const Axis& y) {

@@ -11,9 +11,9 @@
 namespace pliant::report {
 namespace {
 
-constexpr int grid = 4;           // samples per pixel and direction, if its neighbours differ from it
-constexpr int floor_cell_px = 4;  // the floor's soft shadow is computed at every fourth pixel
-constexpr int light_cell_px = 4;  // likewise the light on smooth parts of the body
+constexpr int samples_across = 4;  // samples per pixel and direction, if its neighbours differ from it
+constexpr int floor_cell_px = 4;   // the floor's soft shadow is computed at every fourth pixel
+constexpr int light_cell_px = 4;   // likewise the light on smooth parts of the body
 constexpr double light_contrast = 0.05;
 constexpr double colour_contrast = 0.024;  // of neighbours, sRGB: six steps of 255
 constexpr double bend_contrast = 0.97;     // cosine between their normals
@@ -398,14 +398,15 @@ Renderer::Sample Renderer::sample(double x, double y, Shared& shared) const {
 Colour Renderer::sampled_finely(int x, int y) const {
     Shared shared;
     Colour sum;
-    for (int j = 0; j < grid; ++j) {
-        for (int i = 0; i < grid; ++i) {
+    for (int j = 0; j < samples_across; ++j) {
+        for (int i = 0; i < samples_across; ++i) {
             // A rotated lattice: no two samples share a row or column, so near-axis edges get 16 grey levels.
-            const double dx = (i + (j + 0.5) / grid) / grid, dy = (j + (grid - 1 - i + 0.5) / grid) / grid;
+            const double dx = (i + (j + 0.5) / samples_across) / samples_across,
+                         dy = (j + (samples_across - 1 - i + 0.5) / samples_across) / samples_across;
             sum += sample(x + dx, y + dy, shared).colour;
         }
     }
-    return to_srgb((1.0 / (grid * grid)) * sum);
+    return to_srgb((1.0 / (samples_across * samples_across)) * sum);
 }
 
 Renderer::Sample Renderer::at_centre(int x, int y) const {

@@ -29,7 +29,7 @@ double area(const Surface& surface, const Pose& pose, int material) {
 
 TEST_CASE("the outer surface of the bar has the right area per material, whatever the order of the tets") {
     for (const int order : {1, 2}) {
-        const auto robot = test::bent_bar(1, order);
+        const auto robot = report::test::bent_bar(1, order);
         const std::vector<int> materials = {0, 1};
         const Surface surface = outer_surface(robot.mesh, materials);
         const Pose rest = pose(surface, robot.mesh.points);
@@ -39,7 +39,7 @@ TEST_CASE("the outer surface of the bar has the right area per material, whateve
 }
 
 TEST_CASE("a face next to a void belongs to the material's surface; the void has none") {
-    const auto robot = test::bent_bar(1, 1);
+    const auto robot = report::test::bent_bar(1, 1);
     const std::vector<int> materials = {0, -1};
     const Surface surface = outer_surface(robot.mesh, materials);
     const Pose rest = pose(surface, robot.mesh.points);
@@ -49,7 +49,7 @@ TEST_CASE("a face next to a void belongs to the material's surface; the void has
 }
 
 TEST_CASE("normals of a box are those of its faces, also after a rotation") {
-    const auto robot = test::bent_bar(1, 2);
+    const auto robot = report::test::bent_bar(1, 2);
     const std::vector<int> materials = {0, 0};
     const Surface surface = outer_surface(robot.mesh, materials);
     std::vector<Vec3> turned = robot.mesh.points;
@@ -64,7 +64,7 @@ TEST_CASE("normals of a box are those of its faces, also after a rotation") {
 }
 
 TEST_CASE("values of tets are averaged at vertices within their own material only") {
-    const auto robot = test::bent_bar(1, 1);
+    const auto robot = report::test::bent_bar(1, 1);
     const std::vector<int> materials = {0, 1};
     const Surface surface = outer_surface(robot.mesh, materials);
     std::vector<double> values;

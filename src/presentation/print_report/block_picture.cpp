@@ -10,14 +10,14 @@
 #include "presentation/draw/raycast.hpp"
 #include "presentation/print_report/cured_block.hpp"
 #include "presentation/print_report/material_colours.hpp"
+#include "presentation/print_report/picture_colours.hpp"
 
 namespace pliant::report {
 namespace {
 
 using twin::CoarsePart;
 
-constexpr int width_px = 1200, height_px = 540, title_px = 64;
-constexpr Colour paper{1, 1, 1};
+constexpr int block_width_px = 1200, block_height_px = 540, block_title_px = 64;
 constexpr Colour surplus_colour{0.52, 0.04, 0.10}, missing_colour{0.94, 0.36, 0.50};  // different from all materials
 constexpr double seen_through = 0.22;
 
@@ -30,9 +30,9 @@ struct Cells {
 
 using ColourOf = std::function<Colour(int material)>;
 
-class Skin {
+class BlockSkin {
 public:
-    Skin(const CoarsePart& part, const machine::Projector& projector, ColourOf colour)
+    BlockSkin(const CoarsePart& part, const machine::Projector& projector, ColourOf colour)
         : part_(part),
           colour_(std::move(colour)),
           cell_m_(part.cell_px() * projector.pixel_um * 1e-6),
@@ -155,8 +155,8 @@ Camera camera_for(const std::vector<Vec3>& points, double aspect) {
     return fitted(choose_view(points, {}), points, aspect, {0.05, 0.05, 0.06, 0.06});
 }
 
-Result<Image> view_of(const Cells& cells, const Cells* shade, const Camera& camera, double floor_m, int wide,
-                      int high) {
+Result<Image> view_of_cells(const Cells& cells, const Cells* shade, const Camera& camera, double floor_m, int wide,
+                            int high) {
     Scene scene;
     scene.surface = &cells.surface;
     scene.body = cells.place;
@@ -176,20 +176,20 @@ Result<std::string> block_picture(const CuredBlock& block, const job::Manifest& 
                                   const machine::Projector& projector) {
     const std::vector<Colour> colours = material_colours(job);
     const auto material_colour = [&](int material) { return colours[static_cast<std::size_t>(material)]; };
-    const Cells asked = Skin(block.asked, projector, material_colour).made();
+    const Cells asked = BlockSkin(block.asked, projector, material_colour).made();
     if (asked.place.positions.empty()) return input_error("{}: no layer is lit", job.name);
-    const Cells cured = Skin(block.cured, projector, material_colour).made();
-    const Cells off = Skin(block.off, projector, off_colour).made();
+    const Cells cured = BlockSkin(block.cured, projector, material_colour).made();
+    const Cells off = BlockSkin(block.off, projector, off_colour).made();
     std::vector<Vec3> points = asked.place.positions;
     points.insert(points.end(), cured.place.positions.begin(), cured.place.positions.end());
     points.insert(points.end(), off.place.positions.begin(), off.place.positions.end());
 
     const bool differs = !off.place.positions.empty();
     const int columns = differs ? 3 : 2;
-    const int wide = width_px / columns, high = height_px - title_px;
+    const int wide = block_width_px / columns, high = block_height_px - block_title_px;
     const Camera camera = camera_for(points, static_cast<double>(wide) / high);
-    Canvas canvas(width_px, height_px, paper);
-    const double unit = 1000.0 / height_px;  // the canvas is 1000 units high
+    Canvas canvas(block_width_px, block_height_px, paper);
+    const double unit = 1000.0 / block_height_px;  // the canvas is 1000 units high
     const auto title = [&](int column, const std::string& text, const Colour* swatch) {
         const double x = (column * wide + 40) * unit;
         if (swatch != nullptr) canvas.box({x, 40}, 24, 24, *swatch, 4);
@@ -199,10 +199,10 @@ Result<std::string> block_picture(const CuredBlock& block, const job::Manifest& 
     for (int c = 0; c < columns; ++c) {
         const Cells& cells = *bodies[static_cast<std::size_t>(c)];
         if (cells.place.positions.empty() || (c == 0 && !differs)) continue;
-        const Result<Image> image = view_of(cells, c == 2 ? &asked : nullptr, camera, 0, wide, high);
+        const Result<Image> image = view_of_cells(cells, c == 2 ? &asked : nullptr, camera, 0, wide, high);
         if (!image) return tl::unexpected(image.error());
-        canvas.image(*image, c * wide, title_px);
-        if (!differs) canvas.image(*image, 0, title_px);  // the drawing looks the same
+        canvas.image(*image, c * wide, block_title_px);
+        if (!differs) canvas.image(*image, 0, block_title_px);  // the drawing looks the same
     }
     title(0, "as drawn", nullptr);
     title(1, cured.place.positions.empty() ? "nothing has cured" : "as it has cured", nullptr);

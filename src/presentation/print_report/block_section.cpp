@@ -35,7 +35,7 @@ std::string verdict(const twin::Report& r) {
         html_escaped(r.first_deviation));
 }
 
-std::string tiles(const twin::Report& r) {
+std::string block_tiles(const twin::Report& r) {
     std::string out = "<section class=\"tiles\">\n";
     out += html_tile(fmt::format("{}", r.layers),
                      r.missing_layers > 0 ? fmt::format("layers cured, {} missing", r.missing_layers) : "layers cured");
@@ -50,7 +50,7 @@ std::string tiles(const twin::Report& r) {
     return out + "</section>\n";
 }
 
-std::string materials(const twin::Report& r, const job::Manifest& job) {
+std::string materials_of_block(const twin::Report& r, const job::Manifest& job) {
     const std::vector<Colour> colours = material_colours(job);
     std::string out =
         "<div class=\"scroll\"><table><thead><tr><th>material</th><th>drawn</th><th>requested by the "
@@ -113,7 +113,7 @@ std::string block_section(const CuredBlock& block, const job::Manifest& job, con
                "<figure><img alt=\"Drawing and cured block\" src=\"data:image/png;base64,{}\"><figcaption>The "
                "drawing and the block of the virtual printer, platform below{}</figcaption></figure>\n",
                base64(png), block.off.runs().empty() ? "" : "; where they differ in colour, however little it is") +
-           tiles(r) + materials(r, job) + resins(r) + trapped(r) + list("What is wrong", r.reasons) +
+           block_tiles(r) + materials_of_block(r, job) + resins(r) + trapped(r) + list("What is wrong", r.reasons) +
            list("What was accepted", accepted(r)) + list("What broke on the way", r.log.mishaps);
 }
 

@@ -7,15 +7,14 @@
 
 #include "presentation/draw/canvas.hpp"
 #include "presentation/print_report/material_colours.hpp"
+#include "presentation/print_report/picture_colours.hpp"
 #include "printing/slice/run_image.hpp"
 
 namespace pliant::report {
 namespace {
 
-constexpr int width_px = 1600, height_px = 1000;
-constexpr Colour paper{1, 1, 1};
+constexpr int job_width_px = 1600, job_height_px = 1000;
 constexpr Colour dark{0.11, 0.12, 0.15};
-constexpr Colour ink{0.16, 0.18, 0.22};
 constexpr int shown_layers = 4;
 constexpr int sheet_columns = 6, sheet_rows = 4;
 
@@ -168,7 +167,7 @@ namespace {
 /// In rows from the top left, each with its number and height.
 void draw_sheet(Canvas& canvas, const Views& views, const job::Manifest& m) {
     const Extent& e = views.extent;
-    const int cell_w = width_px / sheet_columns, cell_h = height_px / sheet_rows;
+    const int cell_w = job_width_px / sheet_columns, cell_h = job_height_px / sheet_rows;
     const double scale = std::min((cell_w - 24.0) / e.width(), (cell_h - 48.0) / e.height());
     const int w = std::max(1, static_cast<int>(e.width() * scale)),
               h = std::max(1, static_cast<int>(e.height() * scale));
@@ -193,7 +192,7 @@ void draw_sheet(Canvas& canvas, const Views& views, const job::Manifest& m) {
 Result<std::string> layers_picture(const job::Archive& archive) {
     const auto views = look(archive, sheet_columns * sheet_rows);
     if (!views) return tl::unexpected(views.error());
-    Canvas canvas(width_px, height_px, paper);
+    Canvas canvas(job_width_px, job_height_px, paper);
     draw_sheet(canvas, *views, archive.manifest());
     return canvas.png();
 }
@@ -202,7 +201,7 @@ Result<std::string> job_picture(const job::Archive& archive) {
     const auto views = look(archive, shown_layers);
     if (!views) return tl::unexpected(views.error());
     const job::Manifest& m = archive.manifest();
-    Canvas canvas(width_px, height_px, paper);
+    Canvas canvas(job_width_px, job_height_px, paper);
     canvas.text({60, 62}, m.name, {.size = 34, .colour = ink, .bold = true});
     double x = 60;
     for (std::size_t i = 0; i < m.materials.size(); ++i) {

@@ -10,7 +10,7 @@
 namespace pliant::report {
 namespace {
 
-constexpr double left = 54, right = 590, top = 8, bottom = 222;
+constexpr double plot_left = 54, plot_right = 590, plot_top = 8, plot_bottom = 222;
 
 /// Step of the axis marks: 1, 2 or 5 times a power of ten, with 3 to 6 marks up to `most`.
 double step_of(double most) {
@@ -23,8 +23,10 @@ struct Frame {
     double most = 1e-9;
     int layers = 1;
 
-    [[nodiscard]] double x(double layer) const { return left + (right - left) * layer / std::max(layers - 1, 1); }
-    [[nodiscard]] double y(double value) const { return bottom - (bottom - top) * value / most; }
+    [[nodiscard]] double x(double layer) const {
+        return plot_left + (plot_right - plot_left) * layer / std::max(layers - 1, 1);
+    }
+    [[nodiscard]] double y(double value) const { return plot_bottom - (plot_bottom - plot_top) * value / most; }
 };
 
 std::string axes(const Frame& frame) {
@@ -34,7 +36,7 @@ std::string axes(const Frame& frame) {
         svg += fmt::format(
             "<line x1=\"{0:.0f}\" x2=\"{1:.0f}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/><text x=\"{3:.0f}\" y=\"{4:.1f}\" "
             "text-anchor=\"end\">{5:g}</text>\n",
-            left, right, frame.y(value), left - 6, frame.y(value) + 4, value);
+            plot_left, plot_right, frame.y(value), plot_left - 6, frame.y(value) + 4, value);
     }
     constexpr int marks = 4;
     for (int k = 0; k <= marks; ++k) {

@@ -9,15 +9,14 @@
 
 #include "base/core/counted.hpp"
 #include "presentation/draw/canvas.hpp"
+#include "presentation/print_report/picture_colours.hpp"
 
 namespace pliant::report {
 namespace {
 
-constexpr Colour paper{1, 1, 1};
-constexpr Colour ink{0.16, 0.18, 0.22};
 constexpr Colour faint{0.85, 0.87, 0.90};
-constexpr double left = 220;  // of all charts; row labels are to the left of it
-constexpr double right = 1540;
+constexpr double chart_left = 220;  // of all charts; row labels are to the left of it
+constexpr double chart_right = 1540;
 constexpr double row_height = 44;
 
 const Font label{.size = 20, .colour = ink, .align = Align::right};
@@ -36,7 +35,7 @@ double mark_step(double length, double least) {
 void draw_axis(Canvas& canvas, double top, double bottom, double length, double least, std::string_view unit) {
     const double step = mark_step(length, least);
     for (double at = 0; at <= length * (1 + 1e-9); at += step) {
-        const double x = left + at / length * (right - left);
+        const double x = chart_left + at / length * (chart_right - chart_left);
         const std::array<Point2, 2> grid = {Point2{x, top}, Point2{x, bottom}};
         canvas.line(grid, 1, faint);
         canvas.text({x, bottom + 22}, at == 0 ? fmt::format("0 {}", unit) : fmt::format("{:g}", at), tick);
@@ -60,11 +59,11 @@ void draw_time(Canvas& canvas, const plan::Seconds& s) {
     draw_title(canvas, 158, "Time");
     const std::array<std::pair<const char*, double>, 4> parts = {
         {{"swap", s.swap}, {"clean", s.clean}, {"expose", s.expose}, {"move", s.move}}};
-    double x = left;
-    double name_x = left;
+    double x = chart_left;
+    double name_x = chart_left;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const auto& [name, seconds] = parts[i];
-        const double width = s.total > 0 ? seconds / s.total * (right - left) : 0;
+        const double width = s.total > 0 ? seconds / s.total * (chart_right - chart_left) : 0;
         canvas.box({x, 136}, width, 32, palette(static_cast<int>(i)));
         x += width;
         const std::string text = fmt::format("{} {}", name, plan::clock_text(seconds));
@@ -87,36 +86,36 @@ void draw_swap(Canvas& canvas, const plan::SwapTimeline& swap) {
     const double height = std::min(row_height, room / std::max(1, rows));
     draw_axis(canvas, top, top + rows * height, swap.seconds, 1, "s");
     for (int d = 0; d < rows; ++d) {
-        canvas.text({left - 16, top + d * height + height / 2 + 7},
+        canvas.text({chart_left - 16, top + d * height + height / 2 + 7},
                     plan::device_name(swap.devices[static_cast<std::size_t>(d)]), label);
     }
     for (const plan::Stretch& s : swap.stretches) {
         const auto found = std::find(swap.devices.begin(), swap.devices.end(), s.device);
         if (found == swap.devices.end()) continue;
         const int d = static_cast<int>(found - swap.devices.begin());
-        const double scale = (right - left) / swap.seconds;
-        canvas.box({left + s.begin_s * scale, top + d * height + 7}, (s.end_s - s.begin_s) * scale, height - 14,
+        const double scale = (chart_right - chart_left) / swap.seconds;
+        canvas.box({chart_left + s.begin_s * scale, top + d * height + 7}, (s.end_s - s.begin_s) * scale, height - 14,
                    palette(d), 4);
     }
 }
 
-void draw_layers(Canvas& canvas, const plan::Plan& plan) {
+void draw_vat_layers(Canvas& canvas, const plan::Plan& plan) {
     constexpr double top = 642;
     draw_title(canvas, 622, "Layers that each vat prints");
     if (plan.layers == 0) return;
     const double rows = static_cast<double>(plan.vats.size());
     const double height = std::min(row_height, 300 / std::max(1.0, rows));
     draw_axis(canvas, top, top + rows * height, plan.layers, 1, "layers");
-    const double scale = (right - left) / plan.layers;
+    const double scale = (chart_right - chart_left) / plan.layers;
     for (std::size_t v = 0; v < plan.vats.size(); ++v) {
         const plan::VatUse& use = plan.vats[v];
         const double y = top + static_cast<double>(v) * height;
         std::string name = fmt::format("{}  {}", use.slot, use.resin);
-        if (canvas.text_width(name, label) > left - 30) name = fmt::format("slot {}", use.slot);
-        canvas.text({left - 16, y + height / 2 + 7}, name, label);
+        if (canvas.text_width(name, label) > chart_left - 30) name = fmt::format("slot {}", use.slot);
+        canvas.text({chart_left - 16, y + height / 2 + 7}, name, label);
         for (const LayerRun& run : layer_runs(plan, use.vat)) {
-            canvas.box({left + run.first * scale, y + 0.15 * height}, (run.last + 1 - run.first) * scale, 0.7 * height,
-                       palette(static_cast<int>(v)));
+            canvas.box({chart_left + run.first * scale, y + 0.15 * height}, (run.last + 1 - run.first) * scale,
+                       0.7 * height, palette(static_cast<int>(v)));
         }
     }
 }
@@ -142,7 +141,7 @@ Result<std::string> plan_picture(const plan::Plan& plan, const plan::SwapTimelin
     draw_heading(canvas, plan);
     draw_time(canvas, plan.seconds);
     draw_swap(canvas, swap);
-    draw_layers(canvas, plan);
+    draw_vat_layers(canvas, plan);
     return canvas.png();
 }
 

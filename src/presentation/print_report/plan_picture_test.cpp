@@ -6,8 +6,8 @@
 
 using namespace pliant;
 using namespace pliant::report;
-using test::decode;
-using test::Pixels;
+using report::test::decode;
+using report::test::Pixels;
 
 namespace {
 

@@ -23,7 +23,7 @@ using machine::Printer;
 using machine::Store;
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view style = R"(
+constexpr std::string_view page_style = R"(
 body { font: 16px/1.5 system-ui, sans-serif; color: #292e38; margin: 0; background: #fff; }
 main { max-width: 1080px; margin: 0 auto; padding: 24px; }
 h1 { font-size: 28px; } h2 { font-size: 20px; margin-top: 36px; }
@@ -251,7 +251,7 @@ Result<std::string> printers_page(const std::vector<Printer>& printers) {
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
         "http-equiv=\"Content-Security-Policy\" "
         "content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\">\n<title>Printers compared</title>\n";
-    page += fmt::format("<style>{}</style>\n</head>\n<body>\n<main>\n<h1>Printers compared</h1>\n", style);
+    page += fmt::format("<style>{}</style>\n</head>\n<body>\n<main>\n<h1>Printers compared</h1>\n", page_style);
     page +=
         "<p>Everything here follows from the printers' files: ways, speeds and accelerations of the axes, durations of "
         "cleaning. Swap steps are those between the first two vats; packing is the share of a tower's height, a row's "

@@ -10,16 +10,16 @@
 #include "presentation/draw/camera.hpp"
 #include "presentation/draw/canvas.hpp"
 #include "presentation/draw/raycast.hpp"
+#include "presentation/print_report/picture_colours.hpp"
 
 namespace pliant::report {
 namespace {
 
-constexpr int width_px = 1600, height_px = 800, title_px = 130;
-constexpr Colour paper{1, 1, 1}, ink{0.16, 0.18, 0.22};
+constexpr int wash_width_px = 1600, wash_height_px = 800, wash_title_px = 130;
 constexpr Colour fixed{0.62, 0.64, 0.68};  // faces on the platform: they are not sprayed
 constexpr Colour clean{0.80, 0.87, 0.91}, halfway{0.95, 0.74, 0.38}, wet{0.72, 0.13, 0.16};
 
-Colour colour_of(double left) {
+Colour colour_of_resin_left(double left) {
     return left < 0.5 ? mix(clean, halfway, 2 * left) : mix(halfway, wet, 2 * left - 1);
 }
 
@@ -71,7 +71,7 @@ private:
 Skin skin_of(const wash::PartCells& part, const std::vector<wash::Face>& faces, const std::vector<double>& left,
              bool from_platform) {
     SkinMaker maker(part, from_platform);
-    for (std::size_t f = 0; f < faces.size(); ++f) maker.add(faces[f], colour_of(left[f]));
+    for (std::size_t f = 0; f < faces.size(); ++f) maker.add(faces[f], colour_of_resin_left(left[f]));
     constexpr Vec3 up{0, 0, 1};
     for (int row = 0; row < part.rows; ++row) {
         for (int column = 0; column < part.columns; ++column) {
@@ -101,7 +101,8 @@ Result<Image> view_of(const Skin& skin, int wide, int high) {
 void draw_scale(Canvas& canvas) {
     constexpr double x = 1180, y = 34, step = 12;
     constexpr int steps = 30;
-    for (int i = 0; i < steps; ++i) canvas.box({x + i * step, y}, step + 1, 26, colour_of((i + 0.5) / steps));
+    for (int i = 0; i < steps; ++i)
+        canvas.box({x + i * step, y}, step + 1, 26, colour_of_resin_left((i + 0.5) / steps));
     const Font font{.size = 19, .colour = ink, .align = Align::centre};
     canvas.text({x, y + 50}, "0", font);
     canvas.text({x + steps * step / 2.0, y + 50}, "share of the film that stays", font);
@@ -113,12 +114,12 @@ void draw_scale(Canvas& canvas) {
 Result<std::string> wash_picture(std::string_view title, const wash::PartCells& part,
                                  const std::vector<wash::Face>& faces, const wash::Cleanness& cleanness) {
     if (faces.empty()) return input_error("{}: nothing is printed, so there is nothing to clean", title);
-    Canvas canvas(width_px, height_px, paper);
+    Canvas canvas(wash_width_px, wash_height_px, paper);
     for (const bool from_platform : {false, true}) {
-        const int wide = width_px / 2, high = height_px - title_px;
+        const int wide = wash_width_px / 2, high = wash_height_px - wash_title_px;
         const Result<Image> image = view_of(skin_of(part, faces, cleanness.left, from_platform), wide, high);
         if (!image) return tl::unexpected(image.error());
-        canvas.image(*image, from_platform ? wide : 0, title_px);
+        canvas.image(*image, from_platform ? wide : 0, wash_title_px);
     }
     canvas.text({60, 62}, title, {.size = 32, .colour = ink, .bold = true});
     canvas.text({60, 98},

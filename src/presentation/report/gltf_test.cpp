@@ -10,7 +10,7 @@
 
 using namespace pliant;
 using namespace pliant::report;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 namespace {
 
@@ -21,11 +21,11 @@ std::uint32_t u32(const std::string& bytes, std::size_t at) {
 }
 
 struct Glb {
-    json document;
+    Json document;
     std::string binary;
 
     [[nodiscard]] std::vector<float> floats(std::size_t accessor) const {
-        const json& view = document["bufferViews"][document["accessors"][accessor]["bufferView"].get<std::size_t>()];
+        const Json& view = document["bufferViews"][document["accessors"][accessor]["bufferView"].get<std::size_t>()];
         std::vector<float> values(view["byteLength"].get<std::size_t>() / 4);
         std::memcpy(values.data(), binary.data() + view["byteOffset"].get<std::size_t>(), 4 * values.size());
         return values;
@@ -42,10 +42,10 @@ Glb parsed(const std::string& bytes) {
     CHECK(bytes.substr(24 + text, 4) == std::string("BIN\0", 4));
     CHECK(text % 4 == 0);
     REQUIRE(28 + text + binary == bytes.size());
-    return {json::parse(bytes.substr(20, text)), bytes.substr(28 + text)};
+    return {Json::parse(bytes.substr(20, text)), bytes.substr(28 + text)};
 }
 
-Glb glb_of(const test::Robot& robot, std::size_t targets) {
+Glb glb_of(const report::test::Robot& robot, std::size_t targets) {
     const Simulation s = robot.simulation();
     return parsed(robot_glb(s, outer_surface(s.mesh, s.region_material), targets));
 }
@@ -53,13 +53,13 @@ Glb glb_of(const test::Robot& robot, std::size_t targets) {
 }  // namespace
 
 TEST_CASE("buffer views are aligned and inside the buffer, and accessors keep their bounds") {
-    const Glb glb = glb_of(test::bent_bar(10, 2), 40);
+    const Glb glb = glb_of(report::test::bent_bar(10, 2), 40);
     CHECK(glb.document["buffers"][0]["byteLength"] == glb.binary.size());
-    for (const json& view : glb.document["bufferViews"]) {
+    for (const Json& view : glb.document["bufferViews"]) {
         CHECK(view["byteOffset"].get<std::size_t>() % 4 == 0);
         CHECK(view["byteOffset"].get<std::size_t>() + view["byteLength"].get<std::size_t>() <= glb.binary.size());
     }
-    const json& accessors = glb.document["accessors"];
+    const Json& accessors = glb.document["accessors"];
     for (std::size_t a = 0; a < accessors.size(); ++a) {
         if (!accessors[a].contains("min")) continue;
         const auto values = glb.floats(a);
@@ -73,8 +73,8 @@ TEST_CASE("buffer views are aligned and inside the buffer, and accessors keep th
 }
 
 TEST_CASE("there is a mesh per material in its colour, and a tube for the cable") {
-    const Glb glb = glb_of(test::bent_bar(4, 1), 40);
-    const json& meshes = glb.document["meshes"];
+    const Glb glb = glb_of(report::test::bent_bar(4, 1), 40);
+    const Json& meshes = glb.document["meshes"];
     REQUIRE(meshes.size() == 3);
     for (std::size_t m = 0; m < 2; ++m) {
         CHECK(meshes[m]["name"] == glb.document["materials"][m]["name"]);
@@ -85,7 +85,7 @@ TEST_CASE("there is a mesh per material in its colour, and a tube for the cable"
     }
     CHECK(meshes[2]["name"] == "cables");
     CHECK(meshes[2]["primitives"].size() == 1);
-    const json& materials = glb.document["materials"];
+    const Json& materials = glb.document["materials"];
     CHECK(materials[0]["name"] == "ninjaflex");
     CHECK(materials[1]["name"] == "cheetah");
     const Colour linear = to_linear(palette(1));
@@ -94,9 +94,9 @@ TEST_CASE("there is a mesh per material in its colour, and a tube for the cable"
 }
 
 TEST_CASE("rest plus the last morph target equals the last step, with Y up") {
-    const auto robot = test::bent_bar(4, 1);
+    const auto robot = report::test::bent_bar(4, 1);
     const Glb glb = glb_of(robot, 40);
-    const json& primitive = glb.document["meshes"][1]["primitives"][0];
+    const Json& primitive = glb.document["meshes"][1]["primitives"][0];
     const auto rest = glb.floats(primitive["attributes"]["POSITION"].get<std::size_t>());
     const auto delta = glb.floats(primitive["targets"][3]["POSITION"].get<std::size_t>());
     REQUIRE(rest.size() == delta.size());
@@ -110,10 +110,10 @@ TEST_CASE("rest plus the last morph target equals the last step, with Y up") {
 }
 
 TEST_CASE("the animation shows the morph targets in order, in three seconds") {
-    const Glb glb = glb_of(test::bent_bar(30, 1), 4);
-    const json& animation = glb.document["animations"][0];
+    const Glb glb = glb_of(report::test::bent_bar(30, 1), 4);
+    const Json& animation = glb.document["animations"][0];
     CHECK(animation["channels"].size() == 3);
-    CHECK(animation["channels"][2]["target"] == json({{"node", 2}, {"path", "weights"}}));
+    CHECK(animation["channels"][2]["target"] == Json({{"node", 2}, {"path", "weights"}}));
     const auto times = glb.floats(animation["samplers"][0]["input"].get<std::size_t>());
     const auto weights = glb.floats(animation["samplers"][0]["output"].get<std::size_t>());
     REQUIRE(times.size() == 5);
@@ -124,7 +124,7 @@ TEST_CASE("the animation shows the morph targets in order, in three seconds") {
 }
 
 TEST_CASE("an obstacle is a mesh of its own, and its node moves") {
-    const test::Robot robot = test::bent_bar(4, 1);
+    const report::test::Robot robot = report::test::bent_bar(4, 1);
     Simulation s = robot.simulation();
     s.obstacles = {{"floor", disc({0, 0, -0.01}, {0, 0, 1}, 0.1), true, {}}};
     for (int i = 0; i <= 4; ++i) s.obstacles[0].offset_m.push_back({0.001 * i, 0.002 * i, 0.003 * i});
@@ -133,9 +133,9 @@ TEST_CASE("an obstacle is a mesh of its own, and its node moves") {
     CHECK(glb.document["meshes"][3]["name"] == "floor");
     CHECK_FALSE(glb.document["meshes"][3].contains("weights"));
     CHECK(glb.document["materials"].back()["doubleSided"] == true);
-    const json& animation = glb.document["animations"][0];
+    const Json& animation = glb.document["animations"][0];
     REQUIRE(animation["channels"].size() == 4);
-    CHECK(animation["channels"][3]["target"] == json({{"node", 3}, {"path", "translation"}}));
+    CHECK(animation["channels"][3]["target"] == Json({{"node", 3}, {"path", "translation"}}));
     const std::size_t sampler = animation["channels"][3]["sampler"].get<std::size_t>();
     const auto places = glb.floats(animation["samplers"][sampler]["output"].get<std::size_t>());
     REQUIRE(places.size() == 15);
@@ -143,7 +143,7 @@ TEST_CASE("an obstacle is a mesh of its own, and its node moves") {
 }
 
 TEST_CASE("a robot with a rest state only has no animation") {
-    auto robot = test::bent_bar(1, 1);
+    auto robot = report::test::bent_bar(1, 1);
     robot.result.steps.pop_back();
     const Glb glb = glb_of(robot, 40);
     CHECK_FALSE(glb.document.contains("animations"));

@@ -24,7 +24,7 @@ std::string page(const Simulation& s) {
 }  // namespace
 
 TEST_CASE("the page loads nothing from outside") {
-    const auto robot = test::bent_bar(10, 1);
+    const auto robot = report::test::bent_bar(10, 1);
     const std::string html = report_html(robot.simulation(), {{"final.png", "At the end", "PNG bytes"}});
     const std::regex foreign(R"((src|href|action|data)\s*=\s*["']?\s*(https?:|//))", std::regex::icase);
     CHECK_FALSE(std::regex_search(page(robot.simulation()), foreign));
@@ -39,7 +39,7 @@ TEST_CASE("the page loads nothing from outside") {
 }
 
 TEST_CASE("contact has a table with the largest force over all steps") {
-    auto robot = test::bent_bar(2, 1);
+    auto robot = report::test::bent_bar(2, 1);
     CHECK(page(robot.simulation()).find("<h2>Contact</h2>") == std::string::npos);
     for (auto& step : robot.result.steps) step.contacts = {{"a <ball>", {0, 0, step.index == 1 ? -7.0 : -2.5}}};
     robot.result.steps[1].smallest_distance_m = 4e-5;
@@ -49,7 +49,7 @@ TEST_CASE("contact has a table with the largest force over all steps") {
 }
 
 TEST_CASE("iterations are in the page if there are any") {
-    auto robot = test::bent_bar(2, 1);
+    auto robot = report::test::bent_bar(2, 1);
     robot.result.iterations.clear();
     CHECK(page(robot.simulation()).find("id=\"iterations\"") == std::string::npos);
     robot.result.iterations = {{.step = 1, .solver = sim::Solver::anderson, .residual = 0.5}};
@@ -60,7 +60,7 @@ TEST_CASE("iterations are in the page if there are any") {
 
 TEST_CASE("names from a robot file are escaped in the page") {
     const std::string evil = "</script><script>alert(1)</script>\"'&";
-    auto robot = test::bent_bar(2, 1);
+    auto robot = report::test::bent_bar(2, 1);
     for (auto& step : robot.result.steps) {
         step.cables[0].name = evil;
         step.markers[0].name = evil;
@@ -82,7 +82,7 @@ TEST_CASE("names from a robot file are escaped in the page") {
 }
 
 TEST_CASE("the data in the page are those of summary.json") {
-    const auto robot = test::bent_bar(10, 1);
+    const auto robot = report::test::bent_bar(10, 1);
     const std::string html = page(robot.simulation());
     const std::string open = "<script type=\"application/json\" id=\"data\">";
     const std::size_t begin = html.find(open) + open.size();
@@ -92,7 +92,7 @@ TEST_CASE("the data in the page are those of summary.json") {
 }
 
 TEST_CASE("tables show volumes, masses and actuators") {
-    const auto robot = test::bent_bar(10, 1);
+    const auto robot = report::test::bent_bar(10, 1);
     const std::string html = page(robot.simulation());
     CHECK(html.find("<td>18 cm³</td><td>18.72 g</td>") != std::string::npos);
     CHECK(html.find("<td>flexor</td><td>cable</td><td>120.00 mm</td>") != std::string::npos);

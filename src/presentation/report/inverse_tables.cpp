@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "presentation/report/tables.hpp"
+#include "presentation/report/units.hpp"
 #include "simulation/model/model.hpp"
 
 namespace pliant::report {
@@ -19,10 +20,8 @@ using sim::GoalKind;
 using sim::inverse::GoalState;
 using sim::inverse::Waypoint;
 
-constexpr double mm_per_m = 1e3;
-
 /// Unit of an error; and of wanted and reached values, except directions.
-InputUnit unit_of(const Goal& goal) {
+InputUnit unit_of_goal(const Goal& goal) {
     switch (goal.kind) {
         case GoalKind::direction:
             return {"deg", 180 / std::numbers::pi};
@@ -35,7 +34,7 @@ InputUnit unit_of(const Goal& goal) {
 }
 
 double factor_of_values(const Goal& goal) {
-    return goal.kind == GoalKind::direction ? 1 : unit_of(goal).factor;
+    return goal.kind == GoalKind::direction ? 1 : unit_of_goal(goal).factor;
 }
 
 std::size_t numbers_of(const Goal& goal) {
@@ -60,7 +59,7 @@ std::vector<Vec3> wanted_points(const Goal& goal, std::size_t waypoint) {
 }
 
 Json goal_json(const Goal& goal, const GoalState& state, std::size_t waypoint) {
-    const InputUnit unit = unit_of(goal);
+    const InputUnit unit = unit_of_goal(goal);
     return {{"reached", state.reached},
             {"error_" + unit.name, unit.factor * state.error},
             {"wanted", points_json(goal, wanted_points(goal, waypoint))},
@@ -74,7 +73,7 @@ Json waypoint_json(const InverseReport& r, std::size_t k) {
     Json goals = Json::object(), inputs = Json::object(), limits = Json::array(), reasons = Json::array();
     for (std::size_t g = 0; g < r.task.goals.size(); ++g) {
         const Goal& goal = r.task.goals[g];
-        if (unit_of(goal).name == "mm") error_m = std::max(error_m, at.goals[g].error);
+        if (unit_of_goal(goal).name == "mm") error_m = std::max(error_m, at.goals[g].error);
         goals[goal.name] = goal_json(goal, at.goals[g], k);
     }
     if (error_m >= 0) out["error_mm"] = mm_per_m * error_m;
@@ -104,10 +103,10 @@ std::string with_unit(const std::string& name, const std::string& unit) {
     return csv_field(unit.empty() ? name : name + "_" + unit);
 }
 
-std::vector<std::string> header(const InverseReport& r) {
+std::vector<std::string> waypoint_header(const InverseReport& r) {
     std::vector<std::string> cells = {"index", "time", "reached"};
     for (const Goal& goal : r.task.goals) {
-        const std::string unit = goal.kind == GoalKind::direction ? "" : unit_of(goal).name;
+        const std::string unit = goal.kind == GoalKind::direction ? "" : unit_of_goal(goal).name;
         const std::size_t points = goal.kind == GoalKind::position ? goal.markers.size() : 1;
         for (std::size_t p = 0; p < points; ++p) {
             const std::string name =
@@ -119,7 +118,7 @@ std::vector<std::string> header(const InverseReport& r) {
                 }
             }
         }
-        cells.push_back(with_unit(goal.name + "_error", unit_of(goal).name));
+        cells.push_back(with_unit(goal.name + "_error", unit_of_goal(goal).name));
     }
     for (const sim::Steered& input : r.task.inputs)
         cells.push_back(with_unit(input.name, report::unit_of(r.model, input).name));
@@ -129,7 +128,7 @@ std::vector<std::string> header(const InverseReport& r) {
     return cells;
 }
 
-std::vector<std::string> row(const InverseReport& r, std::size_t k) {
+std::vector<std::string> waypoint_row(const InverseReport& r, std::size_t k) {
     const Waypoint& at = r.result.waypoints[k];
     std::vector<std::string> cells = {fmt::format("{}", k + 1), fmt::format("{:.10g}", at.state.time),
                                       at.reached ? "1" : "0"};
@@ -142,7 +141,7 @@ std::vector<std::string> row(const InverseReport& r, std::size_t k) {
                 for (std::size_t c = 0; c < numbers_of(goal); ++c) number(factor_of_values(goal) * v[c]);
             }
         }
-        number(unit_of(goal).factor * at.goals[g].error);
+        number(unit_of_goal(goal).factor * at.goals[g].error);
     }
     for (std::size_t i = 0; i < at.values.size(); ++i)
         number(report::unit_of(r.model, r.task.inputs[i]).factor * at.values[i]);
@@ -186,8 +185,9 @@ std::string inverse_json(const InverseReport& r, int indent) {
 }
 
 std::string waypoints_csv(const InverseReport& r) {
-    std::string text = fmt::format("{}\n", fmt::join(header(r), ","));
-    for (std::size_t k = 0; k < r.result.waypoints.size(); ++k) text += fmt::format("{}\n", fmt::join(row(r, k), ","));
+    std::string text = fmt::format("{}\n", fmt::join(waypoint_header(r), ","));
+    for (std::size_t k = 0; k < r.result.waypoints.size(); ++k)
+        text += fmt::format("{}\n", fmt::join(waypoint_row(r, k), ","));
     return text;
 }
 
@@ -195,7 +195,7 @@ std::string waypoint_line(const InverseReport& r, std::size_t k) {
     const Waypoint& at = r.result.waypoints[k];
     std::vector<std::string> parts;
     for (std::size_t g = 0; g < r.task.goals.size(); ++g) {
-        const InputUnit unit = unit_of(r.task.goals[g]);
+        const InputUnit unit = unit_of_goal(r.task.goals[g]);
         if (at.goals[g].reached) continue;
         parts.push_back(
             fmt::format("{} {:.3g} {} off", r.task.goals[g].name, unit.factor * at.goals[g].error, unit.name));

@@ -38,7 +38,7 @@ void check_problem(const std::string& text, const std::string& wanted) {
 }  // namespace
 
 TEST_CASE("the markers.csv of a run has no deviation from that run") {
-    const test::Robot robot = test::bent_bar(4, 1);
+    const report::test::Robot robot = report::test::bent_bar(4, 1);
     const auto paths = parse_measured(markers_csv(robot.result), "markers.csv", robot.result.steps.front());
     REQUIRE_MESSAGE(paths, (paths ? "" : paths.error().message));
     CHECK(paths->size() == 2);

@@ -22,7 +22,7 @@ namespace {
 constexpr int width = 160, height = 100;
 
 struct Stage {
-    test::Robot robot = test::bent_bar(4, 2);
+    report::test::Robot robot = report::test::bent_bar(4, 2);
     std::vector<int> materials = {0, 0};
     Surface surface = outer_surface(robot.mesh, materials);
     Scene scene;
@@ -164,7 +164,7 @@ int count_of(const std::vector<std::uint32_t>& pixels, const Colour& colour) {
 }  // namespace
 
 TEST_CASE("the pictures are PNG files, not empty, and the same each time") {
-    const auto robot = test::bent_bar(4, 1);
+    const auto robot = report::test::bent_bar(4, 1);
     const Simulation s = robot.simulation();
     const Surface surface = outer_surface(s.mesh, s.region_material);
     Progress progress;
@@ -185,7 +185,7 @@ TEST_CASE("the pictures are PNG files, not empty, and the same each time") {
 }
 
 TEST_CASE("elements of voids are drawn as faces with edges, measured points as rings; the markers have a plot") {
-    const auto robot = test::bent_bar(4, 1);
+    const auto robot = report::test::bent_bar(4, 1);
     Simulation s = robot.simulation();
     const auto drawn = [&] {
         Progress progress;
@@ -210,7 +210,7 @@ TEST_CASE("elements of voids are drawn as faces with edges, measured points as r
 }
 
 TEST_CASE("elements of voids are drawn in every stage, at the body's position") {
-    const auto robot = test::bent_bar(4, 1);
+    const auto robot = report::test::bent_bar(4, 1);
     Simulation s = robot.simulation();
     const auto stages = [&] {
         Progress progress;
@@ -239,7 +239,7 @@ TEST_CASE("elements of voids are drawn in every stage, at the body's position") 
 }
 
 TEST_CASE("the direction of view of a picture can be chosen") {
-    const auto robot = test::bent_bar(4, 1);
+    const auto robot = report::test::bent_bar(4, 1);
     const Simulation s = robot.simulation();
     const Surface surface = outer_surface(s.mesh, s.region_material);
     Progress progress;
@@ -262,9 +262,9 @@ TEST_CASE("drawing a picture can be cancelled") {
 }
 
 TEST_CASE("captions, and rounding up to nice numbers") {
-    const auto robot = test::bent_bar(10, 1);
+    const auto robot = report::test::bent_bar(10, 1);
     CHECK(step_line(robot.simulation(), 5) == "step 5 of 10 · flexor 96.7 %, 35.5 N");
-    auto rounded = test::bent_bar(10, 1);
+    auto rounded = report::test::bent_bar(10, 1);
     rounded.result.steps[5].cables[0].tension_N = 2.84e-14;
     CHECK(step_line(rounded.simulation(), 5) == "step 5 of 10 · flexor 96.7 %, 0 N");
 

@@ -3,12 +3,13 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "presentation/report/units.hpp"
+
 namespace pliant::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double mm_per_m = 1e3;
 constexpr double mm3_per_m3 = 1e9;
 
 Json vector_json(const Vec3& v, double factor) {

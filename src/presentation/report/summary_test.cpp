@@ -10,14 +10,14 @@
 
 using namespace pliant;
 using namespace pliant::report;
-using nlohmann::json;
+using Json = nlohmann::json;
 
 TEST_CASE("summary.json has the keys and values that the design promises") {
-    auto robot = test::bent_bar(10, 2);
+    auto robot = report::test::bent_bar(10, 2);
     robot.result.steps.back().chambers = {{"air", 1.25, 2e-6, 40e3}};
     Simulation s = robot.simulation();
     s.timing = {2, 0.125, 0.75, 1.5};
-    const json j = json::parse(summary_json(s));
+    const Json j = Json::parse(summary_json(s));
     CHECK(j["robot"] == "bent bar");
     CHECK(j["pliant"].get<std::string>().find('.') != std::string::npos);
     CHECK(j["nodes"] == robot.mesh.points.size());
@@ -37,7 +37,7 @@ TEST_CASE("summary.json has the keys and values that the design promises") {
     REQUIRE(j["steps"].size() == 10);
     CHECK(j["rest"]["index"] == 0);
     CHECK(j["steps"][0]["index"] == 1);
-    const json& last = j["steps"][9];
+    const Json& last = j["steps"][9];
     CHECK(last["index"] == 10);
     CHECK(last["iterations"] == 6);
     CHECK(last["residual"] == near(3.5e-6, {.relative = 1e-12}));
@@ -48,17 +48,17 @@ TEST_CASE("summary.json has the keys and values that the design promises") {
           near(120 * last["cables"]["flexor"]["length_ratio"].get<double>(), {.relative = 1e-5}));
     CHECK(last["chambers"]["air"]["volume_mm3"] == near(2000, {.relative = 1e-12}));
     CHECK(last["chambers"]["air"]["pressure_kPa"] == near(40, {.relative = 1e-12}));
-    CHECK(last["supports"]["base"]["force_N"] == json({-71, 0, 0.5}));
+    CHECK(last["supports"]["base"]["force_N"] == Json({-71, 0, 0.5}));
     CHECK(last["markers"]["tip"][0].get<double>() == near(200 / 3.14159265358979, {.relative = 1e-12}));
     CHECK(j["steps"][3]["chambers"].empty());
 }
 
 TEST_CASE("contacts are listed at every step, or at none") {
-    auto robot = test::bent_bar(2, 1);
-    CHECK_FALSE(json::parse(summary_json(robot.simulation()))["rest"].contains("contacts"));
+    auto robot = report::test::bent_bar(2, 1);
+    CHECK_FALSE(Json::parse(summary_json(robot.simulation()))["rest"].contains("contacts"));
     robot.result.steps[2].self_contact_N = 3.5;
     robot.result.steps[2].smallest_distance_m = 2e-5;
-    const json j = json::parse(summary_json(robot.simulation()));
+    const Json j = Json::parse(summary_json(robot.simulation()));
     CHECK(j["rest"]["self_contact_N"] == 0);
     CHECK(j["rest"]["smallest_distance_mm"].is_null());
     CHECK(j["steps"][1]["self_contact_N"] == 3.5);
@@ -66,21 +66,21 @@ TEST_CASE("contacts are listed at every step, or at none") {
 }
 
 TEST_CASE("NaN becomes null, and invalid UTF-8 is replaced") {
-    auto robot = test::bent_bar(1, 1);
+    auto robot = report::test::bent_bar(1, 1);
     robot.result.steps[1].residual = std::nan("");
     robot.result.message = "stopped \xff here";
-    const json j = json::parse(summary_json(robot.simulation(), -1));
+    const Json j = Json::parse(summary_json(robot.simulation(), -1));
     CHECK(j["steps"][0]["residual"].is_null());
     CHECK(j["message"] == "stopped \xef\xbf\xbd here");
 }
 
 TEST_CASE("measured markers have their deviations in the summary") {
-    auto robot = test::bent_bar(2, 1);
+    auto robot = report::test::bent_bar(2, 1);
     Simulation s = robot.simulation();
     s.measured = {{"tip", {robot.result.steps.back().markers.front().position_m + Vec3{0, 0.003, 0}}}};
-    const json j = json::parse(summary_json(s));
+    const Json j = Json::parse(summary_json(s));
     CHECK(j["measured"]["tip"]["points"] == 1);
     CHECK(j["measured"]["tip"]["largest_mm"].get<double>() == near(3, {.relative = 1e-12}));
     s.measured.clear();
-    CHECK_FALSE(json::parse(summary_json(s)).contains("measured"));
+    CHECK_FALSE(Json::parse(summary_json(s)).contains("measured"));
 }

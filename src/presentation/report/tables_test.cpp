@@ -24,7 +24,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 }  // namespace
 
 TEST_CASE("steps.csv has a row per step, the rest state included, in the units of its header") {
-    const auto robot = test::bent_bar(10, 1);
+    const auto robot = report::test::bent_bar(10, 1);
     const auto lines = lines_of(steps_csv(robot.result));
     REQUIRE(lines.size() == 12);
     CHECK(lines[0] ==
@@ -36,7 +36,7 @@ TEST_CASE("steps.csv has a row per step, the rest state included, in the units o
 }
 
 TEST_CASE("markers.csv gives millimetres") {
-    const auto robot = test::bent_bar(10, 1);
+    const auto robot = report::test::bent_bar(10, 1);
     const auto lines = lines_of(markers_csv(robot.result));
     REQUIRE(lines.size() == 12);
     CHECK(lines[0] == "index,time,tip_x_mm,tip_y_mm,tip_z_mm,middle_x_mm,middle_y_mm,middle_z_mm");
@@ -57,7 +57,7 @@ TEST_CASE("iterations.csv has a row per iteration") {
 }
 
 TEST_CASE("contact forces of obstacles and self-contact have columns where there is contact") {
-    auto robot = test::bent_bar(2, 1);
+    auto robot = report::test::bent_bar(2, 1);
     for (auto& step : robot.result.steps) step.contacts = {{"ball", {0.5, 0, -2.0 * step.index}}};
     robot.result.steps[2].self_contact_N = 3.5;
     robot.result.steps[2].smallest_distance_m = 2e-5;
@@ -70,7 +70,7 @@ TEST_CASE("contact forces of obstacles and self-contact have columns where there
 }
 
 TEST_CASE("sensor readings have columns with their unit, and keys in the summary") {
-    auto robot = test::bent_bar(2, 1);
+    auto robot = report::test::bent_bar(2, 1);
     for (auto& step : robot.result.steps)
         step.sensors = {
             {"gauge", {{"strain", sim::SensedQuantity::ratio, 0.25}, {"length", sim::SensedQuantity::length, 0.002}}},
@@ -93,7 +93,7 @@ TEST_CASE("fields are quoted as RFC 4180 says, and never start a formula") {
 }
 
 TEST_CASE("the decimal point does not depend on the locale") {
-    const auto robot = test::bent_bar(2, 1);
+    const auto robot = report::test::bent_bar(2, 1);
     const std::string plain = steps_csv(robot.result);
     const std::string before = std::setlocale(LC_ALL, nullptr);
     for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "C.UTF-8"}) {

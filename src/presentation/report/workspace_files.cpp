@@ -10,6 +10,7 @@
 #include "base/core/vec3.hpp"
 #include "presentation/report/inverse_tables.hpp"
 #include "presentation/report/tables.hpp"
+#include "presentation/report/units.hpp"
 
 namespace pliant::report {
 namespace {
@@ -18,8 +19,6 @@ using Json = nlohmann::ordered_json;
 using sim::inverse::Workspace;
 using sim::inverse::WorkspacePiece;
 using sim::inverse::WorkspaceSample;
-
-constexpr double mm_per_m = 1e3;
 
 std::vector<std::string> header(const WorkspaceReport& r) {
     std::vector<std::string> cells = {"piece", "found"};

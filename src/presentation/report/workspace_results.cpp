@@ -7,6 +7,7 @@
 #include "base/core/files.hpp"
 #include "geometry/files/surface_file.hpp"
 #include "presentation/report/pictures.hpp"
+#include "presentation/report/units.hpp"
 #include "simulation/run/describe.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/stepper/stepper.hpp"
@@ -59,7 +60,6 @@ Status write_marker(const WorkspaceReport& report, std::size_t marker, const fs:
     }
     const mesh::TriMesh surface = workspace_surface(report.workspace, marker);
     if (!surface.triangles.empty()) {
-        constexpr double mm_per_m = 1e3;
         Status written = mesh::write_stl(folder / (name + ".stl"), mesh::scaled(surface, mm_per_m));
         if (!written) return written;
     }

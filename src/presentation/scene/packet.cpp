@@ -11,7 +11,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are sent as they lie in memory");
 
 template <class T>
-void append(std::string& bytes, const std::vector<T>& values) {
+void append_bytes(std::string& bytes, const std::vector<T>& values) {
     static_assert(sizeof(T) == 4);
     const std::size_t start = bytes.size();
     bytes.resize(start + 4 * values.size());
@@ -27,12 +27,12 @@ void Packet::list(std::string_view name, std::string_view type, std::size_t coun
 
 void Packet::add(std::string_view name, const std::vector<float>& values) {
     list(name, "f32", values.size());
-    append(bytes_, values);
+    append_bytes(bytes_, values);
 }
 
 void Packet::add(std::string_view name, const std::vector<std::uint32_t>& values) {
     list(name, "u32", values.size());
-    append(bytes_, values);
+    append_bytes(bytes_, values);
 }
 
 std::string Packet::finish(std::string_view head) const {

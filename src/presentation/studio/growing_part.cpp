@@ -6,6 +6,7 @@
 
 #include "base/core/files.hpp"
 #include "presentation/scene/packet.hpp"
+#include "presentation/studio/limits.hpp"
 #include "printing/host/journal_facts.hpp"
 #include "printing/operate/job_file.hpp"
 
@@ -13,7 +14,6 @@ namespace pliant::studio {
 namespace {
 
 constexpr std::size_t most_at_once = 50;  // layers or images, so that pages are updated in between
-constexpr std::uintmax_t largest_journal = 256 << 20;
 
 twin::CoarsePart empty_part(const operate::ReadyJob& job) {
     const machine::Projector& p = job.printer.projector;

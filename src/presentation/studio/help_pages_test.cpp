@@ -14,7 +14,7 @@ namespace {
 
 /// An installation: bin, and pages below share.
 struct Installation {
-    test::Folder root{"help"};
+    pliant::test::Folder root{"help"};
     Installation() {
         std::filesystem::create_directories(root / "bin");
         std::filesystem::create_directories(root / "share/doc/pliant/html/reference");

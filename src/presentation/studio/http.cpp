@@ -19,4 +19,8 @@ Response error_response(int status, std::string_view text) {
     return {status, "application/json", dumped(json)};
 }
 
+Response done(const Status& status) {
+    return status ? json_response("{}") : error_response(status.error());
+}
+
 }  // namespace pliant::studio

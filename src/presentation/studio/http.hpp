@@ -37,6 +37,8 @@ struct Response {
 /// {"error": "..."} with status 422 for bad input, 409 for failed work.
 [[nodiscard]] Response error_response(const Error& error);
 [[nodiscard]] Response error_response(int status, std::string_view text);
+/// {} if it was done, else the error.
+[[nodiscard]] Response done(const Status& status);
 
 /// Larger uploads are refused before they are read.
 inline constexpr long long largest_body = 4 << 20;

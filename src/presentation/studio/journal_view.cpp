@@ -8,6 +8,7 @@
 #include "base/core/files.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/journal_names.hpp"
+#include "presentation/studio/limits.hpp"
 #include "printing/host/journal.hpp"
 #include "printing/host/journal_facts.hpp"
 
@@ -16,8 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::uintmax_t largest_journal = 256 << 20;
-constexpr std::size_t most_records = 2000, longest_text = 300;
+constexpr std::size_t most_records = 2000, longest_record_text = 300;
 
 Result<host::JournalText> read_journal(const std::filesystem::path& file) {
     const Result<std::string> text = read_file(file, largest_journal);
@@ -44,14 +44,14 @@ Json line_of(const std::string& name, const host::JournalFacts& facts) {
 }
 
 /// "layer=3 material=0 planned=2.5", the first line of a program.
-std::string text_of(const host::JournalRecord& record) {
+std::string record_text(const host::JournalRecord& record) {
     std::string text;
     for (const auto& [key, value] : record.values) {
         const std::string_view line = std::string_view(value).substr(0, value.find('\n'));
         text += fmt::format("{}{}={}{}", text.empty() ? "" : " ", key, line, line.size() < value.size() ? " …" : "");
     }
-    if (text.size() > longest_text) {
-        text.resize(longest_text);
+    if (text.size() > longest_record_text) {
+        text.resize(longest_record_text);
         text += "…";
     }
     return text;
@@ -80,7 +80,7 @@ Result<std::string> journal_json(const std::filesystem::path& file, const std::s
     Json json = line_of(name, *facts), records = Json::array();
     const auto& all = journal->records;
     for (std::size_t i = all.size() - std::min(all.size(), most_records); i < all.size(); ++i)
-        records.push_back({{"number", all[i].number}, {"kind", all[i].kind}, {"text", text_of(all[i])}});
+        records.push_back({{"number", all[i].number}, {"kind", all[i].kind}, {"text", record_text(all[i])}});
     json["records"] = std::move(records);
     json["open_light"] =
         facts->last_light && facts->lights.at(*facts->last_light).open_light != 0 && !facts->ended && !facts->cancelled;

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "presentation/studio/millimetres.hpp"
+
 namespace pliant::studio {
 namespace {
 
-constexpr double mm = 1e3;
 constexpr double patch_share = 0.04;  // of the robot's size: radius of the pulled patch
 
 /// The thesis' elements support lengths and volumes only.
@@ -61,7 +62,7 @@ bool LiveRobot::lead(const LeadMessage& message) {
         if (inputs.empty()) return false;
         led_.emplace(live_, *model_, std::move(inputs), marker);
     }
-    led_to_m_ = 1 / mm * Vec3{message.to_mm[0], message.to_mm[1], message.to_mm[2]};
+    led_to_m_ = 1 / mm_per_m * Vec3{message.to_mm[0], message.to_mm[1], message.to_mm[2]};
     return true;
 }
 
@@ -116,7 +117,7 @@ std::optional<LiveRobot::ActuatorDrive> LiveRobot::cable_drive(std::size_t cable
     const double rest = live_.rest_measures()[cable], v = value.value;
     const auto drive = [&](Kind kind, double target) { return ActuatorDrive{cable, {kind, target}}; };
     if (value.kind == "length_ratio" && v > 0) return drive(Kind::measure, v * rest);
-    if (value.kind == "shortening_mm" && v / mm < rest) return drive(Kind::measure, rest - v / mm);
+    if (value.kind == "shortening_mm" && v / mm_per_m < rest) return drive(Kind::measure, rest - v / mm_per_m);
     if (value.kind == "tension_N" && !is_by_elements(*model_, cable)) return drive(Kind::multiplier, std::max(v, 0.0));
     return std::nullopt;
 }

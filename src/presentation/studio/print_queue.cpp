@@ -25,7 +25,7 @@ std::optional<double> planned_s(const job::Archive& archive) {
     return total.get<double>();
 }
 
-Json line_of(const std::string& name, const Result<std::filesystem::path>& path) {
+Json queue_line(const std::string& name, const Result<std::filesystem::path>& path) {
     Json line = {{"name", name}};
     if (!path) {
         line["error"] = path.error().message;
@@ -97,7 +97,7 @@ void PrintQueue::begun(const std::string& job) {
 
 std::string PrintQueue::json() const {
     Json lines = Json::array();
-    for (const std::string& name : jobs()) lines.push_back(line_of(name, folder_.resolve(name)));
+    for (const std::string& name : jobs()) lines.push_back(queue_line(name, folder_.resolve(name)));
     return dumped({{"jobs", std::move(lines)}});
 }
 

@@ -9,6 +9,7 @@
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/growing_part.hpp"
 #include "presentation/studio/journal_names.hpp"
+#include "presentation/studio/millimetres.hpp"
 #include "presentation/studio/printer_files.hpp"
 #include "printing/host/journal.hpp"
 #include "printing/host/journal_facts.hpp"
@@ -27,16 +28,12 @@ using Json = nlohmann::json;
 constexpr std::chrono::milliseconds between_messages{200};
 constexpr double slowest = 0.1, fastest = 10000;
 
-double mm(int um) {
-    return um / 1e3;
-}
-
 /// `{"current": ...}` as an event for the pages.
 std::string event_of(const std::string& message) {
     return R"({"type":"print",)" + message.substr(1);
 }
 
-bool under_way(host::State state) {
+bool is_under_way(host::State state) {
     using host::State;
     return state == State::printing || state == State::pausing || state == State::paused ||
            state == State::cancelling || state == State::working;
@@ -104,6 +101,16 @@ bool is_over(const std::filesystem::path& path) {
     return facts && (facts->ended || facts->cancelled);
 }
 
+/// The command of a request to the host's control, "" if it has none.
+std::string command_of(std::string_view body) {
+    const Json json = Json::parse(body, nullptr, false);
+    return json.is_object() && json.contains("command") && json["command"].is_string()
+               ? json["command"].get<std::string>()
+               : "";
+}
+
+}  // namespace
+
 /// A virtual exposure ends with the program that it was in; the part of it that was not journaled did not take place
 /// when the twin was restored.
 class RecalledGuard final : public host::Guard {
@@ -118,16 +125,6 @@ public:
 private:
     long last_ = 0;  ///< in this session
 };
-
-/// The command of a request to the host's control, "" if it has none.
-std::string command_of(std::string_view body) {
-    const Json json = Json::parse(body, nullptr, false);
-    return json.is_object() && json.contains("command") && json["command"].is_string()
-               ? json["command"].get<std::string>()
-               : "";
-}
-
-}  // namespace
 
 /// Either a twin or a machine at a port.
 struct PrintSession::Machine {
@@ -169,7 +166,7 @@ struct PrintSession::Machine {
     /// True if there is neither a running nor an interrupted print.
     [[nodiscard]] bool is_free() const {
         const host::Snapshot now = control.snapshot();
-        return !under_way(now.state) && !now.can_resume;
+        return !is_under_way(now.state) && !now.can_resume;
     }
 
     std::filesystem::path file;
@@ -366,7 +363,7 @@ Status PrintSession::give_back() {
 Status PrintSession::leave() {
     std::shared_ptr<Machine> machine = this->machine();
     if (!machine) return {};
-    if (under_way(machine->control.snapshot().state))
+    if (is_under_way(machine->control.snapshot().state))
         return failure("a print is under way: cancel it before you disconnect");
     {
         const std::lock_guard lock(mutex_);
@@ -382,7 +379,7 @@ Status PrintSession::discard() {
     const auto machine = this->machine();
     if (!machine || !machine->twin) return failure("there is no virtual printer");
     const host::Snapshot now = machine->control.snapshot();
-    if (under_way(now.state) || !now.can_resume) return failure("there is no interrupted print");
+    if (is_under_way(now.state) || !now.can_resume) return failure("there is no interrupted print");
     const std::filesystem::path journal = machine->ready.job.journal;
     std::error_code error;
     if (!std::filesystem::remove(journal, error) || error)

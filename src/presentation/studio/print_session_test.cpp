@@ -19,13 +19,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Bench {
+struct PrintBench {
     const pliant::test::Folder folder;
     Events events;
     PrintSession session{[this](const std::string& json) { events.add(json); }};
     PrintSession::Order order{folder / "bar.zip", {"#123456"}};
 
-    Bench() {
+    PrintBench() {
         Progress silent;
         JobUnderWay unseen;
         const auto made = slice_robot(studio::test::slice_order(), order.job, silent, unseen);
@@ -76,7 +76,7 @@ TEST_CASE("without a machine there is nothing to ask, to show or to control") {
 }
 
 TEST_CASE("invalid requests for a machine are refused with the reason, and the current machine stays") {
-    Bench b;
+    PrintBench b;
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double speed : {0.0, -1.0, 1e9, nan})
         CHECK(holds(b.session.take_twin(b.order, speed).error().message, "speed: "));
@@ -101,7 +101,7 @@ TEST_CASE("invalid requests for a machine are refused with the reason, and the c
 }
 
 TEST_CASE("a job is printed on the virtual printer and inspected; then the machine is released") {
-    Bench b;
+    PrintBench b;
     REQUIRE(b.session.take_twin(b.order, 10000).has_value());
     CHECK(b.about()["job"] == "bar");
     CHECK(b.about()["file"] == "bar.zip");
@@ -123,7 +123,7 @@ TEST_CASE("a job is printed on the virtual printer and inspected; then the machi
 }
 
 TEST_CASE("a machine cannot be released or replaced during a print") {
-    Bench b;
+    PrintBench b;
     REQUIRE(b.session.take_twin(b.order, 1).has_value());
     b.wait_for_state("Operational");
     REQUIRE(b.command("start").status < 300);
@@ -138,7 +138,7 @@ TEST_CASE("a machine cannot be released or replaced during a print") {
 }
 
 TEST_CASE("an interrupted virtual print with a journal is resumed by the next studio, or discarded") {
-    Bench b;
+    PrintBench b;
     b.order.journal = b.folder / "bar.zip.virtual.journal";
     const auto layer_of = [](const Json& about) { return about["now"]["progress"]["layer"]; };
     {

@@ -6,6 +6,7 @@
 #include "base/core/toml_edit.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
+#include "presentation/studio/millimetres.hpp"
 #include "presentation/studio/print_session.hpp"
 #include "printing/machine/board_report.hpp"
 #include "printing/machine/switches.hpp"
@@ -17,10 +18,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::uintmax_t largest_file = 4 << 20;
-
-double mm(int um) {
-    return um / 1e3;
-}
 
 Json axes_json(const machine::Printer& p) {
     Json axes = Json::array();

@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-struct Bench {
+struct PrinterBench {
     const pliant::test::Folder at;
     const ProjectFolder folder = ProjectFolder::open(at.path()).value();
 
@@ -31,7 +31,7 @@ struct Bench {
 }  // namespace
 
 TEST_CASE("a new printer file is a copy of a built-in one, and overwrites nothing") {
-    const Bench b;
+    const PrinterBench b;
     REQUIRE(new_printer(b.folder, "tower", "mine.toml").has_value());
     CHECK(b.text("mine.toml") == find_file(example_printers(), "tower")->text);
     CHECK(holds(new_printer(b.folder, "tower", "mine.toml").error().message, "exists"));
@@ -43,7 +43,7 @@ TEST_CASE("a new printer file is a copy of a built-in one, and overwrites nothin
 }
 
 TEST_CASE("values of a printer file change in place, and everything else stays as written") {
-    const Bench b;
+    const PrinterBench b;
     REQUIRE(new_printer(b.folder, "tower", "mine.toml").has_value());
     const std::string before = b.text("mine.toml");
     CHECK(b.refused({{"name", "\"our tower\""},
@@ -65,7 +65,7 @@ TEST_CASE("values of a printer file change in place, and everything else stays a
 }
 
 TEST_CASE("an invalid change of a printer file is refused, and nothing is written") {
-    const Bench b;
+    const PrinterBench b;
     REQUIRE(new_printer(b.folder, "tower", "mine.toml").has_value());
     const std::string before = b.text("mine.toml");
     CHECK(holds(b.refused({{"projector.pixel", "50"}}), "pixel"));
@@ -79,7 +79,7 @@ TEST_CASE("an invalid change of a printer file is refused, and nothing is writte
 }
 
 TEST_CASE("the page gets a printer's settings, and a board's answers compared with them") {
-    const Bench b;
+    const PrinterBench b;
     const auto file = read_printer(b.folder, "tower");
     REQUIRE(file.has_value());
     const Json told = Json::parse(printer_setup_json("tower", file->printer, true));

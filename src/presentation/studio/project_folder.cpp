@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t longest_path = 400, longest_name = 255, most_files = 500;
-constexpr int deepest = 2;
+constexpr int deepest_folder = 2;
 
 bool is_robot_or_job(const fs::path& path) {
     const std::string extension = path.extension().string();
@@ -30,7 +30,7 @@ void list(const fs::path& folder, const fs::path& root, int depth, bool (*is_lis
         const fs::path& path = it->path();
         if (path.filename().string().starts_with('.') || it->is_symlink(error)) continue;
         if (it->is_directory(error)) {
-            if (depth < deepest) list(path, root, depth + 1, is_listed, files);
+            if (depth < deepest_folder) list(path, root, depth + 1, is_listed, files);
         } else if (it->is_regular_file(error) && is_listed(path)) {
             files.push_back(path.lexically_relative(root).generic_string());
         }

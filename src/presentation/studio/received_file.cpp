@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t longest_name = 120;
+constexpr std::size_t longest_file_name = 120;
 constexpr std::array<std::string_view, 12> endings = {".stl", ".obj", ".ply", ".off",  ".3mf", ".step",
                                                       ".stp", ".vtk", ".vtu", ".mesh", ".msh", ".inp"};
 
@@ -45,8 +45,8 @@ Error too_large(const std::string& name, long long largest) {
             fmt::format("{}: larger than {} MB; copy it into the project folder yourself", name, largest >> 20)};
 }
 
-Status write_all(const fs::path& path, const std::string& name, long long length, const ReadMore& more,
-                 long long largest) {
+Status write_received(const fs::path& path, const std::string& name, long long length, const ReadMore& more,
+                      long long largest) {
     if (length > largest) return tl::unexpected(too_large(name, largest));
     std::ofstream file(path, std::ios::binary);
     std::array<char, 1 << 16> piece{};
@@ -88,9 +88,9 @@ Status check_geometry_name(std::string_view name) {
     const auto bad = [](char c) {
         return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == '/' || c == '\\' || c == '"' || c == ':';
     };
-    if (name.empty() || name.size() > longest_name || name.front() == '.' || std::ranges::any_of(name, bad))
+    if (name.empty() || name.size() > longest_file_name || name.front() == '.' || std::ranges::any_of(name, bad))
         return input_error("\"{}\": a plain name of at most 120 bytes is needed, as in \"finger.stl\"",
-                           name.substr(0, longest_name));
+                           name.substr(0, longest_file_name));
     const std::string low = lower_case(name);
     if (std::ranges::any_of(endings, [&](std::string_view e) { return low.ends_with(e) && low.size() > e.size(); }))
         return {};
@@ -106,7 +106,7 @@ Result<ReceivedGeometry> receive_geometry(const ProjectFolder& folder, const std
     const Result<fs::path> path = folder.resolve(name);
     if (!path) return tl::unexpected(path.error());
     Aside aside(folder.path() / fmt::format(".{}.partial", random_key()));
-    if (Status status = write_all(aside.path(), name, length, more, largest); !status)
+    if (Status status = write_received(aside.path(), name, length, more, largest); !status)
         return tl::unexpected(status.error());
     Result<GeometryContent> content = geometry_content(aside.path());
     if (!content) return tl::unexpected(renamed(content.error(), aside.path().string(), name));

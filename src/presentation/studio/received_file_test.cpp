@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Bench {
+struct UploadBench {
     pliant::test::Folder folder{"received"};
     ProjectFolder project = ProjectFolder::open(folder.path()).value();
 
@@ -43,14 +43,14 @@ struct Bench {
     }
 };
 
-std::string refused(const Result<ReceivedGeometry>& received) {
+std::string refused_file(const Result<ReceivedGeometry>& received) {
     return received ? "" : received.error().message;
 }
 
 }  // namespace
 
 TEST_CASE("a surface file is received whole and measured, and replaces another file only on request") {
-    Bench b;
+    UploadBench b;
     for (const bool known : {true, false}) {
         const auto received = b.send(known ? "a.stl" : "b.STL", tetra(10), false, known);
         REQUIRE(received);
@@ -72,46 +72,46 @@ TEST_CASE("a surface file is received whole and measured, and replaces another f
 }
 
 TEST_CASE("paths, hidden names and unknown extensions are refused, and nothing is written") {
-    Bench b;
+    UploadBench b;
     for (const char* name : {"", ".stl", ".hidden.stl", "../up.stl", "/etc/x.stl", "sub/x.stl", "a\\b.stl", "a\nb.stl",
                              "c:x.stl", "quote\".stl"}) {
         INFO(name);
-        CHECK(holds(refused(b.send(name, tetra(10))), "a plain name"));
+        CHECK(holds(refused_file(b.send(name, tetra(10))), "a plain name"));
     }
-    CHECK(holds(refused(b.send(std::string(200, 'x') + ".stl", tetra(10))), "at most 120 bytes"));
+    CHECK(holds(refused_file(b.send(std::string(200, 'x') + ".stl", tetra(10))), "at most 120 bytes"));
     for (const char* name : {"robot.toml", "job.zip", "a.stl.exe", "stl"})
-        CHECK(holds(refused(b.send(name, tetra(10))), "is not geometry that Pliant reads by its ending"));
+        CHECK(holds(refused_file(b.send(name, tetra(10))), "is not geometry that Pliant reads by its ending"));
     CHECK(b.files() == 0);
 }
 
 TEST_CASE("a link that leads out of the folder is not written through") {
-    Bench b;
+    UploadBench b;
     const pliant::test::Folder elsewhere("received_elsewhere");
     std::ofstream(elsewhere.path() / "precious.stl") << "mine";
     fs::create_symlink(elsewhere.path() / "precious.stl", b.folder.path() / "a.stl");
-    CHECK(holds(refused(b.send("a.stl", tetra(10), true)), "leads outside"));
+    CHECK(holds(refused_file(b.send("a.stl", tetra(10), true)), "leads outside"));
     CHECK(read_file(elsewhere.path() / "precious.stl").value() == "mine");
 }
 
 TEST_CASE("unreadable, oversized and broken-off files are refused and leave nothing") {
-    Bench b;
+    UploadBench b;
     const std::string cut = tetra(10).substr(0, 120);
-    const std::string why = refused(b.send("cut.stl", cut));
+    const std::string why = refused_file(b.send("cut.stl", cut));
     CHECK(why.starts_with("cut.stl:"));
     CHECK_FALSE(holds(why, ".partial"));
-    CHECK(refused(b.send("noise.step", "no step at all")).starts_with("noise.step:"));
-    CHECK(holds(refused(b.send("empty.stl", "")), "empty"));
+    CHECK(refused_file(b.send("noise.step", "no step at all")).starts_with("noise.step:"));
+    CHECK(holds(refused_file(b.send("empty.stl", "")), "empty"));
     for (const bool known : {true, false})
-        CHECK(holds(refused(b.send("big.stl", tetra(10), false, known, 300)), "larger than"));
+        CHECK(holds(refused_file(b.send("big.stl", tetra(10), false, known, 300)), "larger than"));
     const ReadMore broken = [](char*, std::size_t) { return -1LL; };
-    CHECK(holds(refused(receive_geometry(b.project, "a.stl", false, 10, broken)), "the connection was lost"));
+    CHECK(holds(refused_file(receive_geometry(b.project, "a.stl", false, 10, broken)), "the connection was lost"));
     const ReadMore short_one = [](char*, std::size_t) { return 0LL; };
-    CHECK(holds(refused(receive_geometry(b.project, "a.stl", false, 10, short_one)), "the connection was lost"));
+    CHECK(holds(refused_file(receive_geometry(b.project, "a.stl", false, 10, short_one)), "the connection was lost"));
     CHECK(b.files() == 0);
 }
 
 TEST_CASE("regions of a tet mesh are listed as parts") {
-    Bench b;
+    UploadBench b;
     const auto received = b.send("two.mesh",
                                  "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 "
                                  "0\n0 0 -1 0\nTetrahedra\n2\n1 2 3 4 1\n1 3 2 5 2\nEnd\n");

@@ -7,6 +7,7 @@
 #include "base/core/toml_edit.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/json_toml.hpp"
+#include "presentation/studio/limits.hpp"
 #include "presentation/studio/studio.hpp"
 #include "robot/file/material_library.hpp"
 
@@ -14,12 +15,6 @@ namespace pliant::studio {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr std::size_t most_changes = 256;
-
-Response done(const Status& status) {
-    return status ? json_response("{}") : error_response(status.error());
-}
 
 Response set_values(Studio& studio, const Request& request) {
     const Json json = Json::parse(request.body, nullptr, false);

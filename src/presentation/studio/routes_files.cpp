@@ -4,6 +4,7 @@
 #include "base/core/files.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
+#include "presentation/studio/limits.hpp"
 #include "presentation/studio/received_file.hpp"
 #include "presentation/studio/studio.hpp"
 #include "printing/job/job.hpp"
@@ -12,8 +13,6 @@ namespace pliant::studio {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr std::uintmax_t largest_robot = 4 << 20;
 
 Json vector_json(const Vec3& v) {
     return Json::array({v.x, v.y, v.z});

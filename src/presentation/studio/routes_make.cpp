@@ -122,7 +122,7 @@ Response save(Studio& studio, const Request& request) {
 }
 
 /// Plans the same job for every built-in machine.
-Response compare(Studio& studio, const Request&) {
+Response compare_printers(Studio& studio, const Request&) {
     const auto open = studio.make().job();
     if (!open) return no_job();
     // The contents of vats must not affect the comparison of machines.
@@ -244,7 +244,8 @@ void add_make_routes(std::vector<Route>& routes) {
     routes.push_back(
         {"GET", "/api/job/part", "the job as it will stand, a packet", "application/octet-stream", false, part});
     routes.push_back({"GET", "/api/job/timeline", "every device over the whole print", json, false, timeline});
-    routes.push_back({"GET", "/api/job/compare", "the job planned on every built-in printer", json, false, compare});
+    routes.push_back(
+        {"GET", "/api/job/compare", "the job planned on every built-in printer", json, false, compare_printers});
     routes.push_back({"GET", "/api/job/file", "the job file", "application/zip", false, download});
     routes.push_back({"POST", "/api/job/save", "writes the job into the folder: {\"name\"}", json, true, save, json});
 }

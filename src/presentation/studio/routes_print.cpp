@@ -13,10 +13,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-Response done(const Status& status) {
-    return status ? json_response("{}") : error_response(status.error());
-}
-
 double speed_of(const Request& request) {
     const Json json = Json::parse(request.body, nullptr, false);
     return json.is_object() && json.contains("speed") && json["speed"].is_number() ? json["speed"].get<double>() : 1;
@@ -114,16 +110,16 @@ std::size_t number_of(const Request& request, const char* key) {
     return number;
 }
 
-Response part(Studio& studio, const Request& request) {
+Response printed_part(Studio& studio, const Request& request) {
     std::string packet =
         studio.print().part(static_cast<int>(number_of(request, "revision")), number_of(request, "from"));
     if (packet.empty()) return error_response(404, "no machine is connected");
     return {200, "application/octet-stream", std::move(packet)};
 }
 
-Response image(Studio& studio, const Request& request) {
-    const auto number = [&](const char* part) {
-        const std::string& text = request.parts.at(part);
+Response printed_image(Studio& studio, const Request& request) {
+    const auto number = [&](const char* printed_part) {
+        const std::string& text = request.parts.at(printed_part);
         int value = -1;
         const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
         return code == std::errc() && end == text.data() + text.size() ? value : -1;
@@ -204,9 +200,9 @@ void add_print_routes(std::vector<Route>& routes) {
                           return png ? Response{200, "image/png", std::move(*png)} : Response{204, "image/png", ""};
                       }});
     routes.push_back({"GET", "/api/print/part", "the part as far as it is printed, a packet: ?revision= and ?from=",
-                      "application/octet-stream", false, part});
+                      "application/octet-stream", false, printed_part});
     routes.push_back({"GET", "/api/print/image/{layer}/{material}", "an image of the job that is printed", "image/png",
-                      false, image});
+                      false, printed_image});
     // Every page may stop the print, not only the one in control.
     routes.push_back(
         {"POST", "/api/print/stop", "emergency stop, by any page", json, false, [](Studio& s, const Request&) {

@@ -5,6 +5,7 @@
 #include "presentation/studio/examples.hpp"
 #include "presentation/studio/job_json.hpp"
 #include "presentation/studio/json_toml.hpp"
+#include "presentation/studio/limits.hpp"
 #include "presentation/studio/printer_files.hpp"
 #include "presentation/studio/studio.hpp"
 #include "printing/host/projector_patterns.hpp"
@@ -14,12 +15,6 @@ namespace pliant::studio {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr std::size_t most_changes = 256;
-
-Response done(const Status& status) {
-    return status ? json_response("{}") : error_response(status.error());
-}
 
 std::string text_at(const Json& json, const char* key) {
     return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
@@ -96,7 +91,7 @@ Response show_pattern(Studio& studio, const Request& request) {
     return done(studio.projector().show(order, file->printer.projector));
 }
 
-Response picture(Studio& studio, const Request& request) {
+Response test_pattern(Studio& studio, const Request& request) {
     const auto file = read_printer(studio.folder(), asked_name(request));
     if (!file) return error_response(file.error());
     const auto square = request.query.find("square");
@@ -147,7 +142,7 @@ void add_printer_routes(std::vector<Route>& routes) {
                       "what the board at a port says of itself: {\"name\", \"device\", \"baud_rate\"}", json, true,
                       probe, json});
     routes.push_back({"GET", "/api/printer/pattern/{pattern}",
-                      "a test pattern as a picture: ?name=&square=", "image/png", false, picture});
+                      "a test pattern as a picture: ?name=&square=", "image/png", false, test_pattern});
     routes.push_back({"POST", "/api/printer/pattern",
                       "shows a test pattern: {\"name\", \"projector\", \"pattern\", \"square\", \"seconds\"}", json,
                       true, show_pattern, json});

@@ -11,10 +11,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-Response done(const Status& status) {
-    return status ? json_response("{}") : error_response(status.error());
-}
-
 /// The text under `key` in the JSON body; "" if missing.
 std::string body_text(const Request& request, const char* key) {
     const Json json = Json::parse(request.body, nullptr, false);

@@ -31,7 +31,7 @@ GoalOrder goal_at(double z_mm) {
     return {"tip", {{4, 1.5, z_mm}}, 1.0, {{"flexor", 0, 1}}};
 }
 
-struct Bench {
+struct SearchBench {
     Events events;
     SearchSession session{[this](const std::string& json) { events.add(json); }};
     /// The final message of the search.
@@ -88,7 +88,7 @@ TEST_CASE("impossible goals are refused in one line") {
 
 TEST_CASE("a search reports its end, and its result is kept until the next search") {
     const auto built = built_from(bar);
-    Bench b;
+    SearchBench b;
     CHECK(b.session.result() == nullptr);
     CHECK(Json::parse(b.session.news()[0])["result"] == 0);
     REQUIRE(b.session.find_inputs(built, *goal_task(*built, goal_at(1.5))));
@@ -106,7 +106,7 @@ TEST_CASE("a search reports its end, and its result is kept until the next searc
 
 TEST_CASE("a modulus is identified from a table, with plots") {
     const auto built = built_from(bar);
-    Bench b;
+    SearchBench b;
     REQUIRE(b.session.identify(built,
                                {{"cable.flexor.target.shortening"}, "time,tip_z_mm\n0.5,1.02\n1,1.05\n", "t.csv", ""}));
     CHECK(b.end() == "");
@@ -122,7 +122,7 @@ TEST_CASE("a workspace holds what each marker can reach") {
     const WorkspaceOrder order{{{"flexor", 0, 0.2}}, 5, 0};
     const auto task = workspace_task(*built, order);
     REQUIRE(task);
-    Bench b;
+    SearchBench b;
     REQUIRE(b.session.find_workspace(built, *task, order));
     CHECK(b.end() == "");
     const Json found = b.result()["found"];
@@ -153,7 +153,7 @@ TEST_CASE("a workspace holds what each marker can reach") {
 
 TEST_CASE("a sweep and a whole program run in the background, and the program's states can be played") {
     const auto built = built_from(bar);
-    Bench b;
+    SearchBench b;
     REQUIRE(b.session.sweep(built, {{{"cable.flexor.target.shortening", "mm", {0.1, 0.2}}}}));
     CHECK(b.end() == "");
     CHECK(b.result()["found"]["runs"].size() == 2);
@@ -180,7 +180,7 @@ TEST_CASE("a sweep and a whole program run in the background, and the program's 
 
 TEST_CASE("one search runs at a time, and a cancelled one leaves no result") {
     const auto built = built_from(bar);
-    Bench b;
+    SearchBench b;
     GoalOrder long_one = goal_at(1.5);
     for (int k = 0; k < 200; ++k) long_one.path_mm.push_back({4, 1.5, 1 + 0.002 * k});
     long_one.tolerance_mm = 1e-6;

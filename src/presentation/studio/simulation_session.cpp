@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "presentation/studio/dumped.hpp"
+#include "presentation/studio/millimetres.hpp"
 #include "presentation/studio/state_json.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/run/simulate.hpp"
@@ -18,7 +19,6 @@ namespace {
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-constexpr double mm = 1e3;
 constexpr std::size_t history_bytes = std::size_t{96} << 20;
 constexpr std::chrono::milliseconds frame_gap{15};  // sending faster than the display rate is useless
 constexpr std::chrono::milliseconds pause{80};      // after the last input before refining; during interaction inputs
@@ -401,7 +401,7 @@ std::optional<Pulled> SimulationSession::pulled(const std::optional<PullMessage>
     if (!message || message->vertex >= static_cast<int>(built_->scene.vertex_count())) return std::nullopt;
     const int node = built_->scene.node_of_vertex(static_cast<std::size_t>(message->vertex));
     return Pulled{message->vertex, built_->model.mesh().points[static_cast<std::size_t>(node)],
-                  1 / mm * Vec3{message->to_mm[0], message->to_mm[1], message->to_mm[2]}};
+                  1 / mm_per_m * Vec3{message->to_mm[0], message->to_mm[1], message->to_mm[2]}};
 }
 
 void SimulationSession::go_on_playing() {
@@ -568,7 +568,7 @@ std::string SimulationSession::frame_head(const sim::Step& step, const About& ab
                  {"playing", playing_},
                  {"iterations", about.iterations},
                  {"solve_ms", 1e3 * step.wall_s}});
-    if (about.reduced_error_m) json["reduced_error_mm"] = mm * *about.reduced_error_m;
+    if (about.reduced_error_m) json["reduced_error_mm"] = mm_per_m * *about.reduced_error_m;
     if (events_.beside) json["beside"] = true;
     if (about.pulled_vertex >= 0) {
         const Vec3 force = about.pull_force_N;

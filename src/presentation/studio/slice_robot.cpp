@@ -18,7 +18,7 @@ std::string colour_of_material(const std::string& name, const robot::Robot& robo
 }
 
 /// Colours of the job's materials; those printed together have the colour of the first.
-std::vector<std::string> colours_of(const job::Manifest& manifest, const robot::Robot& robot) {
+std::vector<std::string> colours_by_robot(const job::Manifest& manifest, const robot::Robot& robot) {
     std::vector<std::string> colours;
     for (std::size_t m = 0; m < manifest.materials.size(); ++m) {
         const job::Material& material = manifest.materials[m];
@@ -39,11 +39,11 @@ Result<std::vector<std::string>> slice_robot(const SliceOrder& wanted, const std
     if (!drawing) return tl::unexpected(drawing.error());
     seen.clear();
     const auto watch = [&](const job::Manifest& so_far, int count, const std::vector<job::EncodedImage>& images) {
-        seen.add(so_far, count, images, colours_of(so_far, *robot));
+        seen.add(so_far, count, images, colours_by_robot(so_far, *robot));
     };
     const auto made = prepare::slice_job(wanted.order, wanted.printer, std::move(*drawing), job, progress, watch);
     if (!made) return tl::unexpected(made.error());
-    return colours_of(made->manifest, *robot);
+    return colours_by_robot(made->manifest, *robot);
 }
 
 Result<plan::Plan> estimate_robot(const SliceOrder& wanted) {

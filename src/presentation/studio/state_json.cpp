@@ -2,12 +2,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "presentation/studio/millimetres.hpp"
+
 namespace pliant::studio {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr double mm = 1e3;
 
 Json three(const Vec3& v, double factor = 1) {
     return Json::array({factor * v.x, factor * v.y, factor * v.z});
@@ -19,11 +19,11 @@ Json state_json(const sim::Step& step) {
     Json cables = Json::array(), chambers = Json::array(), markers = Json::array(), supports = Json::array(),
          contacts = Json::array(), sensors = Json::array();
     for (const auto& c : step.cables)
-        cables.push_back({{"ratio", c.length_ratio}, {"length_mm", mm * c.length_m}, {"tension_N", c.tension_N}});
+        cables.push_back({{"ratio", c.length_ratio}, {"length_mm", mm_per_m * c.length_m}, {"tension_N", c.tension_N}});
     for (const auto& c : step.chambers)
         chambers.push_back(
             {{"ratio", c.volume_ratio}, {"volume_mm3", 1e9 * c.volume_m3}, {"pressure_kPa", 1e-3 * c.pressure_Pa}});
-    for (const auto& m : step.markers) markers.push_back(three(m.position_m, mm));
+    for (const auto& m : step.markers) markers.push_back(three(m.position_m, mm_per_m));
     for (const auto& s : step.supports) supports.push_back(three(s.force_N));
     for (const auto& c : step.contacts) contacts.push_back(three(c.force_N));
     for (const auto& o : step.objects) contacts.push_back(three(o.force_N));

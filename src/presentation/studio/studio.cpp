@@ -8,13 +8,13 @@
 #include "base/core/files.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
+#include "presentation/studio/limits.hpp"
 #include "printing/machine/printer.hpp"
 #include "robot/file/robot_file.hpp"
 
 namespace pliant::studio {
 namespace {
 
-constexpr std::uintmax_t largest_robot = 4 << 20;
 constexpr std::size_t most_undo = 200;
 constexpr std::string_view first_example = "cable_gripper";
 

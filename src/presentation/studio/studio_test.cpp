@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-constexpr const char* bar = R"(name = "bar"
+constexpr const char* project_bar = R"(name = "bar"
 length_unit = "mm"
 material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.45, resin = "semi-flex" }
 body = [{ name = "bar", material = "soft", geometry = { box = [[0, 0, 0], [40, 10, 10]] } }]
@@ -40,7 +40,7 @@ struct Project {
     fs::path base = folder.path();
     Project() {
         fs::create_directories(base / "project");
-        std::ofstream(base / "project" / "bar.toml") << bar;
+        std::ofstream(base / "project" / "bar.toml") << project_bar;
         std::ofstream(base / "outside.stl") << "solid x\nendsolid x\n";
     }
 };
@@ -128,7 +128,7 @@ TEST_CASE("a robot is opened, bent, edited, undone and saved") {
         CHECK(followed["markers"][0][k].get<double>() ==
               near(bent["markers"][0][k].get<double>(), {.relative = 1e-12}));
 
-    std::string stiffer = bar;
+    std::string stiffer = project_bar;
     stiffer.replace(stiffer.find("1 MPa"), 5, "2 MPa");
     REQUIRE(ask(studio, "PUT", "/api/robot", stiffer, "first_page").status == 200);
     REQUIRE(studio.simulation().wait_until_built());
@@ -141,7 +141,7 @@ TEST_CASE("a robot is opened, bent, edited, undone and saved") {
     CHECK(ask(studio, "POST", "/api/robot/save", "{}", "first_page").status == 200);
     CHECK(file_text(project.base / "project" / "bar.toml") == stiffer);
     CHECK(ask(studio, "POST", "/api/robot/undo", "", "first_page").status == 200);
-    CHECK(ask(studio, "GET", "/api/robot").body == bar);
+    CHECK(ask(studio, "GET", "/api/robot").body == project_bar);
     CHECK(ask(studio, "POST", "/api/robot/redo", "", "first_page").status == 200);
     CHECK(ask(studio, "GET", "/api/robot").body == stiffer);
     CHECK(ask(studio, "POST", "/api/robot/save", R"({"name":"../evil.toml"})", "first_page").status == 422);
@@ -169,7 +169,7 @@ TEST_CASE("a changed robot goes to the state that was wanted before; another rob
             if (head["revision"] == revision && head["arrived"] == true && head["time"] == time) return head;
         }
     };
-    std::string stiffer = bar;
+    std::string stiffer = project_bar;
     stiffer.replace(stiffer.find("1 MPa"), 5, "2 MPa");
     REQUIRE(ask(studio, "PUT", "/api/robot", stiffer, "first_page").status == 200);
     const Json followed = arrived_anew(2, 0.5);
@@ -256,7 +256,7 @@ TEST_CASE("an error in the file is reported with its line, and the previous robo
     const Project project;
     const auto owner = built(project);
     Studio& studio = *owner;
-    std::string wrong = bar;
+    std::string wrong = project_bar;
     wrong.replace(wrong.find("poisson_ratio"), 13, "poison_ratio_");
     CHECK(ask(studio, "PUT", "/api/robot", wrong).status == 200);
     CHECK(studio.simulation().wait_until_built());
@@ -276,14 +276,14 @@ TEST_CASE("a robot text from the page cannot read files outside the folder") {
     const auto owner = opened(project);
     Studio& studio = *owner;
     for (const std::string& path : {std::string("../outside.stl"), (project.base / "outside.stl").string()}) {
-        std::string text = bar;
+        std::string text = project_bar;
         const std::string geometry = "{ box = [[0, 0, 0], [40, 10, 10]] }";
         text.replace(text.find(geometry), geometry.size(), "\"" + path + "\"");
         const Response response = ask(studio, "PUT", "/api/robot", text);
         CHECK(response.status == 422);
         CHECK(response.body.find("outside of the project folder") != std::string::npos);
     }
-    CHECK(ask(studio, "GET", "/api/robot").body == bar);
+    CHECK(ask(studio, "GET", "/api/robot").body == project_bar);
     CHECK(ask(studio, "POST", "/api/open", R"({"name":"../outside.stl"})").status == 422);
     CHECK(ask(studio, "POST", "/api/open", R"({"name":"/etc/passwd"})").status == 422);
 }
@@ -292,10 +292,10 @@ TEST_CASE("a page that is not in control cannot change anything") {
     const auto owner = opened();
     Studio& studio = *owner;
     const auto first = joined(studio, "first_page"), second = joined(studio, "second_page");
-    CHECK(ask(studio, "PUT", "/api/robot", bar, "second_page").status == 423);
-    CHECK(ask(studio, "PUT", "/api/robot", bar).status == 423);
-    CHECK(ask(studio, "PUT", "/api/robot", bar, "first_page").status == 200);
-    CHECK(ask(studio, "GET", "/api/robot", "", "second_page").body == bar);
+    CHECK(ask(studio, "PUT", "/api/robot", project_bar, "second_page").status == 423);
+    CHECK(ask(studio, "PUT", "/api/robot", project_bar).status == 423);
+    CHECK(ask(studio, "PUT", "/api/robot", project_bar, "first_page").status == 200);
+    CHECK(ask(studio, "GET", "/api/robot", "", "second_page").body == project_bar);
     const auto stranger = studio.join();
     studio.receive(stranger, R"({"type":"play","on":true})");
     const auto answer = stranger->next();
@@ -429,7 +429,7 @@ TEST_CASE("a file from the page becomes a body of a robot, and replaces another 
     CHECK(file_text(project.base / "project" / "part.stl") == tetra_stl());
     CHECK(put_file(studio, "../part.stl", tetra_stl()).status == 422);
     CHECK(put_file(studio, "bar.toml", tetra_stl(), true).status == 422);
-    CHECK(file_text(project.base / "project" / "bar.toml") == bar);
+    CHECK(file_text(project.base / "project" / "bar.toml") == project_bar);
     CHECK(ask(studio, "PUT", "/api/files").status == 422);
     const auto page = joined(studio, "first_page");
     CHECK(put_file(studio, "other.stl", tetra_stl(), false, "second_page").status == 423);
@@ -446,7 +446,7 @@ TEST_CASE("a file from the page becomes a body of a robot, and replaces another 
 TEST_CASE("robots have thumbnails; invalid files have none") {
     const Project project;
     std::ofstream(project.base / "project" / "wrong.toml") << "name = 3\n";
-    std::string outside = bar;
+    std::string outside = project_bar;
     const std::string geometry = "{ box = [[0, 0, 0], [40, 10, 10]] }";
     outside.replace(outside.find(geometry), geometry.size(), "\"../outside.stl\"");
     std::ofstream(project.base / "project" / "outside.toml") << outside;
@@ -492,7 +492,7 @@ TEST_CASE("the robot has a picture before it is built, in light and dark; one wi
 
     std::stop_source stopped;
     stopped.request_stop();
-    std::string other = bar;
+    std::string other = project_bar;
     other.replace(other.find("[40, 10, 10]"), 12, "[40, 10, 20]");
     REQUIRE(owner->edit(other));
     CHECK(owner->first_picture(false, stopped.get_token()) == nullptr);
@@ -506,7 +506,7 @@ TEST_CASE("the robot has a picture before it is built, in light and dark; one wi
 TEST_CASE("the robot has a picture although it names a file outside the folder, but text from a page gets none") {
     const Project project;
     std::ofstream(project.base / "tetra.stl") << studio::test::tetra(9);
-    std::string outside = bar;
+    std::string outside = project_bar;
     const std::string geometry = "{ box = [[0, 0, 0], [40, 10, 10]] }";
     outside.replace(outside.find(geometry), geometry.size(), "\"../tetra.stl\"");
     std::ofstream(project.base / "project" / "outside.toml") << outside;
@@ -535,7 +535,7 @@ TEST_CASE("a second robot is shown beside the first, and follows the same inputs
     REQUIRE(ask(studio, "POST", "/api/compare", "{}").status == 200);
     REQUIRE(studio.beside()->wait_until_built());
     // The first robot is made stiffer; the second one stays unchanged.
-    std::string stiffer = bar;
+    std::string stiffer = project_bar;
     stiffer.replace(stiffer.find("1 MPa"), 5, "2 MPa");
     const auto page = joined(studio, "first_page");
     REQUIRE(ask(studio, "PUT", "/api/robot", stiffer, "first_page").status == 200);
@@ -597,14 +597,14 @@ TEST_CASE("values and entries of the robot file change by request, and a text ca
         CHECK(post(path, body).status == 422);
     }
     const std::string before = studio->document().text;
-    std::string wrong = bar;
+    std::string wrong = project_bar;
     wrong.replace(wrong.find("marker ="), 8, "markr =");
     const Json found = Json::parse(post("/api/robot/check", wrong).body);
     REQUIRE(found["lines"].size() == 1);
     CHECK(found["lines"][0]["line"] == 6);
-    CHECK(Json::parse(post("/api/robot/check", bar).body)["lines"].empty());
+    CHECK(Json::parse(post("/api/robot/check", project_bar).body)["lines"].empty());
     CHECK(studio->document().text == before);
     CHECK(Json::parse(studio->handle({"GET", "/api/materials"}).body).size() > 10);
-    CHECK(post("/api/robot/new", bar).status == 200);
+    CHECK(post("/api/robot/new", project_bar).status == 200);
     CHECK(studio->document().name.empty());
 }

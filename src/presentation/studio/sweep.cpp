@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "presentation/studio/dumped.hpp"
+#include "presentation/studio/millimetres.hpp"
 #include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/run/simulate.hpp"
@@ -16,8 +17,6 @@ namespace pliant::studio {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr double mm = 1e3;
 
 /// Progress of a part of the whole work.
 class Part final : public Progress {
@@ -49,7 +48,7 @@ Row row_of(const sim::Step& rest, const sim::Step& end) {
     for (std::size_t k = 0; k < end.cables.size(); ++k) {
         const sim::CableState& c = end.cables[k];
         row.add(c.name, "tension_N", "tension", "N", c.tension_N);
-        row.add(c.name, "shortening_mm", "shortening", "mm", mm * (rest.cables[k].length_m - c.length_m));
+        row.add(c.name, "shortening_mm", "shortening", "mm", mm_per_m * (rest.cables[k].length_m - c.length_m));
         row.add(c.name, "length_ratio", "length ratio", "", c.length_ratio);
     }
     for (std::size_t k = 0; k < end.chambers.size(); ++k) {
@@ -60,10 +59,11 @@ Row row_of(const sim::Step& rest, const sim::Step& end) {
     }
     for (std::size_t k = 0; k < end.markers.size(); ++k) {
         const sim::MarkerState& m = end.markers[k];
-        row.add(m.name, "displacement_mm", "displacement", "mm", mm * norm(m.position_m - rest.markers[k].position_m));
-        row.add(m.name, "x_mm", "x", "mm", mm * m.position_m.x);
-        row.add(m.name, "y_mm", "y", "mm", mm * m.position_m.y);
-        row.add(m.name, "z_mm", "z", "mm", mm * m.position_m.z);
+        row.add(m.name, "displacement_mm", "displacement", "mm",
+                mm_per_m * norm(m.position_m - rest.markers[k].position_m));
+        row.add(m.name, "x_mm", "x", "mm", mm_per_m * m.position_m.x);
+        row.add(m.name, "y_mm", "y", "mm", mm_per_m * m.position_m.y);
+        row.add(m.name, "z_mm", "z", "mm", mm_per_m * m.position_m.z);
     }
     for (const sim::SupportState& s : end.supports) row.add(s.name, "force_N", "reaction", "N", norm(s.force_N));
     row.add("", "energy_mJ", "energy", "mJ", 1e3 * end.energy_J);

@@ -20,7 +20,7 @@ using studio::test::Json;
 
 namespace {
 
-Progress silent;
+Progress unwatched;
 
 std::size_t column(const Sweep& sweep, const std::string& key) {
     const auto found = std::ranges::find(sweep.columns, key, &SweepColumn::key);
@@ -36,16 +36,16 @@ RobotText source(Accuracy accuracy = Accuracy::preview) {
 double simulated_tension(const std::vector<std::string>& assignments) {
     Result<robot::Robot> robot = robot::parse_robot(bar, "bar.toml", assignments);
     REQUIRE(robot);
-    const Result<robot::Scene> scene = robot::build_scene(std::move(*robot), silent);
+    const Result<robot::Scene> scene = robot::build_scene(std::move(*robot), unwatched);
     REQUIRE(scene);
-    return sim::run(scene->model, scene->robot.program, silent).steps.back().cables[0].tension_N;
+    return sim::run(scene->model, scene->robot.program, unwatched).steps.back().cables[0].tension_N;
 }
 
 }  // namespace
 
 TEST_CASE("each run of a sweep is the program with --set, and the tension is proportional to the modulus") {
     const SweepOrder order{{{"material.soft.youngs_modulus", "MPa", {1, 2, 4}}}};
-    const auto sweep = run_sweep(source(), order, silent);
+    const auto sweep = run_sweep(source(), order, unwatched);
     REQUIRE(sweep);
     REQUIRE(sweep->runs.size() == 3);
     const std::size_t tension = column(*sweep, "flexor_tension_N");
@@ -63,7 +63,7 @@ TEST_CASE("each run of a sweep is the program with --set, and the tension is pro
 
 TEST_CASE("two keys give every combination, the second one fastest; if the mesh changes it is built again") {
     const SweepOrder order{{{"cable.flexor.target.shortening", "mm", {0.1, 0.2}}, {"mesh.size", "mm", {1.5, 1}}}};
-    const auto sweep = run_sweep(source(), order, silent);
+    const auto sweep = run_sweep(source(), order, unwatched);
     REQUIRE(sweep);
     REQUIRE(sweep->runs.size() == 4);
     CHECK(sweep->runs[1].inputs == std::vector<double>{0.1, 1});
@@ -89,12 +89,12 @@ TEST_CASE("keys that do not change shapes keep the mesh") {
 
 TEST_CASE("an impossible value gives its reason; only a sweep without any valid value is an error") {
     const SweepOrder order{{{"material.soft.poisson_ratio", "", {0.45, 0.6}}}};
-    const auto sweep = run_sweep(source(), order, silent);
+    const auto sweep = run_sweep(source(), order, unwatched);
     REQUIRE(sweep);
     CHECK(sweep->runs[0].why.empty());
     CHECK(sweep->runs[1].results.empty());
     CHECK(holds(sweep->runs[1].why, "poisson_ratio"));
-    const auto none = run_sweep(source(), {{{"material.soft.nothing", "", {1, 2}}}}, silent);
+    const auto none = run_sweep(source(), {{{"material.soft.nothing", "", {1, 2}}}}, unwatched);
     REQUIRE_FALSE(none);
     CHECK(holds(none.error().message, "nothing"));
     struct Stop final : Progress {

@@ -12,7 +12,7 @@ using studio::read_or_make_token;
 namespace fs = std::filesystem;
 
 TEST_CASE("a token is made once, readable by its owner only, and then kept") {
-    const test::Folder folder("token");
+    const pliant::test::Folder folder("token");
     const Result<std::string> first = read_or_make_token(folder / "token");
     REQUIRE(first);
     CHECK(first->size() == 32);
@@ -22,7 +22,7 @@ TEST_CASE("a token is made once, readable by its owner only, and then kept") {
 }
 
 TEST_CASE("the user's own token is accepted unless it is weak or readable by everybody") {
-    const test::Folder folder("token");
+    const pliant::test::Folder folder("token");
     const auto read = [&](const std::string& text, fs::perms permissions) {
         REQUIRE(write_file(folder / "token", text));
         fs::permissions(folder / "token", permissions);

@@ -14,7 +14,7 @@ using nlohmann::json;
 namespace {
 
 /// A control of a printer that behaves like a faultless Marlin, running in the calling thread.
-struct Bench {
+struct ApiBench {
     CountingClock clock;
     RememberingProjector projector;
     ScriptedWire* wire = nullptr;
@@ -63,7 +63,7 @@ struct Bench {
 }  // namespace
 
 TEST_CASE("wrong paths, methods and bodies have different statuses") {
-    Bench b;
+    ApiBench b;
     CHECK(handle_api(b.control, "GET", "/api/none", "").status == 404);
     CHECK(handle_api(b.control, "DELETE", "/api/job", "").status == 405);
     CHECK(handle_api(b.control, "POST", "/api/job", "{").status == 400);
@@ -78,7 +78,7 @@ TEST_CASE("wrong paths, methods and bodies have different statuses") {
 }
 
 TEST_CASE("a jog distance beyond the range of int micrometres is refused, not wrapped") {
-    Bench b;
+    ApiBench b;
     REQUIRE(b.post("/api/connection", {{"command", "connect"}}).status == 204);
     b.control.serve_until_idle();
     for (const double mm : {4294967.396, -4294967.296, 1.1e5}) {
@@ -89,7 +89,7 @@ TEST_CASE("a jog distance beyond the range of int micrometres is refused, not wr
 }
 
 TEST_CASE("a command that the state does not allow is a conflict (409), with the reason") {
-    Bench b;
+    ApiBench b;
     for (const char* command : {"start", "pause", "cancel", "resume", "suspend"}) {
         const ApiAnswer answer = b.post("/api/job", {{"command", command}});
         CHECK(answer.status == 409);
@@ -99,7 +99,7 @@ TEST_CASE("a command that the state does not allow is a conflict (409), with the
 }
 
 TEST_CASE("connect, look, start: the answers follow OctoPrint's API") {
-    Bench b;
+    ApiBench b;
     CHECK(b.get("/api/connection")["current"]["state"] == "Offline");
     CHECK(b.post("/api/connection", {{"command", "connect"}}).status == 204);
     CHECK(b.get("/api/connection")["current"]["state"] == "Connecting");
@@ -124,7 +124,7 @@ TEST_CASE("connect, look, start: the answers follow OctoPrint's API") {
 }
 
 TEST_CASE("the feed gives the history, then what is new, each event once") {
-    Bench b;
+    ApiBench b;
     long seen = 0;
     json message = json::parse(history_message(b.control, seen));
     CHECK(message["history"]["state"]["text"] == "Offline");
@@ -144,7 +144,7 @@ TEST_CASE("the feed gives the history, then what is new, each event once") {
 }
 
 TEST_CASE("loading a job does not change the state") {
-    Bench b;
+    ApiBench b;
     b.load();
     for (const Event& event : b.control.events_since(0)) CHECK(event.kind != "state");
     CHECK(b.control.snapshot().state == State::offline);
@@ -157,7 +157,7 @@ TEST_CASE("loading a job does not change the state") {
 }
 
 TEST_CASE("the emergency stop is one request, and writes M112 at once") {
-    Bench b;
+    ApiBench b;
     REQUIRE(b.control.connect());
     b.control.serve_until_idle();
     CHECK(b.post("/api/printer/stop", json::object()).status == 204);

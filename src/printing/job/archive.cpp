@@ -24,7 +24,7 @@ Status check_entries(const ZipReader& zip, const std::string& path) {
     return {};
 }
 
-Status check_images(const ZipReader& zip, const Manifest& manifest, const std::string& path) {
+Status check_image_sizes(const ZipReader& zip, const Manifest& manifest, const std::string& path) {
     std::set<std::string_view> seen;
     for (const Layer& layer : manifest.layers) {
         for (const LayerImage& image : layer.images) {
@@ -50,8 +50,8 @@ Status check_listed(const ZipReader& zip, const Manifest& manifest, const std::s
     return {};
 }
 
-Status check_sha256(const Manifest& manifest, const std::string& file, std::string_view bytes,
-                    const std::string& path) {
+Status check_entry_sha256(const Manifest& manifest, const std::string& file, std::string_view bytes,
+                          const std::string& path) {
     if (manifest.sha256.empty() || file == "manifest.json") return {};
     const auto listed = manifest.sha256.find(file);
     if (listed == manifest.sha256.end())
@@ -85,7 +85,7 @@ Result<Archive> Archive::open(const std::filesystem::path& path) {
     if (!json) return tl::unexpected(json.error());
     auto manifest = manifest_from_json(*json, name + ": manifest.json");
     if (!manifest) return tl::unexpected(manifest.error());
-    if (auto status = check_images(*zip, *manifest, name); !status) return tl::unexpected(status.error());
+    if (auto status = check_image_sizes(*zip, *manifest, name); !status) return tl::unexpected(status.error());
     if (auto status = check_listed(*zip, *manifest, name); !status) return tl::unexpected(status.error());
     return Archive(std::make_unique<State>(State{name, std::move(*zip), std::move(*manifest)}));
 }
@@ -101,7 +101,7 @@ bool Archive::has_file(const std::string& file) const {
 Result<std::string> Archive::file(const std::string& file) const {
     auto bytes = state_->zip.read(file, max_file_bytes);
     if (!bytes) return bytes;
-    if (auto status = check_sha256(state_->manifest, file, *bytes, state_->path); !status)
+    if (auto status = check_entry_sha256(state_->manifest, file, *bytes, state_->path); !status)
         return tl::unexpected(status.error());
     return bytes;
 }

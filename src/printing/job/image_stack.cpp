@@ -13,16 +13,17 @@
 namespace pliant::job {
 namespace fs = std::filesystem;
 
+/// The file of a layer's image, and the number at the end of its name.
+struct StackImage {
+    std::string name;
+    long number;
+};
+
 namespace {
 
 constexpr std::uint64_t max_image_bytes = std::uint64_t{1} << 28;
 constexpr std::uint64_t max_text_bytes = std::uint64_t{1} << 22;
-constexpr std::uint64_t max_entries = 1 << 22;
-
-struct Entry {
-    std::string name;
-    long number;
-};
+constexpr std::uint64_t max_stack_files = 1 << 22;
 
 /// "layers/cone_" and 12 of "layers/cone_0012.png".
 std::optional<std::pair<std::string, long>> split_name(const std::string& name) {
@@ -39,8 +40,8 @@ std::optional<std::pair<std::string, long>> split_name(const std::string& name) 
 }
 
 /// The entries of the largest group, in order.
-Result<std::vector<Entry>> choose(const std::vector<std::string>& names, const std::string& path) {
-    std::map<std::string, std::vector<Entry>> groups;
+Result<std::vector<StackImage>> choose(const std::vector<std::string>& names, const std::string& path) {
+    std::map<std::string, std::vector<StackImage>> groups;
     for (const std::string& name : names) {
         if (const auto split = split_name(name)) groups[split->first].push_back({name, split->second});
     }
@@ -48,7 +49,8 @@ Result<std::vector<Entry>> choose(const std::vector<std::string>& names, const s
     auto& largest = std::max_element(groups.begin(), groups.end(), [](const auto& l, const auto& r) {
                         return l.second.size() < r.second.size();
                     })->second;
-    std::sort(largest.begin(), largest.end(), [](const Entry& l, const Entry& r) { return l.number < r.number; });
+    std::sort(largest.begin(), largest.end(),
+              [](const StackImage& l, const StackImage& r) { return l.number < r.number; });
     if (largest.front().number > 1)
         return input_error("{}: the first image is {}, one with 0 or 1 is needed", path, largest.front().name);
     for (std::size_t i = 1; i < largest.size(); ++i) {
@@ -62,15 +64,16 @@ Result<std::vector<Entry>> choose(const std::vector<std::string>& names, const s
 Result<std::vector<std::string>> names_in(const fs::path& path, const ZipReader* zip) {
     std::vector<std::string> names;
     if (zip != nullptr) {
-        if (zip->entry_count() > max_entries)
-            return input_error("{}: more than {} entries", path.string(), max_entries);
+        if (zip->entry_count() > max_stack_files)
+            return input_error("{}: more than {} entries", path.string(), max_stack_files);
         for (std::uint64_t i = 0; i < zip->entry_count(); ++i) names.push_back(zip->name(i));
         return names;
     }
     std::error_code code;
     for (fs::directory_iterator it(path, code), end; !code && it != end; it.increment(code)) {
         if (it->is_regular_file()) names.push_back(it->path().filename().string());
-        if (names.size() > max_entries) return input_error("{}: more than {} files", path.string(), max_entries);
+        if (names.size() > max_stack_files)
+            return input_error("{}: more than {} files", path.string(), max_stack_files);
     }
     if (code) return input_error("{}: {}", path.string(), code.message());
     return names;
@@ -81,7 +84,7 @@ Result<std::vector<std::string>> names_in(const fs::path& path, const ZipReader*
 struct ImageStack::State {
     fs::path path;
     std::optional<ZipReader> zip;
-    std::vector<Entry> entries;
+    std::vector<StackImage> entries;
     PngSize size;
     std::optional<double> layer_um;
 

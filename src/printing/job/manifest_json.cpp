@@ -7,26 +7,26 @@
 namespace pliant::job {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using Ordered = nlohmann::ordered_json;
 
 /// Reads the keys of one object; keeps the first problem and returns harmless values after it.
 class Fields {
 public:
-    Fields(const json& object, std::string path, std::string& problem)
+    Fields(const Json& object, std::string path, std::string& problem)
         : object_(object), path_(std::move(path)), problem_(problem) {
         if (!object.is_object()) complain("", "an object is needed");
     }
 
     std::string text(const char* key) {
-        const json* value = find(key);
+        const Json* value = find(key);
         if (value == nullptr) return {};
         if (value->is_string()) return value->get<std::string>();
         complain(key, "a text is needed");
         return {};
     }
     int integer(const char* key) {
-        const json* value = find(key);
+        const Json* value = find(key);
         if (value == nullptr) return 0;
         // Unsigned first: JSON numbers beyond signed 64 bits are stored as unsigned.
         constexpr int most = std::numeric_limits<int>::max(), least = std::numeric_limits<int>::min();
@@ -37,7 +37,7 @@ public:
         return 0;
     }
     double number(const char* key) {
-        const json* value = find(key);
+        const Json* value = find(key);
         if (value == nullptr) return 0;
         if (value->is_number()) return value->get<double>();
         complain(key, "a number is needed");
@@ -47,7 +47,7 @@ public:
     double number_or_zero(const char* key) { return has(key) ? number(key) : 0; }
     bool flag(const char* key) {
         if (!has(key)) return false;
-        const json& value = object_.at(key);
+        const Json& value = object_.at(key);
         if (value.is_boolean()) return value.get<bool>();
         complain(key, "true or false is needed");
         return false;
@@ -55,7 +55,7 @@ public:
     /// Calls `read(entry, path)` for the entries of an array until a problem occurs.
     template <class Read>
     void each(const char* key, const Read& read) {
-        const json* value = find(key);
+        const Json* value = find(key);
         if (value == nullptr) return;
         if (!value->is_array()) return complain(key, "an array is needed");
         for (std::size_t i = 0; i < value->size() && problem_.empty(); ++i)
@@ -64,7 +64,7 @@ public:
     /// An object whose values are texts.
     std::map<std::string, std::string> texts(const char* key) {
         std::map<std::string, std::string> result;
-        const json* value = find(key);
+        const Json* value = find(key);
         if (value == nullptr) return result;
         if (!value->is_object()) return complain(key, "an object is needed"), result;
         for (const auto& [name, entry] : value->items()) {
@@ -78,7 +78,7 @@ public:
     }
 
 private:
-    const json* find(const char* key) {
+    const Json* find(const char* key) {
         if (!problem_.empty()) return nullptr;
         const auto found = object_.find(key);
         if (found != object_.end()) return &*found;
@@ -86,12 +86,12 @@ private:
         return nullptr;
     }
 
-    const json& object_;
+    const Json& object_;
     std::string path_;  ///< prefix of keys in messages
     std::string& problem_;
 };
 
-Material read_material(const json& object, const std::string& path, std::string& problem) {
+Material read_material(const Json& object, const std::string& path, std::string& problem) {
     Fields f(object, path + ".", problem);
     Material material{f.text("name"),
                       f.text("resin"),
@@ -101,17 +101,17 @@ Material read_material(const json& object, const std::string& path, std::string&
                       f.number("bottom_exposure_s")};
     if (f.has("colour")) material.colour = f.text("colour");
     if (!f.has("parts")) return material;
-    f.each("parts", [&](const json& entry, const std::string& entry_path) {
+    f.each("parts", [&](const Json& entry, const std::string& entry_path) {
         Fields part(entry, entry_path + ".", problem);
         material.parts.push_back({part.text("name"), part.number("model_volume_mm3"), part.number("model_area_mm2")});
     });
     return material;
 }
 
-Layer read_layer(const json& object, const std::string& path, std::string& problem) {
+Layer read_layer(const Json& object, const std::string& path, std::string& problem) {
     Fields f(object, path + ".", problem);
     Layer layer{f.integer("z_um"), f.integer("thickness_um"), {}};
-    f.each("images", [&](const json& entry, const std::string& entry_path) {
+    f.each("images", [&](const Json& entry, const std::string& entry_path) {
         Fields g(entry, entry_path + ".", problem);
         layer.images.push_back({g.integer("material"), g.text("file"), g.number("area_mm2"),
                                 g.number_or_zero("exposure_s"), g.number_or_zero("shared_mm2")});
@@ -119,7 +119,7 @@ Layer read_layer(const json& object, const std::string& path, std::string& probl
     return layer;
 }
 
-Finding read_finding(const json& object, const std::string& path, std::string& problem) {
+Finding read_finding(const Json& object, const std::string& path, std::string& problem) {
     Fields f(object, path + ".", problem);
     Finding finding{f.text("kind"),
                     f.integer("first_layer"),
@@ -137,7 +137,7 @@ Finding read_finding(const json& object, const std::string& path, std::string& p
     return finding;
 }
 
-Manifest read_manifest(const json& root, std::string& problem) {
+Manifest read_manifest(const Json& root, std::string& problem) {
     Manifest m;
     Fields f(root, "", problem);
     const int format = f.integer("format");
@@ -149,12 +149,12 @@ Manifest read_manifest(const json& root, std::string& problem) {
     m.height_px = f.integer("height_px");
     m.pixel_um = f.number("pixel_um");
     m.bottom_layers = f.integer("bottom_layers");
-    f.each("materials", [&](const json& entry, const std::string& path) {
+    f.each("materials", [&](const Json& entry, const std::string& path) {
         m.materials.push_back(read_material(entry, path, problem));
     });
     f.each("layers",
-           [&](const json& entry, const std::string& path) { m.layers.push_back(read_layer(entry, path, problem)); });
-    f.each("warnings", [&](const json& entry, const std::string& path) {
+           [&](const Json& entry, const std::string& path) { m.layers.push_back(read_layer(entry, path, problem)); });
+    f.each("warnings", [&](const Json& entry, const std::string& path) {
         if (entry.is_string()) return m.warnings.push_back(entry.get<std::string>());
         Fields(root, path, problem).complain("", "a text is needed");
     });
@@ -165,26 +165,26 @@ Manifest read_manifest(const json& root, std::string& problem) {
         if (m.sha256.empty()) f.complain("sha256", "must not be empty");
     }
     if (!f.has("findings")) return m;
-    f.each("findings", [&](const json& entry, const std::string& path) {
+    f.each("findings", [&](const Json& entry, const std::string& path) {
         m.findings.push_back(read_finding(entry, path, problem));
     });
     return m;
 }
 
-Result<json> parse(std::string_view text, std::string_view where) {
+Result<Json> parse(std::string_view text, std::string_view where) {
     // No valid manifest is nested deeper; without the limit a file of brackets would take sixty times its size in
     // memory.
     constexpr int max_depth = 8;
     bool too_deep = false;
-    const auto shallow = [&](int depth, json::parse_event_t, json&) {
+    const auto shallow = [&](int depth, Json::parse_event_t, Json&) {
         too_deep = too_deep || depth > max_depth;
         return depth <= max_depth;
     };
     try {
-        json root = json::parse(text, shallow);
+        Json root = Json::parse(text, shallow);
         if (too_deep) return input_error("{}: nested deeper than {} levels", where, max_depth);
         return root;
-    } catch (const json::exception& e) {
+    } catch (const Json::exception& e) {
         return input_error("{}: {}", where, e.what());
     }
 }

@@ -18,7 +18,7 @@ Image pattern(int width, int height) {
     return image;
 }
 
-std::string refused(std::string_view png, PngSize size = {30, 20}) {
+std::string refused_png(std::string_view png, PngSize size = {30, 20}) {
     const auto image = decode_png(png, size, "job.zip: layers/1.png");
     REQUIRE(!image.has_value());
     CHECK(image.error().message.find("job.zip: layers/1.png: ") == 0);
@@ -43,25 +43,25 @@ TEST_CASE("a blank full-screen image takes under 2,300 bytes") {
 
 TEST_CASE("other images than 8-bit grey ones of the expected size are refused") {
     const std::string good = encode_png(pattern(30, 20));
-    CHECK(refused("").find("is not a PNG") != std::string::npos);
-    CHECK(refused(good.substr(0, 28)).find("is not a PNG") != std::string::npos);
-    CHECK(refused("GIF89a" + good.substr(6)).find("is not a PNG") != std::string::npos);
-    CHECK(refused(good, {30, 21}).find("30 x 20 pixels, 30 x 21 are needed") != std::string::npos);
+    CHECK(refused_png("").find("is not a PNG") != std::string::npos);
+    CHECK(refused_png(good.substr(0, 28)).find("is not a PNG") != std::string::npos);
+    CHECK(refused_png("GIF89a" + good.substr(6)).find("is not a PNG") != std::string::npos);
+    CHECK(refused_png(good, {30, 21}).find("30 x 20 pixels, 30 x 21 are needed") != std::string::npos);
     std::string changed = good;
     changed[24] = 16;
-    CHECK(refused(changed).find("8-bit grey") != std::string::npos);
+    CHECK(refused_png(changed).find("8-bit grey") != std::string::npos);
     for (const std::size_t length : {good.size() - 13, good.size() / 2, std::size_t{40}})
-        refused(good.substr(0, length));
+        refused_png(good.substr(0, length));
     changed = good;
     changed[good.size() / 2] ^= 0x40;  // the checksum of the data no longer holds
-    refused(changed);
+    refused_png(changed);
 }
 
 TEST_CASE("a header with a false size allocates no memory") {
     std::string liar = encode_png(pattern(30, 20));
     liar[17] = 0x10;  // width 0x10001e: a million pixels
     liar[21] = 0x10;
-    CHECK(refused(liar, {0x10001e, 0x100014}).find("cannot hold") != std::string::npos);
+    CHECK(refused_png(liar, {0x10001e, 0x100014}).find("cannot hold") != std::string::npos);
 }
 
 TEST_CASE("rows of every kind are read back, whatever filter was chosen") {

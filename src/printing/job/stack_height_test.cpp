@@ -25,7 +25,7 @@ double um(const Files& files) {
     return found->value_or(-1);
 }
 
-std::string refused(const Files& files) {
+std::string refused_height(const Files& files) {
     const auto found = height(files);
     REQUIRE_FALSE(found);
     return found.error().message;
@@ -61,11 +61,12 @@ TEST_CASE("files without a layer height give none") {
 }
 
 TEST_CASE("an invalid layer height is an error that names file and key") {
-    CHECK(refused({{"config.ini", "layerHeight = thin"}}) ==
+    CHECK(refused_height({{"config.ini", "layerHeight = thin"}}) ==
           "config.ini: layerHeight = \"thin\": a layer height above 0 and below 10 mm is needed");
     for (const char* value : {"0", "-0.05", "nan", "inf", "10", "0.05mm", ""})
-        CHECK(refused({{"config.ini", std::string("layerHeight = ") + value}}).find("config.ini: layerHeight") == 0);
-    CHECK(refused({{"slicer.json", R"({"Thickness": null})"}}).find("slicer.json: Thickness") == 0);
-    CHECK(refused({{"a.slicing", "<SliceHeight>0.05</SliceHeight><SliceHeight>0.1</SliceHeight>"}}) ==
+        CHECK(refused_height({{"config.ini", std::string("layerHeight = ") + value}}).find("config.ini: layerHeight") ==
+              0);
+    CHECK(refused_height({{"slicer.json", R"({"Thickness": null})"}}).find("slicer.json: Thickness") == 0);
+    CHECK(refused_height({{"a.slicing", "<SliceHeight>0.05</SliceHeight><SliceHeight>0.1</SliceHeight>"}}) ==
           "a.slicing: SliceHeight is 50 um and 100 um: layers of one height are needed");
 }

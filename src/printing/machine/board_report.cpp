@@ -7,19 +7,13 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "base/core/letters.hpp"
 #include "printing/machine/decimal.hpp"
 #include "printing/machine/marlin_axes.hpp"
 #include "printing/machine/switches.hpp"
 
 namespace pliant::machine {
 namespace {
-
-std::string_view trimmed(std::string_view line) {
-    constexpr std::string_view blanks = " \t\r";
-    line.remove_prefix(std::min(line.size(), line.find_first_not_of(blanks)));
-    const std::size_t last = line.find_last_not_of(blanks);
-    return line.substr(0, last == std::string_view::npos ? 0 : last + 1);
-}
 
 /// "X80.00 Y:80.00 ...": letters with numbers; malformed ones are left out.
 std::map<char, double> read_words(std::string_view words) {

@@ -18,14 +18,14 @@ std::size_t skip_blanks(std::string_view line, std::size_t at) {
     return at;
 }
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_blanks(std::string_view text) {
     text.remove_prefix(skip_blanks(text, 0));
     while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
     return text;
 }
 
 bool goes_on(std::string_view line) {
-    line = trimmed(line);
+    line = without_blanks(line);
     return !line.empty() && line.back() == '\\';
 }
 
@@ -95,9 +95,9 @@ bool split(std::string_view line, Parts& p) {
 }
 
 std::string without_comment(std::string_view line) {
-    line = trimmed(line.substr(0, comment_at(line, 0)));
+    line = without_blanks(line.substr(0, comment_at(line, 0)));
     if (!line.empty() && line.back() == '\\') line.remove_suffix(1);
-    return std::string(trimmed(line));
+    return std::string(without_blanks(line));
 }
 
 /// Removes `//` from the beginning of a line.

@@ -27,11 +27,11 @@ std::string value(const std::vector<FirmwareSetting>& settings, const std::strin
 constexpr std::array releases = {MarlinRelease::v2_1_1, MarlinRelease::v2_1_2, MarlinRelease::v2_1_3};
 
 /// The errors that Marlin's SanityCheck.h would give, one line each.
-std::string problems(const Printer& printer) {
+std::string sanity_problems(const Printer& printer) {
     const auto list = firmware_settings(printer);
     REQUIRE_MESSAGE(list, (list ? "" : list.error().message));
     std::string text;
-    for (const std::string& problem : test::marlin_problems(*list, printer.controller.firmware))
+    for (const std::string& problem : machine::test::marlin_problems(*list, printer.controller.firmware))
         text += printer.name + " on " + std::string(name_of(printer.controller.firmware)) + ": " + problem + "\n";
     return text;
 }
@@ -68,7 +68,7 @@ TEST_CASE("the settings of every example printer obey names and rules of every r
         if (printer.controller.dialect != Dialect::marlin) continue;
         for (const MarlinRelease release : releases) {
             printer.controller.firmware = release;
-            CHECK(problems(printer) == "");
+            CHECK(sanity_problems(printer) == "");
         }
     }
 }
@@ -81,7 +81,7 @@ TEST_CASE("the settings obey the rules also with a far switch, a door, jerk and 
         printer.axes[0].jerk_mm_s = 2;
         for (const std::string door : {"y_max", "y_min", "z_min", "x_max", "z_probe", "filament"}) {
             printer.door.input = door;
-            CHECK(problems(printer) == "");
+            CHECK(sanity_problems(printer) == "");
         }
         printer.door = {"y_min", true};  // where the stand-in Y would home
         const bool newer = release == MarlinRelease::v2_1_3;
@@ -90,7 +90,7 @@ TEST_CASE("the settings obey the rules also with a far switch, a door, jerk and 
         printer.door = {};
         printer.limit_switches = switches_of(printer);
         printer.limit_switches.push_back({Axis::platform, false, true});
-        CHECK(problems(printer) == "");
+        CHECK(sanity_problems(printer) == "");
     }
 }
 
@@ -102,7 +102,7 @@ TEST_CASE("the rules find settings that no release compiles, and those that 2.1.
         std::erase_if(list, [&](const FirmwareSetting& s) { return s.name == name; });
         if (!value.empty()) list.push_back({name, value, ""});
         std::string text;
-        for (const std::string& problem : test::marlin_problems(list, release)) text += problem + "\n";
+        for (const std::string& problem : machine::test::marlin_problems(list, release)) text += problem + "\n";
         return text;
     };
     for (const MarlinRelease release : releases) {
@@ -193,7 +193,7 @@ TEST_CASE("with a magnet or a fork, M42 may write to its pin, which must be free
             printer.controller.firmware = release;
             const auto list = firmware_settings(printer);
             REQUIRE_MESSAGE(list, (list ? "" : list.error().message));
-            const auto problems = test::marlin_problems(*list, release);
+            const auto problems = machine::test::marlin_problems(*list, release);
             CHECK_MESSAGE(problems.empty(), (problems.empty() ? "" : problems.front()));
             CHECK(std::count_if(list->begin(), list->end(), [](const FirmwareSetting& s) {
                       return s.name == "DIRECT_PIN_CONTROL" && s.value == "on";

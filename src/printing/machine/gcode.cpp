@@ -11,7 +11,7 @@ namespace {
 
 constexpr double largest_value = 1e9;
 
-bool is_letter(char c) {
+bool is_capital(char c) {
     return c >= 'A' && c <= 'Z';
 }
 
@@ -38,7 +38,7 @@ bool parse_whole(std::string_view text, Number& value) {
 Result<Word> parse_word(std::string_view token) {
     Word word;
     word.letter = token.front();
-    if (!is_letter(word.letter)) return input_error("\"{}\" does not begin with a capital letter", token);
+    if (!is_capital(word.letter)) return input_error("\"{}\" does not begin with a capital letter", token);
     if (token.size() == 1) return word;
     double value = 0;
     if (!parse_whole(token.substr(1), value) || !(std::abs(value) <= largest_value)) {

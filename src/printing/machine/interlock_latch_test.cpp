@@ -9,11 +9,11 @@ using namespace pliant::machine;
 
 namespace {
 
-struct Bench {
+struct LatchBench {
     Printer printer;
     Interlock lock;
 
-    explicit Bench(const char* name)
+    explicit LatchBench(const char* name)
         : printer(load_printer(std::string("examples/printers/") + name + ".toml").value()), lock(printer) {
         for (const Axis axis : homing_order(printer)) must(lock.home(axis));
     }
@@ -32,7 +32,7 @@ struct Bench {
 };
 
 /// Fetches the vat of slot 1 with the magnet, as far as the tower.
-void take_by_magnet(Bench& b) {
+void take_by_magnet(LatchBench& b) {
     b.go(Axis::tower, b.printer.level_um(1));
     b.go(Axis::carriage, b.printer.carriage.tower_um);
     b.must(b.lock.magnet(true));
@@ -41,7 +41,7 @@ void take_by_magnet(Bench& b) {
 }  // namespace
 
 TEST_CASE("a magnet takes only the vat level with it, and releases it only in its slot") {
-    Bench b("tower_magnet");
+    LatchBench b("tower_magnet");
     b.refused(b.lock.magnet(true), "no vat before it");
     b.must(b.lock.magnet(false));
     b.go(Axis::tower, b.printer.level_um(5));  // an empty slot
@@ -66,7 +66,7 @@ TEST_CASE("a magnet takes only the vat level with it, and releases it only in it
 }
 
 TEST_CASE("after a stop the carriage neither moves nor homes before the magnet is on again") {
-    Bench b("tower_magnet");
+    LatchBench b("tower_magnet");
     take_by_magnet(b);
     b.go(Axis::carriage, 0);
     b.lock.stopped_at(b.lock.position());
@@ -81,7 +81,7 @@ TEST_CASE("after a stop the carriage neither moves nor homes before the magnet i
 }
 
 TEST_CASE("axes wait until a magnet or fork has finished taking or releasing a vat") {
-    Bench b("tower_magnet");
+    LatchBench b("tower_magnet");
     Settling settling(b.printer);
     const Position here = b.lock.position();
     Position away = here, up = here;
@@ -94,7 +94,7 @@ TEST_CASE("axes wait until a magnet or fork has finished taking or releasing a v
     settling.note(parse_command("M42 P11 S0").value(), 20);
     CHECK_FALSE(settling.check(here, away, 20.49));
     CHECK(settling.check(here, away, 20.5));
-    const Bench wall("wall");
+    const LatchBench wall("wall");
     Settling fork(wall.printer);
     Position along = here;
     along[Axis::table] += 1000;
@@ -104,7 +104,7 @@ TEST_CASE("axes wait until a magnet or fork has finished taking or releasing a v
 }
 
 TEST_CASE("a retriever takes a vat from its place in the wall and brings it back") {
-    Bench b("wall");
+    LatchBench b("wall");
     const int row_um = b.printer.row_um(7), column_um = b.printer.column_um(7), low_um = row_um - 20000;
     CHECK(row_um == 50000 + 152400);         // slot 7: second row,
     CHECK(column_um == 20000 + 2 * 355600);  // third column
@@ -139,7 +139,7 @@ TEST_CASE("a retriever takes a vat from its place in the wall and brings it back
 }
 
 TEST_CASE("a retriever puts a vat only into an empty place, and takes none from an empty place") {
-    Bench b("wall");
+    LatchBench b("wall");
     const auto before = [&](int slot, int lower_um) {
         b.go(Axis::table, b.printer.column_um(slot));
         b.go(Axis::tower, b.printer.row_um(slot) - lower_um);

@@ -31,7 +31,7 @@ std::array<MarlinFile, 2> stock(MarlinRelease release) {
         "#define STRING_CONFIG_H_AUTHOR \"(none, default config)\" // who\n",
         digits(release));
     int turn = 0;
-    for (const std::string& name : test::marlin_names(release)) {
+    for (const std::string& name : machine::test::marlin_names(release)) {
         if (name.ends_with("_PIN") && name != "Z_MIN_PROBE_USES_Z_MIN_ENDSTOP_PIN") continue;
         constexpr std::array<const char*, 4> forms = {"#define {}\n", "//#define {} 3 // three\n",
                                                       "#if 1\n  #define {}  {{ 1, \\\n 2 }}\n#endif\n",
@@ -45,7 +45,7 @@ std::array<MarlinFile, 2> stock(MarlinRelease release) {
 
 /// The result of configure_marlin for files first changed by `edit`.
 template <class Edit>
-std::string error_of(Edit edit) {
+std::string configure_error(Edit edit) {
     auto files = stock(MarlinRelease::v2_1_2);
     edit(files);
     const auto settings = firmware_settings(tower8(MarlinRelease::v2_1_2)).value();
@@ -71,7 +71,7 @@ TEST_CASE("every setting is in the files once per place, and nothing else has ch
             if (s.value != "on" && s.value != "off") CHECK_MESSAGE(found[0].value == s.value, s.name);
             CHECK_MESSAGE(result->record.find(": " + s.name + " = " + s.value + " (") != std::string::npos, s.name);
         }
-        for (const std::string& name : test::marlin_names(release)) {
+        for (const std::string& name : machine::test::marlin_names(release)) {
             if (listed.contains(name) || before.find(name).empty()) continue;
             CHECK_MESSAGE(after.find(name).front().active == before.find(name).front().active, name);
             CHECK_MESSAGE(after.find(name).front().value == before.find(name).front().value, name);
@@ -103,23 +103,23 @@ TEST_CASE("files of another release or program, or without a setting, are refuse
         REQUIRE(at != std::string::npos);
         text.replace(at, old.size(), now);
     };
-    CHECK(error_of([](auto&) {}) == "no error");
-    CHECK(error_of([&](auto& f) { replace(f[0].text, "02010201", "02010300"); }) ==
+    CHECK(configure_error([](auto&) {}) == "no error");
+    CHECK(configure_error([&](auto& f) { replace(f[0].text, "02010201", "02010300"); }) ==
           "Marlin/Configuration.h: CONFIGURATION_H_VERSION 02010300 is of Marlin 2.1.3, the list is for 2.1.2: take "
           "that release, or name this one by --release");
-    CHECK(error_of([&](auto& f) { replace(f[1].text, "02010201", "020008"); }) ==
+    CHECK(configure_error([&](auto& f) { replace(f[1].text, "02010201", "020008"); }) ==
           "Marlin/Configuration_adv.h: CONFIGURATION_ADV_H_VERSION 020008 is of Marlin 2.0.8, the list is for 2.1.2: "
           "take that release, or name this one by --release");
-    CHECK(error_of([&](auto& f) { replace(f[1].text, "02010201", "soon"); }).find("Marlin unknown") !=
+    CHECK(configure_error([&](auto& f) { replace(f[1].text, "02010201", "soon"); }).find("Marlin unknown") !=
           std::string::npos);
-    CHECK(error_of([](auto& f) { f[0].text = "int main() {}\n"; }) ==
+    CHECK(configure_error([](auto& f) { f[0].text = "int main() {}\n"; }) ==
           "Marlin/Configuration.h: has no CONFIGURATION_H_VERSION, which every Configuration.h of Marlin 2 has");
-    CHECK(error_of([](auto& f) { std::swap(f[0].text, f[1].text); }).find("has no CONFIGURATION_H_VERSION") !=
+    CHECK(configure_error([](auto& f) { std::swap(f[0].text, f[1].text); }).find("has no CONFIGURATION_H_VERSION") !=
           std::string::npos);
-    CHECK(error_of([&](auto& f) { replace(f[0].text, "USE_WATCHDOG", "USE_A_DOG"); }) ==
+    CHECK(configure_error([&](auto& f) { replace(f[0].text, "USE_WATCHDOG", "USE_A_DOG"); }) ==
           "Marlin/Configuration.h and Marlin/Configuration_adv.h: neither has USE_WATCHDOG: they are not the "
           "configuration files of that release as it came");
-    CHECK(error_of([](auto& f) {
+    CHECK(configure_error([](auto& f) {
               f[0].text = "#define CONFIGURATION_H_VERSION 02010200\n";
           }).find("more of the list") != std::string::npos);
 }

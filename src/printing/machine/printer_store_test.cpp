@@ -14,7 +14,7 @@ using pliant::test::holds;
 namespace {
 
 /// The error with `from` replaced by `to` in the file; "" if it is accepted.
-std::string message_with(const char* name, const std::string& from, const std::string& to) {
+std::string message_of(const char* name, const std::string& from, const std::string& to) {
     std::string text = read_file(std::string("examples/printers/") + name + ".toml").value();
     const auto at = text.find(from);
     REQUIRE_MESSAGE(at != std::string::npos, from);
@@ -29,7 +29,7 @@ struct Mistake {
 
 void check_mistakes(const char* name, std::initializer_list<Mistake> mistakes) {
     for (const Mistake& mistake : mistakes) {
-        const std::string message = message_with(name, mistake.from, mistake.to);
+        const std::string message = message_of(name, mistake.from, mistake.to);
         INFO(std::string(mistake.to));
         // Consequential errors may follow on further lines.
         CHECK_MESSAGE(holds(message.substr(0, message.find('\n')), mistake.message), message);
@@ -47,10 +47,10 @@ TEST_CASE("a magnet instead of hooks is read, and its force is checked") {
     CHECK(on_without_power({"M42 P11 S0", "M42 P11 S255"}));
     CHECK_FALSE(load_printer("examples/printers/tower.toml")->hooks.magnet.present());
     // 3.5 kg and 700 ml of 1.1 g/ml, pulled at 50 mm/s^2 with a friction of 0.3: 4.27 (0.3 9.81 + 0.05) = 12.8 N.
-    CHECK(holds(message_with("tower_magnet", "\"60 N\"", "\"25 N\""),
+    CHECK(holds(message_of("tower_magnet", "\"60 N\"", "\"25 N\""),
                 "hooks.force: 25 N hold too little: to pull the fullest vat, 4.27 kg, takes 12.8 N"));
-    CHECK(message_with("tower_magnet", "\"60 N\"", "\"26 N\"").empty());
-    CHECK(message_with("tower_magnet", "force = \"60 N\"                  # that it holds\nvat_mass = \"3.5 kg\"", "")
+    CHECK(message_of("tower_magnet", "\"60 N\"", "\"26 N\"").empty());
+    CHECK(message_of("tower_magnet", "force = \"60 N\"                  # that it holds\nvat_mass = \"3.5 kg\"", "")
               .empty());
 }
 

@@ -21,7 +21,7 @@ Printer printer_with_reservoir() {
     return p;
 }
 
-std::string error_of(const std::string& from, const std::string& to) {
+std::string tower_error(const std::string& from, const std::string& to) {
     const std::string text = read_file("examples/printers/tower.toml").value();
     const auto printer = parse_printer(replaced(text, from, to), "p.toml");
     return printer ? "" : printer.error().message;
@@ -105,13 +105,13 @@ TEST_CASE("a reservoir is read from the printer file, and mistakes are named") {
     CHECK(tower.solution.fill_ml == near(5000, {.relative = 1e-12}));
     CHECK(tower.solution.spent_share == 0.1);
     const std::string key = "volume = \"5 l\"";
-    CHECK(error_of(key, key + "\nfill = \"4 l\"\nresin_share = 0.03") == "");
-    CHECK(holds(error_of(key, key + "\nfill = \"6 l\""), "solution.fill: must be from 0 to volume"));
-    CHECK(holds(error_of(key, "volume = \"0 l\""), "solution.volume: must be above 0"));
-    CHECK(holds(error_of(key, "volume = \"400 ml\""), "solution.least: must be less than volume"));
-    CHECK(holds(error_of("spent = 0.1", "spent = 0"), "solution.spent: must be a share above 0"));
-    CHECK(holds(error_of("spray_loss = 0.02", "spray_loss = 2"), "solution.spray_loss: must be a share"));
-    CHECK(holds(error_of("filter_share = 0.2", "#"), "solution.filter: and filter_share go together"));
+    CHECK(tower_error(key, key + "\nfill = \"4 l\"\nresin_share = 0.03") == "");
+    CHECK(holds(tower_error(key, key + "\nfill = \"6 l\""), "solution.fill: must be from 0 to volume"));
+    CHECK(holds(tower_error(key, "volume = \"0 l\""), "solution.volume: must be above 0"));
+    CHECK(holds(tower_error(key, "volume = \"400 ml\""), "solution.least: must be less than volume"));
+    CHECK(holds(tower_error("spent = 0.1", "spent = 0"), "solution.spent: must be a share above 0"));
+    CHECK(holds(tower_error("spray_loss = 0.02", "spray_loss = 2"), "solution.spray_loss: must be a share"));
+    CHECK(holds(tower_error("filter_share = 0.2", "#"), "solution.filter: and filter_share go together"));
     const std::string single = read_file("examples/printers/single.toml").value();
     const auto alone = parse_printer(single + "\n[solution]\nvolume = \"1 l\"\n", "p.toml");
     REQUIRE_FALSE(alone);

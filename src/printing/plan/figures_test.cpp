@@ -7,14 +7,7 @@
 
 using namespace pliant;
 using namespace pliant::plan;
-
-namespace {
-
-machine::Printer machine_of(const char* name) {
-    return machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value();
-}
-
-}  // namespace
+using pliant::plan::test::machine_of;
 
 TEST_CASE("the thesis' swap: 24, 3, 15 and 24 s take 62 to 63 s, since the hooks move during the spray") {
     const SwapSteps s = figures(machine_of("tower")).swap;

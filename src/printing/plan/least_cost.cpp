@@ -164,14 +164,14 @@ struct Stop {
     std::size_t previous = 0;  ///< the last vat of the previous layer
 };
 
-struct Step {
+struct LayerStep {
     SetPaths* paths = nullptr;
     std::size_t layer = 0;
     std::vector<Stop> stops;  ///< by last vat, in the order of the set
 };
 
 /// Cheapest arrival at each vat of `now` from the stops of the previous layer; nullptr: nothing is loaded yet.
-std::vector<Stop> arrivals(const Step* before, const VatList& now, const ChangeCosts& costs) {
+std::vector<Stop> arrivals(const LayerStep* before, const VatList& now, const ChangeCosts& costs) {
     std::vector<Stop> arrive(now.size());
     for (std::size_t f = 0; f < now.size(); ++f) {
         if (before == nullptr) {
@@ -187,10 +187,10 @@ std::vector<Stop> arrivals(const Step* before, const VatList& now, const ChangeC
     return arrive;
 }
 
-Step next_step(const Step* before, std::size_t layer, SetPaths& paths, const ChangeCosts& costs) {
+LayerStep next_step(const LayerStep* before, std::size_t layer, SetPaths& paths, const ChangeCosts& costs) {
     const std::size_t n = paths.vats().size();
     const std::vector<Stop> arrive = arrivals(before, paths.vats(), costs);
-    Step step{&paths, layer, std::vector<Stop>(n)};
+    LayerStep step{&paths, layer, std::vector<Stop>(n)};
     for (std::size_t f = 0; f < n; ++f) {
         for (std::size_t l = 0; l < n; ++l) {
             const double cost = arrive[f].cost + paths.cost(f, l);
@@ -224,12 +224,12 @@ LeastCost least_cost_order(std::span<const VatList> layers, const ChangeCosts& c
     LeastCost result;
     result.order.assign(layers.size(), {});
     PathBook book(costs);
-    std::vector<Step> steps;
+    std::vector<LayerStep> steps;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         if (layers[i].empty()) continue;
         SetPaths& paths = book.of(layers[i]);
         result.exact = result.exact && paths.exact();
-        Step step = next_step(steps.empty() ? nullptr : &steps.back(), i, paths, costs);
+        LayerStep step = next_step(steps.empty() ? nullptr : &steps.back(), i, paths, costs);
         steps.push_back(std::move(step));
     }
     if (steps.empty()) return result;

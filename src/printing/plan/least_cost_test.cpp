@@ -33,7 +33,7 @@ std::vector<VatList> random_layers(int layers, int vats, std::mt19937& random) {
 }
 
 /// Tries every order of every layer.
-double brute_force(std::vector<VatList> layers, const ChangeCosts& costs) {
+double brute_force_cost(std::vector<VatList> layers, const ChangeCosts& costs) {
     double best = std::numeric_limits<double>::max();
     for (VatList& layer : layers) std::sort(layer.begin(), layer.end());
     for (;;) {
@@ -59,7 +59,7 @@ TEST_CASE("the least cost agrees with trying every order, and the returned order
         const std::vector<VatList> layers = random_layers(5, 5, random);
         const LeastCost found = least_cost_order(layers, costs);
         CHECK(found.exact);
-        CHECK(found.cost == near(brute_force(layers, costs), {.relative = 1e-12}));
+        CHECK(found.cost == near(brute_force_cost(layers, costs), {.relative = 1e-12}));
         CHECK(change_cost(found.order, costs) == near(found.cost, {.relative = 1e-12}));
         for (std::size_t i = 0; i < layers.size(); ++i) {
             CHECK(
@@ -73,7 +73,7 @@ TEST_CASE("one layer of seven vats: the cheapest order of all") {
     for (int round = 0; round < 10; ++round) {
         const ChangeCosts costs = random_costs(7, random);
         const std::vector<VatList> layers = {{0, 1, 2, 3, 4, 5, 6}};
-        CHECK(least_cost_order(layers, costs).cost == near(brute_force(layers, costs), {.relative = 1e-12}));
+        CHECK(least_cost_order(layers, costs).cost == near(brute_force_cost(layers, costs), {.relative = 1e-12}));
     }
 }
 

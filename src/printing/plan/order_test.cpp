@@ -6,13 +6,12 @@
 #include <limits>
 #include <numeric>
 
+#include "printing/plan/test_jobs.hpp"
+
 using namespace pliant::plan;
+using pliant::plan::test::repeated;
 
 namespace {
-
-std::vector<VatList> repeated(const VatList& layer, int times) {
-    return std::vector<VatList>(static_cast<std::size_t>(times), layer);
-}
 
 /// The least number of swaps by trying every order of every layer.
 int brute_force(std::vector<VatList> layers) {

@@ -12,15 +12,12 @@
 
 using namespace pliant;
 using namespace pliant::plan;
+using pliant::plan::test::repeated;
 using pliant::test::holds;
 
 namespace {
 
 const std::vector<std::string> two = {"semi-flex", "rigid-flex"};
-
-std::vector<std::vector<int>> repeated(const std::vector<int>& layer, std::size_t times) {
-    return std::vector<std::vector<int>>(times, layer);
-}
 
 Plan planned(const job::Manifest& job, const machine::Printer& printer) {
     auto plan = make_plan(job, printer);
@@ -28,7 +25,7 @@ Plan planned(const job::Manifest& job, const machine::Printer& printer) {
     return *plan;
 }
 
-std::string error_of(const job::Manifest& job, const machine::Printer& printer) {
+std::string plan_error(const job::Manifest& job, const machine::Printer& printer) {
     const auto plan = make_plan(job, printer);
     return plan ? "" : plan.error().message;
 }
@@ -89,24 +86,24 @@ TEST_CASE("materials of one resin share a vat and need no swap") {
 
 TEST_CASE("too many resins, another projector, a part too tall, layers out of order, no exposure: errors") {
     const machine::Printer printer = plan::test::tower();
-    CHECK(
-        holds(error_of(plan::test::make_job({{0, 1, 2, 3, 4}}, {"a", "b", "c", "d", "e"}), printer), "needs 5 resins"));
+    CHECK(holds(plan_error(plan::test::make_job({{0, 1, 2, 3, 4}}, {"a", "b", "c", "d", "e"}), printer),
+                "needs 5 resins"));
     job::Manifest job = plan::test::make_job(repeated({0}, 3), two);
     job.width_px = 100;
-    CHECK(holds(error_of(job, printer), "slice it again"));
+    CHECK(holds(plan_error(job, printer), "slice it again"));
     job = plan::test::make_job(repeated({0}, 3), two);
     job.layers[2].z_um = 304801;
-    CHECK(holds(error_of(job, printer), "builds 304.80 mm"));
+    CHECK(holds(plan_error(job, printer), "builds 304.80 mm"));
     job.layers[2].z_um = 50;
-    CHECK(holds(error_of(job, printer), "layer 2 at 50 um does not lie above 100 um"));
+    CHECK(holds(plan_error(job, printer), "layer 2 at 50 um does not lie above 100 um"));
     job = plan::test::make_job(repeated({0}, 3), two);
     job.layers[1].images[0].material = 2;
-    CHECK(holds(error_of(job, printer), "prints material 2, there are 2"));
+    CHECK(holds(plan_error(job, printer), "prints material 2, there are 2"));
     job.layers[1].images[0] = {0, "a\nG28", 1};
-    CHECK(holds(error_of(job, printer), "without a usable name"));
+    CHECK(holds(plan_error(job, printer), "without a usable name"));
     job = plan::test::make_job(repeated({0}, 3), two);
     job.materials[0].exposure_s = 0;
-    CHECK(holds(error_of(job, printer), "needs exposures"));
+    CHECK(holds(plan_error(job, printer), "needs exposures"));
 }
 
 TEST_CASE("warnings: a material that prints nothing, and a vat that holds too little resin") {

@@ -17,7 +17,7 @@ double rounded(double value) {
     return std::round(value * 1000) / 1000;
 }
 
-int slot_of(const Plan& plan, int vat) {
+int planned_slot(const Plan& plan, int vat) {
     for (const VatUse& use : plan.vats) {
         if (use.vat == vat) return use.slot;
     }
@@ -36,7 +36,7 @@ Json order_json(const Plan& plan) {
     Json order = Json::array();
     for (const VatList& layer : plan.order) {
         Json slots = Json::array();
-        for (const int vat : layer) slots.push_back(slot_of(plan, vat));
+        for (const int vat : layer) slots.push_back(planned_slot(plan, vat));
         order.push_back(std::move(slots));
     }
     return order;

@@ -35,14 +35,6 @@ void begin(Sequence& s, const Plan& plan) {
     s.fence();
 }
 
-/// Down into the resin: fast, then slowly over the last part, then a rest.
-void approach(Sequence& s, int z_um) {
-    const machine::Platform& platform = s.printer().platform;
-    if (s.position()[Axis::platform] > z_um + platform.approach_um) s.move(Axis::platform, z_um + platform.approach_um);
-    s.move(Axis::platform, z_um, platform.approach_speed_mm_s);
-    s.dwell(platform.settle_s);
-}
-
 /// Sideways to shear the layer off, then up to peel it and let resin flow back.
 void loosen(Sequence& s, int z_um) {
     const Printer& p = s.printer();

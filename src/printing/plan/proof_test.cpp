@@ -37,7 +37,7 @@ Case case_of(machine::Printer printer, const std::vector<std::vector<int>>& laye
 }
 
 /// Resins of the printer's first vats.
-std::vector<std::string> resins_of(const machine::Printer& printer, std::size_t count) {
+std::vector<std::string> first_resins(const machine::Printer& printer, std::size_t count) {
     std::vector<std::string> resins;
     for (std::size_t v = 0; v < count; ++v) resins.push_back(printer.vats[v % printer.vats.size()].resin);
     return resins;
@@ -74,8 +74,8 @@ TEST_CASE("the planner's G-code passes the proof on every machine, for every job
         std::vector<std::vector<int>> layers = {{0}, {}, {0}};
         for (int m = 0; m < 3; ++m) layers.push_back({m});
         layers.insert(layers.end(), {{0, 1}, {1, 2}, {0, 1, 2}, {2}});
-        CHECK(case_of(printer, layers, resins_of(printer, std::max<std::size_t>(3, n))).error() == "");
-        CHECK(case_of(printer, {}, resins_of(printer, 1)).error() == "");
+        CHECK(case_of(printer, layers, first_resins(printer, std::max<std::size_t>(3, n))).error() == "");
+        CHECK(case_of(printer, {}, first_resins(printer, 1)).error() == "");
     }
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("the proof accepts given exposures, refills, long and short cleaning, 
     still.cleaning.stroke_x_um = still.cleaning.stroke_z_um = 0;
     still.cleaning.dry_s = 3;
     still.fans.clear();
-    CHECK(case_of(still, {{0, 1}, {0, 1}}, resins_of(still, 2)).error() == "");
+    CHECK(case_of(still, {{0, 1}, {0, 1}}, first_resins(still, 2)).error() == "");
 }
 
 TEST_CASE("the proof finds an exposure missing, repeated, too long, too short or of another image") {
@@ -246,7 +246,7 @@ TEST_CASE("the proof accepts G-code that another program has rewritten with the 
 
 TEST_CASE("a job of 2,000 layers and 4,000 swaps is proved in well under a second") {
     const machine::Printer tower = plan::test::tower();
-    const Case c = case_of(tower, std::vector<std::vector<int>>(2000, {0, 1}), resins_of(tower, 2));
+    const Case c = case_of(tower, std::vector<std::vector<int>>(2000, {0, 1}), first_resins(tower, 2));
     const auto begin = std::chrono::steady_clock::now();
     CHECK(c.error() == "");
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

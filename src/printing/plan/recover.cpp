@@ -86,13 +86,6 @@ void bring_right_vat(Sequence& s, const Interrupted& from, std::optional<int> wa
     if (wanted) load_vat(s, slot_of(p, *wanted));
 }
 
-void approach(Sequence& s, int z_um) {
-    const machine::Platform& platform = s.printer().platform;
-    if (s.position()[Axis::platform] > z_um + platform.approach_um) s.move(Axis::platform, z_um + platform.approach_um);
-    s.move(Axis::platform, z_um, platform.approach_speed_mm_s);
-    s.dwell(platform.settle_s);
-}
-
 /// A sequence in the machine's present state, with the platform clear of everything.
 Result<Sequence> by_hand(const Interlock& state, const Printer& p) {
     if (!state.all_homed()) return failure("the axes must be homed first");

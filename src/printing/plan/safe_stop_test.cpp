@@ -32,7 +32,7 @@ struct Program {
         std::vector<std::string> resins;
         for (const machine::Vat& vat : printer.vats) resins.push_back(vat.resin);
         const int last = static_cast<int>(resins.size()) - 1;
-        const job::Manifest job = test::make_job_for(printer, {{0, last}, {0}}, resins);
+        const job::Manifest job = plan::test::make_job_for(printer, {{0, last}, {0}}, resins);
         text = write_gcode(make_plan(job, printer).value(), job, printer);
     }
     [[nodiscard]] int lines() const { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
@@ -41,7 +41,7 @@ struct Program {
 }  // namespace
 
 TEST_CASE("property: a print can be cancelled after any line, and every vat is then in its slot") {
-    for (const machine::Printer& printer : test::machines()) {
+    for (const machine::Printer& printer : plan::test::machines()) {
         const Program p(printer);
         for (int n = 0; n <= p.lines(); ++n) {
             CAPTURE(n);
@@ -59,7 +59,7 @@ TEST_CASE("property: a print can be cancelled after any line, and every vat is t
 }
 
 TEST_CASE("property: a print can pause after any line and continue to the same end") {
-    for (const machine::Printer& printer : test::machines()) {
+    for (const machine::Printer& printer : plan::test::machines()) {
         const Program p(printer);
         for (int n = 0; n <= p.lines(); ++n) {
             CAPTURE(n);
@@ -77,7 +77,7 @@ TEST_CASE("property: a print can pause after any line and continue to the same e
 
 TEST_CASE("property: from any state that manual control allows, the machine can be stopped safely") {
     std::mt19937 random(77);
-    for (const machine::Printer& p : test::machines()) {
+    for (const machine::Printer& p : plan::test::machines()) {
         for (int walk = 0; walk < 60; ++walk) {
             machine::Interlock state(p);
             for (const machine::Axis axis : machine::homing_order(p)) REQUIRE(state.home(axis));

@@ -155,4 +155,12 @@ void Sequence::expose(const machine::Expose& expose) {
     activity(before);
 }
 
+void approach(Sequence& sequence, int z_um) {
+    const machine::Platform& platform = sequence.printer().platform;
+    if (sequence.position()[Axis::platform] > z_um + platform.approach_um)
+        sequence.move(Axis::platform, z_um + platform.approach_um);
+    sequence.move(Axis::platform, z_um, platform.approach_speed_mm_s);
+    sequence.dwell(platform.settle_s);
+}
+
 }  // namespace pliant::plan

@@ -81,4 +81,7 @@ private:
     double fans_on_s_ = -1;
 };
 
+/// Down into the resin: fast, then slowly over the last part, then a rest.
+void approach(Sequence& sequence, int z_um);
+
 }  // namespace pliant::plan

@@ -12,6 +12,7 @@
 using namespace pliant;
 using namespace pliant::plan;
 using machine::Axis;
+using pliant::plan::test::machine_of;
 
 namespace {
 
@@ -37,7 +38,7 @@ double seconds_of_swap(const machine::Printer& printer, int to_slot) {
 }  // namespace
 
 TEST_CASE("a swap with the next slot takes the thesis' 62 to 63 s, computed from its motions") {
-    const machine::Printer printer = test::tower();
+    const machine::Printer printer = plan::test::tower();
     Sequence s = loaded(printer);
     const Seconds before = s.seconds();
     swap_vat(s, 1, 2);
@@ -54,7 +55,7 @@ TEST_CASE("a swap with the next slot takes the thesis' 62 to 63 s, computed from
 }
 
 TEST_CASE("a far slot adds the time that the tower needs beyond the spray") {
-    const machine::Printer printer = test::tower();
+    const machine::Printer printer = plan::test::tower();
     const double next = seconds_of_swap(printer, 2);
     const double far = seconds_of_swap(printer, 4);
     // Three pitches in two strokes: 2 (304.8/40 + 40/200), hooks and back-off as before, nothing to fill up.
@@ -66,7 +67,7 @@ TEST_CASE("a far slot adds the time that the tower needs beyond the spray") {
 }
 
 TEST_CASE("a slower carriage makes the same swap longer, as its motions say") {
-    machine::Printer slow = test::tower();
+    machine::Printer slow = plan::test::tower();
     const double before = seconds_of_swap(slow, 2);
     slow.axes[0].speed_mm_s /= 2;
     slow.cleaning.speed_mm_s /= 2;
@@ -76,7 +77,7 @@ TEST_CASE("a slower carriage makes the same swap longer, as its motions say") {
 }
 
 TEST_CASE("the brush wipes a part 1 mm above the rim for 10 s, without extra time") {
-    machine::Printer printer = test::tower();
+    machine::Printer printer = plan::test::tower();
     const double with_s = seconds_of_swap(printer, 2);
     Sequence s = loaded(printer);
     CHECK(s.position()[Axis::platform] == 1000 + 82550 + 1000);
@@ -91,7 +92,7 @@ TEST_CASE("the brush wipes a part 1 mm above the rim for 10 s, without extra tim
 }
 
 TEST_CASE("every fan dries the part while the next vat comes, and at no other time") {
-    const machine::Printer printer = test::tower();
+    const machine::Printer printer = plan::test::tower();
     REQUIRE(printer.fans.size() == 2);
     Sequence s = loaded(printer);
     const std::size_t before = s.text().size();
@@ -106,10 +107,6 @@ TEST_CASE("every fan dries the part while the next vat comes, and at no other ti
 }
 
 namespace {
-
-machine::Printer machine_of(const char* name) {
-    return machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value();
-}
 
 /// From rest to rest along a straight line of lift and rail, in mm: 200 mm/s and 400 mm/s^2, 300 mm/s and 600 mm/s^2.
 double retriever_seconds(double lift_mm, double rail_mm) {
@@ -130,7 +127,7 @@ TEST_CASE("a magnet saves the hooks' strokes: a far slot is faster, and the next
     const double rise = 2 * std::sqrt(1 / 100.0);
     const double far = 2 * stroke + 0.5 + rise + 0.2 + 2 * back_off + 2 * (304.8 / 40 + 0.2);
     CHECK(swap_seconds(magnet, 1, 4).total / far == near(1, {.relative = 1e-4}));
-    CHECK(swap_seconds(magnet, 1, 4).total < swap_seconds(test::tower(), 1, 4).total - 4);
+    CHECK(swap_seconds(magnet, 1, 4).total < swap_seconds(plan::test::tower(), 1, 4).total - 4);
     Sequence s = loaded(magnet);
     const std::size_t before = s.text().size();
     swap_vat(s, 1, 2);

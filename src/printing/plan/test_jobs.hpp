@@ -56,8 +56,18 @@ inline std::vector<machine::Printer> machines() {
     return all;
 }
 
+/// That of examples/printers.
+inline machine::Printer machine_of(const char* name) {
+    return machine::load_printer(fmt::format("examples/printers/{}.toml", name)).value();
+}
+
 inline machine::Printer tower() {
-    return machine::load_printer("examples/printers/tower.toml").value();
+    return machine_of("tower");
+}
+
+/// The materials of so many equal layers.
+inline std::vector<std::vector<int>> repeated(const std::vector<int>& layer, std::size_t times) {
+    return std::vector<std::vector<int>>(times, layer);
 }
 
 }  // namespace pliant::plan::test

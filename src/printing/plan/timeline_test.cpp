@@ -14,8 +14,8 @@ using namespace pliant::plan;
 namespace {
 
 SwapTimeline timeline_of(const std::vector<std::vector<int>>& layers, const std::vector<std::string>& resins) {
-    const machine::Printer printer = test::tower();
-    return longest_swap(make_plan(test::make_job(layers, resins), printer).value(), printer);
+    const machine::Printer printer = plan::test::tower();
+    return longest_swap(make_plan(plan::test::make_job(layers, resins), printer).value(), printer);
 }
 
 std::vector<Stretch> of(const SwapTimeline& timeline, Device device) {
@@ -69,8 +69,8 @@ TEST_CASE("the swap with the longest tower move is chosen; a job without swaps h
 }
 
 TEST_CASE("the timeline ends with the job, and every exposure lies within its vat's visit") {
-    const machine::Printer printer = test::tower();
-    const job::Manifest job = test::make_job({{0, 1}, {0, 1}, {1}}, {"semi-flex", "rigid-flex"});
+    const machine::Printer printer = plan::test::tower();
+    const job::Manifest job = plan::test::make_job({{0, 1}, {0, 1}, {1}}, {"semi-flex", "rigid-flex"});
     const Plan plan = make_plan(job, printer).value();
     const JobTimeline all = job_timeline(plan, job, printer);
     CHECK(all.seconds == near(plan.seconds.total, {.relative = 1e-12}));

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-JobSettings settings() {
+JobSettings halves_settings() {
     return {"halves",
             "0.1.0",
             2,
@@ -37,7 +37,7 @@ TEST_CASE("two materials become a job with the right layers, areas and volumes")
     auto writer = Writer::create(path);
     REQUIRE(writer.has_value());
     Progress progress;
-    const auto made = slice_to_job(halves, settings(), *writer, progress);
+    const auto made = slice_to_job(halves, halves_settings(), *writer, progress);
     REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
     REQUIRE(writer->add_file("plan.json", "{}").has_value());
     REQUIRE(writer->finish(made->manifest).has_value());
@@ -77,7 +77,7 @@ TEST_CASE("slicing twice gives the same bytes of archive") {
     for (const char* name : {"a.zip", "b.zip"}) {
         auto writer = Writer::create(folder / name);
         Progress progress;
-        const auto made = slice_to_job(halves, settings(), *writer, progress);
+        const auto made = slice_to_job(halves, halves_settings(), *writer, progress);
         REQUIRE(made.has_value());
         REQUIRE(writer->finish(made->manifest).has_value());
         bytes.push_back(read_file(folder / name).value());
@@ -89,22 +89,22 @@ TEST_CASE("a material without settings, an invalid body and cancellation stop th
     const pliant::test::Folder folder("job");
     auto writer = Writer::create(folder / "a.zip");
     Progress progress;
-    JobSettings incomplete = settings();
+    JobSettings incomplete = halves_settings();
     incomplete.materials.resize(1);
     CHECK(slice_to_job(halves, incomplete, *writer, progress).error().message ==
           "material 'soft/one' has no resin and exposure");
-    CHECK(!slice_to_job({}, settings(), *writer, progress).has_value());
+    CHECK(!slice_to_job({}, halves_settings(), *writer, progress).has_value());
     struct Cancel : Progress {
         [[nodiscard]] bool cancelled() const override { return true; }
     } cancel;
-    CHECK(slice_to_job(halves, settings(), *writer, cancel).error().cause == Cause::cancelled);
+    CHECK(slice_to_job(halves, halves_settings(), *writer, cancel).error().cause == Cause::cancelled);
 }
 
 TEST_CASE("features narrower than asked for are named with material, layers and place") {
     const pliant::test::Folder folder("job");
     auto writer = Writer::create(folder / "job.zip");
     REQUIRE(writer.has_value());
-    JobSettings asked = settings();
+    JobSettings asked = halves_settings();
     asked.least_feature_um = 600;
     const std::vector<slice::Body> fin{{"soft one", box({-1000, -1000, 0}, {1000, 1000, 500}), ""},
                                        {"soft one", box({-100, -1000, 500}, {100, 1000, 700}), ""}};
@@ -123,7 +123,7 @@ TEST_CASE("exposures of layers, layer heights, bonds and findings are written to
     auto writer = Writer::create(path);
     REQUIRE(writer.has_value());
     Progress progress;
-    JobSettings s = settings();
+    JobSettings s = halves_settings();
     s.exposures["soft one"] = {2, 1, 0, 50, {{4, 4, 7}}};
     s.slicing.tops_um = {50, 100, 200, 250, 300};
     s.slicing.bonds = {{"soft one", "soft/one", 2, 0}};

@@ -9,15 +9,16 @@ namespace pliant::prepare {
 namespace {
 
 constexpr std::size_t most_touches = 100000;
-constexpr std::array<const char*, 8> names = {"wish", "x (mm)", "y (mm)", "z (mm)", "nx", "ny", "nz", "radius (mm)"};
-using Columns = std::array<std::size_t, names.size()>;
+constexpr std::array<const char*, 8> column_names = {"wish", "x (mm)", "y (mm)", "z (mm)",
+                                                     "nx",   "ny",     "nz",     "radius (mm)"};
+using Columns = std::array<std::size_t, column_names.size()>;
 
 Result<Columns> columns_of(const CsvTable& table) {
     Columns columns{};
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        const auto found = std::find(table.columns.begin(), table.columns.end(), names[i]);
+    for (std::size_t i = 0; i < column_names.size(); ++i) {
+        const auto found = std::find(table.columns.begin(), table.columns.end(), column_names[i]);
         if (found == table.columns.end())
-            return input_error("{}: there is no column \"{}\"", table.place(table.header_line), names[i]);
+            return input_error("{}: there is no column \"{}\"", table.place(table.header_line), column_names[i]);
         columns[i] = static_cast<std::size_t>(found - table.columns.begin());
     }
     return columns;
@@ -37,7 +38,7 @@ Result<slice::SupportTouch> touch_of(const CsvTable& table, const CsvRow& row, c
     if (!wish) return tl::unexpected(wish.error());
     std::array<double, 7> n{};
     for (std::size_t i = 0; i < n.size(); ++i) {
-        const Result<double> read = table.number(row, columns[i + 1], names[i + 1]);
+        const Result<double> read = table.number(row, columns[i + 1], column_names[i + 1]);
         if (!read) return tl::unexpected(read.error());
         n[i] = *read;
     }

@@ -12,7 +12,7 @@ namespace {
 
 const std::string head = "wish,x (mm),y (mm),z (mm),nx,ny,nz,radius (mm)\n";
 
-std::string refused(const std::string& text) {
+std::string refused_paint(const std::string& text) {
     const auto read = read_paint(text, "p.csv");
     return read ? "" : read.error().message;
 }
@@ -32,11 +32,12 @@ TEST_CASE("strokes of painted supports are read in order, in micrometres") {
 }
 
 TEST_CASE("mistakes in a table of painted supports are reported with their line") {
-    CHECK(holds(refused("wish,x (mm)\nblock,1\n"), "p.csv:1: there is no column \"y (mm)\""));
-    CHECK(holds(refused(head + "forbid,1,2,3,0,0,-1,1\n"), "p.csv:2: \"forbid\" must be enforce, block or usual"));
-    CHECK(holds(refused(head + "block,1,2,3,0,0,-1,0\n"), "p.csv:2: painted supports: a radius of 0 mm"));
-    CHECK(holds(refused(head + "block,1,2,3,0,0,0,1\n"), "p.csv:2: painted supports: a normal of length 0"));
-    CHECK(holds(refused(head + "block,1,2,inch,0,0,-1,1\n"), "p.csv:2"));
-    CHECK(holds(refused(head + "block,1,2\n"), "p.csv:2"));
-    CHECK_FALSE(refused("").empty());
+    CHECK(holds(refused_paint("wish,x (mm)\nblock,1\n"), "p.csv:1: there is no column \"y (mm)\""));
+    CHECK(
+        holds(refused_paint(head + "forbid,1,2,3,0,0,-1,1\n"), "p.csv:2: \"forbid\" must be enforce, block or usual"));
+    CHECK(holds(refused_paint(head + "block,1,2,3,0,0,-1,0\n"), "p.csv:2: painted supports: a radius of 0 mm"));
+    CHECK(holds(refused_paint(head + "block,1,2,3,0,0,0,1\n"), "p.csv:2: painted supports: a normal of length 0"));
+    CHECK(holds(refused_paint(head + "block,1,2,inch,0,0,-1,1\n"), "p.csv:2"));
+    CHECK(holds(refused_paint(head + "block,1,2\n"), "p.csv:2"));
+    CHECK_FALSE(refused_paint("").empty());
 }

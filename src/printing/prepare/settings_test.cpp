@@ -28,7 +28,7 @@ job::JobSettings settings_of(const Change& change, Drawing drawing = two_blocks(
     return *settings;
 }
 
-std::string refused(const Change& change) {
+std::string refused_settings(const Change& change) {
     Order order;
     change(order);
     Drawing drawing = two_blocks();
@@ -119,10 +119,11 @@ TEST_CASE("--layer and --least-feature set their values") {
     CHECK(settings_of([](Order& o) { o.least_feature = "0.3 mm"; }).least_feature_um == near(300, {.relative = 1e-12}));
     CHECK(settings_of([](Order& o) { o.least_feature = "10 mm"; }).least_feature_um ==
           near(10000, {.relative = 1e-12}));
-    CHECK(refused([](Order& o) { o.layer = "0.5 um"; }).find("--layer 0.5 um: a whole number") == 0);
-    CHECK(refused([](Order& o) { o.layer = "50"; }).find("--layer: ") == 0);
-    CHECK(refused([](Order& o) { o.least_feature = "10.1 mm"; }) == "--least-feature 10.1 mm: must be 1e-06 to 10 mm");
-    CHECK(refused([](Order& o) { o.least_feature = "0 mm"; }).find("--least-feature 0 mm: must be") == 0);
+    CHECK(refused_settings([](Order& o) { o.layer = "0.5 um"; }).find("--layer 0.5 um: a whole number") == 0);
+    CHECK(refused_settings([](Order& o) { o.layer = "50"; }).find("--layer: ") == 0);
+    CHECK(refused_settings([](Order& o) { o.least_feature = "10.1 mm"; }) ==
+          "--least-feature 10.1 mm: must be 1e-06 to 10 mm");
+    CHECK(refused_settings([](Order& o) { o.least_feature = "0 mm"; }).find("--least-feature 0 mm: must be") == 0);
 }
 
 TEST_CASE("--interlock and --overlap name two materials, pixels and layers") {
@@ -142,10 +143,11 @@ TEST_CASE("--interlock and --overlap name two materials, pixels and layers") {
     CHECK(s.slicing.bonds[1].depth_px == 0);
     CHECK(s.slicing.bonds[1].layers == 1);
     for (const char* wrong : {"soft=4", "soft+firm", "soft=4+firm", ""})
-        CHECK(refused([&](Order& o) { o.interlocks = {wrong}; }).find("write MATERIAL+MATERIAL=PIXELS") !=
+        CHECK(refused_settings([&](Order& o) { o.interlocks = {wrong}; }).find("write MATERIAL+MATERIAL=PIXELS") !=
               std::string::npos);
     for (const char* wrong : {"soft+firm=", "soft+firm=-1", "soft+firm=2,", "soft+firm=2,x", "soft+firm=1.5"})
-        CHECK(refused([&](Order& o) { o.overlaps = {wrong}; }).find("must be whole numbers") != std::string::npos);
+        CHECK(refused_settings([&](Order& o) { o.overlaps = {wrong}; }).find("must be whole numbers") !=
+              std::string::npos);
 }
 
 TEST_CASE("--exposure sets all layers of a material, its first layers, or some layers") {
@@ -169,15 +171,18 @@ TEST_CASE("--exposure sets all layers of a material, its first layers, or some l
     CHECK(s.materials[1].exposure_s == 4);
     CHECK(settings_of([](Order& o) { o.exposures = {"soft=1 h"}; }).materials[0].exposure_s == 3600);
     for (const char* wrong : {"soft", "=3 s", ""})
-        CHECK(refused([&](Order& o) { o.exposures = {wrong}; }).find("write MATERIAL=TIME") != std::string::npos);
-    for (const char* wrong : {"soft=0 s", "soft=-1 s", "soft=3601 s", "soft=2 s,0 s"})
-        CHECK(refused([&](Order& o) { o.exposures = {wrong}; }).find("must be above 0 s and at most an hour") !=
+        CHECK(refused_settings([&](Order& o) { o.exposures = {wrong}; }).find("write MATERIAL=TIME") !=
               std::string::npos);
+    for (const char* wrong : {"soft=0 s", "soft=-1 s", "soft=3601 s", "soft=2 s,0 s"})
+        CHECK(refused_settings([&](Order& o) {
+                  o.exposures = {wrong};
+              }).find("must be above 0 s and at most an hour") != std::string::npos);
     for (const char* wrong : {"soft:5-2=3 s", "soft:-1-2=3 s", "soft:=3 s", "soft:1-=3 s", "soft:1-2=3 s,4 s"})
-        CHECK(refused([&](Order& o) { o.exposures = {wrong}; }).find("layers are FIRST-LAST") != std::string::npos);
-    CHECK(refused([](Order& o) { o.exposures = {"hard=3 s"}; }).find("there is no material \"hard\"") !=
+        CHECK(refused_settings([&](Order& o) { o.exposures = {wrong}; }).find("layers are FIRST-LAST") !=
+              std::string::npos);
+    CHECK(refused_settings([](Order& o) { o.exposures = {"hard=3 s"}; }).find("there is no material \"hard\"") !=
           std::string::npos);
-    CHECK(refused([](Order& o) { o.exposures = {"soft=3 mm"}; }).find("--exposure soft=3 mm: ") == 0);
+    CHECK(refused_settings([](Order& o) { o.exposures = {"soft=3 mm"}; }).find("--exposure soft=3 mm: ") == 0);
 }
 
 TEST_CASE("an exposure far from the printer file's gives a warning with its cure depth") {
@@ -213,8 +218,9 @@ TEST_CASE("--resin sets resin and exposures; one that no vat holds is an error u
     CHECK(s->materials[0].resin == "firm");
     CHECK(s->materials[0].exposure_s == 4);
     CHECK(drawing.warnings.empty());
-    CHECK(refused([](Order& o) { o.resins = {"soft=frim"}; }).find("did you mean \"firm\"?") != std::string::npos);
-    const std::string unknown = refused([](Order& o) { o.resins = {"soft=glue"}; });
+    CHECK(refused_settings([](Order& o) { o.resins = {"soft=frim"}; }).find("did you mean \"firm\"?") !=
+          std::string::npos);
+    const std::string unknown = refused_settings([](Order& o) { o.resins = {"soft=glue"}; });
     CHECK(unknown.find("no vat of  holds the resin \"glue\" of \"soft\": they hold soft and firm.") == 0);
     CHECK(unknown.find("--any-vat") != std::string::npos);
     drawing = two_blocks();
@@ -227,8 +233,8 @@ TEST_CASE("--resin sets resin and exposures; one that no vat holds is an error u
     CHECK(s->materials[0].bottom_exposure_s == 9);
     REQUIRE(drawing.warnings.size() == 1);
     CHECK(drawing.warnings[0].find("resin \"glue\" is not in the printer file") == 0);
-    CHECK(refused([](Order& o) { o.resins = {"hard=firm"}; }).find("hard") != std::string::npos);
-    CHECK(!refused([](Order& o) { o.resins = {"soft"}; }).empty());
+    CHECK(refused_settings([](Order& o) { o.resins = {"hard=firm"}; }).find("hard") != std::string::npos);
+    CHECK(!refused_settings([](Order& o) { o.resins = {"soft"}; }).empty());
 }
 
 TEST_CASE("the resins' settings in the printer file reach their materials") {

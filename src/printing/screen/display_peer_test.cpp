@@ -17,16 +17,24 @@
 #include "printing/host/projector_patterns.hpp"
 #include "printing/job/job.hpp"
 #include "printing/screen/projector.hpp"
+#include "printing/screen/test_waiting.hpp"
 
 // After our headers: it defines Status and other words as macros.
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
+// Words of ours, in this file and in those that are compiled together with it.
+#undef Always
+#undef Bool
+#undef None
+#undef Status
+#undef Success
 
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
 
 using namespace pliant;
 using namespace pliant::host;
+using pliant::host::test::becomes_true;
 
 namespace {
 
@@ -124,16 +132,8 @@ bool cannot_start(const Session& session) {
     return true;
 }
 
-ScreenOptions options(int width = width_px, int height = height_px) {
+ScreenOptions display_options(int width = width_px, int height = height_px) {
     return {width, height, 3600, PLIANT_SCREEN_PROGRAM};
-}
-
-bool becomes_true(const std::function<bool()>& condition) {
-    for (int i = 0; i < 2000; ++i) {
-        if (condition()) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
 }
 
 /// A job with two materials on each layer, written and read as a real one.
@@ -171,7 +171,7 @@ TEST_CASE("the display shows a job's images pixel by pixel, and black before, be
     const pliant::test::Folder folder("light");
     const job::Archive job = make_job(folder / "light.zip");
     {
-        auto projector = ScreenProjector::open("0", options());
+        auto projector = ScreenProjector::open("0", display_options());
         REQUIRE_MESSAGE(projector, (projector ? "" : projector.error().message));
         CHECK(projector->panel().width_px == width_px);
         CHECK(projector->panel().refresh_hz == near(60, {.relative = 1e-12}));
@@ -200,7 +200,7 @@ TEST_CASE("an exposure ends by itself and lasts the time asked for, to one frame
     Session session;
     if (cannot_start(session)) return;
     const job::Image white = test_pattern("white", {width_px, height_px, 0, 1, 5, 3}).value();
-    auto projector = ScreenProjector::open("0", options());
+    auto projector = ScreenProjector::open("0", display_options());
     REQUIRE(projector);
     for (const double seconds : {0.05, 0.1, 0.25, 0.5, 1.0}) {
         REQUIRE(projector->show_for(white, seconds));
@@ -231,7 +231,7 @@ TEST_CASE("killing the host during an exposure makes the display black, and the 
     const pid_t host = ::fork();
     if (host == 0) {
         ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-        auto projector = ScreenProjector::open("0", options());
+        auto projector = ScreenProjector::open("0", display_options());
         const bool good = projector && projector->show_for(grid, 600);
         (void)!::write(ends[1], good ? "1" : "0", 1);
         for (;;) ::pause();
@@ -240,7 +240,7 @@ TEST_CASE("killing the host during an exposure makes the display black, and the 
     REQUIRE(::read(ends[0], &lit, 1) == 1);
     REQUIRE(lit == '1');
     CHECK(becomes_true([&] { return x.screenshot() == grid; }));
-    const auto second = ScreenProjector::open("0", options());
+    const auto second = ScreenProjector::open("0", display_options());
     REQUIRE_FALSE(second);
     CHECK(second.error().message.find("another program is using this panel") != std::string::npos);
     CHECK(x.screenshot() == grid);
@@ -251,7 +251,7 @@ TEST_CASE("killing the host during an exposure makes the display black, and the 
         CHECK(x.all(0));
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    auto next = ScreenProjector::open("0", options());
+    auto next = ScreenProjector::open("0", display_options());
     REQUIRE_MESSAGE(next, (next ? "" : next.error().message));
     REQUIRE(next->show(grid));
     CHECK(becomes_true([&] { return x.screenshot() == grid; }));
@@ -264,24 +264,24 @@ TEST_CASE("if the process that holds the display is killed, another one makes it
     if (cannot_start(session)) return;
     const Server& x = session.server;
     const job::Image white = test_pattern("ramp", {width_px, height_px, 0, 1, 5, 3}).value();
-    auto projector = ScreenProjector::open("0", options());
+    auto projector = ScreenProjector::open("0", display_options());
     REQUIRE(projector);
     REQUIRE(projector->show_for(white, 600));
     CHECK(becomes_true([&] { return x.screenshot() == white; }));
     REQUIRE(::kill(projector->holder_process(), SIGKILL) == 0);
     CHECK_FALSE(projector->finish());
     CHECK(becomes_true([&] { return x.all(0); }));
-    CHECK(becomes_true([&] { return ScreenProjector::open("0", options()).has_value(); }));
+    CHECK(becomes_true([&] { return ScreenProjector::open("0", display_options()).has_value(); }));
 }
 
 TEST_CASE("a display of another size, or a missing one, is an error with numbers") {
     Session session;
     if (cannot_start(session)) return;
-    const auto wrong = ScreenProjector::open("0", options(1920, 1080));
+    const auto wrong = ScreenProjector::open("0", display_options(1920, 1080));
     REQUIRE_FALSE(wrong);
     CAPTURE(wrong.error().message);
     CHECK(wrong.error().message.find("the panel has 320 x 200 px, the images 1920 x 1080 px") != std::string::npos);
-    CHECK(ScreenProjector::open("7", options()).error().message.find("no display 7") != std::string::npos);
+    CHECK(ScreenProjector::open("7", display_options()).error().message.find("no display 7") != std::string::npos);
 
     const auto displays = list_displays(PLIANT_SCREEN_PROGRAM);
     REQUIRE_MESSAGE(displays, (displays ? "" : displays.error().message));
@@ -289,5 +289,6 @@ TEST_CASE("a display of another size, or a missing one, is an error with numbers
     CHECK((*displays)[0].width_px == width_px);
     CHECK((*displays)[1].height_px == 120);
     // Separate X screens all begin at 0, 0, unlike displays of one screen.
-    CHECK(ScreenProjector::open("1", options(0, 0)).error().message.find("cannot be told from") != std::string::npos);
+    CHECK(ScreenProjector::open("1", display_options(0, 0)).error().message.find("cannot be told from") !=
+          std::string::npos);
 }

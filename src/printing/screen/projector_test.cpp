@@ -16,9 +16,11 @@
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
 #include "printing/job/png.hpp"
+#include "printing/screen/test_waiting.hpp"
 
 using namespace pliant;
 using namespace pliant::host;
+using pliant::host::test::becomes_true;
 
 namespace {
 
@@ -47,15 +49,6 @@ struct Folder {
 
 ScreenOptions options() {
     return {64, 48, 3600, PLIANT_SCREEN_PROGRAM};
-}
-
-/// Waits for a condition; the test's own time limit ends it otherwise.
-bool becomes_true(const std::function<bool()>& condition) {
-    for (int i = 0; i < 2000; ++i) {
-        if (condition()) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    return false;
 }
 
 }  // namespace

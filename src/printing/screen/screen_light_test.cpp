@@ -37,12 +37,12 @@ struct CountingPanel final : Panel {
     }
 };
 
-const job::Image image{2, 1, {0, 255}};
+const job::Image half_lit{2, 1, {0, 255}};
 
 Result<Light> light(
     CountingPanel& panel, double seconds, const std::function<bool()>& keep_on = [] { return true; }) {
     return keep_light(
-        panel, image, seconds, [] {}, keep_on);
+        panel, half_lit, seconds, [] {}, keep_on);
 }
 
 }  // namespace

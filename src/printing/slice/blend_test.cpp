@@ -14,8 +14,6 @@ using namespace pliant::slice::test;
 
 namespace {
 
-const Raster raster{64, 48, 100};
-
 Body blended(const mesh::TriMesh& mesh, const Blend& blend) {
     Body body{"soft", mesh, "bar"};
     body.blend = blend;
@@ -39,7 +37,7 @@ TEST_CASE("a blend lights the integral of its share, in every layer, in whole pi
     // 6 x 4 mm, 60 x 40 pixels; the share rises from 0 to 1 along x, so half of it is of the second material.
     const std::vector<Body> bodies{
         blended(box({-3000, -2000, 0}, {3000, 2000, 500}), {"firm", {-3000, 0, 0}, {3000, 0, 0}})};
-    const auto slicer = Slicer::prepare(bodies, {raster, 50, {}});
+    const auto slicer = Slicer::prepare(bodies, {small_raster, 50, {}});
     REQUIRE(slicer.has_value());
     CHECK(slicer->materials() == std::vector<std::string>{"soft", "firm"});
     std::vector<double> of_column(60, 0);
@@ -68,7 +66,7 @@ TEST_CASE("a blend lights the integral of its share, in every layer, in whole pi
 TEST_CASE("blends with grey edges, cells of several pixels, a vertical ramp and uneven shares") {
     const auto pillar = prism(regular_polygon(90, 2000), 0, 1000);
     const Blend up{"firm", {0, 0, 0}, {0, 0, 1000}, {0.25, 0.75, 0.5}, 3};
-    const auto slicer = Slicer::prepare(std::vector<Body>{blended(pillar, up)}, {raster, 50, {}});
+    const auto slicer = Slicer::prepare(std::vector<Body>{blended(pillar, up)}, {small_raster, 50, {}});
     REQUIRE(slicer.has_value());
     for (int k = 0; k < slicer->layer_count(); ++k) {
         const double z = (k + 0.5) / 20;
@@ -81,7 +79,7 @@ TEST_CASE("blends with grey edges, cells of several pixels, a vertical ramp and 
 TEST_CASE("equal layers of a blend have different patterns, the same on every run") {
     const std::vector<Body> bodies{
         blended(box({-3000, -2000, 0}, {3000, 2000, 500}), {"firm", {0, 0, 0}, {0, 0, 1e6}, {0.5, 0.5}})};
-    const auto slicer = Slicer::prepare(bodies, {raster, 50, {}});
+    const auto slicer = Slicer::prepare(bodies, {small_raster, 50, {}});
     REQUIRE(slicer.has_value());
     CHECK(slicer->layer(2).images[0].image == slicer->layer(2).images[0].image);
     CHECK(!(slicer->layer(2).images[0].image == slicer->layer(3).images[0].image));
@@ -90,12 +88,12 @@ TEST_CASE("equal layers of a blend have different patterns, the same on every ru
 TEST_CASE("a blend may touch another body of one of its materials") {
     std::vector<Body> bodies{blended(box({-3000, -2000, 0}, {0, 2000, 100}), {"firm", {-3000, 0, 0}, {0, 0, 0}}),
                              {"firm", box({0, -2000, 0}, {3000, 2000, 100}), "block"}};
-    const auto slicer = Slicer::prepare(bodies, {raster, 50, {}});
+    const auto slicer = Slicer::prepare(bodies, {small_raster, 50, {}});
     REQUIRE(slicer.has_value());
     const Shares s = shares_of(slicer->layer(0));
     CHECK(std::fabs(s.second - 1800) <= 1);
     bodies[0].blend->shares = {1.5, 0};
-    const auto refused = Slicer::prepare(bodies, {raster, 50, {}});
+    const auto refused = Slicer::prepare(bodies, {small_raster, 50, {}});
     REQUIRE(!refused.has_value());
     CHECK(refused.error().message == "body 'bar' (soft): share 1.5 of its blend: must be 0 to 1");
 }

@@ -12,10 +12,8 @@ using namespace pliant::slice::test;
 
 namespace {
 
-const Raster raster{64, 48, 100};
-
 Settings with_bond(const Bond& bond) {
-    Settings settings{raster, 50, {}};
+    Settings settings{small_raster, 50, {}};
     settings.bonds = {bond};
     return settings;
 }
@@ -43,7 +41,7 @@ TEST_CASE("the inspection counts a pixel lit twice once") {
     const auto slicer = Slicer::prepare(halves, with_bond({"soft", "firm", 3, 0}));
     REQUIRE(slicer.has_value());
     Inspector inspector;
-    for (int k = 0; k < 4; ++k) inspector.add(shape_of(slicer->layer(k), raster.width_px));
+    for (int k = 0; k < 4; ++k) inspector.add(shape_of(slicer->layer(k), small_raster.width_px));
     const Findings findings = inspector.finish();
     CHECK(findings.islands.empty());
     CHECK(findings.cavities.empty());
@@ -72,7 +70,7 @@ TEST_CASE("bleed compensation removes the lowest layers above an underside, and 
     const std::vector<Body> table{{"soft", box({-2000, -500, 0}, {-1000, 500, 500}), ""},
                                   {"soft", box({1000, -500, 0}, {2000, 500, 500}), ""},
                                   {"soft", box({-1000, -500, 200}, {1000, 500, 500}), ""}};
-    Settings settings{raster, 50, {}};
+    Settings settings{small_raster, 50, {}};
     settings.compensation["soft"].bleed_um = 100;
     const auto slicer = Slicer::prepare(table, settings);
     REQUIRE(slicer.has_value());

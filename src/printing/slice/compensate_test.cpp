@@ -14,11 +14,9 @@ using namespace pliant::slice::test;
 
 namespace {
 
-const Raster raster{64, 48, 100};  // 6.4 x 4.8 mm
-
 SlicedLayer cut(const std::vector<Body>& bodies, const std::map<std::string, Compensation>& compensation, int layer,
                 const ComposeRules& rules = {}) {
-    Settings settings{raster, 50, rules};
+    Settings settings{small_raster, 50, rules};
     settings.compensation = compensation;
     const auto slicer = Slicer::prepare(bodies, settings);
     REQUIRE(slicer.has_value());
@@ -65,8 +63,8 @@ TEST_CASE("borders between materials stay, each material has its own offset, and
     const RunImage &soft = layer.images[0].image, &rigid = layer.images[1].image;
     CHECK(soft.row(24).front() == Run{23, 32, 255});
     CHECK(rigid.row(24).front() == Run{32, 44, 255});
-    for (int row = 0; row < raster.height_px; ++row) {
-        for (int column = 0; column < raster.width_px; ++column)
+    for (int row = 0; row < small_raster.height_px; ++row) {
+        for (int column = 0; column < small_raster.width_px; ++column)
             CHECK((soft.at(row, column) == 0 || rigid.at(row, column) == 0));
     }
 }
@@ -97,7 +95,7 @@ TEST_CASE("without anti-aliasing compensated pixels stay full or black") {
 }
 
 TEST_CASE("invalid offsets are refused with the material's name") {
-    Settings settings{raster, 50, {}};
+    Settings settings{small_raster, 50, {}};
     settings.compensation["soft"] = {0, -5, 2};
     CHECK(Slicer::prepare(square, settings).error().message ==
           "material 'soft': elephant foot of -5 um: must be 0 to 10000 um");

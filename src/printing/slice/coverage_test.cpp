@@ -27,7 +27,7 @@ std::vector<Point2> clip(const std::vector<Point2>& polygon, const Distance& ins
     return kept;
 }
 
-double area(const std::vector<Point2>& polygon) {
+double polygon_area(const std::vector<Point2>& polygon) {
     double twice = 0;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const Point2 p = polygon[i], q = polygon[(i + 1) % polygon.size()];
@@ -41,7 +41,7 @@ double clipped_area(std::vector<Point2> polygon, double x0, double x1, double y0
     polygon = clip(polygon, [&](Point2 p) { return x1 - p.x; });
     polygon = clip(polygon, [&](Point2 p) { return p.y - y0; });
     polygon = clip(polygon, [&](Point2 p) { return y1 - p.y; });
-    return polygon.empty() ? 0 : area(polygon);
+    return polygon.empty() ? 0 : polygon_area(polygon);
 }
 
 /// Dense coverage from the cells, by the rule in Cell's comment.
@@ -93,11 +93,11 @@ void check_every_pixel(const std::vector<Point2>& polygon, const Raster& raster)
         }
     }
     CHECK(worst < 1e-10);
-    const double exact_sum = area(polygon) / (raster.pixel_um * raster.pixel_um);
+    const double exact_sum = polygon_area(polygon) / (raster.pixel_um * raster.pixel_um);
     CHECK(std::fabs(sum - exact_sum) < 1e-9 * exact_sum);
 }
 
-const Raster raster{40, 30, 50};
+const Raster coarse_raster{40, 30, 50};
 
 }  // namespace
 
@@ -114,20 +114,21 @@ TEST_CASE("every pixel of a triangle, a rotated square and a disc has its exact 
 }
 
 TEST_CASE("shapes inside one pixel, on pixel borders and at the raster's edge have exact coverage") {
-    check_every_pixel({{10, 10}, {20, 12}, {15, 30}}, raster);
-    check_every_pixel({{0, 0}, {50, 0}, {50, 50}, {0, 50}}, raster);
-    check_every_pixel({{-1000, -750}, {1000, -750}, {1000, 750}, {-1000, 750}}, raster);
-    check_every_pixel({{-1000, -750}, {1000, -750}, {1000, -749.5}, {-1000, -749.75}}, raster);
+    check_every_pixel({{10, 10}, {20, 12}, {15, 30}}, coarse_raster);
+    check_every_pixel({{0, 0}, {50, 0}, {50, 50}, {0, 50}}, coarse_raster);
+    check_every_pixel({{-1000, -750}, {1000, -750}, {1000, 750}, {-1000, 750}}, coarse_raster);
+    check_every_pixel({{-1000, -750}, {1000, -750}, {1000, -749.5}, {-1000, -749.75}}, coarse_raster);
 }
 
 TEST_CASE("an outline takes cells along its border only") {
     CellBuffer buffer;
     const double a = 500.0 * grid_per_um;
-    buffer.add(0, in_image({{-a, -a, a, -a}, {a, -a, a, a}, {a, a, -a, a}, {-a, a, -a, -a}}, raster));
+    buffer.add(0, in_image({{-a, -a, a, -a}, {a, -a, a, a}, {a, a, -a, a}, {-a, a, -a, -a}}, coarse_raster));
     CHECK(buffer.sorted().size() == 40);  // two upright sides of 20 rows
 }
 
 TEST_CASE("outlines beyond the raster are clamped to it") {
-    const std::vector<double> pixels = coverage({{-9999, -9999}, {9999, -9999}, {9999, 9999}, {-9999, 9999}}, raster);
+    const std::vector<double> pixels =
+        coverage({{-9999, -9999}, {9999, -9999}, {9999, 9999}, {-9999, 9999}}, coarse_raster);
     for (const double p : pixels) CHECK(p == near(1, {.relative = 1e-12}));
 }

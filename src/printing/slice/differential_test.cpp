@@ -62,7 +62,7 @@ int winding(const mesh::TriMesh& mesh, const Vec3& p) {
     return count;
 }
 
-const Raster raster{40, 36, 100};
+const Raster sampled_raster{40, 36, 100};
 
 /// Fraction of a pixel's sample points inside the body.
 double sampled(const mesh::TriMesh& mesh, int row, int column, double z) {
@@ -70,8 +70,8 @@ double sampled(const mesh::TriMesh& mesh, int row, int column, double z) {
     int inside = 0;
     for (int i = 0; i < n; ++i) {
         for (int j = 0; j < n; ++j) {
-            const double x = (column + (i + 0.5) / n - raster.width_px / 2.0) * raster.pixel_um;
-            const double y = (raster.height_px / 2.0 - row - (j + 0.5) / n) * raster.pixel_um;
+            const double x = (column + (i + 0.5) / n - sampled_raster.width_px / 2.0) * sampled_raster.pixel_um;
+            const double y = (sampled_raster.height_px / 2.0 - row - (j + 0.5) / n) * sampled_raster.pixel_um;
             inside += winding(mesh, {x + 1e-4, y + 2e-4, z}) != 0;
         }
     }
@@ -87,14 +87,14 @@ TEST_CASE("grey values are the covered share, for random bodies with cavities") 
         const double lowest = mesh::bounds(mesh).low.z;
         mesh = together(mesh, turned_inside_out(boulder({0, 0, 1500}, 600, random)));
         for (Vec3& p : mesh.points) p.z -= lowest;
-        const auto slicer = Slicer::prepare(std::vector<Body>{{"soft", mesh, ""}}, {raster, 100, {}});
+        const auto slicer = Slicer::prepare(std::vector<Body>{{"soft", mesh, ""}}, {sampled_raster, 100, {}});
         REQUIRE_MESSAGE(slicer.has_value(), (slicer ? "" : slicer.error().message));
         double worst = 0;
         int grey = 0;
         for (int shot = 0; shot < 400; ++shot) {
             const int layer = static_cast<int>(random(0, slicer->layer_count()));
-            const int row = static_cast<int>(random(0, raster.height_px));
-            const int column = static_cast<int>(random(0, raster.width_px));
+            const int row = static_cast<int>(random(0, sampled_raster.height_px));
+            const int column = static_cast<int>(random(0, sampled_raster.width_px));
             const SlicedLayer sliced = slicer->layer(layer);
             const int value = sliced.images.empty() ? 0 : sliced.images[0].image.at(row, column);
             const double expected = sampled(mesh, row, column, (layer + 0.5) * 100);
@@ -113,12 +113,13 @@ TEST_CASE("two materials: every pixel is lit by one at most, and together they l
         const double lowest = std::min(mesh::bounds(a).low.z, mesh::bounds(b).low.z);
         for (Vec3& p : a.points) p.z -= lowest;
         for (Vec3& p : b.points) p.z -= lowest;
-        const auto slicer = Slicer::prepare(std::vector<Body>{{"soft", a, ""}, {"rigid", b, ""}}, {raster, 100, {}});
+        const auto slicer =
+            Slicer::prepare(std::vector<Body>{{"soft", a, ""}, {"rigid", b, ""}}, {sampled_raster, 100, {}});
         REQUIRE(slicer.has_value());
         for (int shot = 0; shot < 300; ++shot) {
             const int layer = static_cast<int>(random(0, slicer->layer_count()));
-            const int row = static_cast<int>(random(0, raster.height_px));
-            const int column = static_cast<int>(random(0, raster.width_px));
+            const int row = static_cast<int>(random(0, sampled_raster.height_px));
+            const int column = static_cast<int>(random(0, sampled_raster.width_px));
             const SlicedLayer sliced = slicer->layer(layer);
             int lit = 0, value = 0, owner = -1;
             for (const MaterialImage& m : sliced.images) {

@@ -6,11 +6,10 @@
 
 #include "base/core/parallel.hpp"
 #include "printing/slice/distance_field.hpp"
+#include "printing/slice/layer_shape.hpp"
 
 namespace pliant::slice {
 namespace {
-
-constexpr int solid_value = 128;
 
 /// The grid of cells over pixels and layers.
 struct Cells {

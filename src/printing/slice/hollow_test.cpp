@@ -15,29 +15,29 @@ using namespace pliant::slice::test;
 
 namespace {
 
-const Settings settings{{240, 200, 100}, 100, {}};  // 24 x 20 mm
+const Settings hollow_slicing{{240, 200, 100}, 100, {}};  // 24 x 20 mm
 
-struct Outcome {
+struct HollowOutcome {
     double volume_mm3 = 0;
     Findings findings;
     Hollowing hollowing;
 };
 
-Outcome hollowed(const std::vector<Body>& part, const HollowSettings& wanted) {
+HollowOutcome hollowed(const std::vector<Body>& part, const HollowSettings& wanted) {
     Progress progress;
-    auto made = hollow_out(part, settings, wanted, progress);
+    auto made = hollow_out(part, hollow_slicing, wanted, progress);
     REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
-    Settings with = settings;
+    Settings with = hollow_slicing;
     with.removed = made->removed;
     const auto slicer = Slicer::prepare(part, with);
     REQUIRE(slicer.has_value());
-    Outcome outcome{0, {}, std::move(*made)};
+    HollowOutcome outcome{0, {}, std::move(*made)};
     Inspector inspector(slicer->layers());
     for (int k = 0; k < slicer->layer_count(); ++k) {
         const SlicedLayer layer = slicer->layer(k);
         for (const MaterialImage& m : layer.images)
             outcome.volume_mm3 += static_cast<double>(m.value_sum) / 255 * 0.001;
-        inspector.add(shape_of(layer, settings.raster.width_px));
+        inspector.add(shape_of(layer, hollow_slicing.raster.width_px));
     }
     outcome.findings = inspector.finish();
     return outcome;
@@ -74,7 +74,7 @@ TEST_CASE("distances agree with an exhaustive search") {
 }
 
 TEST_CASE("a block becomes a closed box whose walls have at least the given thickness") {
-    const Outcome o = hollowed(block, {2000, 0});
+    const HollowOutcome o = hollowed(block, {2000, 0});
     CHECK(o.hollowing.cavities == 1);
     REQUIRE(o.findings.cavities.size() == 1);
     const Cavity& cavity = o.findings.cavities[0];
@@ -88,7 +88,7 @@ TEST_CASE("a block becomes a closed box whose walls have at least the given thic
 }
 
 TEST_CASE("drains open the box: no closed cavity is left, and the holes have their cylinders' size") {
-    const Outcome closed = hollowed(block, {2000, 0}), open = hollowed(block, {2000, 1500});
+    const HollowOutcome closed = hollowed(block, {2000, 0}), open = hollowed(block, {2000, 1500});
     CHECK(open.hollowing.drains == 2);
     for (const Cavity& c : open.findings.cavities) CHECK(c.end != Cavity::End::closed);
     const double wall = 2.1, hole = 3.14159 * 0.75 * 0.75 * wall;
@@ -99,8 +99,8 @@ TEST_CASE("drains open the box: no closed cavity is left, and the holes have the
 
 TEST_CASE("a part without any place thick enough is refused") {
     Progress progress;
-    const auto made = hollow_out(block, settings, {6000, 0}, progress);
+    const auto made = hollow_out(block, hollow_slicing, {6000, 0}, progress);
     REQUIRE(!made.has_value());
     CHECK(made.error().message == "hollow: nothing of the part lies 6 mm deep inside of it");
-    CHECK(!hollow_out(block, settings, {0, 0}, progress).has_value());
+    CHECK(!hollow_out(block, hollow_slicing, {0, 0}, progress).has_value());
 }

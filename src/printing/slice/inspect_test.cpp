@@ -11,13 +11,11 @@ using namespace pliant::slice::test;
 
 namespace {
 
-const Raster raster{64, 48, 100};
-
 Findings findings_of(const std::vector<Body>& bodies) {
-    const auto slicer = Slicer::prepare(bodies, {raster, 50, {}});
+    const auto slicer = Slicer::prepare(bodies, {small_raster, 50, {}});
     REQUIRE_MESSAGE(slicer.has_value(), (slicer ? "" : slicer.error().message));
     Inspector inspector;
-    for (int k = 0; k < slicer->layer_count(); ++k) inspector.add(shape_of(slicer->layer(k), raster.width_px));
+    for (int k = 0; k < slicer->layer_count(); ++k) inspector.add(shape_of(slicer->layer(k), small_raster.width_px));
     return inspector.finish();
 }
 
@@ -34,7 +32,7 @@ TEST_CASE("a block has no islands or cavities, and is one component") {
     REQUIRE(f.pieces.size() == 1);
     CHECK(f.pieces[0].voxels == 4000);
     CHECK(f.faint_layers.empty());
-    CHECK(describe(f, raster).empty());
+    CHECK(describe(f, small_raster).empty());
 }
 
 TEST_CASE("a part of a table that hangs below its plate is an island; legs are not") {
@@ -49,8 +47,9 @@ TEST_CASE("a part of a table that hangs below its plate is an island; legs are n
     CHECK(f.islands[0].pixels == 4);
     CHECK(f.pieces.size() == 1);
     CHECK(f.cavities.empty());
-    CHECK(describe(f, raster).at(0).starts_with(
-        "an island begins in mid-air in layer 4, held from layer 8 on: up to 0.04"));
+    CHECK(describe(f, small_raster)
+              .at(0)
+              .starts_with("an island begins in mid-air in layer 4, held from layer 8 on: up to 0.04"));
 }
 
 TEST_CASE("closed cavities, cups and tunnels are distinguished") {
@@ -129,7 +128,7 @@ TEST_CASE("islands that join before they are supported are one group") {
     CHECK(comb.most_pixels == 26);
     CHECK(comb.voxels == 2 * (4 + 4 + 6) + 4 * 26);
     CHECK(comb.severity == Severity::high);
-    const std::vector<std::string> lines = describe(f, raster);
+    const std::vector<std::string> lines = describe(f, small_raster);
     REQUIRE(lines.size() == 2);
     CHECK(lines[1].starts_with("an island begins in mid-air in layer 1, and nothing ever holds it: up to 1 mm^2, at"));
     CHECK(lines[0].starts_with(
@@ -158,7 +157,7 @@ TEST_CASE("islands of raster size take one line, whatever their number, and hide
     CHECK(f.groups[1].most_pixels == 200);
     CHECK(f.groups[2].severity == Severity::low);
     CHECK(f.groups.back().severity == Severity::low);
-    const std::vector<std::string> lines = describe(f, raster);
+    const std::vector<std::string> lines = describe(f, small_raster);
     REQUIRE(lines.size() == 3);
     CHECK(lines[0].starts_with("an island begins in mid-air in layer 6, held from layer 10 on: up to 0.04 mm^2"));
     CHECK(lines[1].starts_with("1 island in mid-air, held within two layers, in layers 9 to 9; the largest, 2 mm^2"));

@@ -6,8 +6,6 @@
 namespace pliant::slice {
 namespace {
 
-constexpr int solid_value = 128;
-
 /// Union-find over numbers.
 class Sets {
 public:
@@ -62,7 +60,7 @@ void void_row(std::span<const Stretch> solid, int width, std::vector<Stretch>& s
 
 /// Calls `meet(i, j)` for stretches of two rows with a common column.
 template <class Meet>
-void overlaps(const PieceMap& map, int upper, const Meet& meet) {
+void overlaps_of_rows(const PieceMap& map, int upper, const Meet& meet) {
     std::uint32_t i = map.starts[upper], j = map.starts[upper + 1];
     const std::uint32_t i_end = map.starts[upper + 1], j_end = map.starts[upper + 2];
     while (i < i_end && j < j_end) {
@@ -82,7 +80,7 @@ void number_pieces(PieceMap& map, bool outside, int width) {
     const auto count = static_cast<std::uint32_t>(map.stretches.size());
     Sets sets(count + 1);  // stretch i has number i + 1; 0 is the outside
     for (int r = 0; r + 1 < map.rows(); ++r)
-        overlaps(map, r, [&](std::uint32_t i, std::uint32_t j) { sets.join(i + 1, j + 1); });
+        overlaps_of_rows(map, r, [&](std::uint32_t i, std::uint32_t j) { sets.join(i + 1, j + 1); });
     if (outside && map.rows() > 0) {
         for (std::uint32_t i = 0; i < count; ++i) {
             const bool end_row = i < map.starts[1] || i >= map.starts[map.starts.size() - 2];

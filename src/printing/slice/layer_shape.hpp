@@ -15,6 +15,9 @@ struct Stretch {
     std::uint32_t piece = 0;
 };
 
+/// Pixels of at least this value, half light, are solid.
+inline constexpr int solid_value = 128;
+
 /// Stretches of all rows in [first_row, first_row + rows()), from left to right.
 struct PieceMap {
     int first_row = 0;
@@ -26,7 +29,7 @@ struct PieceMap {
     [[nodiscard]] std::span<const Stretch> row(int row) const;
 };
 
-/// Pixels of at least half light are solid, all others void. Components are 4-connected.
+/// Pixels below solid_value are void. Components are 4-connected.
 struct LayerShape {
     PieceMap solid;
     PieceMap voids;  ///< in the rows of `solid`; piece 0 is the outside, which includes all other rows

@@ -33,7 +33,7 @@ Repaired repaired(const TriMesh& mesh) {
     return std::move(*result);
 }
 
-std::string refused(const TriMesh& mesh) {
+std::string refused_mesh(const TriMesh& mesh) {
     const auto result = repair(mesh, "body 'b' (soft)", 50);
     REQUIRE(!result.has_value());
     CHECK(result.error().cause == Cause::input);
@@ -142,18 +142,18 @@ TEST_CASE("invalid solids are refused with the reason") {
     TriMesh sheet;
     add_triangle(sheet, {0, 0, 0}, {1000, 0, 0}, {1000, 1000, 0});
     add_triangle(sheet, {0, 0, 0}, {1000, 1000, 0}, {0, 1000, 0});
-    CHECK(refused(sheet).find("the surface is open: 1 mm^2 are missing beside 1 mm^2") != std::string::npos);
-    CHECK(refused(together(sheet, turned_inside_out(sheet))).find("encloses no volume") != std::string::npos);
-    CHECK(refused(TriMesh{}).find("no triangle") != std::string::npos);
+    CHECK(refused_mesh(sheet).find("the surface is open: 1 mm^2 are missing beside 1 mm^2") != std::string::npos);
+    CHECK(refused_mesh(together(sheet, turned_inside_out(sheet))).find("encloses no volume") != std::string::npos);
+    CHECK(refused_mesh(TriMesh{}).find("no triangle") != std::string::npos);
 
     TriMesh bad = cube;
     bad.points[7].y = std::nan("");
-    CHECK(refused(bad).find("point 7 is not finite") != std::string::npos);
+    CHECK(refused_mesh(bad).find("point 7 is not finite") != std::string::npos);
     bad.points[7].y = 1e10;
-    CHECK(refused(bad).find("more than 2 m") != std::string::npos);
+    CHECK(refused_mesh(bad).find("more than 2 m") != std::string::npos);
     bad = cube;
     bad.triangles[5][1] = 999;
-    CHECK(refused(bad) == "body 'b' (soft): triangle 5 names point 999, there are 36");
+    CHECK(refused_mesh(bad) == "body 'b' (soft): triangle 5 names point 999, there are 36");
     bad.triangles[5][1] = -1;
-    CHECK(refused(bad).find("names point -1") != std::string::npos);
+    CHECK(refused_mesh(bad).find("names point -1") != std::string::npos);
 }

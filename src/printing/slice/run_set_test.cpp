@@ -8,11 +8,11 @@ using namespace pliant::slice;
 
 namespace {
 
-constexpr int width = 40, height = 30;
+constexpr int columns = 40, rows = 30;
 
 Image random_image(unsigned seed, double share) {
     std::mt19937 random(seed);
-    Image image{width, height, std::vector<std::uint8_t>(width * height)};
+    Image image{columns, rows, std::vector<std::uint8_t>(columns * rows)};
     for (auto& p : image.pixels) p = static_cast<double>(random() % 1000) < 1000 * share ? 255 : 0;
     return image;
 }
@@ -29,9 +29,9 @@ bool has(const RunSet& set, int row, int column) {
 }
 
 /// Whether there is a lit pixel within r of (row, column).
-bool near(const Image& image, int row, int column, int r) {
-    for (int y = std::max(0, row - r); y <= std::min(height - 1, row + r); ++y) {
-        for (int x = std::max(0, column - r); x <= std::min(width - 1, column + r); ++x) {
+bool lit_within(const Image& image, int row, int column, int r) {
+    for (int y = std::max(0, row - r); y <= std::min(rows - 1, row + r); ++y) {
+        for (int x = std::max(0, column - r); x <= std::min(columns - 1, column + r); ++x) {
             const int dx = x - column, dy = y - row;
             if (image.at(y, x) > 0 && dx * dx + dy * dy <= r * r) return true;
         }
@@ -48,15 +48,15 @@ TEST_CASE("set operations on runs agree with pixel by pixel ones") {
         const RunSet both = united(sa, sb), shared = common(sa, sb), rest = without(sa, sb), other = complement(sa);
         const RunSet wide = grown(sf, 3), narrow = shrunk(complement(sf), 3), to_left = reaching(sf, {2, 0, 0, 1});
         bool same = true;
-        for (int row = 0; row < height; ++row) {
-            for (int column = 0; column < width; ++column) {
+        for (int row = 0; row < rows; ++row) {
+            for (int column = 0; column < columns; ++column) {
                 const bool in_a = a.at(row, column) > 0, in_b = b.at(row, column) > 0;
                 same &= has(both, row, column) == (in_a || in_b) && has(shared, row, column) == (in_a && in_b);
                 same &= has(rest, row, column) == (in_a && !in_b) && has(other, row, column) == !in_a;
-                same &= has(wide, row, column) == near(few, row, column, 3);
-                same &= has(narrow, row, column) == !near(few, row, column, 3);
+                same &= has(wide, row, column) == lit_within(few, row, column, 3);
+                same &= has(narrow, row, column) == !lit_within(few, row, column, 3);
                 bool reached = false;
-                for (int y = row; y <= std::min(height - 1, row + 1); ++y) {
+                for (int y = row; y <= std::min(rows - 1, row + 1); ++y) {
                     for (int x = std::max(0, column - 2); x <= column; ++x) reached |= few.at(y, x) > 0;
                 }
                 same &= has(to_left, row, column) == reached;
@@ -67,7 +67,7 @@ TEST_CASE("set operations on runs agree with pixel by pixel ones") {
 }
 
 TEST_CASE("a square grows with rounded corners, and shrinks back to itself") {
-    RunSet square(width, height);
+    RunSet square(columns, rows);
     for (int row = 10; row < 20; ++row) square.append_row(row, {{10, 20}});
     const RunSet wide = grown(square, 4);
     CHECK(wide.row(15).front() == PixelSpan{6, 24});

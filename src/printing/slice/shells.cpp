@@ -9,13 +9,13 @@ namespace {
 
 /// The triangle across each edge, or -1 if the edge is not shared by exactly two; `agrees` if both run along it in
 /// opposite directions, as consistently oriented neighbours do.
-struct Neighbour {
+struct EdgeNeighbour {
     int triangle = -1;
     bool agrees = true;
 };
-using Neighbours = std::vector<std::array<Neighbour, 3>>;
+using Neighbours = std::vector<std::array<EdgeNeighbour, 3>>;
 
-int free_slot(const std::array<Neighbour, 3>& slots) {
+int free_slot(const std::array<EdgeNeighbour, 3>& slots) {
     return slots[0].triangle < 0 ? 0 : (slots[1].triangle < 0 ? 1 : 2);
 }
 
@@ -52,7 +52,7 @@ Walk walk_pieces(std::size_t count, const Neighbours& neighbours) {
         while (!open.empty()) {
             const int t = open.back();
             open.pop_back();
-            for (const Neighbour& n : neighbours[t]) {
+            for (const EdgeNeighbour& n : neighbours[t]) {
                 if (n.triangle < 0 || walk.shells.of_triangle[n.triangle] >= 0) continue;
                 walk.shells.of_triangle[n.triangle] = shell;
                 walk.turned[n.triangle] = static_cast<std::uint8_t>(walk.turned[t] ^ (n.agrees ? 0 : 1));
@@ -63,7 +63,7 @@ Walk walk_pieces(std::size_t count, const Neighbours& neighbours) {
     return walk;
 }
 
-struct Piece {
+struct ShellExtent {
     double volume6 = 0;
     std::array<std::int32_t, 3> low{INT32_MAX, INT32_MAX, INT32_MAX};
     std::array<std::int32_t, 3> high{INT32_MIN, INT32_MIN, INT32_MIN};
@@ -75,7 +75,7 @@ struct Piece {
             high[i] = std::max(high[i], xyz[i]);
         }
     }
-    [[nodiscard]] bool inside(const Piece& other) const {
+    [[nodiscard]] bool inside(const ShellExtent& other) const {
         for (std::size_t i = 0; i < 3; ++i) {
             if (low[i] < other.low[i] || high[i] > other.high[i]) return false;
         }
@@ -83,19 +83,19 @@ struct Piece {
     }
 };
 
-std::vector<Piece> measure(const GridSurface& surface, const Shells& shells) {
-    std::vector<Piece> pieces(static_cast<std::size_t>(shells.count));
+std::vector<ShellExtent> measure(const GridSurface& surface, const Shells& shells) {
+    std::vector<ShellExtent> pieces(static_cast<std::size_t>(shells.count));
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-        Piece& piece = pieces[shells.of_triangle[t]];
+        ShellExtent& piece = pieces[shells.of_triangle[t]];
         piece.volume6 += signed_volume6(surface, surface.triangles[t]);
         for (const int corner : surface.triangles[t]) piece.add(surface.points[corner]);
     }
     return pieces;
 }
 
-bool is_cavity(const std::vector<Piece>& pieces, const Piece& piece) {
+bool is_cavity(const std::vector<ShellExtent>& pieces, const ShellExtent& piece) {
     return std::any_of(pieces.begin(), pieces.end(),
-                       [&](const Piece& other) { return other.volume6 > 0 && piece.inside(other); });
+                       [&](const ShellExtent& other) { return other.volume6 > 0 && piece.inside(other); });
 }
 
 }  // namespace
@@ -160,11 +160,11 @@ Shells find_shells(const GridSurface& surface, const std::vector<EdgeUse>& uses)
 
 int turn_inverted_shells(GridSurface& surface, const std::vector<EdgeUse>& uses) {
     const Shells shells = find_shells(surface, uses);
-    std::vector<Piece> pieces = measure(surface, shells);
+    std::vector<ShellExtent> pieces = measure(surface, shells);
     double total = 0;
-    for (const Piece& piece : pieces) total += piece.volume6;
+    for (const ShellExtent& piece : pieces) total += piece.volume6;
     const double sign = total < 0 ? -1 : 1;
-    for (Piece& piece : pieces) piece.volume6 *= sign;
+    for (ShellExtent& piece : pieces) piece.volume6 *= sign;
     std::vector<std::uint8_t> turn(pieces.size(), 0);
     for (std::size_t s = 0; s < pieces.size(); ++s) {
         const bool alone_inverted = pieces[s].volume6 < 0 && !is_cavity(pieces, pieces[s]);

@@ -18,7 +18,7 @@ namespace {
 /// Points of open edges within this distance are merged, in pixels: invisible in any image.
 constexpr double join_px = 0.1;
 
-Status check(const Settings& settings) {
+Status check_settings(const Settings& settings) {
     if (auto status = check(settings.raster); !status) return status;
     if (settings.layer_um < 1 || settings.layer_um > 10000)
         return input_error("layer of {} um: must be 1 to 10000 um", settings.layer_um);
@@ -85,7 +85,7 @@ std::string size_text(const Vec3& size) {
 }  // namespace
 
 Result<Slicer> Slicer::prepare(std::span<const Body> bodies, const Settings& settings) {
-    if (auto status = check(settings); !status) return tl::unexpected(status.error());
+    if (auto status = check_settings(settings); !status) return tl::unexpected(status.error());
     Slicer slicer;
     slicer.settings_ = settings;
     slicer.layers_ = settings.layers();

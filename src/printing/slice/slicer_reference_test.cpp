@@ -32,17 +32,17 @@ mesh::TriMesh read_binary_stl_um(const std::string& name) {
     return mesh;
 }
 
-struct Outcome {
+struct SlicedFile {
     std::vector<long> full_pixels;  ///< per layer
     std::vector<std::string> warnings;
 };
 
-Result<Outcome> slice_file(const std::string& name) {
+Result<SlicedFile> slice_file(const std::string& name) {
     std::vector<Body> bodies{{"soft", read_binary_stl_um(name), name}};
     const Settings settings{{512, 384, 100}, 50, {}};
     auto placed = place_on_platform(bodies, settings.raster);
     if (!placed) return tl::unexpected(placed.error());
-    Outcome outcome;
+    SlicedFile outcome;
     Progress progress;
     const auto summary = slice_bodies(
         bodies, settings,

@@ -12,8 +12,6 @@ using namespace pliant::slice::test;
 
 namespace {
 
-const Raster raster{64, 48, 100};  // 6.4 x 4.8 mm
-
 struct Shot {
     int layer, material;
     Image image;
@@ -39,7 +37,7 @@ Sliced slice_all(const std::vector<Body>& bodies, const Settings& settings) {
 }
 
 Sliced slice_all(const std::vector<Body>& bodies) {
-    return slice_all(bodies, {raster, 50, {}});
+    return slice_all(bodies, {small_raster, 50, {}});
 }
 
 std::string refused(const std::vector<Body>& bodies, const Settings& settings) {
@@ -58,7 +56,7 @@ long value_sum(const Image& image) {
 
 /// Number of pixels lit by more than one image of a layer.
 int shared_pixels(const Sliced& sliced, int layer) {
-    std::vector<int> uses(static_cast<std::size_t>(raster.width_px * raster.height_px), 0);
+    std::vector<int> uses(static_cast<std::size_t>(small_raster.width_px * small_raster.height_px), 0);
     for (const Shot& s : sliced.shots) {
         if (s.layer != layer) continue;
         for (std::size_t i = 0; i < uses.size(); ++i) uses[i] += s.image.pixels[i] > 0;
@@ -90,7 +88,7 @@ TEST_CASE("a box lights exactly its pixels, however the image is mirrored") {
 
 TEST_CASE("a rotated and shifted image shows the part rotated and shifted") {
     const std::vector<Body> bodies{{"soft", box({-1000, 500, 0}, {2000, 1500, 50}), ""}};
-    Settings settings{raster, 50, {}};
+    Settings settings{small_raster, 50, {}};
     settings.raster.rotation_deg = 90;  // x becomes y: rows 20 up to 10 down, columns 15 to 5 left of the middle
     settings.raster.offset_x_um = 300;
     settings.raster.offset_y_um = -200;
@@ -120,7 +118,7 @@ TEST_CASE("grey values are the exact coverage") {
 }
 
 TEST_CASE("without anti-aliasing the threshold decides which pixels are lit") {
-    Settings settings{raster, 50, {false, 0.5, 20}};
+    Settings settings{small_raster, 50, {false, 0.5, 20}};
     const std::vector<Body> bodies{{"soft", box({0, 0, 0}, {1025, 1050, 50}), ""}};
     CHECK(value_sum(slice_all(bodies, settings).shots.at(0).image) == 110 * 255);
     settings.rules.threshold = 0.51;
@@ -191,7 +189,7 @@ TEST_CASE("gaps much narrower than a pixel between materials leave no dark line"
         CHECK(value_sum(s.shots[0].image) + value_sum(s.shots[1].image) == 400 * 255);
         CHECK(s.summary.closed_gap_pixels == (x == 93 || x == 95 ? 40 : 20));
         CHECK(s.summary.warnings.size() == 1);
-        Settings keep{raster, 50, {}};
+        Settings keep{small_raster, 50, {}};
         keep.rules.close_gap_um = 0;
         const Sliced kept = slice_all(bodies, keep);
         CHECK(value_sum(kept.shots[0].image) + value_sum(kept.shots[1].image) < 399 * 255);
@@ -269,7 +267,7 @@ TEST_CASE("a cone's layers have the area of its section at mid height") {
 }
 
 TEST_CASE("parts outside the image, below the platform or without solid surface are refused with numbers") {
-    const Settings settings{raster, 50, {}};
+    const Settings settings{small_raster, 50, {}};
     const Body cube{"soft", box({-1000, -1000, 0}, {1000, 1000, 500}), "cube"};
     CHECK(refused({{"soft", box({-1000, -1000, 0}, {4000, 1000, 500}), ""}}, settings).find("x -1.000 to 4.000 mm") !=
           std::string::npos);
@@ -280,8 +278,8 @@ TEST_CASE("parts outside the image, below the platform or without solid surface 
     CHECK(refused({cube}, {{0, 48, 100}, 50, {}}).find("raster of 0 x 48") == 0);
     CHECK(refused({cube}, {{60000, 60000, 100}, 50, {}}).find("2^28") != std::string::npos);
     CHECK(refused({cube}, {{64, 48, std::nan("")}, 50, {}}).find("pixel of nan") == 0);
-    CHECK(refused({cube}, {raster, 0, {}}).find("layer of 0 um") == 0);
-    CHECK(refused({cube}, {raster, 50, {true, 0, 20}}).find("threshold 0") == 0);
+    CHECK(refused({cube}, {small_raster, 0, {}}).find("layer of 0 um") == 0);
+    CHECK(refused({cube}, {small_raster, 50, {true, 0, 20}}).find("threshold 0") == 0);
 }
 
 TEST_CASE("bodies too small to be lit, and floating parts, are reported") {
@@ -299,14 +297,14 @@ TEST_CASE("an error of emit, or cancellation, stops slicing") {
     const std::vector<Body> bodies{{"soft", box({-1000, -1000, 0}, {1000, 1000, 500}), ""}};
     Progress progress;
     const auto stopped = slice_bodies(
-        bodies, {raster, 50, {}},
+        bodies, {small_raster, 50, {}},
         [](int layer, int, const RunImage&) -> Status { return failure("stop at {}", layer); }, progress);
     CHECK(stopped.error().message == "stop at 0");
     struct Cancel : Progress {
         [[nodiscard]] bool cancelled() const override { return true; }
     } cancel;
     CHECK(slice_bodies(
-              bodies, {raster, 50, {}}, [](int, int, const RunImage&) { return Status{}; }, cancel)
+              bodies, {small_raster, 50, {}}, [](int, int, const RunImage&) { return Status{}; }, cancel)
               .error()
               .cause == Cause::cancelled);
 }
@@ -326,7 +324,7 @@ TEST_CASE("random triangle soups are refused, or printed inside their bounding b
         const int points = static_cast<int>(tangle.points.size());
         for (int i = random(8); i > 0; --i)
             tangle.triangles.push_back({random(points), random(points), random(points)});
-        const auto slicer = Slicer::prepare(std::vector<Body>{{"soft", tangle, ""}}, {raster, 50, {}});
+        const auto slicer = Slicer::prepare(std::vector<Body>{{"soft", tangle, ""}}, {small_raster, 50, {}});
         if (!slicer) continue;
         ++printed;
         for (int k = 0; k < slicer->layer_count(); ++k) {
@@ -345,7 +343,7 @@ TEST_CASE("random triangle soups are refused, or printed inside their bounding b
 TEST_CASE("a part is centred and put on the platform; one that is too large is refused") {
     std::vector<Body> bodies{{"soft", box({5000, 6000, 7000}, {6000, 8000, 7100}), ""},
                              {"rigid", box({6000, 6000, 7000}, {7000, 8000, 7200}), ""}};
-    const auto warnings = place_on_platform(bodies, raster);
+    const auto warnings = place_on_platform(bodies, small_raster);
     REQUIRE(warnings.has_value());
     CHECK(warnings->empty());
     const Box3 left = mesh::bounds(bodies[0].surface_um), right = mesh::bounds(bodies[1].surface_um);
@@ -354,14 +352,14 @@ TEST_CASE("a part is centred and put on the platform; one that is too large is r
     CHECK(right.high == Vec3{1000, 1000, 200});
 
     std::vector<Body> large{{"soft", box({0, 0, 0}, {6500, 1000, 100}), ""}};
-    const auto refused_part = place_on_platform(large, raster);
+    const auto refused_part = place_on_platform(large, small_raster);
     REQUIRE(!refused_part.has_value());
     CHECK(refused_part.error().message == "the part measures 6.500 x 1.000 mm, the image only 6.400 x 4.800 mm");
 
     std::vector<Body> far{{"soft", box({1e9, 0, 0}, {1e9 + 1000, 1000, 100}), ""}};
-    CHECK(place_on_platform(far, raster)->size() == 1);
+    CHECK(place_on_platform(far, small_raster)->size() == 1);
     std::vector<Body> none;
-    CHECK(!place_on_platform(none, raster).has_value());
+    CHECK(!place_on_platform(none, small_raster).has_value());
     far[0].surface_um.points[1].z = HUGE_VAL;
-    CHECK(!place_on_platform(far, raster).has_value());
+    CHECK(!place_on_platform(far, small_raster).has_value());
 }

@@ -11,7 +11,7 @@ constexpr int sides = 16;
 using Point = std::array<double, 2>;
 
 /// Positive if c is to the left of the direction from a to b.
-double turn(const Point& a, const Point& b, const Point& c) {
+double left_turn(const Point& a, const Point& b, const Point& c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
@@ -24,7 +24,7 @@ std::vector<Point> convex_hull(std::vector<Point> points) {
     const auto half = [&](auto begin, auto end) {
         const std::size_t kept = hull.size() + 1;
         for (auto p = begin; p != end; ++p) {
-            while (hull.size() > kept && turn(hull[hull.size() - 2], hull.back(), *p) <= 0) hull.pop_back();
+            while (hull.size() > kept && left_turn(hull[hull.size() - 2], hull.back(), *p) <= 0) hull.pop_back();
             hull.push_back(*p);
         }
         hull.pop_back();

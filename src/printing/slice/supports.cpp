@@ -8,6 +8,7 @@
 #include "base/core/parallel.hpp"
 #include "printing/slice/braces.hpp"
 #include "printing/slice/inspect.hpp"
+#include "printing/slice/layer_shape.hpp"
 #include "printing/slice/raster_frame.hpp"
 #include "printing/slice/support_shapes.hpp"
 
@@ -15,7 +16,6 @@ namespace pliant::slice {
 namespace {
 
 constexpr std::size_t most_tips = 20000;
-constexpr int solid_value = 128;
 
 RunSet solid_of(const ComposedLayer& layer, const Raster& raster) {
     RunSet all(raster.width_px, raster.height_px);

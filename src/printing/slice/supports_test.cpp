@@ -19,7 +19,7 @@ using namespace pliant::slice::test;
 
 namespace {
 
-const Settings settings{{200, 160, 100}, 50, {}};  // 20 x 16 mm
+const Settings support_slicing{{200, 160, 100}, 50, {}};  // 20 x 16 mm
 
 double volume_of(const mesh::TriMesh& mesh) {
     const auto repaired = repair(mesh, "shape", 50);
@@ -28,22 +28,22 @@ double volume_of(const mesh::TriMesh& mesh) {
     return volume_mm3(repaired->surface);
 }
 
-struct Outcome {
+struct SupportOutcome {
     Supports supports;
     std::size_t islands = 0;
     double part_mm3 = 0, support_mm3 = 0;
     std::vector<std::string> warnings;
 };
 
-Outcome supported(const std::vector<Body>& part, const SupportSettings& wanted) {
+SupportOutcome supported(const std::vector<Body>& part, const SupportSettings& wanted) {
     Progress progress;
-    auto made = make_supports(part, settings, wanted, progress);
+    auto made = make_supports(part, support_slicing, wanted, progress);
     REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
     std::vector<Body> all = made->bodies;
     all.insert(all.end(), part.begin(), part.end());
-    const auto slicer = Slicer::prepare(all, settings);
+    const auto slicer = Slicer::prepare(all, support_slicing);
     REQUIRE(slicer.has_value());
-    Outcome outcome{std::move(*made), 0, 0, 0, {}};
+    SupportOutcome outcome{std::move(*made), 0, 0, 0, {}};
     Inspector inspector(slicer->layers());
     Tally tally(*slicer);
     for (int k = 0; k < slicer->layer_count(); ++k) {
@@ -53,7 +53,7 @@ Outcome supported(const std::vector<Body>& part, const SupportSettings& wanted) 
             (slicer->materials()[static_cast<std::size_t>(m.material)] == wanted.material ? outcome.support_mm3
                                                                                           : outcome.part_mm3) +=
                 static_cast<double>(m.value_sum) / 255 * 0.01 * 0.05;
-        inspector.add(shape_of(layer, settings.raster.width_px));
+        inspector.add(shape_of(layer, support_slicing.raster.width_px));
     }
     outcome.islands = inspector.finish().islands.size();
     outcome.warnings = tally.summary().warnings;
@@ -82,7 +82,7 @@ TEST_CASE("support shapes are closed and have the volumes of their formulas") {
 
 TEST_CASE("a plate in mid-air gets tips, no island is left, and the part keeps its volume") {
     const std::vector<Body> plate{{"soft", box({-6000, -4000, 5000}, {6000, 4000, 6000}), ""}};
-    const Outcome o = supported(plate, in_wax());
+    const SupportOutcome o = supported(plate, in_wax());
     CHECK(o.islands == 0);
     CHECK(o.supports.islands_left == 0);
     CHECK(o.supports.on_part == 0);
@@ -107,7 +107,7 @@ TEST_CASE("only flat undersides get tips, and a blocked pillar stands on the par
     const std::vector<Body> ledge{{"soft", box({-7000, -3000, 0}, {7000, 3000, 1000}), ""},
                                   {"soft", box({-7000, -3000, 1000}, {-6000, 3000, 6000}), ""},
                                   {"soft", box({-7000, -3000, 6000}, {7000, 3000, 7000}), ""}};
-    const Outcome o = supported(ledge, in_wax());
+    const SupportOutcome o = supported(ledge, in_wax());
     CHECK(o.islands == 0);
     CHECK(o.supports.tips > 5);
     CHECK(o.supports.on_part == o.supports.tips);
@@ -130,7 +130,7 @@ TEST_CASE("a sphere in mid-air is supported on a raft, in a separate support mat
     SupportSettings wanted = in_wax();
     wanted.raft_um = 800;
     wanted.spacing_um = 1500;
-    const Outcome o = supported({{"soft", ball, ""}}, wanted);
+    const SupportOutcome o = supported({{"soft", ball, ""}}, wanted);
     CHECK(o.islands == 0);
     CHECK(o.supports.tips > 3);
     CHECK(o.part_mm3 == near(4.0 / 3 * std::numbers::pi * 27, {.relative = 0.02}));
@@ -170,7 +170,7 @@ TEST_CASE("painted supports: a steep underside gets tips where they are enforced
     const Vec3 under{1000 + 4000 / lean, 0, 4000};
     const Vec3 down{std::sin(60 * std::numbers::pi / 180), 0, -0.5};
     wanted.paint = {touch(SupportWish::enforce, under, 1200, down)};
-    const Outcome held = supported(steep_roof(), wanted);
+    const SupportOutcome held = supported(steep_roof(), wanted);
     REQUIRE(held.supports.tips > 0);
     CHECK(held.supports.painted == held.supports.tips);
     for (const Body& b : held.supports.bodies) {
@@ -188,17 +188,17 @@ TEST_CASE("painted supports: no tip where they are blocked, not even under an is
     const std::vector<Body> plate{{"soft", box({-6000, -4000, 5000}, {6000, 4000, 6000}), ""}};
     SupportSettings wanted = in_wax();
     wanted.paint = {touch(SupportWish::block, {4000, 0, 5000}, 2500)};
-    const Outcome half = supported(plate, wanted);
+    const SupportOutcome half = supported(plate, wanted);
     CHECK(half.supports.tips > 3);
     CHECK_FALSE(stands_under(half.supports, 4000, 0));
     CHECK(stands_under(half.supports, 0, 0));
     // Everything blocked, then one place restored.
     wanted.paint = {touch(SupportWish::block, {0, 0, 5000}, 10000)};
-    const Outcome none = supported(plate, wanted);
+    const SupportOutcome none = supported(plate, wanted);
     CHECK(none.supports.tips == 0);
     CHECK(none.supports.islands_left == 1);
     wanted.paint.push_back(touch(SupportWish::enforce, {-3000, 0, 5000}, 1000));
-    const Outcome one = supported(plate, wanted);
+    const SupportOutcome one = supported(plate, wanted);
     CHECK(one.supports.tips > 0);
     CHECK(stands_under(one.supports, -3000, 0));
     CHECK_FALSE(stands_under(one.supports, 3000, 0));
@@ -209,7 +209,7 @@ TEST_CASE("invalid supports are refused") {
     const std::vector<Body> plate{{"soft", box({-600, -400, 500}, {600, 400, 600}), ""}};
     Progress progress;
     const auto refused = [&](const SupportSettings& s) {
-        const auto made = make_supports(plate, settings, s, progress);
+        const auto made = make_supports(plate, support_slicing, s, progress);
         return made ? std::string() : made.error().message;
     };
     SupportSettings s = in_wax();

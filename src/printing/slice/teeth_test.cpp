@@ -11,30 +11,29 @@ using namespace pliant::slice::test;
 
 namespace {
 
-const Raster raster{64, 48, 100};  // 6.4 x 4.8 mm
-const std::vector<Body> halves{{"soft", box({-1050, -1000, 0}, {0, 1000, 500}), ""},
-                               {"rigid", box({0, -1000, 0}, {1000, 1000, 500}), ""}};
+const std::vector<Body> soft_and_rigid{{"soft", box({-1050, -1000, 0}, {0, 1000, 500}), ""},
+                                       {"rigid", box({0, -1000, 0}, {1000, 1000, 500}), ""}};
 
 Slicer slicer_with(const std::vector<Body>& bodies, const std::vector<Teeth>& teeth) {
-    Settings settings{raster, 50, {}};
+    Settings settings{small_raster, 50, {}};
     settings.teeth = teeth;
     auto slicer = Slicer::prepare(bodies, settings);
     REQUIRE_MESSAGE(slicer.has_value(), (slicer ? "" : slicer.error().message));
     return std::move(*slicer);
 }
 
-std::string refused(const Teeth& teeth) {
-    Settings settings{raster, 50, {}};
+std::string refused_teeth(const Teeth& teeth) {
+    Settings settings{small_raster, 50, {}};
     settings.teeth = {teeth};
-    const auto slicer = Slicer::prepare(halves, settings);
+    const auto slicer = Slicer::prepare(soft_and_rigid, settings);
     return slicer ? "" : slicer.error().message;
 }
 
 }  // namespace
 
 TEST_CASE("two halves interlock by three pixels, alternating every two layers, and the total light is kept") {
-    const Slicer slicer = slicer_with(halves, {{"soft", "rigid", 3, 2}});
-    const SlicedLayer plain = slicer_with(halves, {}).layer(0);
+    const Slicer slicer = slicer_with(soft_and_rigid, {{"soft", "rigid", 3, 2}});
+    const SlicedLayer plain = slicer_with(soft_and_rigid, {}).layer(0);
     for (int k = 0; k < 10; ++k) {
         const SlicedLayer layer = slicer.layer(k);
         REQUIRE(layer.images.size() == 2);
@@ -65,9 +64,10 @@ TEST_CASE("a wall thinner than the teeth is missing in every other layer; bodies
 }
 
 TEST_CASE("invalid teeth are refused") {
-    CHECK(refused({"soft", "soft", 3, 1}) == "interlock 'soft' with 'soft': two different materials are needed");
-    CHECK(refused({"soft", "rigid", 0, 1}) == "interlock 'soft' with 'rigid': depth of 0 pixels: must be 1 to 1000");
-    CHECK(refused({"soft", "rigid", 2, 0}) == "interlock 'soft' with 'rigid': 0 layers: must be 1 to 10000");
-    CHECK(refused({"soft", "tough", 2, 1}) ==
+    CHECK(refused_teeth({"soft", "soft", 3, 1}) == "interlock 'soft' with 'soft': two different materials are needed");
+    CHECK(refused_teeth({"soft", "rigid", 0, 1}) ==
+          "interlock 'soft' with 'rigid': depth of 0 pixels: must be 1 to 1000");
+    CHECK(refused_teeth({"soft", "rigid", 2, 0}) == "interlock 'soft' with 'rigid': 0 layers: must be 1 to 10000");
+    CHECK(refused_teeth({"soft", "tough", 2, 1}) ==
           "interlock 'soft' with 'tough': there is no material 'tough', only soft and rigid");
 }

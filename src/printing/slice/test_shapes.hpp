@@ -6,8 +6,12 @@
 #include <vector>
 
 #include "geometry/mesh/tri_mesh.hpp"
+#include "printing/slice/body.hpp"
 
 namespace pliant::slice::test {
+
+/// Most of these solids fit into it: 6.4 x 4.8 mm.
+inline const Raster small_raster{64, 48, 100};
 
 inline void add_triangle(mesh::TriMesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c) {
     const int first = static_cast<int>(mesh.points.size());

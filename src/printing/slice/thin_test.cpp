@@ -11,12 +11,12 @@ using namespace pliant::slice::test;
 
 namespace {
 
-const Raster raster{128, 96, 50};  // 6.4 x 4.8 mm
+const Raster fine_raster{128, 96, 50};  // 6.4 x 4.8 mm
 
 std::vector<ThinSpot> thin_in(const std::vector<Body>& bodies, double least_um) {
-    const auto slicer = Slicer::prepare(bodies, {raster, 50, {}});
+    const auto slicer = Slicer::prepare(bodies, {fine_raster, 50, {}});
     REQUIRE(slicer.has_value());
-    return thin_spots(slicer->layer(0), 0, least_um, raster);
+    return thin_spots(slicer->layer(0), 0, least_um, fine_raster);
 }
 
 }  // namespace
@@ -29,7 +29,7 @@ TEST_CASE("a wall of 0.2 mm is thinner than 0.3 mm and not than 0.2 mm") {
     CHECK(spots[0].row == 46);
     CHECK(spots[0].column == 44);
     CHECK(
-        describe(spots, {"soft"}, 300, raster).front() ==
+        describe(spots, {"soft"}, 300, fine_raster).front() ==
         "material \"soft\": features narrower than 0.3 mm in 1 layer from 0 to 0; most, 0.4 mm^2, in layer 0 from row "
         "46, column 44 on");
     CHECK(thin_in({{"soft", box({-1000, -150, 0}, {1000, 150, 500}), ""}}, 250).empty());

@@ -4,16 +4,13 @@
 
 #include <cmath>
 
+#include "printing/twin/test_runs.hpp"
+
 using namespace pliant;
 using twin::CoarsePart;
+using twin::test::block;
 
 namespace {
-
-twin::Runs block(int row, int end_row, int begin, int end, int value = 255) {
-    twin::Runs runs;
-    for (; row < end_row; ++row) runs.push_back({row, begin, end, static_cast<std::uint16_t>(value)});
-    return runs;
-}
 
 /// Volume of one material, in pixels times um.
 double volume(const CoarsePart& part, int material) {

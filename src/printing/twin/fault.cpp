@@ -8,28 +8,29 @@
 namespace pliant::twin {
 namespace {
 
-using Kind = Fault::Kind;
+using FaultKind = Fault::Kind;
 
-constexpr std::array<std::pair<std::string_view, Kind>, 20> kinds = {{{"corrupt-line", Kind::corrupt_byte},
-                                                                      {"lose-line", Kind::lose_line},
-                                                                      {"lose-ok", Kind::lose_ok},
-                                                                      {"lose-resend", Kind::lose_resend},
-                                                                      {"reset", Kind::reset},
-                                                                      {"lose-byte", Kind::lose_byte},
-                                                                      {"flip-byte", Kind::flip_byte},
-                                                                      {"lose-number", Kind::lose_number},
-                                                                      {"resend-loop", Kind::resend_loop},
-                                                                      {"stall", Kind::stall},
-                                                                      {"missed-steps", Kind::missed_steps},
-                                                                      {"stuck-hook", Kind::stuck_hook},
-                                                                      {"empty-vat", Kind::empty_vat},
-                                                                      {"dead-pump", Kind::dead_pump},
-                                                                      {"dark-projector", Kind::dark_projector},
-                                                                      {"door-open", Kind::door_open},
-                                                                      {"stuck-switch", Kind::stuck_switch},
-                                                                      {"dead-switch", Kind::dead_switch},
-                                                                      {"weak-magnet", Kind::weak_magnet},
-                                                                      {"stuck-fork", Kind::stuck_fork}}};
+constexpr std::array<std::pair<std::string_view, FaultKind>, 20> kinds = {
+    {{"corrupt-line", FaultKind::corrupt_byte},
+     {"lose-line", FaultKind::lose_line},
+     {"lose-ok", FaultKind::lose_ok},
+     {"lose-resend", FaultKind::lose_resend},
+     {"reset", FaultKind::reset},
+     {"lose-byte", FaultKind::lose_byte},
+     {"flip-byte", FaultKind::flip_byte},
+     {"lose-number", FaultKind::lose_number},
+     {"resend-loop", FaultKind::resend_loop},
+     {"stall", FaultKind::stall},
+     {"missed-steps", FaultKind::missed_steps},
+     {"stuck-hook", FaultKind::stuck_hook},
+     {"empty-vat", FaultKind::empty_vat},
+     {"dead-pump", FaultKind::dead_pump},
+     {"dark-projector", FaultKind::dark_projector},
+     {"door-open", FaultKind::door_open},
+     {"stuck-switch", FaultKind::stuck_switch},
+     {"dead-switch", FaultKind::dead_switch},
+     {"weak-magnet", FaultKind::weak_magnet},
+     {"stuck-fork", FaultKind::stuck_fork}}};
 
 template <class Number>
 bool parse_whole(std::string_view text, Number& value) {

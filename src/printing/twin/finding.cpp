@@ -9,54 +9,54 @@
 namespace pliant::twin {
 namespace {
 
-using Kind = Finding::Kind;
+using FindingKind = Finding::Kind;
 
 struct Named {
-    Kind kind;
+    FindingKind kind;
     std::string_view name;
     bool acceptable;
 };
 
-constexpr std::array<Named, 12> all{{{Kind::missing, "missing", false},
-                                     {Kind::foreign, "foreign", false},
-                                     {Kind::stray, "stray", false},
-                                     {Kind::dose, "dose", false},
-                                     {Kind::light, "light", false},
-                                     {Kind::height, "height", false},
-                                     {Kind::image, "image", false},
-                                     {Kind::volume, "volume", true},
-                                     {Kind::overcure, "overcure", true},
-                                     {Kind::contamination, "contamination", true},
-                                     {Kind::cleaning, "cleaning", true},
-                                     {Kind::interlock, "interlock", false}}};
+constexpr std::array<Named, 12> named_findings{{{FindingKind::missing, "missing", false},
+                                                {FindingKind::foreign, "foreign", false},
+                                                {FindingKind::stray, "stray", false},
+                                                {FindingKind::dose, "dose", false},
+                                                {FindingKind::light, "light", false},
+                                                {FindingKind::height, "height", false},
+                                                {FindingKind::image, "image", false},
+                                                {FindingKind::volume, "volume", true},
+                                                {FindingKind::overcure, "overcure", true},
+                                                {FindingKind::contamination, "contamination", true},
+                                                {FindingKind::cleaning, "cleaning", true},
+                                                {FindingKind::interlock, "interlock", false}}};
 
-const Named& named(Kind kind) {
-    for (const Named& entry : all) {
+const Named& named(FindingKind kind) {
+    for (const Named& entry : named_findings) {
         if (entry.kind == kind) return entry;
     }
-    return all.front();
+    return named_findings.front();
 }
 
 }  // namespace
 
-std::string_view finding_name(Kind kind) {
+std::string_view finding_name(FindingKind kind) {
     return named(kind).name;
 }
 
-bool can_be_accepted(Kind kind) {
+bool can_be_accepted(FindingKind kind) {
     return named(kind).acceptable;
 }
 
-Result<Kind> accepted_finding(std::string_view name) {
+Result<FindingKind> accepted_finding(std::string_view name) {
     std::vector<std::string> candidates;
     std::string list;
-    for (const Named& entry : all) {
+    for (const Named& entry : named_findings) {
         if (!entry.acceptable) continue;
         if (entry.name == name) return entry.kind;
         candidates.emplace_back(entry.name);
         list += (list.empty() ? "" : ", ") + candidates.back();
     }
-    for (const Named& entry : all) {
+    for (const Named& entry : named_findings) {
         if (entry.name == name)
             return input_error(
                 "the finding \"{}\" cannot be accepted: the print is not the job; what can be accepted: {}", name,
@@ -67,10 +67,10 @@ Result<Kind> accepted_finding(std::string_view name) {
                        nearest.empty() ? "" : fmt::format(", did you mean \"{}\"", nearest), list);
 }
 
-Result<std::vector<Kind>> accepted_findings(std::span<const std::string> names) {
-    std::vector<Kind> kinds;
+Result<std::vector<FindingKind>> accepted_findings(std::span<const std::string> names) {
+    std::vector<FindingKind> kinds;
     for (const std::string& name : names) {
-        const Result<Kind> kind = accepted_finding(name);
+        const Result<FindingKind> kind = accepted_finding(name);
         if (!kind) return tl::unexpected(kind.error());
         kinds.push_back(*kind);
     }

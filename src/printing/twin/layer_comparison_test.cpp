@@ -14,14 +14,14 @@ namespace {
 constexpr double slack_s = 0.01;
 
 /// Two images of resin 0 and 1 side by side in one row of 10 pixels; they share the grey pixel 4.
-const Runs left{{0, 0, 4, 255}, {0, 4, 5, 100}};
-const Runs right{{0, 4, 5, 155}, {0, 5, 10, 255}};
-const std::vector<AskedImage> both{{0, left, 2.5}, {1, right, 2.5}};
+const Runs left_runs{{0, 0, 4, 255}, {0, 4, 5, 100}};
+const Runs right_runs{{0, 4, 5, 155}, {0, 5, 10, 255}};
+const std::vector<AskedImage> both{{0, left_runs, 2.5}, {1, right_runs, 2.5}};
 
 }  // namespace
 
 TEST_CASE("correct layers have no difference, in any order of exposures") {
-    const LayerDifference d = difference(both, {{1, &right, 2.5}, {0, &left, 2.5}}, slack_s);
+    const LayerDifference d = difference(both, {{1, &right_runs, 2.5}, {0, &left_runs, 2.5}}, slack_s);
     CHECK(d.wrong_px == 0);
     CHECK(d.wrong_dose_px == 0);
     CHECK(d.images[0].light == 4 * 255 + 100);
@@ -31,16 +31,16 @@ TEST_CASE("correct layers have no difference, in any order of exposures") {
 
 TEST_CASE("missing, stray and foreign pixels are distinguished") {
     const Runs darker{{0, 0, 3, 255}, {0, 4, 5, 100}};
-    const LayerDifference missing = difference(both, {{0, &darker, 2.5}, {1, &right, 2.5}}, slack_s);
+    const LayerDifference missing = difference(both, {{0, &darker, 2.5}, {1, &right_runs, 2.5}}, slack_s);
     CHECK(missing.missing_px == 1);
     CHECK(missing.wrong_px == 1);
     CHECK(missing.images[0].missing == 255);
     const Runs brighter{{0, 0, 4, 255}, {0, 4, 5, 101}};
-    const LayerDifference stray = difference(both, {{0, &brighter, 2.5}, {1, &right, 2.5}}, slack_s);
+    const LayerDifference stray = difference(both, {{0, &brighter, 2.5}, {1, &right_runs, 2.5}}, slack_s);
     CHECK(stray.stray_px == 1);
     CHECK(stray.wrong_px == 1);
     CHECK(stray.missing_px == 0);
-    const LayerDifference foreign = difference(both, {{2, &left, 2.5}, {1, &right, 2.5}}, slack_s);
+    const LayerDifference foreign = difference(both, {{2, &left_runs, 2.5}, {1, &right_runs, 2.5}}, slack_s);
     CHECK(foreign.foreign_px == 5);
     CHECK(foreign.images[0].foreign == 4 * 255 + 100);
     CHECK(foreign.missing_px == 0);
@@ -51,26 +51,27 @@ TEST_CASE("missing, stray and foreign pixels are distinguished") {
 
 TEST_CASE("an exposure longer or shorter than asked is a wrong dose of its pixels") {
     for (const double seconds : {0.25, 2.4, 2.6, 25.0}) {
-        const LayerDifference d = difference(both, {{0, &left, seconds}, {1, &right, 2.5}}, slack_s);
+        const LayerDifference d = difference(both, {{0, &left_runs, seconds}, {1, &right_runs, 2.5}}, slack_s);
         CHECK(d.wrong_px == 0);
         CHECK(d.wrong_dose_px == 5);
         CHECK((seconds < 2.5 ? d.least_share : d.most_share) == near(seconds / 2.5, {.relative = 1e-12}));
     }
-    CHECK(difference(both, {{0, &left, 2.53}, {1, &right, 2.47}}, slack_s).wrong_dose_px == 0);
+    CHECK(difference(both, {{0, &left_runs, 2.53}, {1, &right_runs, 2.47}}, slack_s).wrong_dose_px == 0);
     // With an inaccurate clock, an exposure in one piece may be longer; one in two pieces must not be a double
     // exposure.
     for (const int pieces : {1, 2})
-        CHECK(difference(both, {{0, &left, 5, pieces}, {1, &right, 2.5}}, 10).wrong_dose_px == (pieces > 1 ? 5 : 0));
+        CHECK(difference(both, {{0, &left_runs, 5, pieces}, {1, &right_runs, 2.5}}, 10).wrong_dose_px ==
+              (pieces > 1 ? 5 : 0));
 }
 
 TEST_CASE("images of one resin may be shown as one; grey is a share of the pixel, not of the time") {
-    const std::vector<AskedImage> same{{0, left, 2.5}, {0, right, 2.5}};
+    const std::vector<AskedImage> same{{0, left_runs, 2.5}, {0, right_runs, 2.5}};
     const Runs whole{{0, 0, 10, 255}};
     const LayerDifference merged = difference(same, {{0, &whole, 2.5}}, slack_s);
     CHECK(merged.wrong_px == 0);
     CHECK(merged.wrong_dose_px == 0);
     CHECK(difference(same, {{0, &whole, 5}}, slack_s).wrong_dose_px == 10);
-    CHECK(difference(same, {{0, &left, 5}, {0, &right, 2.5}}, slack_s).wrong_dose_px == 5);
+    CHECK(difference(same, {{0, &left_runs, 5}, {0, &right_runs, 2.5}}, slack_s).wrong_dose_px == 5);
 }
 
 TEST_CASE("property: images shown as asked pass, and any one changed voxel is found and counted once") {

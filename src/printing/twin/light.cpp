@@ -8,7 +8,7 @@
 namespace pliant::twin {
 namespace {
 
-constexpr double never = std::numeric_limits<double>::infinity();
+constexpr double never_shuts = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -53,7 +53,7 @@ void Twin::set_door(bool open) {
     if (open == door_is_open()) return;
     if (open) {
         door_opens_s_ = now_s_;
-        door_shuts_s_ = never;
+        door_shuts_s_ = never_shuts;
         mishap("somebody opens the door");
     } else {
         door_shuts_s_ = now_s_;

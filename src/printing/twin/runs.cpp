@@ -6,7 +6,7 @@
 namespace pliant::twin {
 namespace {
 
-constexpr int most = 65535;
+constexpr int most_value = 65535;
 
 /// The first lit pixel at or after `at`, else `width`; skips eight dark ones at a time.
 int next_lit(const std::uint8_t* row, int at, int width) {
@@ -25,7 +25,7 @@ void append_row(Runs& runs, int row, const std::vector<int>& values, int begin, 
         int next = at + 1;
         const int value = values[static_cast<std::size_t>(at)];
         while (next < end && values[static_cast<std::size_t>(next)] == value) ++next;
-        if (value > 0) runs.push_back({row, at, next, static_cast<std::uint16_t>(std::min(most, value))});
+        if (value > 0) runs.push_back({row, at, next, static_cast<std::uint16_t>(std::min(most_value, value))});
         at = next;
     }
 }

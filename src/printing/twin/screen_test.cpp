@@ -9,7 +9,7 @@ using namespace pliant::twin;
 
 namespace {
 
-machine::Projector projector(std::vector<double> grey) {
+machine::Projector grey_projector(std::vector<double> grey) {
     machine::Projector p;
     p.width_px = 256;
     p.height_px = 1;
@@ -34,13 +34,13 @@ int value_at(const Runs& runs, int column) {
 }  // namespace
 
 TEST_CASE("without grey curve and mask an image is its coverage") {
-    const Screen::Picture picture = Screen(projector({}), std::nullopt).coverage(ramp());
+    const Screen::Picture picture = Screen(grey_projector({}), std::nullopt).coverage(ramp());
     CHECK(picture.runs == ramp());
     CHECK(picture.overlit_px == 0);
 }
 
 TEST_CASE("the grey curve is inverted: the grey value for a coverage gives that coverage") {
-    const Screen screen(projector({0, 0.5, 0.8, 1}), std::nullopt);
+    const Screen screen(grey_projector({0, 0.5, 0.8, 1}), std::nullopt);
     // The light of coverages 1/3 and 2/3 in the printer file, and of the midpoint between 2/3 and 1.
     const Runs shown = {{0, 0, 1, 128}, {0, 1, 2, 204}, {0, 2, 3, 230}, {0, 3, 4, 255}};
     const Runs runs = screen.coverage(shown).runs;
@@ -52,7 +52,7 @@ TEST_CASE("the grey curve is inverted: the grey value for a coverage gives that 
 
 TEST_CASE("the mask is inverted, and pixels brighter than it allows are counted") {
     job::Image mask{256, 1, std::vector<std::uint8_t>(256, 200)};
-    const Screen screen(projector({}), mask);
+    const Screen screen(grey_projector({}), mask);
     const Screen::Picture picture = screen.coverage(ramp());
     CHECK(value_at(picture.runs, 100) == 128);  // 100 / 200 of the light of a whole pixel
     CHECK(value_at(picture.runs, 200) == 255);

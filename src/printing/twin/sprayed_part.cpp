@@ -6,8 +6,8 @@
 namespace pliant::twin {
 namespace {
 
-constexpr int most_cells = 32;         // maximum in any direction of the part
-constexpr double growth_share = 1.05;  // growth after which rays are traced again
+constexpr int most_sprayed_cells = 32;  // maximum in any direction of the part
+constexpr double growth_share = 1.05;   // growth after which rays are traced again
 
 }  // namespace
 
@@ -19,7 +19,7 @@ void SprayedPart::look(const std::vector<CuredLayer>& layers) {
         for (const VatLayer& vat : layer.vats) part.add(layer.top_um - layer.thickness_um, layer.top_um, 0, vat.runs);
     }
     const wash::PartCells fine = wet_part(part, projector);
-    const wash::PartCells cells = fine.columns > 0 ? wash::coarsened(fine, most_cells) : fine;
+    const wash::PartCells cells = fine.columns > 0 ? wash::coarsened(fine, most_sprayed_cells) : fine;
     faces_ = wash::wet_faces(cells);
     rates_ = wash::washed_rates(cells, faces_, *printer_, wash::strokes_of(*printer_));
 }

@@ -5,17 +5,13 @@
 #include <numeric>
 
 #include "base/core/near.hpp"
+#include "printing/twin/test_runs.hpp"
 
 using namespace pliant;
 using namespace pliant::twin;
+using twin::test::block;
 
 namespace {
-
-Runs block(int row, int end_row, int begin, int end) {
-    Runs runs;
-    for (; row < end_row; ++row) runs.push_back({row, begin, end, 255});
-    return runs;
-}
 
 machine::Projector projector(bool mirror_x, bool mirror_y) {
     machine::Projector p;

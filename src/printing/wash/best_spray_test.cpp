@@ -13,10 +13,6 @@ using pliant::test::holds;
 
 namespace {
 
-machine::Printer tower() {
-    return machine::load_printer("examples/printers/tower.toml").value();
-}
-
 PartCells disc() {
     return coarsened(wash::test::cylinder(), 54);
 }
@@ -24,7 +20,7 @@ PartCells disc() {
 }  // namespace
 
 TEST_CASE("the best spray reaches the printer's own cleanness with less solution") {
-    machine::Printer p = tower();
+    machine::Printer p = wash::test::tower();
     const PartCells part = disc();
     const std::vector<Face> faces = wet_faces(part);
     const double own = cleanness(faces, washed_rates(part, faces, p, strokes_of(p)), p.cleaning.spray_s).removed;
@@ -44,7 +40,7 @@ TEST_CASE("the best spray reaches the printer's own cleanness with less solution
 }
 
 TEST_CASE("with instant moves no other strokes clean in a shorter time than the best spray") {
-    machine::Printer p = tower();
+    machine::Printer p = wash::test::tower();
     for (machine::AxisSpec& axis : p.axes) axis.speed_mm_s = axis.acceleration_mm_s2 = 1e7;
     p.cleaning.speed_mm_s = p.hooks.speed_mm_s = 1e7;
     const PartCells block = coarsened(wash::test::pyramids(), 34);
@@ -62,7 +58,7 @@ TEST_CASE("with instant moves no other strokes clean in a shorter time than the 
 }
 
 TEST_CASE("an unreachable goal is reported, with what is missing") {
-    const machine::Printer p = tower();
+    const machine::Printer p = wash::test::tower();
     const Result<BestSpray> scaffold = best_spray(coarsened(wash::test::scaffold(), 32), p, 0.99);
     REQUIRE_FALSE(scaffold);
     CHECK(holds(scaffold.error().message, "no oscillation cleans the part to 99.0 %: at most "));

@@ -8,10 +8,10 @@
 namespace pliant::wash {
 namespace {
 
-struct Side {
+struct Direction {
     int column, row, slab;
 };
-constexpr std::array<Side, 6> sides = {{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
+constexpr std::array<Direction, 6> directions = {{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
 /// The direction away from the solid around a cell: smooths the steps by which cells approximate a slope. The platform
 /// counts as solid.
@@ -29,7 +29,7 @@ Vec3 outwards(const PartCells& part, int column, int row, int slab) {
     return away;
 }
 
-Face face_of(const PartCells& part, int column, int row, int slab, const Side& side) {
+Face face_of(const PartCells& part, int column, int row, int slab, const Direction& side) {
     const double area = side.slab != 0 ? part.cell_mm * part.cell_mm : part.cell_mm * part.high_mm;
     const Vec3 axis{static_cast<double>(side.column), static_cast<double>(side.row), static_cast<double>(-side.slab)};
     const Vec3 away = outwards(part, column, row, slab);
@@ -51,7 +51,7 @@ std::vector<Face> wet_faces(const PartCells& part) {
         for (int row = 0; row < part.rows; ++row) {
             for (int column = 0; column < part.columns; ++column) {
                 if (!part.at(column, row, slab)) continue;
-                for (const Side& side : sides) {
+                for (const Direction& side : directions) {
                     const bool on_platform = slab + side.slab < 0;
                     if (on_platform || part.at(column + side.column, row + side.row, slab + side.slab)) continue;
                     faces.push_back(face_of(part, column, row, slab, side));

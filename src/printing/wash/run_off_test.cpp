@@ -29,7 +29,7 @@ bool is_side(const Face& face) {
 
 TEST_CASE("down a wall all liquid runs to the lower edge, and none goes up") {
     // A column of 1 mm, 10 mm high; the top half millimetre of its wall is hit.
-    const PartCells column = test::cells_of(1, 10, 0.5, [](double, double, double) { return true; });
+    const PartCells column = wash::test::cells_of(1, 10, 0.5, [](double, double, double) { return true; });
     const std::vector<Face> faces = wet_faces(column);
     const auto rates = flow(column, faces, [](const Face& f) { return is_side(f) && f.middle.z > -0.5; });
     double hit = 0, off = 0;
@@ -52,7 +52,7 @@ TEST_CASE("from an underside liquid drips onto the ledge below, wets it and leav
         if (d > 7) return true;
         return x > 1 && x < 2 && std::abs(y) < 0.5;
     };
-    const PartCells part = test::cells_of(8, 8, 0.5, solid);
+    const PartCells part = wash::test::cells_of(8, 8, 0.5, solid);
     const std::vector<Face> faces = wet_faces(part);
     const auto is_under = [](const Face& f) { return f.axis.z < 0 && f.middle.z > -1.5; };
     const auto rates = flow(part, faces, is_under);
@@ -73,7 +73,7 @@ TEST_CASE("from an underside liquid drips onto the ledge below, wets it and leav
 }
 
 TEST_CASE("no liquid runs into a pit whose tip points up") {
-    const PartCells block = test::pyramids();
+    const PartCells block = wash::test::pyramids();
     const std::vector<Face> faces = wet_faces(block);
     const auto rates = flow(block, faces, [](const Face& f) {
         return is_side(f) && std::max(std::abs(f.middle.x), std::abs(f.middle.y)) > 16.9;

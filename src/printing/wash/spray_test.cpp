@@ -14,13 +14,9 @@ using namespace pliant::wash;
 
 namespace {
 
-machine::Printer tower() {
-    return machine::load_printer("examples/printers/tower.toml").value();
-}
-
 /// One nozzle directly below the middle of the platform, with the carriage back.
 machine::Printer one_head(double cone_deg) {
-    machine::Printer p = tower();
+    machine::Printer p = wash::test::tower();
     machine::Sprinkler head;
     head.place_mm = {0, p.carriage.back_off_um / 1000.0, 0};  // the carriage moves along y
     head.cone_rad = cone_deg * std::numbers::pi / 180;
@@ -43,7 +39,7 @@ Cleanness cleaned(const PartCells& part, const machine::Printer& printer) {
 
 TEST_CASE("a plate over one sprinkler gets the flow given by distance and cone") {
     const machine::Printer p = one_head(60);
-    const PartCells plate = test::cells_of(10, 2, 0.5, [](double, double, double) { return true; });
+    const PartCells plate = wash::test::cells_of(10, 2, 0.5, [](double, double, double) { return true; });
     const std::vector<Face> faces = wet_faces(plate);
     const std::vector<double> rates = spray_rates(plate, faces, p, {});
     // 20 ml in 15 s into a cone of 60 degrees; the plate hangs 2 mm above the rim of 82.55 mm.
@@ -62,13 +58,13 @@ TEST_CASE("a plate over one sprinkler gets the flow given by distance and cone")
 
 TEST_CASE("beyond the cone, behind another part and on the far side the part stays wet") {
     // 40 mm wide, 84.55 mm away: the edge is seen under 13 degrees, more than half of a cone of 20.
-    const PartCells plate = test::cells_of(40, 2, 0.5, [](double, double, double) { return true; });
+    const PartCells plate = wash::test::cells_of(40, 2, 0.5, [](double, double, double) { return true; });
     const std::vector<Face> faces = wet_faces(plate);
     const std::vector<double> rates = spray_rates(plate, faces, one_head(20), {});
     const double radius = 84.55 * std::tan(std::numbers::pi / 18);
     CHECK(seen_mm2(faces, rates) / (std::numbers::pi * radius * radius) == near(1, {.relative = 0.03}));
     // A stem of 10 x 10 mm with a plate at its far end: everything above the plate is shaded by it.
-    const PartCells shade = test::cells_of(
+    const PartCells shade = wash::test::cells_of(
         40, 30, 0.5, [](double x, double y, double d) { return d > 28 || (std::abs(x) < 5 && std::abs(y) < 5); });
     const std::vector<Face> all = wet_faces(shade);
     const std::vector<double> few = spray_rates(shade, all, one_head(120), {});
@@ -81,8 +77,8 @@ TEST_CASE("beyond the cone, behind another part and on the far side the part sta
 }
 
 TEST_CASE("the four parts of table 4.2 have the weighed masses and the measured cleanness") {
-    const machine::Printer p = tower();
-    for (const test::Measured& m : test::parts_of_table_4_2()) {
+    const machine::Printer p = wash::test::tower();
+    for (const wash::test::Measured& m : wash::test::parts_of_table_4_2()) {
         const std::string name = m.name;
         CAPTURE(name);
         double cells = 0;
@@ -95,16 +91,16 @@ TEST_CASE("the four parts of table 4.2 have the weighed masses and the measured 
         CHECK(std::abs(c.removed - m.removed) < 0.035);
     }
     // The pits' tips point up: no solution flows in there, whereas it flows along the beams of a scaffold.
-    const Cleanness scaffold = cleaned(test::scaffold(), p), pyramids = cleaned(test::pyramids(), p);
+    const Cleanness scaffold = cleaned(wash::test::scaffold(), p), pyramids = cleaned(wash::test::pyramids(), p);
     CHECK(scaffold.removed > pyramids.removed);
     CHECK(scaffold.unseen < pyramids.unseen);
-    const std::vector<Face> faces = wet_faces(test::scaffold());
-    const Cleanness jets = cleanness(faces, spray_rates(test::scaffold(), faces, p, strokes_of(p)), 15);
+    const std::vector<Face> faces = wet_faces(wash::test::scaffold());
+    const Cleanness jets = cleanness(faces, spray_rates(wash::test::scaffold(), faces, p, strokes_of(p)), 15);
     CHECK(jets.removed < scaffold.removed - 0.1);
 }
 
 TEST_CASE("joining cells keeps the part's place, and nearly its surface") {
-    const PartCells fine = test::cylinder();
+    const PartCells fine = wash::test::cylinder();
     const PartCells coarse = coarsened(fine, 54);
     CHECK(coarse.cell_mm == near(1, {.relative = 1e-12}));
     CHECK(coarse.x_mm == fine.x_mm);

@@ -7,9 +7,15 @@
 #include <cmath>
 #include <functional>
 
+#include "printing/machine/printer.hpp"
 #include "printing/wash/part_cells.hpp"
 
 namespace pliant::wash::test {
+
+/// The printer that washes them.
+inline machine::Printer tower() {
+    return machine::load_printer("examples/printers/tower.toml").value();
+}
 
 /// Cells of `cell_mm` over a square of `side_mm` around the middle; `solid` (x, y, depth below the platform) in mm.
 inline PartCells cells_of(double side_mm, double height_mm, double cell_mm,

@@ -49,7 +49,7 @@ std::variant<mesh::Solid, SurfaceFile> read_object_shape(Reader& reader, Context
 }
 
 /// Reads mass or density; the other one is 0.
-void read_weight(Reader& reader, ObjectSpec& object) {
+void read_mass_or_density(Reader& reader, ObjectSpec& object) {
     object.density_kg_m3 = reader.quantity("density", Dimension::density, 0);
     object.mass_kg = reader.quantity("mass", Dimension::mass, 0);
     if (reader.has("density") == reader.has("mass")) return reader.problem("", "takes one of density and mass");
@@ -60,7 +60,7 @@ void read_weight(Reader& reader, ObjectSpec& object) {
 void read_object(Reader& reader, Context& context, ObjectSpec& object) {
     object.shape = read_object_shape(reader, context);
     object.placement = read_placement(reader, "place");
-    read_weight(reader, object);
+    read_mass_or_density(reader, object);
     object.velocity_m_s = reader.vector("velocity", Vec3{});
     object.angular_velocity_rad_s = reader.vector("angular_velocity", Vec3{});
     object.friction = read_friction(reader);

@@ -14,7 +14,7 @@ namespace pliant::robot {
 namespace {
 
 using config::Reader;
-using Kind = GoalSpec::Kind;
+using GoalKind = GoalSpec::Kind;
 
 constexpr std::size_t most_waypoints = 100000;
 
@@ -143,7 +143,7 @@ void read_position(Reader& reader, const Context& context, GoalSpec& goal) {
 }
 
 void read_direction(Reader& reader, GoalSpec& goal) {
-    goal.kind = Kind::direction;
+    goal.kind = GoalKind::direction;
     const config::Value* value = reader.raw("direction");
     const auto* list = std::get_if<config::Array>(&value->data);
     const bool several = list != nullptr && !list->empty() && std::holds_alternative<config::Array>(list->front().data);
@@ -161,7 +161,7 @@ void read_direction(Reader& reader, GoalSpec& goal) {
 /// force = "2 N", or a list of three; on `obstacle` or `support`.
 void read_force(Reader& reader, const Context& context, GoalSpec& goal) {
     const bool contact = reader.has("obstacle");
-    goal.kind = contact ? Kind::contact_force : Kind::support_force;
+    goal.kind = contact ? GoalKind::contact_force : GoalKind::support_force;
     if (contact == reader.has("support")) reader.problem("", "a force is that of one obstacle or one support");
     if (contact)
         check_name(reader, "obstacle", "obstacle", goal.on = reader.text("obstacle"), context.robot.obstacles);
@@ -182,18 +182,18 @@ void read_force(Reader& reader, const Context& context, GoalSpec& goal) {
 
 double read_tolerance(Reader& reader, const GoalSpec& goal, double unit_m) {
     double tolerance = 0;
-    if (goal.kind == Kind::direction)
+    if (goal.kind == GoalKind::direction)
         tolerance = reader.quantity("tolerance", Dimension::angle, std::numbers::pi / 180);
-    if (goal.kind == Kind::position || goal.kind == Kind::plane)
+    if (goal.kind == GoalKind::position || goal.kind == GoalKind::plane)
         tolerance = reader.quantity("tolerance", Dimension::length, 0.1 * unit_m);
-    if (goal.kind == Kind::contact_force || goal.kind == Kind::support_force)
+    if (goal.kind == GoalKind::contact_force || goal.kind == GoalKind::support_force)
         tolerance = reader.quantity("tolerance", Dimension::force);
-    if (!(tolerance > 0) && (goal.kind == Kind::position || reader.has("tolerance")))
+    if (!(tolerance > 0) && (goal.kind == GoalKind::position || reader.has("tolerance")))
         reader.problem("tolerance", "must be above zero");
     return tolerance;
 }
 
-void read_times(Reader& reader, GoalSpec& goal) {
+void read_goal_times(Reader& reader, GoalSpec& goal) {
     if (reader.has("times")) {
         if (!goal.times.empty()) reader.problem("times", "stand in the CSV already");
         goal.times = reader.numbers("times");
@@ -222,7 +222,7 @@ void read_goal(Reader& reader, Context& context, GoalSpec& goal) {
                                ? std::string("has no target; add point, points, path, plane, direction or force")
                                : "takes only one of " + join_names(given));
     } else if (given[0] == "plane") {
-        goal.kind = Kind::plane;
+        goal.kind = GoalKind::plane;
         const PlaneSelector plane = read_plane(reader);
         if (norm(plane.normal) > 0) goal.wanted = {{plane.point, 1 / norm(plane.normal) * plane.normal}};
         if (goal.markers.size() != 1) reader.problem("marker", "a plane is for one marker");
@@ -234,7 +234,7 @@ void read_goal(Reader& reader, Context& context, GoalSpec& goal) {
         read_position(reader, context, goal);
     }
     for (const std::string_view key : wants) (void)reader.raw(key);
-    if (goal.kind != Kind::contact_force && goal.kind != Kind::support_force) {
+    if (goal.kind != GoalKind::contact_force && goal.kind != GoalKind::support_force) {
         for (const char* key : {"obstacle", "support"}) {
             if (reader.raw(key) != nullptr) reader.problem(key, "is for a goal with a force");
         }
@@ -244,7 +244,7 @@ void read_goal(Reader& reader, Context& context, GoalSpec& goal) {
     goal.tolerance = read_tolerance(reader, goal, context.robot.unit_m);
     goal.weight = reader.number("weight", 1);
     if (!(goal.weight > 0 && goal.weight <= 1e6)) reader.problem("weight", "is above zero, at most 1000000");
-    read_times(reader, goal);
+    read_goal_times(reader, goal);
     if (goal.wanted.size() > most_waypoints)
         reader.problem("path", fmt::format("has {} waypoints; {} are possible", goal.wanted.size(), most_waypoints));
 }

@@ -14,15 +14,15 @@ namespace pliant::robot {
 namespace {
 
 using config::Reader;
-using Kind = JointSpec::Kind;
+using JointKind = JointSpec::Kind;
 
 constexpr double radians = std::numbers::pi / 180;
 
-bool turns(Kind kind) {
-    return kind == Kind::hinge || kind == Kind::motor;
+bool turns(JointKind kind) {
+    return kind == JointKind::hinge || kind == JointKind::motor;
 }
-bool has_axis(Kind kind) {
-    return turns(kind) || kind == Kind::slider;
+bool has_axis(JointKind kind) {
+    return turns(kind) || kind == JointKind::slider;
 }
 
 std::vector<std::string> names_to_join(const Robot& robot) {
@@ -55,14 +55,14 @@ void read_between(Reader& reader, const Robot& robot, JointSpec& joint) {
 
 /// angle and torque of rotating joints, position and force of sliding ones: at most one, and only for driven joints.
 void read_drive(Reader& reader, JointSpec& joint) {
-    const bool slides = joint.kind == Kind::slider, is_driven = joint.kind == Kind::motor || slides;
+    const bool slides = joint.kind == JointKind::slider, is_driven = joint.kind == JointKind::motor || slides;
     const std::string_view place = slides ? "position" : "angle", force = slides ? "force" : "torque";
     for (const std::string_view key : {"angle", "torque", "position", "force"}) {
         if (!reader.has(key) || (is_driven && (key == place || key == force))) continue;
         (void)reader.raw(key);
-        reader.problem(key, slides                      ? "a slider takes position or force"
-                            : joint.kind == Kind::motor ? "a motor takes angle or torque"
-                            : joint.kind == Kind::hinge
+        reader.problem(key, slides                           ? "a slider takes position or force"
+                            : joint.kind == JointKind::motor ? "a motor takes angle or torque"
+                            : joint.kind == JointKind::hinge
                                 ? "is that of a motor: kind = \"motor\" is a hinge that is driven"
                                 : "is that of a motor or a slider");
     }
@@ -74,7 +74,7 @@ void read_drive(Reader& reader, JointSpec& joint) {
     (void)reader.raw(place);
     (void)reader.raw(force);
     if (has_place && has_force) reader.problem("", fmt::format("takes one of {} and {}", place, force));
-    if (joint.kind == Kind::motor && !has_place && !has_force)
+    if (joint.kind == JointKind::motor && !has_place && !has_force)
         reader.problem("", "a motor takes angle or torque, as in angle = \"30 deg\"");
     joint.by_force = has_force;
     if (has_place || has_force) joint.wanted = ramp(0, wanted);
@@ -97,7 +97,7 @@ void read_joint(Reader& reader, Context& context, JointSpec& joint) {
     constexpr std::array<std::string_view, 5> kinds = {"glue", "hinge", "slider", "ball", "motor"};
     const std::string kind = reader.choice("kind", {kinds.begin(), kinds.end()});
     const auto found = std::ranges::find(kinds, kind);
-    if (found != kinds.end()) joint.kind = static_cast<Kind>(found - kinds.begin());
+    if (found != kinds.end()) joint.kind = static_cast<JointKind>(found - kinds.begin());
     read_between(reader, context.robot, joint);
     joint.point = reader.vector("point");
     if (has_axis(joint.kind)) {
@@ -110,7 +110,7 @@ void read_joint(Reader& reader, Context& context, JointSpec& joint) {
     if (reader.has("radius") && !(joint.radius > 0)) reader.problem("radius", "must be above zero");
     if (turns(joint.kind))
         joint.stiffness = reader.quantity("stiffness", Dimension::torsional_stiffness, 0);
-    else if (joint.kind == Kind::slider)
+    else if (joint.kind == JointKind::slider)
         joint.stiffness = reader.quantity("stiffness", Dimension::stiffness, 0);
     else if (reader.raw("stiffness") != nullptr)
         reader.problem("stiffness", "is that of a hinge, motor or slider; a [[spring]] is elastic along its length");

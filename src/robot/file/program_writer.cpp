@@ -19,14 +19,14 @@ std::string quoted(const std::string& text) {
 }
 
 /// Something that a key may drive: its value over the robot's own program, and its format.
-struct Driven {
+struct DrivenValue {
     std::string name;
     std::string unit;  ///< empty: dimensionless
     double rest = 0;
     std::function<double(double time)> at;
 };
 
-Driven driven(const CableSpec& cable) {
+DrivenValue driven_value(const CableSpec& cable) {
     using Kind = CableTarget::Kind;
     const Kind kind = cable.target.kind;
     return {cable.name,
@@ -36,7 +36,7 @@ Driven driven(const CableSpec& cable) {
             kind == Kind::length_ratio ? 1.0 : 0.0, [&](double time) { return cable.target.at(time); }};
 }
 
-Driven driven(const ChamberSpec& chamber) {
+DrivenValue driven_value(const ChamberSpec& chamber) {
     using Kind = ChamberTarget::Kind;
     const Kind kind = chamber.target.kind;
     const bool ratio = kind == Kind::volume_ratio || kind == Kind::gas_ratio;
@@ -48,18 +48,18 @@ Driven driven(const ChamberSpec& chamber) {
 }
 
 /// Precondition: it is driven.
-Driven driven(const JointSpec& joint) {
+DrivenValue driven_value(const JointSpec& joint) {
     const bool slides = joint.kind == JointSpec::Kind::slider;
     const char* unit = joint.by_force ? (slides ? "N" : "N m") : (slides ? "m" : "rad");
     return {joint.name, unit, 0, [&](double time) { return joint.wanted->at(time); }};
 }
 
-std::vector<Driven> everything_driven(const Robot& robot) {
-    std::vector<Driven> list;
-    for (const CableSpec& cable : robot.cables) list.push_back(driven(cable));
-    for (const ChamberSpec& chamber : robot.chambers) list.push_back(driven(chamber));
+std::vector<DrivenValue> driven_values(const Robot& robot) {
+    std::vector<DrivenValue> list;
+    for (const CableSpec& cable : robot.cables) list.push_back(driven_value(cable));
+    for (const ChamberSpec& chamber : robot.chambers) list.push_back(driven_value(chamber));
     for (const JointSpec& joint : robot.joints) {
-        if (joint.wanted) list.push_back(driven(joint));
+        if (joint.wanted) list.push_back(driven_value(joint));
     }
     const auto share = [&](const std::string& name, const Curve& curve) {
         list.push_back({name, "", 0, [&](double time) { return curve.at(time); }});
@@ -73,13 +73,13 @@ std::vector<Driven> everything_driven(const Robot& robot) {
 
 /// The values of one thing at every point.
 struct Column {
-    const Driven* of = nullptr;
+    const DrivenValue* of = nullptr;
     std::vector<double> values;
 };
 
-std::vector<Column> columns_of(const std::vector<Driven>& all, const std::vector<ProgramPoint>& points) {
+std::vector<Column> columns_of(const std::vector<DrivenValue>& all, const std::vector<ProgramPoint>& points) {
     std::vector<Column> columns;
-    for (const Driven& one : all) {
+    for (const DrivenValue& one : all) {
         Column column{&one, {}};
         for (const ProgramPoint& point : points) {
             const auto given =
@@ -118,11 +118,11 @@ std::string relative_path(const std::filesystem::path& file, const std::filesyst
 Result<std::string> program_text(const Robot& robot, const std::filesystem::path& file,
                                  const std::vector<std::string>& assignments, const std::filesystem::path& folder,
                                  const std::vector<ProgramPoint>& points, int steps_per_point, double tolerance) {
-    const std::vector<Driven> all = everything_driven(robot);
+    const std::vector<DrivenValue> all = driven_values(robot);
     std::vector<Column> columns = columns_of(all, points);
     std::erase_if(columns, [&](const Column& column) { return !does_something(robot, column.of->name); });
     for (const Column& column : columns) {
-        if (std::ranges::count_if(all, [&](const Driven& d) { return d.name == column.of->name; }) > 1)
+        if (std::ranges::count_if(all, [&](const DrivenValue& d) { return d.name == column.of->name; }) > 1)
             return input_error(
                 "{}: two things are named \"{}\", which the program must name; give them different names",
                 file.string(), column.of->name);

@@ -81,7 +81,7 @@ DistanceSensorSpec read_distance(Reader& reader, const Context& context) {
 }
 
 /// At a `point`, at a `marker`, or on an `object`.
-MotionSensorSpec read_motion(Reader& reader, const Context& context) {
+MotionSensorSpec read_motion_sensor(Reader& reader, const Context& context) {
     MotionSensorSpec sensor;
     const int given = int{reader.has("point")} + int{reader.has("marker")} + int{reader.has("object")};
     if (given != 1) {
@@ -122,7 +122,7 @@ void read_sensor(Reader& reader, Context& context, SensorSpec& sensor) {
     } else if (kind == "distance") {
         sensor.what = read_distance(reader, context);
     } else if (kind == "motion") {
-        sensor.what = read_motion(reader, context);
+        sensor.what = read_motion_sensor(reader, context);
     }
 }
 

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "base/linalg/dense.hpp"
+#include "base/linalg/vectors.hpp"
+#include "simulation/actuators/cross_matrix.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -74,13 +76,6 @@ std::array<Vec3, 3> place(const WallFace& face, const Sample& s, const std::vect
     return sum;
 }
 
-/// [a]: [a] b = a x b.
-Matrix3 cross_matrix(const Vec3& a) {
-    Matrix3 m;
-    m << 0, -a.z, a.y, a.z, 0, -a.x, -a.y, a.x, 0;
-    return m;
-}
-
 using FaceMatrix = std::array<std::array<Matrix3, 6>, 6>;
 
 /// factor * d(dV/dx_i)/dx_j of one face, not symmetric. Only blocks of points that exist on the face are set.
@@ -90,8 +85,8 @@ FaceMatrix second_gradient(const WallFace& face, double factor, const std::vecto
     for (std::size_t i = 0; i < count; ++i) std::fill_n(between[i].begin(), count, Matrix3::Zero());
     for (const Sample& s : samples(count == 6)) {
         const auto [at, u, v] = place(face, s, points);
-        const Matrix3 U = factor * s.weight * cross_matrix(u);
-        const Matrix3 V = factor * s.weight * cross_matrix(v);
+        const Matrix3 U = factor * s.weight * cross_matrix(linalg::vector(u));
+        const Matrix3 V = factor * s.weight * cross_matrix(linalg::vector(v));
         for (std::size_t i = 0; i < count; ++i) {
             for (std::size_t j = 0; j < count; ++j) between[i][j] += s.N[i] * (s.Nv[j] * U - s.Nu[j] * V);
         }

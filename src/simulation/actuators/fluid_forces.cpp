@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/linalg/vectors.hpp"
+#include "simulation/actuators/cross_matrix.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -17,12 +18,6 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 /// Barycentric coordinates of a quadrature rule of degree 2 on a triangle, with equal weights.
 constexpr std::array<std::array<double, 3>, 3> rule{
     {{2.0 / 3, 1.0 / 6, 1.0 / 6}, {1.0 / 6, 2.0 / 3, 1.0 / 6}, {1.0 / 6, 1.0 / 6, 2.0 / 3}}};
-
-Matrix3 cross_matrix(const Vector3& v) {
-    Matrix3 m;
-    m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
-    return m;
-}
 
 /// The direction of gravity, and the specific weight of the fluid.
 struct Weight {

@@ -4,23 +4,13 @@
 #include <Eigen/LU>
 
 #include "base/linalg/vectors.hpp"
+#include "simulation/actuators/cross_matrix.hpp"
 #include "simulation/elements/node_blocks.hpp"
 
 namespace pliant::sim {
 
 using linalg::Matrix3;
 using linalg::Vector3;
-
-namespace {
-
-/// cross(v) u = v x u.
-Matrix3 cross_matrix(const Vector3& v) {
-    Matrix3 m;
-    m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
-    return m;
-}
-
-}  // namespace
 
 TorqueForces::Arms TorqueForces::arms(std::span<const double> x, const Vector3& torque_Nm) const {
     Arms arms;

@@ -17,17 +17,17 @@ double nominal_shape(double stretch) {
 }
 
 /// The columns of a test, and their factors to m.
-struct Columns {
+struct ElongationColumns {
     static constexpr std::array<std::string_view, 4> names = {"length", "interface", "elongation", "joint"};
     std::array<std::size_t, 4> at{};
     std::array<double, 4> factor{};
 };
 
-Result<Columns> read_header(const CsvTable& table) {
-    Columns columns;
+Result<ElongationColumns> read_elongation_header(const CsvTable& table) {
+    ElongationColumns columns;
     const std::string place = table.place(table.header_line);
-    for (std::size_t i = 0; i < Columns::names.size(); ++i) {
-        const std::string_view name = Columns::names[i];
+    for (std::size_t i = 0; i < ElongationColumns::names.size(); ++i) {
+        const std::string_view name = ElongationColumns::names[i];
         const auto found = std::find_if(table.columns.begin(), table.columns.end(), [&](const std::string& column) {
             return lower_case(column).starts_with(name);
         });
@@ -43,10 +43,10 @@ Result<Columns> read_header(const CsvTable& table) {
     return columns;
 }
 
-Result<ElongationRow> read_row(const CsvTable& table, const CsvRow& row, const Columns& columns) {
+Result<ElongationRow> read_elongation_row(const CsvTable& table, const CsvRow& row, const ElongationColumns& columns) {
     std::array<double, 4> m{};
     for (std::size_t i = 0; i < m.size(); ++i) {
-        const Result<double> value = table.number(row, columns.at[i], Columns::names[i]);
+        const Result<double> value = table.number(row, columns.at[i], ElongationColumns::names[i]);
         if (!value) return tl::unexpected(value.error());
         m[i] = *value * columns.factor[i];
     }
@@ -96,11 +96,11 @@ Result<double> match_shape_parameter(const ElongationTest& test, std::array<int,
 Result<std::vector<ElongationRow>> parse_elongation_csv(std::string_view text, const std::string& file) {
     const auto table = parse_csv(text, file, "length (mm),interface (mm),elongation (mm),joint (mm)");
     if (!table) return tl::unexpected(table.error());
-    const auto columns = read_header(*table);
+    const auto columns = read_elongation_header(*table);
     if (!columns) return tl::unexpected(columns.error());
     std::vector<ElongationRow> rows;
     for (const CsvRow& row : table->rows) {
-        auto result = read_row(*table, row, *columns);
+        auto result = read_elongation_row(*table, row, *columns);
         if (!result) return tl::unexpected(result.error());
         rows.push_back(*result);
     }

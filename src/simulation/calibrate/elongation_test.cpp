@@ -24,7 +24,7 @@ double joint_of(double ratio, double L, double L1, double dL) {
     return 0.5 * (low + high);
 }
 
-void check_problem(const std::string& text, const std::string& wanted) {
+void check_elongation_problem(const std::string& text, const std::string& wanted) {
     const auto rows = parse_elongation_csv(text, "t.csv");
     REQUIRE_FALSE(rows);
     CHECK_MESSAGE(rows.error().message.find(wanted) != std::string::npos, "found \"", rows.error().message, "\"");
@@ -107,15 +107,17 @@ TEST_CASE("several tests give a mean and its 95 % interval") {
 }
 
 TEST_CASE("impossible tests are refused with their line") {
-    check_problem("", "t.csv: is empty; the first line names the columns: length (mm)");
-    check_problem("length (mm),interface (mm),joint (mm)\n1,2,3\n", "t.csv:1: no column is named \"elongation\"");
-    check_problem("length,interface (mm),elongation (mm),joint (mm)\n1,2,3,4\n", "length has no unit");
-    check_problem("length (N),interface (mm),elongation (mm),joint (mm)\n1,2,3,4\n",
-                  "t.csv:1: length: unknown unit \"N\"");
-    check_problem(header + "100,50,30,5\n100,120,30,5\n", "t.csv:3: interface: 120 mm is not within the bar");
-    check_problem(header + "100,50,30,31\n", "joint: 31 mm is not possible");
-    check_problem(header + "100,50,30,0\n", "joint: 0 mm is not possible");
-    check_problem(header + "100,50,-30,-5\n", "elongation: -30 mm");
-    check_problem(header + "0,0,30,5\n", "length: 0 mm");
-    check_problem(header + "100,50,30,abc\n", "t.csv:2: joint \"abc\" is not a number");
+    check_elongation_problem("", "t.csv: is empty; the first line names the columns: length (mm)");
+    check_elongation_problem("length (mm),interface (mm),joint (mm)\n1,2,3\n",
+                             "t.csv:1: no column is named \"elongation\"");
+    check_elongation_problem("length,interface (mm),elongation (mm),joint (mm)\n1,2,3,4\n", "length has no unit");
+    check_elongation_problem("length (N),interface (mm),elongation (mm),joint (mm)\n1,2,3,4\n",
+                             "t.csv:1: length: unknown unit \"N\"");
+    check_elongation_problem(header + "100,50,30,5\n100,120,30,5\n",
+                             "t.csv:3: interface: 120 mm is not within the bar");
+    check_elongation_problem(header + "100,50,30,31\n", "joint: 31 mm is not possible");
+    check_elongation_problem(header + "100,50,30,0\n", "joint: 0 mm is not possible");
+    check_elongation_problem(header + "100,50,-30,-5\n", "elongation: -30 mm");
+    check_elongation_problem(header + "0,0,30,5\n", "length: 0 mm");
+    check_elongation_problem(header + "100,50,30,abc\n", "t.csv:2: joint \"abc\" is not a number");
 }

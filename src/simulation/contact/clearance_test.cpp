@@ -13,9 +13,9 @@ using namespace pliant::sim::contact;
 
 namespace {
 
-constexpr double reach = 0.05, seen = 0.4;
+constexpr double contact_reach = 0.05, seen = 0.4;
 
-struct Features {
+struct FeaturePair {
     std::vector<int> first, second;  ///< nodes
     [[nodiscard]] double distance(std::span<const double> x) const {
         const Stencil at{node_at(x, first[0]), node_at(x, first.size() > 1 ? first[1] : second[0]),
@@ -25,8 +25,8 @@ struct Features {
 };
 
 /// All pairs of features that share no node.
-std::vector<Features> all_features(const Surface& s) {
-    std::vector<Features> all;
+std::vector<FeaturePair> all_features(const Surface& s) {
+    std::vector<FeaturePair> all;
     for (const int p : s.points)
         for (const auto& t : s.triangles)
             if (std::count(t.begin(), t.end(), p) == 0) all.push_back({{p}, {t.begin(), t.end()}});
@@ -44,7 +44,7 @@ struct Bars {
     SpringBody body = spring_box({0, 0, 0}, {6, 1, 1}, {9, 2, 2});
     Surface surface;
     std::shared_ptr<const Regions> regions;
-    std::vector<Features> features;
+    std::vector<FeaturePair> features;
 
     Bars() {
         body.add(spring_box({0, 1.5, 0}, {6, 1, 1}, {9, 2, 2}));
@@ -55,16 +55,16 @@ struct Bars {
     [[nodiscard]] Clearance clearance(std::span<const double> x) const {
         const std::array<Clearance::Side, 1> sides{{{&surface, regions}}};
         const std::array<Clearance::Meeting, 1> meetings{{{0, 0}}};
-        Clearance clearance(sides, meetings, x, seen, reach);
-        for (const Features& f : features) {
+        Clearance clearance(sides, meetings, x, seen, contact_reach);
+        for (const FeaturePair& f : features) {
             const double apart = f.distance(x);
-            if (apart < seen) clearance.offer(0, f.first, f.second, apart, reach);
+            if (apart < seen) clearance.offer(0, f.first, f.second, apart, contact_reach);
         }
         return clearance;
     }
     [[nodiscard]] double smallest_distance(std::span<const double> x) const {
         double smallest = HUGE_VAL;
-        for (const Features& f : features) smallest = std::min(smallest, f.distance(x));
+        for (const FeaturePair& f : features) smallest = std::min(smallest, f.distance(x));
         return smallest;
     }
     /// `bend` radians from end to end, each bar by itself if `apart`, then turned by `turn` about x.
@@ -131,7 +131,7 @@ TEST_CASE("while a clearance holds, no feature comes within reach or to a tenth 
         std::vector<double> at = x;
         for (int k = 0; k <= 4; ++k) {
             for (std::size_t i = 0; i < at.size(); ++i) at[i] = x[i] + 0.25 * k * dx[i];
-            CHECK(bars.smallest_distance(at) > reach);
+            CHECK(bars.smallest_distance(at) > contact_reach);
             CHECK(clearance.holds(at, {}));
         }
     }

@@ -14,14 +14,14 @@ using namespace pliant::sim::contact;
 
 namespace {
 
-struct Case {
+struct DistanceCase {
     std::string name;
     Stencil x;
     int free;
     double distance;  ///< worked out by hand
 };
 
-const std::vector<Case> point_triangle_cases = {
+const std::vector<DistanceCase> point_triangle_cases = {
     {"above the face", {{{0.25, 0.25, 0.3}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, 2, 0.3},
     {"below the face", {{{0.5, 0.25, -0.2}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, 2, 0.2},
     {"first edge", {{{0.5, -0.3, 0.4}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}, 1, 0.5},
@@ -33,7 +33,7 @@ const std::vector<Case> point_triangle_cases = {
     {"obtuse triangle, first edge", {{{0.5, -0.1, 0.1}, {0, 0, 0}, {1, 0, 0}, {-1, 0.3, 0}}}, 1, std::sqrt(0.02)},
 };
 
-const std::vector<Case> edge_cases = {
+const std::vector<DistanceCase> edge_cases = {
     {"crossing", {{{-1, 0, 0}, {1, 0, 0}, {0, -0.5, 0.3}, {0, 1, 0.3}}}, 2, 0.3},
     {"crossing aslant", {{{-1, 0, 0}, {1, 0, 0}, {-0.4, -0.5, -0.2}, {0.4, 0.5, -0.2}}}, 2, 0.2},
     {"first end, second edge", {{{0.3, 0, 0.4}, {1, 0, 2}, {0, -1, 0}, {0, 1, 0}}}, 1, 0.5},
@@ -48,9 +48,9 @@ const std::vector<Case> edge_cases = {
 
 using Find = Nearest (*)(const Stencil&);
 
-void check_cases(const std::vector<Case>& cases, Find find) {
+void check_cases(const std::vector<DistanceCase>& cases, Find find) {
     std::mt19937 random(7);
-    for (const Case& c : cases) {
+    for (const DistanceCase& c : cases) {
         CAPTURE(c.name);
         for (int turn = 0; turn < 5; ++turn) {
             const Motion motion = turn == 0 ? Motion{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {}} : random_motion(random);

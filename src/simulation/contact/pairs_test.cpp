@@ -15,7 +15,7 @@ using namespace pliant::sim::contact;
 
 namespace {
 
-struct Case {
+struct PairCase {
     std::string name;
     Pair pair;
     Stencil x;
@@ -32,7 +32,7 @@ Pair pair_of(PairKind kind, double reach) {
 }
 
 /// Every way in which two features can be near, with distances from 0.1 to 0.5.
-std::vector<Case> cases() {
+std::vector<PairCase> cases() {
     const Pair pt = pair_of(PairKind::point_triangle, 0.7), ee = pair_of(PairKind::edge_edge, 0.7);
     return {
         {"point and face", pt, {{{0.25, 0.25, 0.3}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}},
@@ -60,7 +60,7 @@ Stencil scaled_about_origin(Stencil x, double s) {
 
 TEST_CASE("gradient and Hessian of every kind of pair agree with finite differences") {
     std::mt19937 random(5);
-    for (const Case& c : cases()) {
+    for (const PairCase& c : cases()) {
         CAPTURE(c.name);
         for (int turn = 0; turn < 5; ++turn) {
             const Motion motion = random_motion(random);
@@ -79,7 +79,7 @@ TEST_CASE("gradient and Hessian of every kind of pair agree with finite differen
 }
 
 TEST_CASE("the mollifier acts in the nearly parallel cases only") {
-    for (const Case& c : cases()) {
+    for (const PairCase& c : cases()) {
         CAPTURE(c.name);
         if (c.pair.kind != PairKind::edge_edge) continue;
         const bool parallel = c.name.starts_with("nearly");
@@ -89,7 +89,7 @@ TEST_CASE("the mollifier acts in the nearly parallel cases only") {
 
 TEST_CASE("the forces of a pair sum to zero, have no moment, and rotate with the pair") {
     std::mt19937 random(6);
-    for (const Case& c : cases()) {
+    for (const PairCase& c : cases()) {
         CAPTURE(c.name);
         const Vector12 g = potential_gradient(c.pair, stiffness, c.x);
         Vec3 force, moment;
@@ -127,7 +127,7 @@ TEST_CASE("at half its reach a plane presses with 4.33 times the stiffness, what
 }
 
 TEST_CASE("beyond the reach the energy is zero; at or behind a plane it is infinite") {
-    for (const Case& c : cases()) {
+    for (const PairCase& c : cases()) {
         CAPTURE(c.name);
         const Stencil far = scaled_about_origin(c.x, 8);
         CHECK(potential(c.pair, stiffness, far) == 0);
@@ -140,7 +140,7 @@ TEST_CASE("beyond the reach the energy is zero; at or behind a plane it is infin
 }
 
 TEST_CASE("projection sets negative eigenvalues to zero and keeps the others") {
-    for (const Case& c : cases()) {
+    for (const PairCase& c : cases()) {
         CAPTURE(c.name);
         const Matrix12 H = potential_hessian(c.pair, stiffness, c.x);
         const Matrix12 P = project_to_positive(H, c.pair.node_count());

@@ -17,7 +17,7 @@ constexpr double smallest_share = 1.0 / 64;  // of a step of the program
 constexpr double rounding = 1e-7;            // of the shortest substep
 // Errors of predicted states, as in stepper/prediction.cpp.
 constexpr double worst_start = 0.2, good_start = 0.03;
-constexpr double rotation_error = 1e-4;
+constexpr double predicted_rotation_error = 1e-4;
 
 /// Each marker belongs to one rank: positions are sums over the ranks.
 std::vector<Vec3> marker_positions(const DistributedEquilibrium& system, const Eigen::VectorXd& x) {
@@ -187,7 +187,7 @@ private:
             rotating.past[k - 1] = before.x.data();
             rotating.weights[k - 1] = -beyond;
         }
-        next.x = rotation_.rotate(rotating, rotation_error);
+        next.x = rotation_.rotate(rotating, predicted_rotation_error);
         for (std::size_t a = 0; a < system_.part().cables.size(); ++a) {
             double& tension = next.multiplier[static_cast<Eigen::Index>(a)];
             tension = std::max(tension, 0.0);

@@ -20,7 +20,7 @@ using linalg::Matrix9;
 namespace {
 
 /// 3 x 1 x 1 cells: 18 tets of two blends and a rigid one, so that no batch is full.
-Model mixed(int order) {
+Model model_of_blends(int order) {
     Description d;
     d.mesh = reference::kuhn_box({0.03, 0.01, 0.01}, 3, 1, 1, [](Vec3 c) { return static_cast<int>(c.x / 0.01); });
     if (order == 2) d.mesh = mesh::to_quadratic(d.mesh);
@@ -35,7 +35,7 @@ Model mixed(int order) {
 }
 
 /// Strongly rotated, stretched along x by `stretch`, and perturbed.
-std::vector<double> distorted(const mesh::TetMesh& mesh, double stretch) {
+std::vector<double> turned_and_stretched(const mesh::TetMesh& mesh, double stretch) {
     std::vector<double> x;
     for (const Vec3& p : mesh.points) x.insert(x.end(), {-p.y, stretch * p.x, p.z});
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += 2e-4 * std::sin(7.3 * static_cast<double>(i));
@@ -52,10 +52,10 @@ std::vector<double> some_motion(std::size_t size, double pace) {
 
 TEST_CASE("the forces of eight shape-blend tets at once agree with the law, at any stretch") {
     for (const int order : {1, 2}) {
-        const Model model = mixed(order);
+        const Model model = model_of_blends(order);
         const Elements& elements = model.elements();
         for (const double stretch : {1.0, 0.3, 6.0, 60.0}) {
-            const std::vector<double> x = distorted(model.mesh(), stretch);
+            const std::vector<double> x = turned_and_stretched(model.mesh(), stretch);
             std::vector<double> forces(x.size(), 0.0), expected(x.size(), 0.0);
             const Elements::Evaluation e = elements.evaluate(x, forces);
             double energy = 0;
@@ -83,13 +83,13 @@ TEST_CASE("the forces of eight shape-blend tets at once agree with the law, at a
 
 TEST_CASE("the stiffness of eight shape-blend tets at once is the symmetric part of the law's") {
     for (const int order : {1, 2}) {
-        const Model model = mixed(order);
+        const Model model = model_of_blends(order);
         const Elements& elements = model.elements();
         std::vector<int> free(static_cast<std::size_t>(model.node_count()));
         std::iota(free.begin(), free.end(), 0);
         const auto pattern = linalg::make_pattern(model.node_count(), 3, elements.cliques(free));
         for (const double stretch : {1.0, 1.7}) {
-            const std::vector<double> x = distorted(model.mesh(), stretch);
+            const std::vector<double> x = turned_and_stretched(model.mesh(), stretch);
             std::vector<double> stiffness(pattern.entries(), 0.0), product(x.size(), 0.0);
             elements.add_tangent(x, elements.block_sums(free, pattern), stiffness, false);
             const std::vector<double> v = some_motion(x.size(), 3.1), w = some_motion(x.size(), 1.7);
@@ -113,7 +113,7 @@ TEST_CASE("the stiffness of eight shape-blend tets at once is the symmetric part
 }
 
 TEST_CASE("an inverted or NaN tet of shape-blend is detected") {
-    const Model model = mixed(1);
+    const Model model = model_of_blends(1);
     for (const double bad : {-0.5, std::nan("")}) {
         std::vector<double> x;
         for (const Vec3& p : model.mesh().points) x.insert(x.end(), {p.x, p.y, p.z});

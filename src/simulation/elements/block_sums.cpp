@@ -10,7 +10,6 @@
 namespace pliant::sim {
 namespace {
 
-constexpr std::size_t lanes = batch_lanes;
 constexpr std::size_t least_batches = 128, most_runs = 16;  // the more runs, the more blocks are shared
 constexpr std::size_t largest_share = 2;                    // at most one in this many blocks may be shared
 constexpr std::size_t shared_at_once = 512;
@@ -106,17 +105,17 @@ void BlockSums::add(const Fill& fill, std::size_t size, std::span<double> values
 template <std::size_t size>
 void BlockSums::add_batch(std::size_t batch, const double* written, double* values, double* list) const {
     const int* slot = slots_.data() + batch * width_;
-    for (const int* end = slot + width_; slot != end; slot += lanes, written += size * lanes) {
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
+    for (const int* end = slot + width_; slot != end; slot += batch_lanes, written += size * batch_lanes) {
+        for (std::size_t lane = 0; lane < batch_lanes; ++lane) {
             if (slot[lane] == no_slot) continue;
             const int at = slot[lane] / 2;
             double* to = at < blocks_ ? values + static_cast<std::size_t>(at) * size
                                       : list + static_cast<std::size_t>(at - blocks_) * size;
             const double* from = written + lane;
             if (size == 1 || slot[lane] % 2 == 0) {
-                for (std::size_t k = 0; k < size; ++k) to[k] += from[k * lanes];
+                for (std::size_t k = 0; k < size; ++k) to[k] += from[k * batch_lanes];
             } else {
-                for (std::size_t k = 0; k < size; ++k) to[k] += from[(k % 3 * 3 + k / 3) * lanes];
+                for (std::size_t k = 0; k < size; ++k) to[k] += from[(k % 3 * 3 + k / 3) * batch_lanes];
             }
         }
     }

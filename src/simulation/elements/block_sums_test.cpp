@@ -13,7 +13,6 @@ using namespace pliant::sim;
 
 namespace {
 
-constexpr std::size_t lanes = batch_lanes;
 constexpr std::size_t pairs = 10;
 
 /// Slots of batches that use blocks `reach` to both sides of their share of all, so that neighbours have some in
@@ -21,7 +20,7 @@ constexpr std::size_t pairs = 10;
 std::vector<int> slots_of(std::size_t batches, std::size_t blocks, double reach, std::mt19937& random) {
     std::vector<int> slots;
     for (std::size_t b = 0; b < batches; ++b) {
-        for (std::size_t k = 0; k < pairs * lanes; ++k) {
+        for (std::size_t k = 0; k < pairs * batch_lanes; ++k) {
             const double middle = static_cast<double>(b) / static_cast<double>(batches);
             const double at = std::uniform_real_distribution<double>(middle - reach, middle + reach)(random);
             const double block = std::clamp(at, 0.0, 1.0) * static_cast<double>(blocks - 1);
@@ -49,18 +48,19 @@ TEST_CASE("contributions of tets are summed in their blocks, however many tets s
         for (const std::size_t size : {1U, 9U}) {
             std::vector<double> expected(blocks * size, 1.0), result = expected;
             for (std::size_t b = 0; b < batches; ++b) {
-                for (std::size_t k = 0; k < pairs * lanes; ++k) {
-                    const int slot = slots[b * pairs * lanes + k];
+                for (std::size_t k = 0; k < pairs * batch_lanes; ++k) {
+                    const int slot = slots[b * pairs * batch_lanes + k];
                     for (std::size_t i = 0; slot != BlockSums::no_slot && i < size; ++i) {
                         const std::size_t to = size == 9 && slot % 2 == 1 ? i % 3 * 3 + i / 3 : i;
-                        expected[static_cast<std::size_t>(slot / 2) * size + to] += written(b, k / lanes, i, k % lanes);
+                        expected[static_cast<std::size_t>(slot / 2) * size + to] +=
+                            written(b, k / batch_lanes, i, k % batch_lanes);
                     }
                 }
             }
             sums.add(
                 [&](std::size_t batch, double* to) {
-                    for (std::size_t k = 0; k < pairs * size * lanes; ++k)
-                        to[k] = written(batch, k / lanes / size, k / lanes % size, k % lanes);
+                    for (std::size_t k = 0; k < pairs * size * batch_lanes; ++k)
+                        to[k] = written(batch, k / batch_lanes / size, k / batch_lanes % size, k % batch_lanes);
                 },
                 size, result, scratch);
             double wrong = 0;

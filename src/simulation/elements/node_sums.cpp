@@ -41,17 +41,12 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace pliant::sim {
-namespace {
-
-constexpr std::size_t lanes = batch_lanes;
-
-}  // namespace
 
 HWY_EXPORT(add_to_list);
 
 NodeSums::NodeSums(std::span<const int> nodes, std::size_t nodes_per_tet, std::size_t node_count)
-    : width_(nodes_per_tet * lanes), batches_(nodes.size() / width_) {
-    static_assert(batches_per_piece * 10 * lanes <= std::numeric_limits<std::uint16_t>::max());
+    : width_(nodes_per_tet * batch_lanes), batches_(nodes.size() / width_) {
+    static_assert(batches_per_piece * 10 * batch_lanes <= std::numeric_limits<std::uint16_t>::max());
     place_.resize(nodes.size());
     std::vector<int> listed;                     // nodes of all lists, one list after the other
     std::vector<std::size_t> place(node_count);  // position of a node in `listed`, if it is in the current list
@@ -76,7 +71,8 @@ void NodeSums::clear(std::size_t piece, double* lists) const {
 
 void NodeSums::add(std::size_t batch, const double* forces, double* lists) const {
     HWY_DYNAMIC_DISPATCH(add_to_list)
-    (forces, place_.data() + batch * width_, width_ / lanes, lists + stride * list_start_[batch / batches_per_piece]);
+    (forces, place_.data() + batch * width_, width_ / batch_lanes,
+     lists + stride * list_start_[batch / batches_per_piece]);
 }
 
 void NodeSums::gather(const double* lists, std::span<double> result) const {

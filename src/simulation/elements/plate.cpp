@@ -7,7 +7,6 @@
 #include "simulation/elements/node_blocks.hpp"
 
 namespace pliant::sim {
-namespace {}  // namespace
 
 Plate::Plate(std::vector<int> nodes, double stiffness_N_m, std::span<const double> rest)
     : nodes_(std::move(nodes)), stiffness_(stiffness_N_m) {

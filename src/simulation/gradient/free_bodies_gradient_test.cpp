@@ -129,7 +129,7 @@ double value_of(const Description& d, const Steps& as, const Objective& objectiv
     return objective.judge(static_cast<int>(as.states.size()), values).value;
 }
 
-double error_of(double told, double size, const std::function<double(double change)>& value) {
+double floored_error(double told, double size, const std::function<double(double change)>& value) {
     return best_error(0.02 * size, [&](double h) {
         const double found = (8 * (value(h) - value(-h)) - (value(2 * h) - value(-2 * h))) / (12 * h);
         if (!std::isfinite(found)) return std::numeric_limits<double>::infinity();
@@ -148,12 +148,12 @@ Description moved(Description d, std::size_t k, double change, const Vec3& t, co
     return d;
 }
 
-struct Worst {
+struct NamedError {
     double error = 0;
     std::string name;
 };
 
-Worst worst_error(const Description& d, const Program& program, bool by_place) {
+NamedError worst_gradient(const Description& d, const Program& program, bool by_place) {
     const Objective objective = at_the_end(d, program.steps);
     const Case c(d);
     Progress silent;
@@ -161,9 +161,9 @@ Worst worst_error(const Description& d, const Program& program, bool by_place) {
     REQUIRE_MESSAGE(found, found.error().message);
     const Steps as = steps_of_program(d, program);
     CHECK(found->value == near(value_of(d, as, objective), {.relative = 1e-6}));
-    Worst worst;
+    NamedError worst;
     const auto note = [&](const std::string& name, double told, double size, const auto& value) {
-        const double error = error_of(told, size, value);
+        const double error = floored_error(told, size, value);
         INFO(name);
         INFO(told);
         CHECK(error < 1e-6);
@@ -218,11 +218,11 @@ Program in_time(int steps) {
 }  // namespace
 
 TEST_CASE("gradients of thrown objects that hit a soft body and the ground, by numbers, velocities and places") {
-    const Worst worst = worst_error(scene(0), in_time(6), true);
+    const NamedError worst = worst_gradient(scene(0), in_time(6), true);
     MESSAGE("worst: ", worst.error, " (", worst.name, ")");
 }
 
 TEST_CASE("gradients of thrown objects with friction whose anchors are kept") {
-    const Worst worst = worst_error(scene(0.5), in_time(6), false);
+    const NamedError worst = worst_gradient(scene(0.5), in_time(6), false);
     MESSAGE("worst: ", worst.error, " (", worst.name, ")");
 }

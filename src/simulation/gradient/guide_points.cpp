@@ -101,8 +101,8 @@ ByWeight of_segment(const Pull& pull, std::size_t k, const Eigen::VectorXd& x, c
 }
 
 /// A guide point is the end of one segment and the start of the next.
-ByWeight of_point(const Pull& pull, std::size_t point, const Eigen::VectorXd& x, const Eigen::VectorXd& rest,
-                  const Eigen::VectorXd& weights) {
+ByWeight of_guide_point(const Pull& pull, std::size_t point, const Eigen::VectorXd& x, const Eigen::VectorXd& rest,
+                        const Eigen::VectorXd& weights) {
     ByWeight sum;
     const auto add = [&](std::size_t segment, double sign) {
         const ByWeight one = of_segment(pull, segment, x, rest, weights);
@@ -132,7 +132,7 @@ Eigen::VectorXd guide_gradient(const Linearisation& at, const Adjoint& adjoint, 
                                                    by_rest_measure[static_cast<Eigen::Index>(guide.path)]);
             add_met_segments(at, weights, *pull);
         }
-        const ByWeight by = of_point(*pull, guide.point, x, rest, weights);
+        const ByWeight by = of_guide_point(*pull, guide.point, x, rest, weights);
         auto sum = result.segment<3>(3 * static_cast<Eigen::Index>(g));
         if (guide.slope.nodes.empty()) sum = by.place + by.at_rest;  // fixed in space
         for (std::size_t k = 0; k < guide.slope.nodes.size(); ++k) {

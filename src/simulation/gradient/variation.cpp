@@ -58,7 +58,7 @@ void add_to(const Derivative& one, double factor, Derivative& sum) {
     sum.forces.head(one.forces.size()) += factor * one.forces;
 }
 
-Derivative nothing(const Linearisation& at) {
+Derivative no_derivative(const Linearisation& at) {
     const Eigen::Index nodes = at.state().x.size();
     return {Eigen::VectorXd::Zero(at.size()),
             {Eigen::VectorXd::Zero(nodes), Eigen::VectorXd::Zero(at.state().multiplier.size())},
@@ -175,7 +175,7 @@ Derivative derivative(Linearisation& at, const Variation& with) {
         if (wanted.size() == 0) wanted = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(inputs(at).size()));
         wanted.head(of_rest.size()) += wanted_by_rest(at).cwiseProduct(of_rest);
     }
-    Derivative by = nothing(at);
+    Derivative by = no_derivative(at);
     add_parameters(at, inputs(at), wanted, by);
     add_parameters(at, parameters(at), with.parameters, by);
     add_tets(at, with.tets, by);

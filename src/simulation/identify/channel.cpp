@@ -14,7 +14,7 @@
 namespace pliant::sim::identify {
 namespace {
 
-using Kind = sim::Measure::Kind;
+using MeasureKind = sim::Measure::Kind;
 using Eigen::Vector3d;
 
 constexpr std::array<std::string_view, 3> axes = {"x", "y", "z"};
@@ -26,7 +26,7 @@ Vec3 axis_vector(std::size_t axis) {
 }
 
 struct One {
-    Kind kind;
+    MeasureKind kind;
     std::string_view name, unit;  ///< of the column, after the name of the thing
     double factor;
 };
@@ -45,8 +45,8 @@ void add_each(const Things& things, const std::array<One, N>& measures, std::vec
     }
 }
 
-void add_along_axes(Kind kind, std::size_t index, const std::string& name, const std::string& unit, double factor,
-                    std::vector<Channel>& all) {
+void add_along_axes(MeasureKind kind, std::size_t index, const std::string& name, const std::string& unit,
+                    double factor, std::vector<Channel>& all) {
     for (std::size_t axis = 0; axis < 3; ++axis)
         all.push_back({fmt::format("{}_{}_{}", name, axes[axis], unit),
                        unit,
@@ -93,7 +93,8 @@ std::vector<std::size_t> markers_in(const std::vector<sim::Marker>& markers, std
 Channel angle_channel(std::string_view column, Channel::Kind kind, const std::vector<std::size_t>& markers) {
     Channel channel{std::string(column), "deg", 180 / std::numbers::pi, kind, {}};
     for (const std::size_t marker : markers) {
-        for (const sim::Measure& measure : sim::along_axes({Kind::marker, marker})) channel.measures.push_back(measure);
+        for (const sim::Measure& measure : sim::along_axes({MeasureKind::marker, marker}))
+            channel.measures.push_back(measure);
     }
     return channel;
 }
@@ -151,25 +152,26 @@ std::vector<double> Channel::slopes(std::span<const double> of_measures) const {
 std::vector<Channel> plain_channels(const sim::Description& d) {
     std::vector<Channel> all;
     for (std::size_t k = 0; k < d.markers.size(); ++k)
-        add_along_axes(Kind::marker, k, d.markers[k].name, "mm", 1e3, all);
+        add_along_axes(MeasureKind::marker, k, d.markers[k].name, "mm", 1e3, all);
     add_each(d.cables,
-             std::array<One, 3>{{{Kind::length_ratio, "length_ratio", "", 1},
-                                 {Kind::length, "length", "mm", 1e3},
-                                 {Kind::tension, "tension", "N", 1}}},
+             std::array<One, 3>{{{MeasureKind::length_ratio, "length_ratio", "", 1},
+                                 {MeasureKind::length, "length", "mm", 1e3},
+                                 {MeasureKind::tension, "tension", "N", 1}}},
              all);
     add_each(d.chambers,
-             std::array<One, 3>{{{Kind::volume_ratio, "volume_ratio", "", 1},
-                                 {Kind::volume, "volume", "mm3", 1e9},
-                                 {Kind::pressure, "pressure", "kPa", 1e-3}}},
+             std::array<One, 3>{{{MeasureKind::volume_ratio, "volume_ratio", "", 1},
+                                 {MeasureKind::volume, "volume", "mm3", 1e9},
+                                 {MeasureKind::pressure, "pressure", "kPa", 1e-3}}},
              all);
     add_each(d.springs,
-             std::array<One, 2>{{{Kind::spring_length, "length", "mm", 1e3}, {Kind::spring_force, "force", "N", 1}}},
+             std::array<One, 2>{
+                 {{MeasureKind::spring_length, "length", "mm", 1e3}, {MeasureKind::spring_force, "force", "N", 1}}},
              all);
     for (std::size_t k = 0; k < d.supports.size(); ++k)
-        add_along_axes(Kind::reaction, k, d.supports[k].name + "_force", "N", 1, all);
+        add_along_axes(MeasureKind::reaction, k, d.supports[k].name + "_force", "N", 1, all);
     for (std::size_t k = 0; d.contact && k < d.contact->obstacles.size(); ++k)
-        add_along_axes(Kind::contact_force, k, d.contact->obstacles[k].body.name + "_force", "N", 1, all);
-    if (d.contact) all.push_back({"self_contact_N", "N", 1, Channel::Kind::plain, {{Kind::self_contact}}});
+        add_along_axes(MeasureKind::contact_force, k, d.contact->obstacles[k].body.name + "_force", "N", 1, all);
+    if (d.contact) all.push_back({"self_contact_N", "N", 1, Channel::Kind::plain, {{MeasureKind::self_contact}}});
     return all;
 }
 

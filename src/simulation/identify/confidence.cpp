@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr double rounding = 1e-6;
+constexpr double rank_tolerance = 1e-6;
 constexpr double high_correlation = 0.99;
 /// Entries of a unit singular vector below this are ignored.
 constexpr double takes_part = 0.1;
@@ -66,7 +66,7 @@ Confidence confidence(const MatrixXd& J, const VectorXd& r, const std::vector<bo
     for (Index k = 0; k < size; ++k) {
         const double value = k < svd.sigma.size() ? svd.sigma[k] : 0;
         inverse[k] = 1 / std::max(value, std::numeric_limits<double>::min());
-        if (value > rounding * svd.sigma[0]) continue;
+        if (value > rank_tolerance * svd.sigma[0]) continue;
         singular = true;
         std::vector<std::size_t> group;
         for (Index j = 0; j < size; ++j) {

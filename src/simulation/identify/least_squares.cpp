@@ -22,9 +22,9 @@ constexpr double least_gain = 1e-12;
 constexpr double doubtful_gain = 1e-6, doubtful_step = 1e-6;
 constexpr double largest_damping = 1e10;
 
-class Search {
+class Minimiser {
 public:
-    Search(const LeastSquaresProblem& problem, const VectorXd& start) : problem_(problem), u_(start) {}
+    Minimiser(const LeastSquaresProblem& problem, const VectorXd& start) : problem_(problem), u_(start) {}
 
     [[nodiscard]] Result<LeastSquaresEnd> run() {
         auto first = ask(u_);
@@ -143,7 +143,7 @@ private:
 }  // namespace
 
 Result<LeastSquaresEnd> minimise(const LeastSquaresProblem& problem, const VectorXd& start) {
-    return Search(problem, start).run();
+    return Minimiser(problem, start).run();
 }
 
 }  // namespace pliant::sim::identify

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Kind = sim::Parameter::Kind;
+using ParameterKind = sim::Parameter::Kind;
 
 /// Half the step between two variants, in the coordinate of an unknown. The numbers of a robot are linear in most of
 /// its keys, and rational in the others: their differences are exact, or nearly, and need no solve.
@@ -31,14 +31,14 @@ struct Numbers {
 
 /// Moduli listed in addition to the constants of a law count as 0, so that no change is counted twice.
 double parameter_value(const Variant& variant, const sim::Parameter& parameter) {
-    if (parameter.kind == Kind::law) {
+    if (parameter.kind == ParameterKind::law) {
         const material::Law& law = variant.model.description().materials[parameter.index].law;
         const std::size_t constants = material::parameters(law).front().direction.size();
         return parameter.part < constants ? parameter.value : 0;
     }
     if (!variant.program.dynamics) return parameter.value;
-    if (parameter.kind == Kind::mass_damping) return variant.program.dynamics->damping.mass_per_s;
-    if (parameter.kind == Kind::stiffness_damping) return variant.program.dynamics->damping.stiffness_s;
+    if (parameter.kind == ParameterKind::mass_damping) return variant.program.dynamics->damping.mass_per_s;
+    if (parameter.kind == ParameterKind::stiffness_damping) return variant.program.dynamics->damping.stiffness_s;
     return parameter.value;
 }
 
@@ -73,7 +73,7 @@ std::vector<sim::Variation> variations(const sim::Linearisation& at, const Rates
         all[j].inputs = VectorXd::Zero(static_cast<Index>(inputs.size()));
         for (std::size_t a = 0; a < d.cables.size() + d.chambers.size(); ++a) {
             const double rate = rates.drives[piece](static_cast<Index>(a), column);
-            all[j].inputs[static_cast<Index>(a)] = inputs[a].kind == Kind::pressure ? -rate : rate;
+            all[j].inputs[static_cast<Index>(a)] = inputs[a].kind == ParameterKind::pressure ? -rate : rate;
         }
     }
     return all;

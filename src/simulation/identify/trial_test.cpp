@@ -55,14 +55,14 @@ void check_slopes(const std::string& text, const std::vector<std::string>& keys,
     }
 }
 
-const std::string pulled = R"(
+const std::string shortened = R"(
     cable = [{ name = "flexor", points = [[0, 5, 9], [20, 5, 8], [40, 5, 9], [60, 5, 8]], target.shortening = "5 mm" }]
 )";
 
 }  // namespace
 
 TEST_CASE("derivatives of markers, angles, lengths and forces at equilibrium") {
-    check_slopes(pulled + "program = { steps = 3, gravity = [0, 2, -9.81] }",
+    check_slopes(shortened + "program = { steps = 3, gravity = [0, 2, -9.81] }",
                  {"material.firm.youngs_modulus", "material.soft.poisson_ratio", "material.firm.density",
                   "cable.flexor.target.offset", "cable.flexor.target.shortening"},
                  {"tip_x_mm", "tip_z_mm", "middle-tip_angle_x_deg", "middle-corner_angle_z_deg",
@@ -77,7 +77,7 @@ TEST_CASE("derivatives of a support's force") {
 }
 
 TEST_CASE("derivatives by more unknowns than measured values, from transposed solutions") {
-    check_slopes(pulled + "program = { steps = 2 }",
+    check_slopes(shortened + "program = { steps = 2 }",
                  {"material.firm.youngs_modulus", "material.soft.youngs_modulus", "cable.flexor.target.offset"},
                  {"tip_z_mm"}, {0.4, 1}, 1e-5);
 }

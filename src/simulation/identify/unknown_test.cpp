@@ -26,7 +26,7 @@ const std::string many_parameters = R"(
     program = { duration = "100 ms", time_step = "10 ms", mass_damping = 2, stiffness_damping = 0.01 }
 )";
 
-std::string problem(const Bar& bar, const std::string& text) {
+std::string unknown_problem(const Bar& bar, const std::string& text) {
     const auto found = find_unknown(bar.robot(), text);
     return found ? "" : found.error().message;
 }
@@ -76,20 +76,20 @@ TEST_CASE("bounds are read, with units where the key has one") {
 
 TEST_CASE("an invalid unknown is reported in one line") {
     const Bar bar(many_parameters);
-    CHECK(problem(bar, "material.sof.youngs_modulus") ==
+    CHECK(unknown_problem(bar, "material.sof.youngs_modulus") ==
           "material.sof.youngs_modulus: the robot has no such parameter to find; did you mean "
           "\"material.soft.youngs_modulus\"?");
-    CHECK(problem(bar, "mesh.size").starts_with("mesh.size: the robot has no such parameter to find"));
-    CHECK(problem(bar, "material.soft.youngs_modulus=1 MPa") ==
+    CHECK(unknown_problem(bar, "mesh.size").starts_with("mesh.size: the robot has no such parameter to find"));
+    CHECK(unknown_problem(bar, "material.soft.youngs_modulus=1 MPa") ==
           "material.soft.youngs_modulus: \"1 MPa\" is not a range; write LOW..HIGH, as in \"1 kPa..2 kPa\"");
-    CHECK(problem(bar, "material.soft.youngs_modulus=1..2")
+    CHECK(unknown_problem(bar, "material.soft.youngs_modulus=1..2")
               .starts_with("material.soft.youngs_modulus: \"1\" has no unit"));
-    CHECK(problem(bar, "material.soft.youngs_modulus=2 MPa..1 MPa") ==
+    CHECK(unknown_problem(bar, "material.soft.youngs_modulus=2 MPa..1 MPa") ==
           "material.soft.youngs_modulus: the range from 2 MPa to 1 MPa is empty; LOW must be below HIGH");
-    CHECK(problem(bar, "material.soft.youngs_modulus=-2 MPa..1 MPa") ==
+    CHECK(unknown_problem(bar, "material.soft.youngs_modulus=-2 MPa..1 MPa") ==
           "material.soft.youngs_modulus: -2 MPa is not possible; it is above zero");
-    CHECK(problem(bar, "material.soft.poisson_ratio=0.4..0.5") ==
+    CHECK(unknown_problem(bar, "material.soft.poisson_ratio=0.4..0.5") ==
           "material.soft.poisson_ratio: Poisson's ratio is above -1 and below 0.5");
-    CHECK(problem(bar, "cable.rope.friction=a..b") == "cable.rope.friction: \"a\" is not a number");
-    CHECK(problem(bar, "cable.flexor.friction").starts_with("cable.flexor.friction: is 0 in the robot file"));
+    CHECK(unknown_problem(bar, "cable.rope.friction=a..b") == "cable.rope.friction: \"a\" is not a number");
+    CHECK(unknown_problem(bar, "cable.flexor.friction").starts_with("cable.flexor.friction: is 0 in the robot file"));
 }

@@ -9,7 +9,7 @@
 namespace pliant::sim::inverse {
 namespace {
 
-constexpr Eigen::Index axes = 3;
+constexpr Eigen::Index dimensions = 3;
 
 contact::Stencil stencil_of(const contact::Pair& pair, const std::vector<double>& x) {
     contact::Stencil stencil;
@@ -52,7 +52,7 @@ Quantity pressing_gradient(const Linearisation& at, const Goal& goal) {
         const double step = share * pair.reach_m;
         for (std::size_t k = 0; k < static_cast<std::size_t>(pair.node_count()); ++k) {
             if (pair.nodes[k] >= robot_nodes) continue;
-            for (std::size_t axis = 0; axis < axes; ++axis) {
+            for (std::size_t axis = 0; axis < dimensions; ++axis) {
                 contact::Stencil nearer = stencil_of(pair, x), farther = nearer;
                 nearer[k][axis] += step;
                 farther[k][axis] -= step;
@@ -72,7 +72,7 @@ std::vector<Quantity> contact_gradients(const Linearisation& at, const Goal& goa
     const Equilibrium& system = at.system();
     const contact::Contact& contact = *system.model().contact(true);
     std::vector<Quantity> all;
-    for (Eigen::Index axis = 0; axis < axes; ++axis) {
+    for (Eigen::Index axis = 0; axis < dimensions; ++axis) {
         Eigen::VectorXd motion = Eigen::VectorXd::Zero(force_size(system));
         const Eigen::Index first = system.model().node_count() - contact.robot_node_count();
         for (int node = contact.first_node(goal.on); node < contact.first_node(goal.on + 1); ++node)
@@ -87,7 +87,7 @@ std::vector<Quantity> contact_gradients(const Linearisation& at, const Goal& goa
 std::vector<Quantity> support_gradients(Linearisation& at, const Goal& goal) {
     const Equilibrium& system = at.system();
     std::vector<Quantity> all;
-    for (Eigen::Index axis = 0; axis < axes; ++axis) {
+    for (Eigen::Index axis = 0; axis < dimensions; ++axis) {
         Eigen::VectorXd motion = Eigen::VectorXd::Zero(at.state().x.size());
         for (const int node : system.model().description().supports[goal.on].nodes) motion[3 * node + axis] = 1;
         Quantity quantity{at.change_of(at.equations_of_motion(motion)).positions,

@@ -7,7 +7,7 @@ namespace pliant::sim::inverse {
 namespace {
 
 constexpr double tolerance_m = 1e-4;
-constexpr double piece = 0.1;  // of the ranges: largest increment between two displayed states
+constexpr double largest_increment = 0.1;  // of the ranges, between two displayed states
 
 InverseTask task_of(std::vector<Steered> inputs, std::size_t marker) {
     InverseTask task;
@@ -46,10 +46,10 @@ Led MarkerDrag::lead(RobotState& robot, const Vec3& wanted_m, const Progress& pr
     Bounds bounds = seeker_.whole_range();
     for (Eigen::Index i = 0; i < start.inputs.size(); ++i) {
         const auto k = static_cast<std::size_t>(i);
-        bounds.rate_lower[k] = start.inputs[i] > piece;
-        bounds.rate_upper[k] = start.inputs[i] < 1 - piece;
-        bounds.lower[i] = std::max(0.0, start.inputs[i] - piece);
-        bounds.upper[i] = std::min(1.0, start.inputs[i] + piece);
+        bounds.rate_lower[k] = start.inputs[i] > largest_increment;
+        bounds.rate_upper[k] = start.inputs[i] < 1 - largest_increment;
+        bounds.lower[i] = std::max(0.0, start.inputs[i] - largest_increment);
+        bounds.upper[i] = std::min(1.0, start.inputs[i] + largest_increment);
     }
     Found found = seeker_.seek(start, start, 0, bounds, progress);
     robot = std::move(found.point.robot);

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/SparseCore>
+#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>
 
+#include "base/linalg/dense.hpp"
 #include "base/linalg/gmres.hpp"
 #include "base/linalg/sparse.hpp"
 #include "base/linalg/vectors.hpp"
@@ -67,6 +69,15 @@ Eigen::VectorXd some_vector(Eigen::Index size) {
 }
 
 }  // namespace
+
+struct SystemSolver::WholeFactor {
+    explicit WholeFactor(const Eigen::SparseMatrix<double>& matrix) : lu(matrix) {}
+    [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b, Side side) {  // Eigen does not promise const
+        if (side == Side::direct) return lu.solve(b);
+        return lu.transpose().solve(b);
+    }
+    Eigen::SparseLU<Eigen::SparseMatrix<double>> lu;
+};
 
 void add_skew_product(const linalg::SymmetricPattern& p, const std::vector<double>& values, const Eigen::VectorXd& v,
                       double factor, Eigen::VectorXd& result) {
@@ -221,13 +232,12 @@ bool SystemSolver::take_schur_complement(const Solve& solve, double threshold) {
     // For stiff and soft actuators together: balanced once more, so that each is judged on its own scale.
     Eigen::VectorXd scale = S.diagonal().cwiseAbs().cwiseSqrt();
     for (double& s : scale) s = s > 0 ? 1 / s : 1;
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-    decomposition.setThreshold(threshold);
-    decomposition.compute(scale.asDiagonal() * S * scale.asDiagonal());
-    schur_inverse_ = scale.asDiagonal() * decomposition.pseudoInverse() * scale.asDiagonal();
-    if (decomposition.rank() == S.cols()) return true;
+    const Eigen::MatrixXd balanced = scale.asDiagonal() * S * scale.asDiagonal();
+    const auto [inverse, rank] = linalg::pseudo_inverse_and_rank(balanced, threshold);
+    schur_inverse_ = scale.asDiagonal() * inverse * scale.asDiagonal();
+    if (rank == S.cols()) return true;
     if (way_ != Way::double_) return false;
-    const Eigen::MatrixXd kept = decomposition.pseudoInverse() * (scale.asDiagonal() * S * scale.asDiagonal());
+    const Eigen::MatrixXd kept = inverse * balanced;
     schur_null_ = Eigen::MatrixXd::Identity(S.cols(), S.cols()) - kept;
     return true;
 }
@@ -342,8 +352,8 @@ void SystemSolver::take_whole_factor() {
     }
     Eigen::SparseMatrix<double> matrix(n + m, n + m);
     matrix.setFromTriplets(entries.begin(), entries.end());
-    whole_ = std::make_shared<Whole>(matrix);
-    if (whole_->info() != Eigen::Success) whole_ = nullptr;
+    auto factor = std::make_shared<WholeFactor>(matrix);
+    whole_ = factor->lu.info() == Eigen::Success ? std::move(factor) : nullptr;
 }
 
 Eigen::VectorXd SystemSolver::multiply(const Eigen::VectorXd& v, Side side) const {
@@ -359,7 +369,7 @@ Eigen::VectorXd SystemSolver::multiply(const Eigen::VectorXd& v, Side side) cons
 Eigen::VectorXd SystemSolver::precondition(const Eigen::VectorXd& v, Side side) const {
     const Eigen::Index n = forces_.rows(), m = forces_.cols();
     const bool direct = side == Side::direct;
-    if (whole_) return direct ? Eigen::VectorXd(whole_->solve(v)) : Eigen::VectorXd(whole_->transpose().solve(v));
+    if (whole_) return whole_->solve(v, side);
     Eigen::MatrixXd motion = v.head(n);
     (void)apply_body(motion);  // a failure shows in the residual
     const Eigen::MatrixXd& rows = direct ? constraints_ : forces_;

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
 #include <memory>
 #include <optional>
 #include <string>
@@ -123,8 +121,8 @@ private:
     Eigen::MatrixXd from_constraints_;          ///< K^-1 C
     Eigen::MatrixXd schur_inverse_;             ///< of D - C^T K^-1 B, or the pseudo-inverse
     Eigen::MatrixXd schur_null_;                ///< columns: combinations of multipliers without effect
-    using Whole = Eigen::SparseLU<Eigen::SparseMatrix<double>>;
-    std::shared_ptr<Whole> whole_;  ///< of A, balanced, for when GMRES with the others fails
+    struct WholeFactor;
+    std::shared_ptr<WholeFactor> whole_;  ///< of A, balanced, for when GMRES with the others fails
 };
 
 }  // namespace pliant::sim

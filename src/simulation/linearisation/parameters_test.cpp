@@ -18,11 +18,11 @@ namespace {
 using Kind = Parameter::Kind;
 
 /// The controls of a robot at the state that is looked at, in motion with so much more damping.
-using ControlsOf = std::function<Controls(Equilibrium&, const Damping& more)>;
+using DampedControlsOf = std::function<Controls(Equilibrium&, const Damping& more)>;
 
 /// Of a robot with another value of p: the equations at the same unknowns.
-Eigen::VectorXd equations_with(const Linearisation& at, const Parameter& p, double value,
-                               const ControlsOf& controls_of) {
+Eigen::VectorXd equations_at_value(const Linearisation& at, const Parameter& p, double value,
+                                   const DampedControlsOf& controls_of) {
     Case other(with_value(at.system().model().description(), p, value));
     Damping more;
     if (p.kind == Kind::mass_damping) more.mass_per_s = value - p.value;
@@ -35,7 +35,7 @@ Eigen::VectorXd equations_with(const Linearisation& at, const Parameter& p, doub
 }
 
 /// Worst relative error of all parameters of a state; and derivatives of a quantity by all of them at once.
-double worst_error(Case& c, State state, const ControlsOf& controls_of, std::set<Kind>& seen) {
+double worst_parameter_error(Case& c, State state, const DampedControlsOf& controls_of, std::set<Kind>& seen) {
     c.system.place_supports(controls_of(c.system, {}), state.x);
     Linearisation at = c.at(state, controls_of(c.system, {}));
     Noise noise(9);
@@ -55,7 +55,8 @@ double worst_error(Case& c, State state, const ControlsOf& controls_of, std::set
             Eigen::VectorXd::Constant(static_cast<Eigen::Index>(at.solved().size()), 1e-6 * by.norm() * edge);
         const double error = best_error(0.02 * size_of(p), [&](double h) {
             return relative_error(
-                at, difference([&](double change) { return equations_with(at, p, p.value + change, controls_of); }, h),
+                at,
+                difference([&](double change) { return equations_at_value(at, p, p.value + change, controls_of); }, h),
                 by, least);
         });
         CHECK(error < 1e-7);
@@ -81,7 +82,7 @@ TEST_CASE("derivatives by every law's constants and by density, both orders") {
             d.plates = {{"plate", end_of(d.mesh)}};
             Case c(std::move(d));
             worst =
-                std::max(worst, worst_error(
+                std::max(worst, worst_parameter_error(
                                     c, disturbed(c.system, 0, 0),
                                     [](Equilibrium& system, const Damping&) { return system.controls(0.7); }, seen));
         }
@@ -118,7 +119,7 @@ TEST_CASE("derivatives by numbers of springs, loads, supports, gas and cable fri
         return controls;
     };
     std::set<Kind> seen;
-    MESSAGE("springs and the rest: ", worst_error(c, state, controls_of, seen));
+    MESSAGE("springs and the rest: ", worst_parameter_error(c, state, controls_of, seen));
     for (const Kind kind :
          {Kind::spring_stiffness, Kind::spring_free_length, Kind::cable_friction, Kind::load_force, Kind::load_pressure,
           Kind::gravity, Kind::ambient_pressure, Kind::support_move, Kind::support_angle})
@@ -137,7 +138,7 @@ TEST_CASE("derivatives by contact stiffness and friction") {
         return controls;
     };
     std::set<Kind> seen;
-    MESSAGE("contact: ", worst_error(c, at.state, controls_of, seen));
+    MESSAGE("contact: ", worst_parameter_error(c, at.state, controls_of, seen));
     for (const Kind kind : {Kind::contact_stiffness, Kind::self_friction, Kind::obstacle_friction})
         CHECK(seen.contains(kind));
 }
@@ -154,7 +155,7 @@ TEST_CASE("derivatives by the weights of gaps that a cable closes") {
                  {2, {0.8, 0.6, 0}, 0, 3e5, 0.5 * edge, {1.5 * edge, 0.5 * edge, 0.9 * edge}}};
     Case c(std::move(d));
     std::set<Kind> seen;
-    MESSAGE("gaps: ", worst_error(
+    MESSAGE("gaps: ", worst_parameter_error(
                           c, disturbed(c.system, 0.5, 0),
                           [](Equilibrium& system, const Damping&) { return system.controls(0.7); }, seen));
     CHECK(seen.contains(Kind::gap_weight));
@@ -179,7 +180,7 @@ TEST_CASE("derivatives by density and damping in dynamics") {
         return controls;
     };
     std::set<Kind> seen;
-    MESSAGE("in motion: ", worst_error(c, disturbed(c.system, 0, 0), controls_of, seen));
+    MESSAGE("in motion: ", worst_parameter_error(c, disturbed(c.system, 0, 0), controls_of, seen));
     CHECK(seen.contains(Kind::mass_damping));
     CHECK(seen.contains(Kind::stiffness_damping));
 }

@@ -10,7 +10,7 @@ using namespace pliant::material;
 
 namespace {
 
-Matrix3 stretched() {
+Matrix3 some_deformation() {
     Matrix3 F;
     F << 1.3, 0.1, 0, -0.05, 0.9, 0.2, 0.1, 0, 1.05;
     return F;
@@ -25,7 +25,7 @@ TEST_CASE("the stress of a mixture of two materials of one law is the weighted m
                                          {MooneyRivlin{1e6, 2e5, 1e8}, MooneyRivlin{3e6, 1e5, 2e8}},
                                          {Yeoh{1e6, -1e4, 1e3, 1e8}, Yeoh{3e6, 1e5, 0, 2e8}},
                                          {shape_blend(1e6, 0.4), shape_blend(5e6, 0.2)}};
-    const Matrix3 F = stretched();
+    const Matrix3 F = some_deformation();
     for (const auto& [soft, hard] : pairs) {
         CAPTURE(name(soft));
         const Matrix3 mean = 0.7 * stress(soft, F) + 0.3 * stress(hard, F);

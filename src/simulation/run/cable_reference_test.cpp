@@ -6,13 +6,13 @@
 #include "base/core/near.hpp"
 #include "simulation/peers/reference_problems.hpp"
 #include "simulation/run/simulate.hpp"
+#include "simulation/run/test_problems.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::mm;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// The finger with a cable of 14 points through mesh nodes, driven to one length ratio.
 Description finger(const reference::NamedMesh& named, double nu, double ratio) {

@@ -11,12 +11,11 @@
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::block_side;
 using testing::hollow_block;
 using testing::solve;
 
 namespace {
-
-constexpr double side = 0.01;
 
 /// Rest positions with a smooth and a rough distortion.
 std::vector<double> distorted(const mesh::TetMesh& mesh) {
@@ -160,8 +159,9 @@ TEST_CASE("every solver inflates and deflates a chamber") {
 TEST_CASE("a sealed chamber stiffens the block around it") {
     // Push at the far end: the chamber shrinks, its gas pushes back.
     Description d = hollow_block(2);
-    d.supports.push_back(
-        {"grip", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 3 * side - 1e-9; }), {-0.3 * side, 0, 0}});
+    d.supports.push_back({"grip",
+                          reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 3 * block_side - 1e-9; }),
+                          {-0.3 * block_side, 0, 0}});
     d.chambers[0].target = {ChamberTarget::Kind::gas_ratio, 1};
     const Trajectory sealed = solve(d, {.steps = 3, .tolerance = 1e-7});
     REQUIRE_MESSAGE(sealed.converged, sealed.message);
@@ -180,7 +180,7 @@ TEST_CASE("a pressure on the outer surface follows it, and its sum is the suppor
     d.chambers.clear();
     std::vector<mesh::Face> faces;
     for (const mesh::Face& face : mesh::boundary_faces(d.mesh)) {
-        const auto on_top = [&](int node) { return d.mesh.points[node].z > side - 1e-9; };
+        const auto on_top = [&](int node) { return d.mesh.points[node].z > block_side - 1e-9; };
         if (on_top(face.nodes[0]) && on_top(face.nodes[1]) && on_top(face.nodes[2])) {
             mesh::Face turned = face;  // seen from the solid side: out of the air
             std::swap(turned.nodes[1], turned.nodes[2]);
@@ -196,8 +196,8 @@ TEST_CASE("a pressure on the outer surface follows it, and its sum is the suppor
     REQUIRE_MESSAGE(result.converged, result.message);
     const Vec3 force = result.steps.back().supports[0].force_N;
     // Little bending: the top presses down with pressure times area, to the order of the rotation.
-    CHECK(force.z == near(pressure * 3 * side * side, {.relative = 0.1}));
-    CHECK(result.steps.back().markers[0].position_m.z < 0.5 * side - 1e-4);
+    CHECK(force.z == near(pressure * 3 * block_side * block_side, {.relative = 0.1}));
+    CHECK(result.steps.back().markers[0].position_m.z < 0.5 * block_side - 1e-4);
     // Four times the pressure: the surface turns and carries the force with it.
     d.pressures[0].pressure_Pa = 4 * pressure;
     const Trajectory strong = solve(d, {.steps = 10, .tolerance = 1e-8});

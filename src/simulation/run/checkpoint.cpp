@@ -30,7 +30,7 @@ std::string length_bytes(std::uint64_t length) {
     return bytes;
 }
 
-Json json_of(const ChecksState& checks) {
+Json json_of_checks(const ChecksState& checks) {
     return {{"reported_along", checks.reported.along},
             {"reported_x", cbor::packed(checks.reported.state.x)},
             {"reported_multiplier", cbor::packed(checks.reported.state.multiplier)},
@@ -157,7 +157,7 @@ Status Checkpoint::keep(const Model& model, const RunState& run) {
                     {"setup_s", all.setup_s},
                     {"solve_s", all.solve_s},
                     {"crossings", crossings_of(all.steps)},
-                    {"checks", json_of(run.checks)},
+                    {"checks", json_of_checks(run.checks)},
                     {"robot", Json::binary({robot.begin(), robot.end()})}};
     std::string text;
     Json::to_cbor(json, text);

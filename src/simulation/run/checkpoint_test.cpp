@@ -17,6 +17,7 @@
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::model_of;
 
 namespace {
 
@@ -31,12 +32,6 @@ std::string bits_of(const Trajectory& result) {
     }
     Step none;
     return bits + step_bytes(none, result.iterations);
-}
-
-Model model_of(Description d) {
-    auto model = Model::create(std::move(d));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    return std::move(*model);
 }
 
 Trajectory run_silently(const Model& model, const Program& program, RunOptions options = {}) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double tiny = 1e-9;
 
-Trajectory solve(const Description& d, int steps, double tolerance) {
+Trajectory equilibrium_of(const Description& d, int steps, double tolerance) {
     const auto model = Model::create(d);
     REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
     Progress silent;
@@ -71,7 +71,7 @@ void check_stretch(const PrincipalForm& form, std::array<double, 3> l, std::size
         const Description d = cube(order, order == 1 ? 3 : 2, form.law, held, [&](Vec3 p) {
             return Vec3{(l[0] - 1) * p.x, (l[1] - 1) * p.y, (l[2] - 1) * p.z};
         });
-        const Step last = solve(d, 4, 1e-9).steps.back();
+        const Step last = equilibrium_of(d, 4, 1e-9).steps.back();
         const linalg::Matrix3 P = mean_stress(d, last);
         const double scale = std::fabs(expected.x);
         for (Eigen::Index i = 0; i < 3; ++i) {
@@ -93,7 +93,7 @@ void check_shear(const PrincipalForm& form, double g) {
         const Description d = cube(order, order == 1 ? 3 : 2, form.law, outside, [&](Vec3 p) {
             return Vec3{g * p.y, 0, 0};
         });
-        const linalg::Matrix3 P = mean_stress(d, solve(d, 4, 1e-9).steps.back());
+        const linalg::Matrix3 P = mean_stress(d, equilibrium_of(d, 4, 1e-9).steps.back());
         CHECK(P(0, 1) == near(form.shear_stress(g), {.relative = 1e-12}));
         // P F^T is symmetric: the stress turns nothing.
         CHECK(P(1, 0) + g * P(1, 1) == near(P(0, 1), {.relative = 1e-12}));
@@ -158,7 +158,7 @@ double measured_order(int order, double nu, std::array<int, 3> cells) {
         const auto outside = [](Vec3 p) { return on_side(p, 0) || on_side(p, 1) || on_side(p, 2); };
         const Description d = cube(order, cells[k], material::neo_hookean(1e6, nu), outside,
                                    [&](Vec3 p) { return amplitude * harmonic_gradient(p); });
-        error[k] = l2_error(d.mesh, solve(d, 1, 1e-6).steps.back().positions, amplitude);
+        error[k] = l2_error(d.mesh, equilibrium_of(d, 1, 1e-6).steps.back().positions, amplitude);
     }
     MESSAGE("order " << order << ", nu " << nu << ": errors " << error[0] << " " << error[1] << " " << error[2]
                      << ", measured orders " << std::log2(error[0] / error[1]) << " "
@@ -207,7 +207,7 @@ TEST_CASE("a slender beam under a small load deflects as Euler and Bernoulli say
         d.loads = {{"tip", shares.nodes, shares.shares, {0, 0, force}}};
         d.markers = {
             {"tip", reference::mean_of(reference::nodes_where(d.mesh, [&](Vec3 p) { return p.x > L - tiny; }))}};
-        const double tip = solve(d, 1, 1e-5).steps.back().markers[0].position_m.z - h / 2;
+        const double tip = equilibrium_of(d, 1, 1e-5).steps.back().markers[0].position_m.z - h / 2;
         const double bending = force * L * L * L / (3 * E * h * h * h * h / 12);
         // Timoshenko's shear term: a square section's shear coefficient is 5/6 (at nu = 0).
         const double shear = force * L / (5.0 / 6 * E / (2 * (1 + nu)) * h * h);

@@ -14,7 +14,7 @@ using namespace pliant::sim;
 namespace {
 
 /// A bar of 60 x 10 x 10 mm, clamped at x = 0, with a cable along its upper edge.
-Model bar() {
+Model bar_with_cable_above() {
     Description d;
     d.mesh = reference::kuhn_box({0.06, 0.01, 0.01}, 12, 2, 2, [](Vec3) { return 0; });
     d.materials = {{"A", material::neo_hookean(1e6, 0.45), 1000}};
@@ -43,7 +43,7 @@ StepReport pull(Stepper& stepper, RobotState& robot, double ratio) {
 }  // namespace
 
 TEST_CASE("equal pulls one after the other are extrapolated from all states behind") {
-    const Model model = bar();
+    const Model model = bar_with_cable_above();
     Stepper stepper(model, {.tolerance = 1e-8});
     RobotState robot = stepper.rest();
     int first = 0, last = 0;
@@ -59,7 +59,7 @@ TEST_CASE("equal pulls one after the other are extrapolated from all states behi
 }
 
 TEST_CASE("after a reversal, and on the way back and forth, the states are those of single pulls") {
-    const Model model = bar();
+    const Model model = bar_with_cable_above();
     Stepper stepper(model, {.tolerance = 1e-8});
     const auto alone = [&](double ratio) {
         RobotState robot = stepper.rest();
@@ -77,7 +77,7 @@ TEST_CASE("after a reversal, and on the way back and forth, the states are those
 }
 
 TEST_CASE("a state that is not a number is far from equilibrium") {
-    const Model model = bar();
+    const Model model = bar_with_cable_above();
     Stepper stepper(model, {.tolerance = 1e-8});
     RobotState robot = stepper.rest();
     pull(stepper, robot, 0.98);

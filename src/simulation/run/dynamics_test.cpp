@@ -7,46 +7,21 @@
 
 #include "base/core/near.hpp"
 #include "simulation/elements/elements.hpp"
+#include "simulation/run/test_beam.hpp"
 #include "simulation/run/test_problems.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::beam;
+using testing::beam_density;
+using testing::beam_frequency_Hz;
+using testing::beam_length;
+using testing::beam_thickness;
 using testing::solve;
-
-namespace {
-
-constexpr double length = 0.1;
-constexpr double thickness = 0.01;
-constexpr double E = 1e6;
-constexpr double density = 1000;
-
-/// A beam clamped at x = 0, with gravity across it.
-Description beam(int order, double gravity) {
-    Description d;
-    d.mesh = reference::kuhn_box({length, thickness, thickness}, 10, 1, 1, [](Vec3) { return 0; });
-    if (order == 2) d.mesh = mesh::to_quadratic(d.mesh);
-    d.materials = {{"A", material::neo_hookean(E, 0.3), density}};
-    d.material_of_region = {0};
-    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
-    d.markers = {
-        {"tip", reference::mean_of(reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > length - 1e-9; }))}};
-    d.gravity_m_s2 = {0, 0, -gravity};
-    d.gravity_share = {{0}, {1}};
-    return d;
-}
-
-/// First natural frequency of a clamped beam: 1.8751^2 sqrt(EI / (rho A L^4)) / 2 pi (Euler and Bernoulli).
-double frequency_Hz() {
-    const double EI = E * std::pow(thickness, 4) / 12;
-    return 1.8751 * 1.8751 * std::sqrt(EI / (density * thickness * thickness * std::pow(length, 4))) /
-           (2 * std::numbers::pi);
-}
-
-}  // namespace
 
 TEST_CASE("the mass matrix gives a moving body its momentum and kinetic energy") {
     for (const int order : {1, 2}) {
-        const Description d = beam(order, 0);
+        const Description d = beam(order, 10, 0);
         const auto elements = Elements::create(d);
         REQUIRE(elements);
         std::vector<double> u;
@@ -59,15 +34,15 @@ TEST_CASE("the mass matrix gives a moving body its momentum and kinetic energy")
             if (i % 3 == 0) x += momentum[i];
             energy += 0.5 * u[i] * momentum[i];
         }
-        const double mass = density * length * thickness * thickness;
+        const double mass = beam_density * beam_length * beam_thickness * beam_thickness;
         CHECK(x == near(mass, {.relative = 1e-12}));
         CHECK(energy == near(0.5 * mass * 5, {.relative = 1e-12}));
     }
 }
 
 TEST_CASE("a beam released under gravity swings at its natural frequency and gains no energy") {
-    const double period = 1 / frequency_Hz();
-    const Description d = beam(2, 0.5);  // little gravity: small motion
+    const double period = 1 / beam_frequency_Hz();
+    const Description d = beam(2, 10, 0.5);  // little gravity: small motion
     const int steps = 120;
     const Trajectory swing =
         solve(d, {.steps = steps, .duration = 2 * period, .tolerance = 1e-6, .dynamics = Dynamics{}});
@@ -88,7 +63,7 @@ TEST_CASE("a beam released under gravity swings at its natural frequency and gai
     }
     REQUIRE(crossings.size() >= 3);
     CHECK(crossings[2] - crossings[0] == near(period, {.relative = 0.03}));
-    CHECK(lowest == near(-(thickness / 2 - rest), {.relative = 0.1}));  // as far below as it began above
+    CHECK(lowest == near(-(beam_thickness / 2 - rest), {.relative = 0.1}));  // as far below as it began above
 
     double energy = 0;  // undeformed, at rest
     for (std::size_t k = 1; k < swing.steps.size(); ++k) {
@@ -102,7 +77,7 @@ TEST_CASE("a beam released under gravity swings at its natural frequency and gai
 
 TEST_CASE("a free swing at large amplitude gains no energy, and damping brings it to rest") {
     for (const int order : {1, 2}) {
-        Description d = beam(order, 60);
+        Description d = beam(order, 10, 60);
         const Trajectory swing = solve(d, {.steps = 80, .duration = 0.8, .dynamics = Dynamics{}});
         REQUIRE_MESSAGE(swing.converged, swing.message);
         double energy = 0;
@@ -128,7 +103,7 @@ TEST_CASE("a free swing at large amplitude gains no energy, and damping brings i
 
 TEST_CASE("stiffness damping acts on deformation only, not on a body that its support moves at constant speed") {
     constexpr double way = 0.5, duration = 1;
-    Description d = beam(2, 0);
+    Description d = beam(2, 10, 0);
     d.supports[0].move_m = {way, 0, way};
     d.supports[0].share = {{0, duration}, {0, 1}};
     const Trajectory carried =
@@ -136,10 +111,10 @@ TEST_CASE("stiffness damping acts on deformation only, not on a body that its su
     REQUIRE_MESSAGE(carried.converged, carried.message);
     const Step& last = carried.steps.back();
     // What the start shook has come to rest.
-    const double mass = density * length * thickness * thickness;
+    const double mass = beam_density * beam_length * beam_thickness * beam_thickness;
     CHECK(last.kinetic_energy_J == near(0.5 * mass * 2 * way * way, {.relative = 1e-3}));
-    CHECK(last.markers[0].position_m.x == near(length + way, {.relative = 1e-4}));
-    CHECK(last.markers[0].position_m.z == near(thickness / 2 + way, {.relative = 1e-4}));
+    CHECK(last.markers[0].position_m.x == near(beam_length + way, {.relative = 1e-4}));
+    CHECK(last.markers[0].position_m.z == near(beam_thickness / 2 + way, {.relative = 1e-4}));
     const double weight = 9.81 * mass;
     CHECK(norm(last.supports[0].force_N) < 1e-2 * weight);
 }

@@ -8,13 +8,15 @@
 #include "simulation/peers/comparison_problems.hpp"
 #include "simulation/peers/reference_problems.hpp"
 #include "simulation/run/simulate.hpp"
+#include "simulation/run/test_problems.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::mm;
+using testing::model_of;
 
 namespace {
 
-constexpr double mm = 1e-3;
 constexpr double MPa = 1e6;
 
 material::Law law_of(const std::string& name, double E, double nu) {
@@ -28,13 +30,7 @@ std::array<int, 3> cells_of(const std::string& text) {
     return cells;
 }
 
-Result<Model> model_of(Description description) {
-    auto model = Model::create(std::move(description));
-    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
-    return model;
-}
-
-Trajectory solve(const Model& model, int steps, double tolerance) {
+Trajectory run_to_end(const Model& model, int steps, double tolerance) {
     Progress silent;
     Program program;
     program.steps = steps;
@@ -73,8 +69,8 @@ void check_bar_rows(const std::string& element, double tolerance, std::size_t ev
         CAPTURE(row.at("nu"));
         CAPTURE(row.at("Rm"));
         CAPTURE(row.at("L1"));
-        const auto model = model_of(two_material_bar(row));
-        const auto last = solve(*model, 5, 1e-8).steps.back();
+        const Model model = model_of(two_material_bar(row));
+        const auto last = run_to_end(model, 5, 1e-8).steps.back();
         const double u = last.markers[0].position_m.x / mm - std::stod(row.at("L1"));
         CHECK(u == near(std::stod(row.at("u_interface_mm")), {.relative = tolerance}));
         CHECK(last.supports[1].force_N.x == near(std::stod(row.at("Fx_N")), {.relative = tolerance}));
@@ -95,8 +91,8 @@ void check_shape_blend(double nu, double material_ratio) {
         Description d = two_material_bar(bar);
         d.materials[0].law = material::shape_blend(12 * MPa * material_ratio, nu);
         d.materials[1].law = material::shape_blend(12 * MPa, nu);
-        const auto model = model_of(std::move(d));
-        const Step last = solve(*model, 5, 1e-6).steps.back();
+        const Model model = model_of(std::move(d));
+        const Step last = run_to_end(model, 5, 1e-6).steps.back();
         const double u = last.markers[0].position_m.x / mm - std::stod(row.at("L1"));
         CHECK(u == near(std::stod(row.at("u_map_T")), {.relative = 1e-4}));
         CHECK(last.supports[1].force_N.x == near(std::stod(row.at("F_map_T")), {.relative = 1e-4}));
@@ -126,8 +122,8 @@ void check_beam(const std::string& element, double nu, double tolerance) {
         CHECK(shares.area_m2 == near(25e-6, {.relative = 1e-12}));
         d.loads = {{"tip", shares.nodes, shares.shares, {0, 0, 0.06}}};
         d.markers = {{"tip", reference::mean_of(corners)}};
-        const auto model = model_of(std::move(d));
-        const auto last = solve(*model, 5, 1e-7).steps.back();
+        const Model model = model_of(std::move(d));
+        const auto last = run_to_end(model, 5, 1e-7).steps.back();
         const Vec3 tip = (last.markers[0].position_m - Vec3{100 * mm, 2.5 * mm, 2.5 * mm}) / mm;
         CHECK(tip.z == near(std::stod(row.at("tip_uz_mm")), {.relative = tolerance}));
         CHECK(tip.x == near(std::stod(row.at("tip_ux_mm")), {.relative = tolerance}));
@@ -167,8 +163,8 @@ TEST_CASE("slender beam, 2,025 nodes in quadratic tets: within 1 % of CalculiX o
     for (const double nu : {0.3, 0.45, 0.49}) {
         const Description d = comparison::beam(2, material::neo_hookean(12 * MPa, nu), 40);
         REQUIRE(d.mesh.points.size() == 2025);
-        const auto model = model_of(d);
-        const double tip = comparison::tip_displacement(d, solve(*model, 5, 1e-7).steps.back()).z / mm;
+        const Model model = model_of(d);
+        const double tip = comparison::tip_displacement(d, run_to_end(model, 5, 1e-7).steps.back()).z / mm;
         const double fine = finest_tip_mm(nu);
         MESSAGE("nu " << nu << ": tip " << tip << " mm, fine mesh " << fine << " mm, off by " << tip / fine - 1);
         CHECK(tip == near(fine, {.relative = 0.01}));

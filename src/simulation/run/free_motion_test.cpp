@@ -12,7 +12,7 @@ using namespace pliant::sim;
 namespace {
 
 /// A block of 40 x 10 x 10 mm, named "bar", held at the nodes that `held` catches.
-Description bar(const std::function<bool(Vec3)>& held, int order = 2) {
+Description held_block(const std::function<bool(Vec3)>& held, int order = 2) {
     Description d;
     d.mesh = reference::kuhn_box({0.04, 0.01, 0.01}, 4, 2, 2, [](Vec3) { return 0; });
     d.mesh.region_names = {"bar"};
@@ -26,7 +26,7 @@ Description bar(const std::function<bool(Vec3)>& held, int order = 2) {
 /// Two blocks of 10 mm cubes side by side, "left" and "right", that share the nodes at x = 10 mm which `shared` takes;
 /// the left one is clamped.
 Description two_blocks(const std::function<bool(Vec3)>& shared) {
-    Description d = bar([](Vec3 p) { return p.x < 1e-9; }, 1);
+    Description d = held_block([](Vec3 p) { return p.x < 1e-9; }, 1);
     d.mesh = reference::kuhn_box({0.02, 0.01, 0.01}, 4, 2, 2, [](Vec3 c) { return c.x > 0.01 ? 1 : 0; });
     d.mesh.region_names = {"left", "right"};
     std::vector<int> copy(d.mesh.points.size(), -1);
@@ -53,20 +53,20 @@ bool says(const std::optional<std::string>& text, std::string_view part) {
 }  // namespace
 
 TEST_CASE("a held face leaves no free motion, nor do three held nodes that are not on a line") {
-    CHECK_FALSE(free_motion(bar([](Vec3 p) { return p.x < 1e-9; })));
-    CHECK_FALSE(free_motion(bar([](Vec3 p) { return p.x < 1e-9 && p.y + p.z < 0.0101; }, 1)));
+    CHECK_FALSE(free_motion(held_block([](Vec3 p) { return p.x < 1e-9; })));
+    CHECK_FALSE(free_motion(held_block([](Vec3 p) { return p.x < 1e-9 && p.y + p.z < 0.0101; }, 1)));
     // Two lines that are apart, in two supports.
-    Description d = bar([](Vec3 p) { return p.x < 1e-9 && p.z < 1e-9; });
+    Description d = held_block([](Vec3 p) { return p.x < 1e-9 && p.z < 1e-9; });
     d.supports.push_back(
         {"other", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 0.04 - 1e-9 && p.z < 1e-9; }), {}});
     CHECK_FALSE(free_motion(d));
 }
 
 TEST_CASE("a support of one node or one line leaves a free rotation, which is named") {
-    const auto point = free_motion(bar([](Vec3 p) { return norm(p - Vec3{0, 0.005, 0.01}) < 1e-9; }));
+    const auto point = free_motion(held_block([](Vec3 p) { return norm(p - Vec3{0, 0.005, 0.01}) < 1e-9; }));
     REQUIRE(point);
     CHECK_MESSAGE(says(point, "body \"bar\" can turn freely about the point (0, 5, 10) mm"), *point);
-    const auto line = free_motion(bar([](Vec3 p) { return p.x < 1e-9 && p.z < 1e-9; }));
+    const auto line = free_motion(held_block([](Vec3 p) { return p.x < 1e-9 && p.z < 1e-9; }));
     REQUIRE(line);
     CHECK_MESSAGE(says(line, "body \"bar\" can turn freely about the line through (0, "), *line);
     CHECK_MESSAGE(says(line, ", 0) mm and (0, "), *line);
@@ -102,7 +102,7 @@ TEST_CASE("rollers hold their directions, and springs resist changes of their le
         support.directions = {direction};
         return support;
     };
-    Description d = bar([](Vec3) { return true; });
+    Description d = held_block([](Vec3) { return true; });
     d.supports = {plane(d, 0), plane(d, 1), plane(d, 2)};
     CHECK_FALSE(free_motion(d));
     d.supports.erase(d.supports.begin());

@@ -17,16 +17,16 @@ namespace {
 
 constexpr double inner = 0.01;  // metres
 constexpr double outer = 0.02;
-constexpr double tiny = 1e-9;
+constexpr double node_tolerance = 1e-9;
 
-double largest(Vec3 p) {
+double largest_coordinate(Vec3 p) {
     return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
 }
 
 /// Moves the shells of a hollow cube (half-width 1, cavity 1/2) onto spheres. Smooth in each tet: the planes where two
 /// coordinates are equal in size are faces of the mesh, as the numbers of cells are even.
 Vec3 to_sphere(Vec3 p) {
-    const double shell = largest(p);
+    const double shell = largest_coordinate(p);
     const double radius = inner + (2 * shell - 1) * (outer - inner);
     const auto turn = [&](double v) { return std::tan(v / shell * std::atan(1.0)); };  // equal angles
     const Vec3 direction{turn(p.x), turn(p.y), turn(p.z)};
@@ -61,7 +61,8 @@ Hollow hollow(int n, int nz, const std::function<bool(Vec3)>& empty, Vec3 (*plac
                              whole.points[static_cast<std::size_t>(face.nodes[2])]) /
                                 3 -
                             middle;
-        if (borders_solid && std::fabs(centre.z) < 1 - tiny) faces.push_back(face);  // not the open ends of a tube
+        if (borders_solid && std::fabs(centre.z) < 1 - node_tolerance)
+            faces.push_back(face);  // not the open ends of a tube
     }
     Hollow result{std::move(solid.mesh), wall_of_faces(whole, faces, solid.node)};
     for (Vec3& p : result.mesh.points) p = place(p - middle);
@@ -70,7 +71,7 @@ Hollow hollow(int n, int nz, const std::function<bool(Vec3)>& empty, Vec3 (*plac
 
 Hollow sphere(int n) {
     return hollow(
-        n, n, [](Vec3 c) { return largest(c) < 0.5; }, to_sphere);
+        n, n, [](Vec3 c) { return largest_coordinate(c) < 0.5; }, to_sphere);
 }
 
 Hollow tube(int n, int nz) {
@@ -132,7 +133,7 @@ double sphere_pressure_found(const material::Law& law, int n, double stretch) {
     for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
         const Vec3 at = inner * axis;
         d.supports.push_back({"pole " + std::to_string(d.supports.size()),
-                              reference::nodes_where(d.mesh, [&](Vec3 p) { return norm(p - at) < tiny; }),
+                              reference::nodes_where(d.mesh, [&](Vec3 p) { return norm(p - at) < node_tolerance; }),
                               (stretch - 1) * at});
         REQUIRE(d.supports.back().nodes.size() == 1);
     }
@@ -153,14 +154,15 @@ double tube_radius_found(const material::Law& law, int n, double stretch, double
     d.material_of_region = {0};
     for (std::size_t node = 0; node < d.mesh.points.size(); ++node) {
         const Vec3 p = d.mesh.points[node];
-        if (std::fabs(p.z) < 1.5 * outer - tiny) continue;
+        if (std::fabs(p.z) < 1.5 * outer - node_tolerance) continue;
         const double r = std::hypot(p.x, p.y);
         const double grown = tube_radius(r, inner * stretch) / r - 1;
         d.supports.push_back({"end " + std::to_string(node), {static_cast<int>(node)}, {grown * p.x, grown * p.y, 0}});
     }
     d.pressures = {{"air", std::move(body.wall), pressure}};
-    const std::vector<int> ring = reference::nodes_where(
-        d.mesh, [](Vec3 p) { return std::fabs(p.z) < tiny && std::fabs(std::hypot(p.x, p.y) - inner) < tiny; });
+    const std::vector<int> ring = reference::nodes_where(d.mesh, [](Vec3 p) {
+        return std::fabs(p.z) < node_tolerance && std::fabs(std::hypot(p.x, p.y) - inner) < node_tolerance;
+    });
     REQUIRE(ring.size() == static_cast<std::size_t>(4 * n));
     const Step last = last_step(std::move(d));
     double sum = 0;

@@ -7,39 +7,21 @@
 #include <numbers>
 
 #include "base/core/near.hpp"
+#include "simulation/run/test_beam.hpp"
 #include "simulation/run/test_problems.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::beam;
+using testing::beam_density;
+using testing::beam_frequency_Hz;
+using testing::beam_length;
+using testing::beam_thickness;
 using testing::solve;
 
 namespace {
 
-constexpr double length = 0.1, thickness = 0.01, E = 1e6, density = 1000;
-
-/// A beam clamped at x = 0, with gravity across it that grows, or is there at once.
-Description beam(int order, int pieces, double gravity, bool at_once) {
-    Description d;
-    d.mesh = reference::kuhn_box({length, thickness, thickness}, pieces, 1, 1, [](Vec3) { return 0; });
-    if (order == 2) d.mesh = mesh::to_quadratic(d.mesh);
-    d.materials = {{"A", material::neo_hookean(E, 0.3), density}};
-    d.material_of_region = {0};
-    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
-    d.markers = {
-        {"tip", reference::mean_of(reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > length - 1e-9; }))}};
-    d.gravity_m_s2 = {0, 0, -gravity};
-    d.gravity_share = at_once ? Curve{{0}, {1}} : Curve{{0, 0.2}, {0, 1}};
-    return d;
-}
-
-/// First natural frequency of a clamped beam (Euler and Bernoulli).
-double frequency_Hz() {
-    const double EI = E * std::pow(thickness, 4) / 12;
-    return 1.8751 * 1.8751 * std::sqrt(EI / (density * thickness * thickness * std::pow(length, 4))) /
-           (2 * std::numbers::pi);
-}
-
-double tip(const Step& step) {
+double tip_height(const Step& step) {
     return step.markers[0].position_m.z;
 }
 
@@ -53,9 +35,9 @@ Program program(int steps, double duration, Dynamics dynamics) {
 
 /// Where the tip is after 0.2 s, with that many steps.
 double end(int steps, const Dynamics& dynamics) {
-    const Trajectory run = solve(beam(1, 6, 5, true), program(steps, 0.2, dynamics));
+    const Trajectory run = solve(beam(1, 6, 5), program(steps, 0.2, dynamics));
     REQUIRE_MESSAGE(run.converged, run.message);
-    return tip(run.steps.back());
+    return tip_height(run.steps.back());
 }
 
 }  // namespace
@@ -73,21 +55,21 @@ TEST_CASE("the error of both integrators is quadratic in the time step") {
 TEST_CASE("energy-conserving: over fifty periods a beam keeps its energy and its frequency") {
     const char* wanted = std::getenv("PLIANT_SWINGS");
     const int periods = wanted != nullptr ? std::atoi(wanted) : 50;
-    const double period = 1 / frequency_Hz();
+    const double period = 1 / beam_frequency_Hz();
     constexpr int per_period = 24;
-    Description d = beam(2, 4, 1, true);
+    Description d = beam(2, 4, 1);
     const Program p{.steps = per_period * periods,
                     .duration = periods * period,
                     .tolerance = 1e-7,
                     .dynamics = Dynamics{{}, Integrator::energy_conserving, 0}};
     const Trajectory swing = solve(d, p);
     REQUIRE_MESSAGE(swing.converged, swing.message);
-    const double rest = tip(solve(d, {.steps = 1, .tolerance = 1e-8}).steps.back());
+    const double rest = tip_height(solve(d, {.steps = 1, .tolerance = 1e-8}).steps.back());
     double largest_kinetic = 0, first = 0, last = 0;
     int crossings = 0;
     for (std::size_t k = 1; k < swing.steps.size(); ++k) {
         largest_kinetic = std::max(largest_kinetic, swing.steps[k].kinetic_energy_J);
-        const double before = tip(swing.steps[k - 1]) - rest, now = tip(swing.steps[k]) - rest;
+        const double before = tip_height(swing.steps[k - 1]) - rest, now = tip_height(swing.steps[k]) - rest;
         if (!(before > 0 && now <= 0)) continue;
         last = swing.steps[k - 1].time + before / (before - now) * (swing.steps[k].time - swing.steps[k - 1].time);
         if (crossings++ == 0) first = last;
@@ -106,7 +88,7 @@ TEST_CASE("energy-conserving: over fifty periods a beam keeps its energy and its
 }
 
 TEST_CASE("error-controlled steps keep the tolerance, reach the given instants, and are more when it is small") {
-    const Description d = beam(1, 6, 30, true);
+    const Description d = beam(1, 6, 30);
     const Trajectory fine = solve(d, program(800, 0.2, Dynamics{{}, Integrator::energy_conserving, 0}));
     int before = 0;
     for (const Integrator integrator : {Integrator::bdf2, Integrator::energy_conserving}) {
@@ -119,7 +101,7 @@ TEST_CASE("error-controlled steps keep the tolerance, reach the given instants, 
             double off = 0;
             for (std::size_t k = 0; k < run.steps.size(); ++k) {
                 CHECK(run.steps[k].time == near(0.02 * static_cast<double>(k), {.absolute = 1e-12}));
-                off = std::max(off, std::fabs(tip(run.steps[k]) - tip(fine.steps[80 * k])));
+                off = std::max(off, std::fabs(tip_height(run.steps[k]) - tip_height(fine.steps[80 * k])));
                 if (k > 0) pieces += run.steps[k].substeps;
             }
             MESSAGE("tolerance ", tolerance, " m: ", pieces, " steps, off by ", off, " m");
@@ -132,8 +114,8 @@ TEST_CASE("error-controlled steps keep the tolerance, reach the given instants, 
 
 TEST_CASE("a step with too large an error is repeated smaller, and the run counts it") {
     // Nothing happens until a force comes at once: the step that had grown is too long for it.
-    Description d = beam(1, 6, 0, true);
-    const auto end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > length - 1e-9; });
+    Description d = beam(1, 6, 0);
+    const auto end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > beam_length - 1e-9; });
     d.loads = {{"push",
                 end,
                 std::vector<double>(end.size(), 1.0 / static_cast<double>(end.size())),
@@ -152,14 +134,14 @@ TEST_CASE("a step with too large an error is repeated smaller, and the run count
 }
 
 TEST_CASE("a moving support does not excite vibration in the body it holds") {
-    Description d = beam(1, 6, 0, true);
+    Description d = beam(1, 6, 0);
     d.supports[0].move_m = {0, 0.02, 0};
     d.supports[0].share = Curve{{0, 0.2}, {0, 1}};
     const Trajectory run = solve(d, program(100, 0.2, Dynamics{{5, 1e-3}, Integrator::energy_conserving, 0}));
     REQUIRE_MESSAGE(run.converged, run.message);
     // Damping ends the vibration that its start has made. The clamp has the speed of its motion; what it takes to hold
     // it does not turn about from step to step.
-    const double mass = density * length * thickness * thickness;
+    const double mass = beam_density * beam_length * beam_thickness * beam_thickness;
     for (std::size_t k = 20; k < run.steps.size(); ++k) {
         const double now = run.steps[k].supports[0].force_N.y, before = run.steps[k - 1].supports[0].force_N.y;
         CHECK(std::fabs(now - before) < 0.5 * mass * 0.1 / 0.02);

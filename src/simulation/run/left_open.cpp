@@ -22,7 +22,7 @@ using linalg::view;
 
 /// A motion counts as held if its stiffness exceeds this many tethers: a hundredth of the weight for a displacement of
 /// the robot's size.
-constexpr double held = 10;
+constexpr double held_stiffness = 10;
 /// With more bodies than this, the matrix of all their motions is too large to be worthwhile.
 constexpr std::size_t most_bodies = 100;
 
@@ -169,7 +169,7 @@ private:
         const Eigen::MatrixXd relative = scale.asDiagonal() * stiffness() * scale.asDiagonal();
         const auto [values, vectors] = linalg::symmetric_eigenpairs(0.5 * (relative + relative.transpose()));
         Eigen::Index count = 0;
-        while (count < values.size() && values[count] < held) ++count;
+        while (count < values.size() && values[count] < held_stiffness) ++count;
         return vectors.leftCols(count);
     }
 

@@ -6,41 +6,22 @@
 #include <cmath>
 
 #include "base/core/near.hpp"
+#include "simulation/run/test_bar.hpp"
 #include "simulation/run/test_problems.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::bar_side;
 using testing::hollow_block;
+using testing::model_of;
 
 namespace {
 
-constexpr double side = 0.01;
-
-/// A bar of 4 x 1 x 1 cm along x with a cable along its upper side.
-Description bar(const CableTarget& target) {
-    Description d;
-    d.mesh = reference::kuhn_box({4 * side, side, side}, 8, 2, 2, [](Vec3) { return 0; });
-    d.materials = {{"A", material::neo_hookean(1e6, 0.4), 1000}};
-    d.material_of_region = {0};
-    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
-    d.markers = {
-        {"tip", reference::mean_of(reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; }))}};
-    Cable cable{"flexor", {{{}, {}, {0, side / 2, side}}}, target};
-    for (int k = 1; k <= 4; ++k)
-        cable.points.push_back({reference::nodes_where(d.mesh,
-                                                       [&](Vec3 p) {
-                                                           return norm(p - Vec3{k * side, side / 2, side}) < 1e-9;
-                                                       }),
-                                {1.0},
-                                {}});
-    d.cables = {cable};
+/// The bar with a cable along its upper side.
+Description bar_with_flexor(const CableTarget& target) {
+    Description d = testing::bar(1);
+    d.cables = {testing::flexor(d.mesh, target)};
     return d;
-}
-
-Model made(Description d) {
-    auto model = Model::create(std::move(d));
-    REQUIRE(model);
-    return std::move(*model);
 }
 
 /// Until it arrives; every state on the way must be converged. The number of pieces.
@@ -64,35 +45,35 @@ Vec3 tip(const Live& live) {
 
 TEST_CASE("a cable pulled interactively moves the tip as the program does, and back") {
     const Program program{.steps = 10, .tolerance = 1e-6};
-    const Description d = bar({CableTarget::Kind::length_ratio, 0.85});
+    const Description d = bar_with_flexor({CableTarget::Kind::length_ratio, 0.85});
     const Trajectory expected = testing::solve(d, program);
     REQUIRE(expected.converged);
-    const Model model = made(d);
+    const Model model = model_of(d);
     Live live(model, program);
     LiveTarget target = live.target_at(0);
     target.drives[0] = {Drive::Kind::measure, 0.85 * live.rest_measures()[0]};
     CHECK(follow(live, target, 1e-6) > 2);  // in bounded pieces
-    CHECK(norm(tip(live) - expected.steps.back().markers.front().position_m) < 1e-6 * side);
+    CHECK(norm(tip(live) - expected.steps.back().markers.front().position_m) < 1e-6 * bar_side);
     CHECK(live.describe().cables[0].tension_N == near(expected.steps.back().cables[0].tension_N, {.relative = 1e-6}));
 
     target.drives[0] = live.hold(0, Drive::Kind::multiplier);  // driven by its tension, it stays
     CHECK(live.advance(target, Progress()).arrived);
-    CHECK(norm(tip(live) - expected.steps.back().markers.front().position_m) < 1e-6 * side);
+    CHECK(norm(tip(live) - expected.steps.back().markers.front().position_m) < 1e-6 * bar_side);
     target.drives[0].value = 0;
     follow(live, target, 1e-6);
-    CHECK(norm(tip(live) - expected.steps.front().markers.front().position_m) < 1e-5 * side);
+    CHECK(norm(tip(live) - expected.steps.front().markers.front().position_m) < 1e-5 * bar_side);
 }
 
 TEST_CASE("inputs that are not driven follow the program's time") {
-    Description d = bar({CableTarget::Kind::length_ratio, 1});
+    Description d = bar_with_flexor({CableTarget::Kind::length_ratio, 1});
     d.gravity_m_s2 = {0, 0, -50};
     const Program program{.steps = 5, .tolerance = 1e-6};
     const Trajectory expected = testing::solve(d, program);
-    const Model model = made(d);
+    const Model model = model_of(d);
     Live live(model, program);
     LiveTarget target = live.target_at(1);
     follow(live, target, 1e-6);
-    CHECK(norm(tip(live) - expected.steps.back().markers.front().position_m) < 1e-5 * side);
+    CHECK(norm(tip(live) - expected.steps.back().markers.front().position_m) < 1e-5 * bar_side);
 }
 
 TEST_CASE("a chamber inflated interactively has the pressure of the program") {
@@ -100,7 +81,7 @@ TEST_CASE("a chamber inflated interactively has the pressure of the program") {
     d.chambers[0].target = {ChamberTarget::Kind::volume_ratio, 1.3};
     const Program program{.steps = 6, .tolerance = 1e-6};
     const Trajectory expected = testing::solve(d, program);
-    const Model model = made(d);
+    const Model model = model_of(d);
     Live live(model, program);
     follow(live, live.target_at(1), 1e-6);
     CHECK(live.describe().chambers[0].pressure_Pa ==
@@ -108,24 +89,24 @@ TEST_CASE("a chamber inflated interactively has the pressure of the program") {
 }
 
 TEST_CASE("interactive control: a pull on the body acts as a dead load of its force, and can be released") {
-    Description d = bar({CableTarget::Kind::tension_N, 0});
+    Description d = bar_with_flexor({CableTarget::Kind::tension_N, 0});
     const Program program{.steps = 5, .tolerance = 1e-7};
-    const Model model = made(d);
+    const Model model = model_of(d);
     Live live(model, program);
     const Vec3 rest = tip(live);
     LiveTarget target = live.target_at(0);
-    target.pull = Pull{d.markers.front().point, rest + Vec3{0, 0.3 * side, side}};
+    target.pull = Pull{d.markers.front().point, rest + Vec3{0, 0.3 * bar_side, bar_side}};
     follow(live, target, 1e-7);
     const Vec3 force = live.pull_force_N();
     const Vec3 moved = tip(live) - rest;
-    CHECK(moved.z > 0.5 * side);  // it follows the handle most of the way
+    CHECK(moved.z > 0.5 * bar_side);  // it follows the handle most of the way
 
     Load load{"pull", d.markers.front().point.nodes, d.markers.front().point.weights, force};
     d.loads = {load};
     const Trajectory expected = testing::solve(d, program);
-    CHECK(norm(tip(live) - expected.steps.back().markers.front().position_m) < 1e-4 * side);
+    CHECK(norm(tip(live) - expected.steps.back().markers.front().position_m) < 1e-4 * bar_side);
 
     target.pull = std::nullopt;
     follow(live, target, 1e-7);
-    CHECK(norm(tip(live) - rest) < 1e-4 * side);
+    CHECK(norm(tip(live) - rest) < 1e-4 * bar_side);
 }

@@ -11,11 +11,10 @@
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::mm;
 using testing::solve;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 mesh::TriMesh box(const Vec3& low, const Vec3& high) {
     mesh::TriMesh m;

@@ -28,7 +28,7 @@ TEST_CASE("stored positions stay readable as long as something refers to them") 
 }
 
 TEST_CASE("if no file can be made there is no position file") {
-    const test::Variable nowhere("TMPDIR", "/nowhere");
+    const pliant::test::Variable nowhere("TMPDIR", "/nowhere");
     CHECK(PositionFile::make(10, 10) == nullptr);
 }
 

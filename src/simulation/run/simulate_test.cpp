@@ -16,44 +16,16 @@
 #include "simulation/elements/elements.hpp"
 #include "simulation/material/response.hpp"
 #include "simulation/run/fields.hpp"
+#include "simulation/run/test_bar.hpp"
 #include "simulation/run/test_problems.hpp"
 #include "simulation/solver/step_solver.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::bar;
+using testing::bar_side;
+using testing::flexor;
 using testing::solve;
-
-namespace {
-
-constexpr double side = 0.01;
-
-/// A bar of 4 x 1 x 1 cm along x, clamped at x = 0.
-Description bar(int order, const material::Law& law = material::neo_hookean(1e6, 0.4)) {
-    Description d;
-    d.mesh = reference::kuhn_box({4 * side, side, side}, 8, 2, 2, [](Vec3) { return 0; });
-    if (order == 2) d.mesh = mesh::to_quadratic(d.mesh);
-    d.materials = {{"A", law, 1000}};
-    d.material_of_region = {0};
-    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
-    d.markers = {
-        {"tip", reference::mean_of(reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; }))}};
-    return d;
-}
-
-/// A cable along the upper side of the bar, through nodes of the mesh, from a point fixed in space.
-Cable flexor(const mesh::TetMesh& mesh, CableTarget target) {
-    Cable cable{"flexor", {{{}, {}, {0, side / 2, side}}}, target};
-    for (int k = 1; k <= 4; ++k) {
-        const auto nodes = reference::nodes_where(mesh, [&](Vec3 p) {
-            return norm(p - Vec3{k * side, side / 2, side}) < 1e-9;
-        });
-        REQUIRE(nodes.size() == 1);
-        cable.points.push_back({nodes, {1.0}, {}});
-    }
-    return cable;
-}
-
-}  // namespace
 
 TEST_CASE("uniaxial stretch of one layer of linear elements agrees with the closed form") {
     // A cube that may contract sideways: P11 of neo-Hooke with the lateral stretch that makes P22 zero.
@@ -67,7 +39,8 @@ TEST_CASE("uniaxial stretch of one layer of linear elements agrees with the clos
         const double mid = 0.5 * (low + high);
         (material::stress(law, Eigen::Vector3d(stretch, mid, mid).asDiagonal())(1, 1) > 0 ? high : low) = mid;
     }
-    const double force = material::stress(law, Eigen::Vector3d(stretch, low, low).asDiagonal())(0, 0) * side * side;
+    const double force =
+        material::stress(law, Eigen::Vector3d(stretch, low, low).asDiagonal())(0, 0) * bar_side * bar_side;
 
     // Prescribing the closed form on three faces would overconstrain symmetry planes; so all nodes of the two end faces
     // follow the homogeneous answer, and the interior must match it.
@@ -77,7 +50,7 @@ TEST_CASE("uniaxial stretch of one layer of linear elements agrees with the clos
         for (std::size_t n = 0; n < d.mesh.points.size(); ++n) {
             const Vec3 p = d.mesh.points[n];
             const bool left = p.x < 1e-9;
-            if (!left && p.x < 4 * side - 1e-9) continue;
+            if (!left && p.x < 4 * bar_side - 1e-9) continue;
             const Vec3 move{(stretch - 1) * p.x, (low - 1) * p.y, (low - 1) * p.z};
             d.supports.push_back({(left ? "l" : "r") + std::to_string(n), {static_cast<int>(n)}, move});
         }
@@ -97,7 +70,7 @@ TEST_CASE("support forces balance loads and gravity exactly") {
     std::vector<mesh::Face> faces;
     for (const mesh::Face& f : mesh::boundary_faces(d.mesh)) {
         const auto& p = d.mesh.points;
-        if (p[f.nodes[0]].x + p[f.nodes[1]].x + p[f.nodes[2]].x > 12 * side - 1e-9) faces.push_back(f);
+        if (p[f.nodes[0]].x + p[f.nodes[1]].x + p[f.nodes[2]].x > 12 * bar_side - 1e-9) faces.push_back(f);
     }
     const SurfaceShares shares = surface_shares(d.mesh, faces);
     d.loads = {{"tip", shares.nodes, shares.shares, {0.01, -0.02, 0.03}}};
@@ -105,7 +78,7 @@ TEST_CASE("support forces balance loads and gravity exactly") {
     const Trajectory result = solve(d, {.steps = 3, .tolerance = 1e-9});
     REQUIRE_MESSAGE(result.converged, result.message);
     const Vec3 force = result.steps.back().supports[0].force_N;
-    const double weight = 1000 * 4 * side * side * side * 9.81;
+    const double weight = 1000 * 4 * bar_side * bar_side * bar_side * 9.81;
     CHECK(force.x == near(-0.01, {.relative = 1e-6}));
     CHECK(force.y == near(0.02, {.relative = 1e-6}));
     CHECK(force.z == near(-0.03 + weight, {.relative = 1e-6}));
@@ -116,7 +89,7 @@ TEST_CASE("supports that all rotate about one axis rotate the bar without strain
     const Turn turn{5 * M_PI / 6, {1, 1, 0.5}, {0.01, -0.02, 0.005}};
     const Vec3 move{0.002, 0, -0.001};
     Description d = bar(2);
-    const auto far_end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; });
+    const auto far_end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * bar_side - 1e-9; });
     d.supports[0].move_m = move;
     d.supports[0].turn = turn;
     d.supports.push_back({"far", far_end, move, ramp(0, 1), turn});
@@ -142,14 +115,14 @@ TEST_CASE("supports that all rotate about one axis rotate the bar without strain
 
 TEST_CASE("a bar twisted by a quarter turn is twisted by half of that in the middle") {
     Description d = bar(2);
-    const auto far_end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; });
-    d.supports.push_back({"hand", far_end, {}, ramp(0, 1), {M_PI / 2, {1, 0, 0}, {0, side / 2, side / 2}}});
-    const auto edge = reference::nodes_where(d.mesh, [](Vec3 p) { return norm(p - Vec3{2 * side, 0, 0}) < 1e-9; });
+    const auto far_end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * bar_side - 1e-9; });
+    d.supports.push_back({"hand", far_end, {}, ramp(0, 1), {M_PI / 2, {1, 0, 0}, {0, bar_side / 2, bar_side / 2}}});
+    const auto edge = reference::nodes_where(d.mesh, [](Vec3 p) { return norm(p - Vec3{2 * bar_side, 0, 0}) < 1e-9; });
     REQUIRE(edge.size() == 1);
     const Trajectory result = solve(std::move(d), {.steps = 5});
     REQUIRE_MESSAGE(result.converged, result.message);
     const Vec3 p = result.steps.back().positions[static_cast<std::size_t>(edge[0])];
-    const double turned = std::atan2(p.z - side / 2, p.y - side / 2) - std::atan2(-1.0, -1.0);
+    const double turned = std::atan2(p.z - bar_side / 2, p.y - bar_side / 2) - std::atan2(-1.0, -1.0);
     CHECK(turned == near(M_PI / 4, {.relative = 0.01}));
     // A twisted bar tends to lengthen (Poynting 1909): held between two ends it presses on both.
     CHECK(result.steps.back().supports[1].force_N.x < 0);
@@ -196,12 +169,12 @@ TEST_CASE("the thesis' shape blend bends under a cable and under a load, with ea
             REQUIRE_MESSAGE(pulled.converged, pulled.message);
             tensions.push_back(pulled.steps.back().cables[0].tension_N);
             d.cables.clear();
-            const auto tip = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; });
+            const auto tip = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * bar_side - 1e-9; });
             d.loads = {
                 {"tip", tip, std::vector<double>(tip.size(), 1.0 / static_cast<double>(tip.size())), {0, 0, 0.2}}};
             const Trajectory pushed = solve(d, {.steps = 2, .tolerance = 1e-4, .solver = solver});
             REQUIRE_MESSAGE(pushed.converged, pushed.message);
-            CHECK(pushed.steps.back().markers[0].position_m.z > 0.5 * side);
+            CHECK(pushed.steps.back().markers[0].position_m.z > 0.5 * bar_side);
         }
     }
     CHECK(tensions[2] == near(tensions[0], {.relative = 1e-2}));
@@ -219,7 +192,7 @@ TEST_CASE("a given tension and its cable length give each other") {
     const Step tension_step = solve(by_tension, {.steps = 4, .tolerance = 1e-8}).steps.back();
     CHECK(tension_step.cables[0].length_ratio == near(0.92, {.relative = 1e-6}));
     Description by_shortening = bar(2);
-    by_shortening.cables = {flexor(by_shortening.mesh, {CableTarget::Kind::shortening_m, 0.08 * 4 * side})};
+    by_shortening.cables = {flexor(by_shortening.mesh, {CableTarget::Kind::shortening_m, 0.08 * 4 * bar_side})};
     const Step shortening_step = solve(by_shortening, {.steps = 4, .tolerance = 1e-8}).steps.back();
     CHECK(shortening_step.cables[0].tension_N == near(length_step.cables[0].tension_N, {.relative = 1e-6}));
 }
@@ -227,8 +200,9 @@ TEST_CASE("a given tension and its cable length give each other") {
 TEST_CASE("a cable only pulls: a bar pushed towards it leaves it slack") {
     Description d = bar(1);
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.99})};
-    d.supports.push_back(
-        {"tip", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; }), {-0.1 * 4 * side, 0, 0}});
+    d.supports.push_back({"tip",
+                          reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * bar_side - 1e-9; }),
+                          {-0.1 * 4 * bar_side, 0, 0}});
     const Trajectory result = solve(d, {.steps = 5, .tolerance = 1e-7});
     REQUIRE_MESSAGE(result.converged, result.message);
     CHECK(result.steps.back().cables[0].tension_N == 0);
@@ -278,8 +252,9 @@ TEST_CASE("a cable that is paid out is slack while its path is shorter, and hold
 
 TEST_CASE("rigid targets: the thesis' iteration never raises the energy") {
     Description d = bar(1, material::ShapeBlend{1e6, 1.0});
-    d.supports.push_back(
-        {"tip", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; }), {0, 0, 2 * side}});
+    d.supports.push_back({"tip",
+                          reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * bar_side - 1e-9; }),
+                          {0, 0, 2 * bar_side}});
     auto model = Model::create(std::move(d));
     REQUIRE(model);
     const Equilibrium system(*model);
@@ -299,11 +274,11 @@ TEST_CASE("rigid targets: the thesis' iteration never raises the energy") {
 }
 
 TEST_CASE("a program that cannot finish names the step and keeps the converged ones") {
-    // The layer next to the clamp is half a `side` thick; moved by a whole one it would turn inside out half-way.
-    for (const double free_from : {3 * side, 5 * side}) {  // with free nodes, and with none at all
+    // The layer next to the clamp is half a `bar_side` thick; moved by a whole one it would turn inside out half-way.
+    for (const double free_from : {3 * bar_side, 5 * bar_side}) {  // with free nodes, and with none at all
         Description d = bar(1);
         const auto pushed = [&](Vec3 p) { return p.x > 1e-9 && p.x < free_from; };
-        d.supports.push_back({"pushed", reference::nodes_where(d.mesh, pushed), {-side, 0, 0}});
+        d.supports.push_back({"pushed", reference::nodes_where(d.mesh, pushed), {-bar_side, 0, 0}});
         const Trajectory result = solve(d, {.steps = 10});
         CHECK_FALSE(result.converged);
         CHECK(result.message == "stopped at step 5 of 10: the prescribed motion turns a tetrahedron inside out");
@@ -322,7 +297,8 @@ TEST_CASE("a step that needs more than its iterations is halved") {
 
 TEST_CASE("setting up counts from the model on: its time and that of the steps are that of the run") {
     Description d = bar(2);
-    d.mesh = mesh::to_quadratic(reference::kuhn_box({4 * side, side, side}, 16, 6, 6, [](Vec3) { return 0; }));
+    d.mesh =
+        mesh::to_quadratic(reference::kuhn_box({4 * bar_side, bar_side, bar_side}, 16, 6, 6, [](Vec3) { return 0; }));
     d.supports[0].nodes = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; });
     d.markers.clear();
     const auto model = Model::create(std::move(d));
@@ -447,7 +423,7 @@ TEST_CASE("with friction the same length needs more tension when pulling, and le
 TEST_CASE("rounding forces on an unloaded body count as balance, a load of a nanonewton does not") {
     for (const int order : {1, 2}) {
         Description d = bar(order);
-        const auto tip = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; });
+        const auto tip = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * bar_side - 1e-9; });
         d.loads = {{"tip", tip, std::vector<double>(tip.size(), 1.0 / static_cast<double>(tip.size())), {0, 0, 1e-9}}};
         const auto model = Model::create(std::move(d));
         REQUIRE(model);
@@ -462,9 +438,9 @@ TEST_CASE("rounding forces on an unloaded body count as balance, a load of a nan
 
 TEST_CASE("target shapes without stiffness stop after one attempt's iterations") {
     Description d = bar(1, material::ShapeBlend{1e6, 1e-9});
-    const auto end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; });
+    const auto end = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * bar_side - 1e-9; });
     d.supports.push_back({"end", end, {0, 0, 0}});
-    d.supports.back().turn = {std::numbers::pi / 2, {1, 0, 0}, {0, side / 2, side / 2}};
+    d.supports.back().turn = {std::numbers::pi / 2, {1, 0, 0}, {0, bar_side / 2, bar_side / 2}};
     const Trajectory result = solve(d, {.steps = 3});
     REQUIRE_FALSE(result.converged);
     const auto before_the_last_attempt = [&](const IterationRecord& record) {

@@ -14,7 +14,7 @@ using namespace pliant::sim;
 
 namespace {
 
-constexpr double E = 1e6, length = 0.1, width = 0.008, depth = 0.005;
+constexpr double column_modulus = 1e6, column_length = 0.1, column_width = 0.008, column_depth = 0.005;
 
 /// A box and its mirror image in its face z = 0, as one mesh: an unsymmetric mesh would bend by itself.
 mesh::TetMesh mirrored(const mesh::TetMesh& half) {
@@ -36,13 +36,13 @@ mesh::TetMesh mirrored(const mesh::TetMesh& half) {
 /// A straight cantilever along x, thin in z, that a dead load presses along its axis. Program time 1 is `load_N`.
 Description column(double load_N) {
     Description d;
-    d.mesh =
-        mesh::to_quadratic(mirrored(reference::kuhn_box({length, width, depth / 2}, 24, 1, 1, [](Vec3) { return 0; })));
+    d.mesh = mesh::to_quadratic(mirrored(
+        reference::kuhn_box({column_length, column_width, column_depth / 2}, 24, 1, 1, [](Vec3) { return 0; })));
     d.mesh.region_names = {"column"};
-    d.materials = {{"A", material::neo_hookean(E, 0.3), 1000}};
+    d.materials = {{"A", material::neo_hookean(column_modulus, 0.3), 1000}};
     d.material_of_region = {0};
     d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
-    const std::vector<int> tip = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > length - 1e-9; });
+    const std::vector<int> tip = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > column_length - 1e-9; });
     Load load{"press", tip, std::vector<double>(tip.size(), 1.0 / static_cast<double>(tip.size())), {-load_N, 0, 0}};
     d.loads = {load};
     d.markers = {{"tip", reference::mean_of(tip)}};
@@ -51,8 +51,8 @@ Description column(double load_N) {
 
 /// Euler's, of a column that is clamped at one end and free at the other.
 double critical_load() {
-    const double I = width * depth * depth * depth / 12;
-    return std::numbers::pi * std::numbers::pi * E * I / (4 * length * length);
+    const double I = column_width * column_depth * column_depth * column_depth / 12;
+    return std::numbers::pi * std::numbers::pi * column_modulus * I / (4 * column_length * column_length);
 }
 
 std::string said(const Trajectory& result) {
@@ -110,7 +110,7 @@ TEST_CASE("with an imperfection the column buckles sideways as far as the elasti
     REQUIRE_MESSAGE(result.converged, said(result));
     CHECK_MESSAGE(warns(result, "led to a stable one"), said(result));
     const Vec3 tip = result.steps.back().markers[0].position_m;
-    const double aside = std::fabs(tip.z) / length;
+    const double aside = std::fabs(tip.z) / column_length;
     CHECK_MESSAGE(aside == near(0.593, {.relative = 0.05}), aside);
 }
 
@@ -123,7 +123,7 @@ TEST_CASE("a column shortened by a guided cable along its axis is not reported a
     const Attacher attacher(d.mesh);
     Cable cable{"cable", {}, {CableTarget::Kind::length_ratio, 0.97}};
     for (int k = 0; k <= 10; ++k)
-        cable.points.push_back(*attacher.carried_by_tet({k * length / 10, width / 2, 0}, 1e-6));
+        cable.points.push_back(*attacher.carried_by_tet({k * column_length / 10, column_width / 2, 0}, 1e-6));
     d.cables = {cable};
     Program program;
     program.steps = 6;
@@ -142,7 +142,7 @@ TEST_CASE("an arch that snaps through under a load is reported; one driven by a 
     const auto ends = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9 || p.x > 0.1 - 1e-9; });
     const auto top = reference::nodes_where(d.mesh, [](Vec3 p) { return std::fabs(p.x - 0.05) < 1e-9; });
     for (Vec3& p : d.mesh.points) p = raised(p);
-    d.materials = {{"A", material::neo_hookean(E, 0.3), 1000}};
+    d.materials = {{"A", material::neo_hookean(column_modulus, 0.3), 1000}};
     d.material_of_region = {0};
     d.supports = {{"ends", ends, {}}};
     d.markers = {{"top", reference::mean_of(top)}};

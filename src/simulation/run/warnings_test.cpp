@@ -11,11 +11,10 @@
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::mm;
 using testing::solve;
 
 namespace {
-
-constexpr double mm = 1e-3;
 
 /// A fork along x: two prongs of 2 x 2 mm, 2 mm apart, from 4 to 16 mm. The end of the upper one is pushed down by
 /// `push_m`; nothing pushes the lower one.

@@ -6,7 +6,7 @@ namespace pliant::robot {
 namespace {
 
 template <class List>
-std::size_t index_of(const List& list, const std::string& name) {
+std::size_t index_of_known(const List& list, const std::string& name) {
     return static_cast<std::size_t>(std::ranges::find_if(list, [&](const auto& entry) { return entry.name == name; }) -
                                     list.begin());
 }
@@ -19,9 +19,9 @@ sim::Goal tied(const Robot& robot, const sim::Model& model, const GoalSpec& spec
     goal.tolerance = spec.tolerance;
     goal.weight = spec.weight;
     for (const std::string& marker : spec.markers)
-        goal.markers.push_back(index_of(model.description().markers, marker));
-    if (spec.kind == GoalSpec::Kind::contact_force) goal.on = index_of(robot.obstacles, spec.on);
-    if (spec.kind == GoalSpec::Kind::support_force) goal.on = index_of(robot.fixed, spec.on);
+        goal.markers.push_back(index_of_known(model.description().markers, marker));
+    if (spec.kind == GoalSpec::Kind::contact_force) goal.on = index_of_known(robot.obstacles, spec.on);
+    if (spec.kind == GoalSpec::Kind::support_force) goal.on = index_of_known(robot.fixed, spec.on);
     goal.wanted = spec.wanted;
     for (std::vector<Vec3>& at : goal.wanted) {
         if (spec.kind == GoalSpec::Kind::plane) at[0] = robot.unit_m * at[0];

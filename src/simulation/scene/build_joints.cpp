@@ -50,19 +50,6 @@ End end_of_object(const ModelDraft& draft, std::size_t object, const Vec3& point
     return end;
 }
 
-double mean_edge(const mesh::TetMesh& mesh) {
-    double sum = 0;
-    std::size_t count = 0;
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-        for (const auto& [a, b] : mesh::edge_corners) {
-            sum += norm(mesh.points[static_cast<std::size_t>(mesh.tet(t)[static_cast<std::size_t>(a)])] -
-                        mesh.points[static_cast<std::size_t>(mesh.tet(t)[static_cast<std::size_t>(b)])]);
-            ++count;
-        }
-    }
-    return count > 0 ? sum / static_cast<double>(count) : 0;
-}
-
 /// The tets of one body only.
 mesh::TetMesh body_alone(const ModelDraft& draft, std::size_t body) {
     const mesh::TetMesh& all = draft.bodies;

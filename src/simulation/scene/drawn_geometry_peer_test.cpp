@@ -14,7 +14,7 @@ using namespace pliant::robot::testing;
 
 namespace {
 
-const std::string head = R"(name = "drawn"
+const std::string drawn_head = R"(name = "drawn"
 length_unit = "mm"
 [material.soft]
 youngs_modulus = "1 MPa"
@@ -30,7 +30,7 @@ steps = 4
 tolerance = 1e-7
 )";
 
-std::string body(const std::string& geometry) {
+std::string drawn_body(const std::string& geometry) {
     return "[[body]]\nname = \"it\"\nmaterial = \"soft\"\ngeometry = " + geometry + "\n";
 }
 
@@ -59,10 +59,11 @@ constexpr double same = 1e-5, same_chamber = 1e-3;
 }  // namespace
 
 TEST_CASE("a closed cavity named by a point inflates the same as in CalculiX") {
-    check_same(head +
-                   body("{ difference = [{ box = [[0, 0, 0], [40, 12, 12]] }, { box = [[6, 3, 3], [36, 9, 10]] }] }") +
-                   "[[chamber]]\nname = \"air\"\ninside = [20, 6, 6]\ntarget = { pressure = \"50 kPa\" }\n",
-               same_chamber);
+    check_same(
+        drawn_head +
+            drawn_body("{ difference = [{ box = [[0, 0, 0], [40, 12, 12]] }, { box = [[6, 3, 3], [36, 9, 10]] }] }") +
+            "[[chamber]]\nname = \"air\"\ninside = [20, 6, 6]\ntarget = { pressure = \"50 kPa\" }\n",
+        same_chamber);
 }
 
 TEST_CASE("a notched bar bends the same as in CalculiX under a cable across its notches") {
@@ -70,7 +71,7 @@ TEST_CASE("a notched bar bends the same as in CalculiX under a cable across its 
         "{ repeat = 3, step = [10, 0, 0], of = { prism = [[9.8, 6], [10.2, 6], [12, 12], [8, 12]], plane = \"xz\", "
         "from = "
         "0, to = 12 } }";
-    check_same(head + body("{ difference = [{ box = [[0, 0, 0], [40, 12, 12]] }, " + notches + "] }") +
+    check_same(drawn_head + drawn_body("{ difference = [{ box = [[0, 0, 0], [40, 12, 12]] }, " + notches + "] }") +
                    "[[cable]]\nname = \"flexor\"\npoints = [[38, 6, 10], [2, 6, 10]]\neyelet_radius = \"0 mm\"\n"
                    "target = { tension = \"1.5 N\" }\n"
                    // The flanks of the notches would meet, and CalculiX's deck has no contact.

@@ -9,13 +9,13 @@
 #include "simulation/scene/test_run.hpp"
 
 using namespace pliant;
+using robot::testing::g;
+using robot::testing::run_text;
 
 namespace {
 
-constexpr double g = 9.81;
-
 /// A small clamped cube far away, a fluid, and an object in it.
-std::string world(const std::string& fluid, const std::string& object, const std::string& program) {
+std::string fluid_world(const std::string& fluid, const std::string& object, const std::string& program) {
     return R"(
 name = "fluid"
 length_unit = "mm"
@@ -67,38 +67,34 @@ point = [15, 15, 0]
            fluid + "\n[program]\n" + program;
 }
 
-sim::Trajectory run(const std::string& text) {
-    return robot::testing::run_to_the_end(robot::testing::build(robot::parse_robot(text, "fluid.toml")));
-}
-
 const std::string down = "gravity = [0, 0, -9.81]\n";
 
 }  // namespace
 
 TEST_CASE("a floating block displaces water of its weight, at equilibrium and in dynamics") {
     // 600/1000 of 20 mm; pressed together by a thousandth of that by the water.
-    const sim::Trajectory still = run(block("density = \"1000 kg/m^3\"\nlevel = 10\n", "steps = 5\n" + down));
+    const sim::Trajectory still = run_text(block("density = \"1000 kg/m^3\"\nlevel = 10\n", "steps = 5\n" + down));
     const auto middle = [](const sim::Step& step) {
         return 0.5 * (step.markers[0].position_m.z + step.markers[1].position_m.z);
     };
     CHECK(middle(still.steps.back()) == near(10e-3 + 10e-3 - 12e-3, {.absolute = 0.05e-3}));
     const sim::Trajectory floats =
-        run(world("density = \"1000 kg/m^3\"\nlevel = 10\ndrag_normal = 1\n",
-                  "geometry = { box = [[0, 0, 0], [30, 30, 20]] }\ndensity = \"600 kg/m^3\"\n",
-                  "duration = \"2 s\"\ntime_step = \"10 ms\"\nmass_damping = 10\n" + down));
+        run_text(fluid_world("density = \"1000 kg/m^3\"\nlevel = 10\ndrag_normal = 1\n",
+                             "geometry = { box = [[0, 0, 0], [30, 30, 20]] }\ndensity = \"600 kg/m^3\"\n",
+                             "duration = \"2 s\"\ntime_step = \"10 ms\"\nmass_damping = 10\n" + down));
     CHECK(floats.steps.back().objects[0].position_m.z == near(8e-3, {.absolute = 0.01e-3}));
     CHECK(floats.steps.back().kinetic_energy_J < 1e-9);
 }
 
 TEST_CASE("an object lighter than the displaced fluid rises, and a held one pulls with the difference") {
-    const sim::Trajectory hangs = run(world(
+    const sim::Trajectory hangs = run_text(fluid_world(
         "density = \"1000 kg/m^3\"\n", "geometry = { sphere = { center = [0, 0, 0], radius = 10 } }\nmass = \"1 g\"\n",
         "duration = \"0.02 s\"\ntime_step = \"1 ms\"\n" + down));
     // Its volume is that of the polyhedron, less than the ball's.
     const double T = 0.02, volume = 4.0 / 3 * std::numbers::pi * 1e-6;
     const double rise = 0.5 * (1000 * volume - 1e-3) * g / 1e-3 * T * T;
     CHECK(hangs.steps.back().objects[0].position_m.z == near(rise, {.relative = 0.01}));
-    const sim::Trajectory held = run(R"(
+    const sim::Trajectory held = run_text(R"(
 name = "held"
 length_unit = "mm"
 [material.foam]
@@ -126,9 +122,9 @@ steps = 2
 TEST_CASE("a ball and a plate sink with the speed that the drag law gives") {
     const double radius = 10e-3, drag = 0.5;
     const sim::Trajectory ball =
-        run(world(fmt::format("density = \"1000 kg/m^3\"\ndrag_normal = {}\n", drag),
-                  "geometry = { sphere = { center = [0, 0, 0], radius = 10 } }\ndensity = \"2000 kg/m^3\"\n",
-                  "duration = \"2 s\"\ntime_step = \"10 ms\"\n" + down));
+        run_text(fluid_world(fmt::format("density = \"1000 kg/m^3\"\ndrag_normal = {}\n", drag),
+                             "geometry = { sphere = { center = [0, 0, 0], radius = 10 } }\ndensity = \"2000 kg/m^3\"\n",
+                             "duration = \"2 s\"\ntime_step = \"10 ms\"\n" + down));
     const auto speed = [](const sim::Trajectory& result) {
         const std::size_t n = result.steps.size() - 1;
         return (result.steps[n - 1].objects[0].position_m.z - result.steps[n].objects[0].position_m.z) / 0.01;
@@ -137,26 +133,26 @@ TEST_CASE("a ball and a plate sink with the speed that the drag law gives") {
     const double v = std::sqrt(1000 * 4.0 / 3 * radius * g / (0.5 * 1000 * drag));
     CHECK(speed(ball) == near(v, {.relative = 0.01}));
     const sim::Trajectory plate =
-        run(world("density = \"1000 kg/m^3\"\ndrag_normal = 0.9\n",
-                  "geometry = { box = [[0, 0, 0], [40, 40, 4]] }\ndensity = \"2000 kg/m^3\"\n",
-                  "duration = \"2 s\"\ntime_step = \"10 ms\"\n" + down));
+        run_text(fluid_world("density = \"1000 kg/m^3\"\ndrag_normal = 0.9\n",
+                             "geometry = { box = [[0, 0, 0], [40, 40, 4]] }\ndensity = \"2000 kg/m^3\"\n",
+                             "duration = \"2 s\"\ntime_step = \"10 ms\"\n" + down));
     CHECK(speed(plate) == near(std::sqrt(1000 * 4e-3 * g / (0.5 * 1000 * 2 * 0.9)), {.relative = 0.005}));
 }
 
 TEST_CASE("a current carries bodies, and skin friction slows what slides edge-on") {
     const sim::Trajectory carried =
-        run(world("density = \"1000 kg/m^3\"\ndrag_normal = 2\ncurrent = [0.3, 0, 0]\n",
-                  "geometry = { box = [[0, 0, 0], [20, 20, 20]] }\ndensity = \"1000 kg/m^3\"\n",
-                  "duration = \"4 s\"\ntime_step = \"20 ms\"\n"));
+        run_text(fluid_world("density = \"1000 kg/m^3\"\ndrag_normal = 2\ncurrent = [0.3, 0, 0]\n",
+                             "geometry = { box = [[0, 0, 0], [20, 20, 20]] }\ndensity = \"1000 kg/m^3\"\n",
+                             "duration = \"4 s\"\ntime_step = \"20 ms\"\n"));
     const std::size_t n = carried.steps.size() - 1;
     const double v = (carried.steps[n].objects[0].position_m.x - carried.steps[n - 1].objects[0].position_m.x) / 0.02;
     // v' = k (0.3 - v)^2, k = rho c A / m: 1/(0.3 - v) grows by k t.
     const double k = 2.0 * 1000 * 4e-4 / 8e-3;
     CHECK(0.3 - v == near(1 / (1 / 0.3 + k * 3.99), {.relative = 0.05}));
-    const sim::Trajectory slides =
-        run(world("density = \"1000 kg/m^3\"\ndrag_tangential = 0.1\n",
-                  "geometry = { box = [[0, 0, 0], [40, 40, 2]] }\ndensity = \"1000 kg/m^3\"\nvelocity = [1, 0, 0]\n",
-                  "duration = \"0.2 s\"\ntime_step = \"1 ms\"\n"));
+    const sim::Trajectory slides = run_text(
+        fluid_world("density = \"1000 kg/m^3\"\ndrag_tangential = 0.1\n",
+                    "geometry = { box = [[0, 0, 0], [40, 40, 2]] }\ndensity = \"1000 kg/m^3\"\nvelocity = [1, 0, 0]\n",
+                    "duration = \"0.2 s\"\ntime_step = \"1 ms\"\n"));
     // m v' = -rho/2 c A v^2 with both faces and both edges along it: x = ln(1 + k t)/k.
     const double q = 0.5 * 1000 * 0.1 * (2 * 16e-4 + 2 * 0.8e-4) / 3.2e-3;
     CHECK(slides.steps.back().objects[0].position_m.x - 0.02 == near(std::log(1 + q * 0.2) / q, {.relative = 0.005}));
@@ -165,7 +161,7 @@ TEST_CASE("a current carries bodies, and skin friction slows what slides edge-on
 TEST_CASE("a fluid at rest never adds energy to a soft body, with large steps and both integrators") {
     for (const char* integrator : {"bdf2", "energy-conserving"}) {
         for (const double step : {0.002, 0.02}) {
-            const sim::Trajectory result = run(
+            const sim::Trajectory result = run_text(
                 block("density = \"1000 kg/m^3\"\ndrag_normal = 5\ndrag_tangential = 0.5\nlevel = 40\n",
                       fmt::format("duration = \"0.4 s\"\ntime_step = \"{} s\"\nintegrator = \"{}\"\ntolerance = 1e-6\n",
                                   step, integrator) +

@@ -15,10 +15,9 @@
 #include "simulation/stepper/state_file.hpp"
 
 using namespace pliant;
+using robot::testing::g;
 
 namespace {
-
-constexpr double g = 9.81;
 
 /// A small clamped cube, which takes no part, and additions of the test; the ground is z = 0.
 std::string world(const std::string& more, const std::string& program, double distance_mm = 0.2) {
@@ -43,7 +42,7 @@ plane = { point = [0, 0, 10], normal = [0, 0, 1] }
            more + "\n[program]\n" + program;
 }
 
-struct Run {
+struct FreeRun {
     robot::testing::Built built;
     sim::Trajectory result;
     [[nodiscard]] const sim::ObjectState& object(std::size_t step, std::size_t k = 0) const {
@@ -52,7 +51,7 @@ struct Run {
     [[nodiscard]] const sim::ObjectState& last(std::size_t k = 0) const { return object(result.steps.size() - 1, k); }
 };
 
-Run run(const std::string& text) {
+FreeRun run_free(const std::string& text) {
     auto built = robot::testing::build(robot::parse_robot(text, "free.toml"));
     sim::Trajectory result = robot::testing::run_to_the_end(built);
     return {std::move(built), std::move(result)};
@@ -73,8 +72,8 @@ std::string tilted(double angle, double duration_s, double step_s) {
 
 TEST_CASE("a thrown block falls on a parabola and keeps its spin") {
     const double v = 1, spin = 20, T = 0.2;
-    const Run r =
-        run(world(fmt::format(R"(
+    const FreeRun r =
+        run_free(world(fmt::format(R"(
 [[object]]
 name = "block"
 geometry = {{ box = [[0, 0, 400], [20, 20, 420]] }}
@@ -82,8 +81,8 @@ density = "1000 kg/m^3"
 velocity = [{}, 0, 1]
 angular_velocity = [0, 0, {}]
 )",
-                              v, spin),
-                  fmt::format("duration = \"{} s\"\ntime_step = \"0.002 s\"\ngravity = [0, 0, {}]\n", T, -g)));
+                                   v, spin),
+                       fmt::format("duration = \"{} s\"\ntime_step = \"0.002 s\"\ngravity = [0, 0, {}]\n", T, -g)));
     const sim::ObjectState& end = r.last();
     CHECK(r.built.model.description().objects[0].mass_kg == near(8e-3, {.relative = 1e-9}));
     CHECK(end.position_m.x == near(0.01 + v * T, {.relative = 1e-4}));
@@ -95,13 +94,13 @@ angular_velocity = [0, 0, {}]
 
 TEST_CASE("a rolling ball accelerates down a slope with five sevenths of a sliding block's acceleration") {
     const double angle = 0.1, T = 0.3, radius = 10e-3;
-    const Run r = run(world(slope(0.8) + R"(
+    const FreeRun r = run_free(world(slope(0.8) + R"(
 [[object]]
 name = "ball"
 geometry = { sphere = { center = [0, 0, 10], radius = 10 } }
 density = "1000 kg/m^3"
 )",
-                            tilted(angle, T, 0.002), 0.05));
+                                     tilted(angle, T, 0.002), 0.05));
     const double way = 0.5 * 5.0 / 7 * g * std::sin(angle) * T * T;
     const Vec3 from = r.object(0).position_m, to = r.last().position_m;
     MESSAGE("rolled ", to.x - from.x, " m, wanted ", way);
@@ -114,13 +113,13 @@ density = "1000 kg/m^3"
 TEST_CASE("a block on a slope rests below the friction angle, and slides above it") {
     const double angle = 0.3;
     const auto slid = [&](double friction, double T) {
-        const Run r = run(world(slope(friction) + R"(
+        const FreeRun r = run_free(world(slope(friction) + R"(
 [[object]]
 name = "block"
 geometry = { box = [[0, 0, 0], [20, 20, 10]] }
 density = "1000 kg/m^3"
 )",
-                                tilted(angle, T, 0.005)));
+                                         tilted(angle, T, 0.005)));
         return r.last().position_m.x - r.object(r.result.steps.size() / 2).position_m.x;
     };
     CHECK(std::abs(slid(1.01 * std::tan(angle), 1)) < 2e-6);  // as much as counts as sticking
@@ -134,15 +133,15 @@ density = "1000 kg/m^3"
 
 TEST_CASE("a sliding block stops where friction has used up its energy, and stays there") {
     const double v = 0.3, friction = 0.4;
-    const Run r = run(world(slope(friction) + fmt::format(R"(
+    const FreeRun r = run_free(world(slope(friction) + fmt::format(R"(
 [[object]]
 name = "block"
 geometry = {{ box = [[0, 0, 0], [20, 20, 6]] }}
 density = "1000 kg/m^3"
 velocity = [{}, 0, 0]
 )",
-                                                          v),
-                            tilted(0, 0.3, 0.001)));
+                                                                   v),
+                                     tilted(0, 0.3, 0.001)));
     const double way = v * v / (2 * friction * g);
     MESSAGE("slid ", r.last().position_m.x - 0.01, " m, wanted ", way);
     CHECK(r.last().position_m.x - 0.01 == near(way, {.relative = 0.01}));
@@ -151,7 +150,7 @@ velocity = [{}, 0, 0]
 
 TEST_CASE("an object carries what stands on it, and pushed objects push back") {
     // Two blocks on each other under gravity come to rest; the lower one carries both.
-    const Run r = run(world(slope(0.5) + R"(
+    const FreeRun r = run_free(world(slope(0.5) + R"(
 [[object]]
 name = "lower"
 geometry = { box = [[0, 0, 0.02], [20, 20, 10]] }
@@ -162,7 +161,7 @@ name = "upper"
 geometry = { box = [[3, 3, 10.1], [17, 17, 20]] }
 mass = "5 g"
 )",
-                            tilted(0, 0.3, 0.005)));
+                                     tilted(0, 0.3, 0.005)));
     CHECK(r.last(0).position_m.z == near(5e-3, {.absolute = 0.1e-3}));
     CHECK(r.last(1).position_m.z == near(15e-3, {.absolute = 0.3e-3}));
     CHECK(r.last(1).force_N.z == near(5e-3 * g, {.relative = 0.01}));
@@ -173,7 +172,7 @@ mass = "5 g"
 TEST_CASE("the energy of a bouncing, tumbling and sliding block only falls") {
     const char* wanted = std::getenv("PLIANT_BOUNCING_STEPS");
     const std::size_t steps = wanted != nullptr ? std::strtoul(wanted, nullptr, 10) : 400;
-    const Run r = run(world(slope(0.3) + R"(
+    const FreeRun r = run_free(world(slope(0.3) + R"(
 [[object]]
 name = "block"
 geometry = { box = [[0, 0, 30], [20, 14, 40]] }
@@ -181,7 +180,7 @@ density = "1000 kg/m^3"
 velocity = [0.5, 0.1, 0]
 angular_velocity = [3, -8, 2]
 )",
-                            tilted(0, 1e-3 * static_cast<double>(steps), 0.001)));
+                                     tilted(0, 1e-3 * static_cast<double>(steps), 0.001)));
     const auto energy = [&](std::size_t k) { return r.result.steps[k].energy_J + r.result.steps[k].kinetic_energy_J; };
     const double scale = 2.8e-3 * g * 30e-3;
     // BDF2 dissipates too much in the step of an impact, and returns it in those after it: the test is that energy
@@ -231,7 +230,8 @@ box = [[-1, -1, -1], [21, 21, 30]]
 }  // namespace
 
 TEST_CASE("a free soft body falls, lands and comes to rest in dynamics") {
-    const Run r = run(soft_cube(5, "duration = \"0.4 s\"\ntime_step = \"0.002 s\"\ngravity = [0, 0, -9.81]\n"));
+    const FreeRun r =
+        run_free(soft_cube(5, "duration = \"0.4 s\"\ntime_step = \"0.002 s\"\ngravity = [0, 0, -9.81]\n"));
     const auto height = [&](std::size_t k) { return r.result.steps[k].markers[0].position_m.z; };
     const double T = 0.03;  // before it lands after 0.032 s
     CHECK(height(0) - height(15) == near(0.5 * g * T * T, {.relative = 0.05}));
@@ -241,7 +241,7 @@ TEST_CASE("a free soft body falls, lands and comes to rest in dynamics") {
 }
 
 TEST_CASE("at equilibrium the ground carries a free body, and friction holds it on a slope") {
-    const Run r = run(soft_cube(0, "steps = 5\ngravity = [0.2, 0, -9.81]\n"));
+    const FreeRun r = run_free(soft_cube(0, "steps = 5\ngravity = [0.2, 0, -9.81]\n"));
     const Vec3 force = r.result.steps.back().contacts[0].force_N;
     CHECK(force.z == near(8e-3 * g, {.relative = 1e-3}));
     CHECK(force.x == near(-8e-3 * 0.2, {.relative = 1e-2}));
@@ -249,13 +249,13 @@ TEST_CASE("at equilibrium the ground carries a free body, and friction holds it 
     CHECK(std::ranges::any_of(r.result.warnings,
                               [](const std::string& w) { return w.starts_with("no support holds 1 piece"); }));
     // From above it comes down.
-    const Run above = run(soft_cube(2, "steps = 2\ngravity = [0, 0, -9.81]\n"));
+    const FreeRun above = run_free(soft_cube(2, "steps = 2\ngravity = [0, 0, -9.81]\n"));
     CHECK(above.result.steps.back().markers[0].position_m.z == near(10e-3, {.absolute = 0.2e-3}));
 }
 
 TEST_CASE("a point mass pulls as a load of its weight does") {
     const auto tip = [](const std::string& more, const std::string& program) {
-        const Run r = run(R"(
+        const FreeRun r = run_free(R"(
 name = "beam"
 length_unit = "mm"
 material.rubber = { youngs_modulus = "1 MPa", poisson_ratio = 0.4, density = "1 kg/m^3" }
@@ -264,7 +264,7 @@ mesh = { size = "10 mm" }
 fixed = [{ name = "clamp", plane = { point = [0, 0, 0], normal = [1, 0, 0] } }]
 marker = [{ name = "tip", point = [60, 5, 5] }]
 )" + more + "\n[program]\nsteps = 2\n" +
-                          program);
+                                   program);
         return r.result.steps.back().markers[0].position_m.z;
     };
     const double hung =

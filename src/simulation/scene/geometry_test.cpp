@@ -63,14 +63,6 @@ std::string cable(const std::string& name, const std::string& points, const std:
         name, points, rest);
 }
 
-Built built_of(const std::string& text) {
-    return build(parse_robot(text, "bar.toml"));
-}
-
-sim::Step last_step(const Built& built) {
-    return run_to_the_end(built).steps.back();
-}
-
 double volume_mm3(const mesh::TetMesh& mesh, int region) {
     return 1e9 * mesh::volume(mesh, region);
 }
@@ -136,7 +128,7 @@ void write_3mf(const std::string& path) {
 
 TEST_CASE("notches that a cable crosses are filled on request, as if the gaps were drawn") {
     const std::string path = "[[0, 5, 9], [40, 5, 9]]";
-    const Built filled = built_of(notched(cable("flexor", path, "fill_notches = true")));
+    const Built filled = build_text(notched(cable("flexor", path, "fill_notches = true")));
     REQUIRE(filled.robot.gaps.size() == 1);
     const mesh::TetMesh& mesh = filled.model.mesh();
     REQUIRE(mesh.region_names.size() == 3);  // the bar and one region for each notch
@@ -149,7 +141,7 @@ TEST_CASE("notches that a cable crosses are filled on request, as if the gaps we
     CHECK(filled.model.description().growths[0].material != filled.model.description().growths[1].material);
 
     const Built drawn =
-        built_of(notched(cable("flexor", path, "") + "[[gap]]\nname = \"drawn\"\ngeometry = " + two_notches + "\n"));
+        build_text(notched(cable("flexor", path, "") + "[[gap]]\nname = \"drawn\"\ngeometry = " + two_notches + "\n"));
     const sim::Step with_filled = last_step(filled);
     const sim::Step with_drawn = last_step(drawn);
     CHECK(with_filled.cables[0].length_ratio == near(0.96, {.relative = 1e-3}));
@@ -164,8 +156,8 @@ TEST_CASE("notches that a cable crosses are filled on request, as if the gaps we
 }
 
 TEST_CASE("two cables share the notches that both cross, and each closes them along its own path") {
-    const Built built = built_of(notched(cable("left", "[[0, 3, 9], [40, 3, 9]]", "fill_notches = true") +
-                                         cable("right", "[[0, 7, 9], [22, 7, 9]]", "fill_notches = true")));
+    const Built built = build_text(notched(cable("left", "[[0, 3, 9], [40, 3, 9]]", "fill_notches = true") +
+                                           cable("right", "[[0, 7, 9], [22, 7, 9]]", "fill_notches = true")));
     CHECK(built.model.mesh().region_names.size() == 3);
     const auto& growths = built.model.description().growths;
     REQUIRE(growths.size() == 3);
@@ -176,11 +168,12 @@ TEST_CASE("two cables share the notches that both cross, and each closes them al
 TEST_CASE("gap elements take the weight of their gap, otherwise that of their cable") {
     const std::string path = "[[0, 5, 9], [40, 5, 9]]";
     const auto weight_Pa = [](const Built& built) { return built.model.description().growths.front().weight_Pa; };
-    const double usual = weight_Pa(built_of(notched(cable("flexor", path, "fill_notches = true"))));
-    const double twice = weight_Pa(built_of(notched(cable("flexor", path, "fill_notches = true\nweight = 0.2"))));
+    const double usual = weight_Pa(build_text(notched(cable("flexor", path, "fill_notches = true"))));
+    const double twice = weight_Pa(build_text(notched(cable("flexor", path, "fill_notches = true\nweight = 0.2"))));
     CHECK(twice == near(2 * usual, {.relative = 1e-12}));
     const std::string gap = "[[gap]]\nname = \"drawn\"\ngeometry = " + two_notches + "\n";
-    const double of_gap = weight_Pa(built_of(notched(cable("flexor", path, "weight = 0.2") + gap + "weight = 0.4\n")));
+    const double of_gap =
+        weight_Pa(build_text(notched(cable("flexor", path, "weight = 0.2") + gap + "weight = 0.4\n")));
     CHECK(of_gap == near(4 * usual, {.relative = 1e-12}));
     check_problem(notched(cable("flexor", path, "fill_notches = true\nweight = 0")), "above 0 and at most 1000");
     check_problem(notched(cable("flexor", path, "fill_notches = true\nfriction = 0.1")), "has no guides");
@@ -197,7 +190,7 @@ TEST_CASE("air elements bend a robot nearly as far as air does; their weight is 
                rest + "[[marker]]\nname = \"tip\"\npoint = [30, 5, 5]\n[program]\nsteps = 3\n";
     };
     const auto tip = [&](const std::string& rest) {
-        const sim::Step step = last_step(built_of(hollow(rest)));
+        const sim::Step step = last_step(build_text(hollow(rest)));
         CHECK(step.chambers[0].volume_ratio == near(1.3, {.relative = 1e-4}));
         return step.markers[0].position_m - Vec3{30e-3, 5e-3, 5e-3};
     };
@@ -228,7 +221,7 @@ TEST_CASE("materials of a 3MF file become bodies with a common face, in the file
     write_3mf(path);
     const std::string geometry = "geometry = \"" + path + "\"\n";
     const Built built =
-        built_of(head + body("root", geometry + "part = \"firm\"") + body("tip", geometry + "part = \"tip\""));
+        build_text(head + body("root", geometry + "part = \"firm\"") + body("tip", geometry + "part = \"tip\""));
     CHECK(volume_mm3(built.model.mesh(), 0) == near(1000, {.relative = 1e-12}));
     CHECK(volume_mm3(built.model.mesh(), 1) == near(1000, {.relative = 1e-12}));
     CHECK(shared_nodes(built.model.mesh(), 0, 1) >= 9);
@@ -257,7 +250,7 @@ TEST_CASE("a body from STEP touches an STL body and a drawn one; a drawn chamber
     const std::string chamber =
         "[[chamber]]\nname = \"air\"\ngeometry = { box = [[15, 3, 3], [25, 7, 7]] }\ntarget = { volume_ratio = 1.1 }\n";
     for (const std::string& tip : {drawn_tip, "geometry = \"" + folder.file("tip.stl") + "\""}) {
-        const Built built = built_of(head + root + body("tip", tip) + chamber);
+        const Built built = build_text(head + root + body("tip", tip) + chamber);
         CHECK(volume_mm3(built.model.mesh(), 0) == near(2000 - 80, {.relative = 1e-12}));
         CHECK(volume_mm3(built.model.mesh(), 1) == near(2000 - 80, {.relative = 1e-12}));
         CHECK(shared_nodes(built.model.mesh(), 0, 1) >= 8);

@@ -17,7 +17,7 @@ using testing::check_problem;
 
 namespace {
 
-const std::string body = R"(name = "bar"
+const std::string robot_with_cable = R"(name = "bar"
 length_unit = "mm"
 [material.soft]
 youngs_modulus = "1 MPa"
@@ -53,9 +53,10 @@ const std::string reach = "[[goal]]\nname = \"reach\"\nmarker = \"tip\"\n";
 }  // namespace
 
 TEST_CASE("goals and ranges are converted to SI, and refer to markers and actuators") {
-    const auto built = testing::build(parse_robot(
-        body + reach + "path = [[38, 5, 9], [37, 5, 11]]\ntolerance = \"0.2 mm\"\nweight = 3\ntimes = [0.5, 1]\n",
-        "bar.toml"));
+    const auto built = testing::build(
+        parse_robot(robot_with_cable + reach +
+                        "path = [[38, 5, 9], [37, 5, 11]]\ntolerance = \"0.2 mm\"\nweight = 3\ntimes = [0.5, 1]\n",
+                    "bar.toml"));
     const auto task = build_goals(built.robot, built.model);
     REQUIRE_MESSAGE(task, (task ? "" : task.error().message));
     REQUIRE(task->goals.size() == 1);
@@ -75,49 +76,53 @@ TEST_CASE("goals and ranges are converted to SI, and refer to markers and actuat
 TEST_CASE("a path is read from a table, in the unit that its columns name") {
     const test::Folder folder("goals");
     std::ofstream(folder.path() / "path.csv") << "# drawn\ntime,x (cm),y (mm),z\n0.5,3.8,5,9\n1,3.7,5,11\n";
-    const auto robot = parse_robot(body + reach + "path = \"path.csv\"\n", folder.path() / "bar.toml");
+    const auto robot = parse_robot(robot_with_cable + reach + "path = \"path.csv\"\n", folder.path() / "bar.toml");
     REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
     REQUIRE(robot->goals[0].wanted.size() == 2);
     CHECK(robot->goals[0].wanted[0][0].x == near(38, {.relative = 1e-12}));
     CHECK(robot->goals[0].wanted[1][0].z == near(11, {.relative = 1e-12}));
     CHECK(robot->goals[0].times == std::vector<double>{0.5, 1});
     std::ofstream(folder.path() / "path.csv") << "x,y,z\n38,5,9\n37,,11\n";
-    const auto hole = parse_robot(body + reach + "path = \"path.csv\"\n", folder.path() / "bar.toml");
+    const auto hole = parse_robot(robot_with_cable + reach + "path = \"path.csv\"\n", folder.path() / "bar.toml");
     REQUIRE_FALSE(hole);
     CHECK(test::holds(hole.error().message, "path.csv:3"));
     CHECK(test::holds(hole.error().message, "bar.toml:"));
     std::ofstream(folder.path() / "path.csv") << "x,y\n38,5\n";
-    const auto flat = parse_robot(body + reach + "path = \"path.csv\"\n", folder.path() / "bar.toml");
+    const auto flat = parse_robot(robot_with_cable + reach + "path = \"path.csv\"\n", folder.path() / "bar.toml");
     REQUIRE_FALSE(flat);
     CHECK(test::holds(flat.error().message, "there is no column \"z\""));
 }
 
 TEST_CASE("mistakes in goals and ranges are named, with their line") {
-    check_problem(body + "[[goal]]\nname = \"a\"\nmarker = \"tipp\"\npoint = [1, 2, 3]\n",
+    check_problem(robot_with_cable + "[[goal]]\nname = \"a\"\nmarker = \"tipp\"\npoint = [1, 2, 3]\n",
                   "bar.toml:32: goal[0].marker: there is no marker \"tipp\"; there is \"tip\" and \"middle\"");
-    check_problem(test::replaced(body, "[0.8, 1.0]", "[1.0, 0.8]"), "range: is empty");
-    check_problem(test::replaced(body, "[0.8, 1.0]", "[0.8, 11]"), "range: is not possible");
-    check_problem(test::replaced(body, "rate = 0.05", "rate = 0"), "rate: must be above zero");
-    check_problem(test::replaced(body, "tension = 2", "tensoin = 2"), "tensoin");
-    check_problem(test::replaced(body, "range = [0.8, 1.0]\n", ""), "belongs to an actuator with a range");
-    const std::string unranged = test::replaced(body, "range = [0.8, 1.0]\nrate = 0.05\nprice = { tension = 2 }\n", "");
+    check_problem(test::replaced(robot_with_cable, "[0.8, 1.0]", "[1.0, 0.8]"), "range: is empty");
+    check_problem(test::replaced(robot_with_cable, "[0.8, 1.0]", "[0.8, 11]"), "range: is not possible");
+    check_problem(test::replaced(robot_with_cable, "rate = 0.05", "rate = 0"), "rate: must be above zero");
+    check_problem(test::replaced(robot_with_cable, "tension = 2", "tensoin = 2"), "tensoin");
+    check_problem(test::replaced(robot_with_cable, "range = [0.8, 1.0]\n", ""), "belongs to an actuator with a range");
+    const std::string unranged =
+        test::replaced(robot_with_cable, "range = [0.8, 1.0]\nrate = 0.05\nprice = { tension = 2 }\n", "");
     check_problem(unranged + reach + "point = [38, 5, 9]\n", "no actuator may move for it");
-    check_problem(body + reach, "has no target");
-    check_problem(body + reach + "point = [1, 2, 3]\ntolerance = \"0 mm\"\n", "tolerance: must be above zero");
-    check_problem(body + reach + "path = [[1, 2, 3], [2, 3, 4]]\n[[goal]]\nname = \"b\"\nmarker = \"middle\"\n" +
+    check_problem(robot_with_cable + reach, "has no target");
+    check_problem(robot_with_cable + reach + "point = [1, 2, 3]\ntolerance = \"0 mm\"\n",
+                  "tolerance: must be above zero");
+    check_problem(robot_with_cable + reach +
+                      "path = [[1, 2, 3], [2, 3, 4]]\n[[goal]]\nname = \"b\"\nmarker = \"middle\"\n" +
                       "path = [[1, 2, 3], [2, 3, 4], [3, 4, 5]]\n",
                   "they are reached together");
-    check_problem(body + reach + "point = [1, 2, 3]\ntimes = [1, 0.5]\n", "in their order");
-    check_problem(body + "[[goal]]\nname = \"a\"\nmarkers = [\"tip\"]\ndirection = [0, 0, 1]\n",
+    check_problem(robot_with_cable + reach + "point = [1, 2, 3]\ntimes = [1, 0.5]\n", "in their order");
+    check_problem(robot_with_cable + "[[goal]]\nname = \"a\"\nmarkers = [\"tip\"]\ndirection = [0, 0, 1]\n",
                   "from one marker to another");
-    check_problem(body + "[[goal]]\nname = \"a\"\nobstacle = \"ball\"\nforce = \"1 N\"\ntolerance = \"0.1 N\"\n",
-                  "there is no obstacle \"ball\"");
+    check_problem(
+        robot_with_cable + "[[goal]]\nname = \"a\"\nobstacle = \"ball\"\nforce = \"1 N\"\ntolerance = \"0.1 N\"\n",
+        "there is no obstacle \"ball\"");
 }
 
 TEST_CASE("a program of waypoints builds on the robot file and reaches its lengths") {
     const test::Folder folder("goals");
     const std::filesystem::path file = folder.path() / "bar.toml";
-    std::ofstream(file) << body;
+    std::ofstream(file) << robot_with_cable;
     const auto robot = load_robot(file, {"mesh.size=7 mm"});
     REQUIRE(robot);
     const auto text = program_text(*robot, file, {"mesh.size=7 mm"}, folder.path() / "out",

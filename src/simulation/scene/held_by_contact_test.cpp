@@ -10,14 +10,10 @@
 #include "simulation/scene/test_run.hpp"
 
 using namespace pliant;
+using robot::testing::g;
+using robot::testing::run_text;
 
 namespace {
-
-constexpr double g = 9.81;
-
-sim::Trajectory run(const std::string& text) {
-    return robot::testing::run_to_the_end(robot::testing::build(robot::parse_robot(text, "held.toml")));
-}
 
 /// Bodies of soft rubber on a ground.
 std::string on_ground(const std::string& bodies, double friction, const std::string& program) {
@@ -43,7 +39,7 @@ friction = {}
 )",
                        bodies, friction, program);
 }
-std::string cube(const std::string& name, double x_mm, double z_mm) {
+std::string cube_at(const std::string& name, double x_mm, double z_mm) {
     return fmt::format(
         "[[body]]\nname = \"{0}\"\nmaterial = \"rubber\"\ngeometry = {{ box = [[{1}, 0, {2}], [{3}, 20, {4}]] }}\n"
         "[[marker]]\nname = \"{0}\"\npoint = [{5}, 10, {6}]\n",
@@ -61,7 +57,7 @@ const std::string open_places = "at the end the equilibrium leaves open";
 }  // namespace
 
 TEST_CASE("a cube of 100 g held by three fingers creeps by less than 0.1 mm in 10 s") {
-    const sim::Trajectory t = run(R"(
+    const sim::Trajectory t = run_text(R"(
 name = "grip"
 length_unit = "mm"
 material.rubber = { youngs_modulus = "1 MPa", poisson_ratio = 0.45 }
@@ -92,16 +88,17 @@ key = [{ time = "0.3 s", left = 1, right = 1, table = 0 }, { time = "0.6 s", tab
 }
 
 TEST_CASE("several robots in one scene stand separately, and one that stands on another is carried by it") {
-    const sim::Trajectory beside = run(on_ground(cube("left", 0, 0) + cube("right", 30, 0), 0.5, still));
+    const sim::Trajectory beside = run_text(on_ground(cube_at("left", 0, 0) + cube_at("right", 30, 0), 0.5, still));
     const sim::Step& end = beside.steps.back();
     CHECK(end.contacts[0].force_N.z == near(16e-3 * g, {.relative = 1e-3}));
     CHECK(end.self_contact_N == 0);
     CHECK(end.markers[1].position_m.x - end.markers[0].position_m.x == near(30e-3, {.absolute = 1e-6}));
     CHECK(end.markers[0].position_m.z == near(end.markers[1].position_m.z, {.absolute = 1e-6}));
 
-    const sim::Trajectory stacked = run(on_ground(cube("lower", 0, 0) + cube("upper", 0, 20.5), 0.5,
-                                                  "duration = \"0.6 s\"\ntime_step = \"0.01 s\"\nmass_damping = 5\n"
-                                                  "stiffness_damping = 0.002\ngravity = [0, 0, -9.81]\n"));
+    const sim::Trajectory stacked =
+        run_text(on_ground(cube_at("lower", 0, 0) + cube_at("upper", 0, 20.5), 0.5,
+                           "duration = \"0.6 s\"\ntime_step = \"0.01 s\"\nmass_damping = 5\n"
+                           "stiffness_damping = 0.002\ngravity = [0, 0, -9.81]\n"));
     const sim::Step& last = stacked.steps.back();
     CHECK(last.contacts[0].force_N.z == near(16e-3 * g, {.relative = 0.01}));
     CHECK(last.self_contact_N == near(8e-3 * g, {.relative = 0.02}));  // the weight that the lower one carries
@@ -111,7 +108,7 @@ TEST_CASE("several robots in one scene stand separately, and one that stands on 
 
 TEST_CASE("motions not held by contact, friction and gravity are named in one line; none if all are held") {
     const auto open = [&](double friction, const std::string& more = "") {
-        return warning(run(on_ground(cube("cube", 0, 0) + more, friction, still)), open_places);
+        return warning(run_text(on_ground(cube_at("cube", 0, 0) + more, friction, still)), open_places);
     };
     CHECK(open(0.5) == "");
     const std::string smooth = open(0);

@@ -7,14 +7,18 @@
 #include <numbers>
 
 #include "base/core/near.hpp"
+#include "simulation/scene/test_beam.hpp"
 #include "simulation/scene/test_run.hpp"
 
 using namespace pliant;
+using robot::testing::beam_edge;
+using robot::testing::beam_length;
+using robot::testing::beam_modulus;
+using robot::testing::run_text;
 
 namespace {
 
-constexpr double length = 0.1, edge = 0.01, E = 1e6;
-constexpr double EI = E * edge * edge * edge * edge / 12;
+constexpr double bending_stiffness = beam_modulus * beam_edge * beam_edge * beam_edge * beam_edge / 12;
 
 std::string beam(const std::string& more, const std::string& program = "steps = 1\n") {
     return R"(
@@ -37,16 +41,12 @@ point = [80, 5, 10]
            program;
 }
 
-sim::Trajectory run(const std::string& text, const std::vector<std::string>& changes = {}) {
-    return robot::testing::run_to_the_end(robot::testing::build(robot::parse_robot(text, "beam.toml", changes)));
-}
-
 Vec3 marker(const sim::Trajectory& result, std::size_t k) {
     return result.steps.back().markers.at(k).position_m;
 }
 
 double sag(const std::string& load) {
-    return edge / 2 - marker(run(beam(load)), 0).z;
+    return beam_edge / 2 - marker(run_text(beam(load)), 0).z;
 }
 
 const std::string end_plate = "[[plate]]\nname = \"end\"\nplane = { point = [100, 0, 0], normal = [1, 0, 0] }\n";
@@ -56,17 +56,17 @@ const std::string end_plate = "[[plate]]\nname = \"end\"\nplane = { point = [100
 TEST_CASE("a beam sags under a force at a point, along a line and on nodes as Euler and Bernoulli say") {
     const double F = 2e-3;
     const std::string force = "force = [\"0 N\", \"0 N\", \"-2 mN\"]\n", head = "[[load]]\nname = \"hung\"\n";
-    const double tip = F * std::pow(length, 3) / (3 * EI), a = length / 2;
+    const double tip = F * std::pow(beam_length, 3) / (3 * bending_stiffness), a = beam_length / 2;
     CHECK(sag(head + "point = [100, 5, 5]\n" + force) == near(tip, {.relative = 0.02}));
     CHECK(sag(head + "point = [50, 5, 10]\nradius = \"6 mm\"\n" + force) ==
-          near(F * a * a * (3 * length - a) / (6 * EI), {.relative = 0.02}));
+          near(F * a * a * (3 * beam_length - a) / (6 * bending_stiffness), {.relative = 0.02}));
     CHECK(sag(head + "line = [[0, 5, 10], [100, 5, 10]]\n" + force) ==
-          near(F * std::pow(length, 3) / (8 * EI), {.relative = 0.02}));
+          near(F * std::pow(beam_length, 3) / (8 * bending_stiffness), {.relative = 0.02}));
     CHECK(sag(head + "plane = { point = [100, 0, 0], normal = [1, 0, 0] }\non = \"nodes\"\n" + force) ==
           near(tip, {.relative = 0.02}));
     // Half of it at each of two points is the mean of both.
     const double both = sag(head + "points = [[100, 5, 5], [50, 5, 10]]\n" + force);
-    CHECK(both == near(0.5 * (tip + F * a * a * (3 * length - a) / (6 * EI)), {.relative = 0.02}));
+    CHECK(both == near(0.5 * (tip + F * a * a * (3 * beam_length - a) / (6 * bending_stiffness)), {.relative = 0.02}));
 }
 
 TEST_CASE("a load along an edge gives its force and moment") {
@@ -89,35 +89,35 @@ TEST_CASE("a load along an edge gives its force and moment") {
 }
 
 TEST_CASE("a torque on a plate bends a beam to an arc, up to a quarter of a circle") {
-    const double angle = std::numbers::pi / 2, torque = EI * angle / length;
-    const sim::Trajectory result = run(
+    const double angle = std::numbers::pi / 2, torque = bending_stiffness * angle / beam_length;
+    const sim::Trajectory result = run_text(
         beam(end_plate + fmt::format("[[load]]\nname = \"bend\"\nplate = \"end\"\ntorque = [\"0 N mm\", \"{} N mm\", "
                                      "\"0 N mm\"]\n",
                                      -1e3 * torque),
              "steps = 6\n"));
     const Vec3 tip = marker(result, 0);
-    const double radius = length / angle;
+    const double radius = beam_length / angle;
     CHECK(tip.x == near(radius, {.relative = 0.02}));
-    CHECK(tip.z - edge / 2 == near(radius, {.relative = 0.02}));
+    CHECK(tip.z - beam_edge / 2 == near(radius, {.relative = 0.02}));
     // The clamp holds no force, only the torque.
-    CHECK(norm(result.steps.back().supports[0].force_N) < 1e-3 * torque / length);
+    CHECK(norm(result.steps.back().supports[0].force_N) < 1e-3 * torque / beam_length);
 }
 
 TEST_CASE("a torque on a plate twists a bar as Saint-Venant says") {
-    const double torque = 3e-3, GJ = E / 2 * 0.140577 * std::pow(edge, 4);
-    const sim::Trajectory result = run(
+    const double torque = 3e-3, GJ = beam_modulus / 2 * 0.140577 * std::pow(beam_edge, 4);
+    const sim::Trajectory result = run_text(
         beam(end_plate + "[[load]]\nname = \"twist\"\nplate = \"end\"\ntorque = [\"3 N mm\", \"0 N mm\", \"0 N mm\"]\n",
              "steps = 2\n"),
         {"mesh.size=4 mm"});
     const auto turned = [&](std::size_t k) {
         const Vec3 p = marker(result, k);
-        return std::atan2(-(p.y - edge / 2), p.z - edge / 2);
+        return std::atan2(-(p.y - beam_edge / 2), p.z - beam_edge / 2);
     };
     CHECK(turned(2) - turned(1) == near(torque * 0.06 / GJ, {.relative = 0.02}));
 }
 
 TEST_CASE("a torque and a force accelerate an object as its inertia and mass say") {
-    const sim::Trajectory result = run(beam(R"(
+    const sim::Trajectory result = run_text(beam(R"(
 [contact]
 distance = "0.2 mm"
 [[object]]
@@ -130,7 +130,7 @@ object = "block"
 torque = ["0 N mm", "0 N mm", "0.2 N mm"]
 force = ["30 mN", "0 N", "0 N"]
 )",
-                                            "duration = \"0.1 s\"\ntime_step = \"1 ms\"\n"));
+                                                 "duration = \"0.1 s\"\ntime_step = \"1 ms\"\n"));
     const sim::ObjectState& end = result.steps.back().objects.at(0);
     const double T = 0.1, I = 6e-3 * (4e-4 + 4e-4) / 12;
     // The load grows in proportion to time: twice integrated, T^2/6 of it.
@@ -144,24 +144,24 @@ TEST_CASE("a mass with inertia on a bar swings as a torsion pendulum") {
                               "\"0 N mm\"]\n";
     const auto angle = [](const sim::Step& step) {
         const Vec3 p = step.markers.at(2).position_m;
-        return std::atan2(-(p.y - edge / 2), p.z - edge / 2);
+        return std::atan2(-(p.y - beam_edge / 2), p.z - beam_edge / 2);
     };
-    const double still = angle(run(beam(twist)).steps.back());
+    const double still = angle(run_text(beam(twist)).steps.back());
     // From rest under the whole torque it swings to twice that and back, in one period. Of the inertia each node at the
     // end has its part, so that the angle at the plate, 100/80 of that of the marker, gives the stiffness.
     const auto end = [](const sim::Trajectory& result) { return result.steps.back().markers.at(3).position_m; };
     const std::string rim = "[[marker]]\nname = \"rim\"\npoint = [100, 5, 10]\n";
-    const Vec3 at = end(run(beam(rim + twist)));
-    const double stiffness = 0.5e-3 / std::atan2(-(at.y - edge / 2), at.z - edge / 2);
+    const Vec3 at = end(run_text(beam(rim + twist)));
+    const double stiffness = 0.5e-3 / std::atan2(-(at.y - beam_edge / 2), at.z - beam_edge / 2);
     const double I = 20e-3 * 2 * 24e-3 * 24e-3 / 12;
     const double period = 2 * std::numbers::pi * std::sqrt(I / stiffness);
     const std::string mass =
         "[[mass]]\nname = \"head\"\npoint = [100, 5, 5]\nmass = \"20 g\"\nsize = [\"24 mm\", \"24 mm\", "
         "\"24 mm\"]\nradius = \"8 mm\"\n";
-    const sim::Trajectory swing =
-        run(beam(twist + mass,
-                 fmt::format("duration = \"{} s\"\ntime_step = \"{} s\"\nkey = [{{ time = \"0 s\", twist = 1 }}]\n",
-                             1.2 * period, period / 100)));
+    const sim::Trajectory swing = run_text(
+        beam(twist + mass,
+             fmt::format("duration = \"{} s\"\ntime_step = \"{} s\"\nkey = [{{ time = \"0 s\", twist = 1 }}]\n",
+                         1.2 * period, period / 100)));
     std::size_t lowest = 50;
     for (std::size_t k = 50; k < swing.steps.size(); ++k)
         if (angle(swing.steps[k]) < angle(swing.steps[lowest])) lowest = k;
@@ -181,9 +181,11 @@ axes = [[1, 0, 0], [0, 1, 0]]
 radius = "8 mm"
 )";
     const double F = 0.1e-3 * 9.81, M = F * 0.03;
-    const double found = edge / 2 - marker(run(beam(glued, "steps = 1\ngravity = [0, 0, -9.81]\n")), 0).z;
-    const double own = edge / 2 - marker(run(beam("", "steps = 1\ngravity = [0, 0, -9.81]\n")), 0).z;
-    CHECK(found - own == near(F * std::pow(length, 3) / (3 * EI) + M * length * length / (2 * EI), {.relative = 0.02}));
+    const double found = beam_edge / 2 - marker(run_text(beam(glued, "steps = 1\ngravity = [0, 0, -9.81]\n")), 0).z;
+    const double own = beam_edge / 2 - marker(run_text(beam("", "steps = 1\ngravity = [0, 0, -9.81]\n")), 0).z;
+    CHECK(found - own == near(F * std::pow(beam_length, 3) / (3 * bending_stiffness) +
+                                  M * beam_length * beam_length / (2 * bending_stiffness),
+                              {.relative = 0.02}));
 }
 
 TEST_CASE("mistakes in loads and masses give one line each") {

@@ -11,13 +11,13 @@
 #include "simulation/scene/test_run.hpp"
 
 using namespace pliant;
+using robot::testing::g;
+using robot::testing::run_text;
 
 namespace {
 
-constexpr double g = 9.81;
-
 /// A small clamped cube, which takes no part, a ground z = 0, and an object.
-std::string world(const std::string& object, const std::string& program, double friction = 0) {
+std::string impact_world(const std::string& object, const std::string& program, double friction = 0) {
     return fmt::format(R"(
 name = "impact"
 length_unit = "mm"
@@ -48,10 +48,6 @@ gravity = [0, 0, -9.81]
                        friction, object, program);
 }
 
-sim::Trajectory run(const std::string& text) {
-    return robot::testing::run_to_the_end(robot::testing::build(robot::parse_robot(text, "impact.toml")));
-}
-
 double height(const sim::Step& step) {
     return step.objects[0].position_m.z;
 }
@@ -80,10 +76,10 @@ double rebound(double fall, double c) {
 
 TEST_CASE("a dropped ball bounces as high as its damping allows, with error-controlled steps") {
     for (const double damping : {0.0, 3.0}) {
-        const sim::Trajectory result =
-            run(world(ball, fmt::format("duration = \"0.2 s\"\ntime_step = \"2 ms\"\ntime_tolerance = \"0.2 um\"\n"
-                                        "integrator = \"energy-conserving\"\nmass_damping = {}\n",
-                                        damping)));
+        const sim::Trajectory result = run_text(
+            impact_world(ball, fmt::format("duration = \"0.2 s\"\ntime_step = \"2 ms\"\ntime_tolerance = \"0.2 um\"\n"
+                                           "integrator = \"energy-conserving\"\nmass_damping = {}\n",
+                                           damping)));
         const auto lowest = std::min_element(result.steps.begin(), result.steps.begin() + 45,  // it lands once by then
                                              [](const auto& a, const auto& b) { return height(a) < height(b); });
         const auto highest = std::max_element(lowest, result.steps.end(),
@@ -96,9 +92,9 @@ TEST_CASE("a dropped ball bounces as high as its damping allows, with error-cont
 
 TEST_CASE("a bouncing ball comes to rest and stays there") {
     const sim::Trajectory result =
-        run(world(ball,
-                  "duration = \"0.8 s\"\ntime_step = \"2 ms\"\nintegrator = \"energy-conserving\"\n"
-                  "mass_damping = 5\n"));
+        run_text(impact_world(ball,
+                              "duration = \"0.8 s\"\ntime_step = \"2 ms\"\nintegrator = \"energy-conserving\"\n"
+                              "mass_damping = 5\n"));
     const std::size_t n = result.steps.size();
     const double fallen = 4.19e-3 * g * 20e-3;
     for (std::size_t k = n - 100; k < n; ++k) {
@@ -111,7 +107,7 @@ TEST_CASE("a bouncing ball comes to rest and stays there") {
 TEST_CASE("energy never grows while a block bounces, tumbles and slides with energy-conserving steps") {
     const char* wanted = std::getenv("PLIANT_BOUNCING_STEPS");
     const std::size_t steps = wanted != nullptr ? std::strtoul(wanted, nullptr, 10) : 600;
-    const sim::Trajectory result = run(world(
+    const sim::Trajectory result = run_text(impact_world(
         "name = \"block\"\ngeometry = { box = [[0, 0, 30], [20, 14, 40]] }\ndensity = \"1000 kg/m^3\"\n"
         "velocity = [0.5, 0.1, 0]\nangular_velocity = [3, -8, 2]\n",
         fmt::format("duration = \"{} s\"\ntime_step = \"1 ms\"\nintegrator = \"energy-conserving\"\ntolerance = 1e-6\n",
@@ -130,10 +126,10 @@ TEST_CASE("energy never grows while a block bounces, tumbles and slides with ene
 }
 
 TEST_CASE("a freely spinning object keeps its energy, and its centre falls on a parabola") {
-    const sim::Trajectory result = run(
-        world("name = \"top\"\ngeometry = { box = [[0, 0, 600], [20, 14, 610]] }\ndensity = \"1000 kg/m^3\"\n"
-              "velocity = [0, 0, 1]\nangular_velocity = [20, 30, 5]\n",
-              "duration = \"0.3 s\"\ntime_step = \"2 ms\"\nintegrator = \"energy-conserving\"\ntolerance = 1e-7\n"));
+    const sim::Trajectory result = run_text(impact_world(
+        "name = \"top\"\ngeometry = { box = [[0, 0, 600], [20, 14, 610]] }\ndensity = \"1000 kg/m^3\"\n"
+        "velocity = [0, 0, 1]\nangular_velocity = [20, 30, 5]\n",
+        "duration = \"0.3 s\"\ntime_step = \"2 ms\"\nintegrator = \"energy-conserving\"\ntolerance = 1e-7\n"));
     const double scale = result.steps[0].kinetic_energy_J;
     for (const sim::Step& step : result.steps)
         CHECK(energy(step) == near(energy(result.steps[0]), {.absolute = 1e-4 * scale}));
@@ -143,7 +139,7 @@ TEST_CASE("a freely spinning object keeps its energy, and its centre falls on a 
 
 TEST_CASE("mistakes in time steps give one line each") {
     using robot::testing::check_problem;
-    const auto text = [](const std::string& program) { return world(ball, program); };
+    const auto text = [](const std::string& program) { return impact_world(ball, program); };
     check_problem(text("steps = 2\nintegrator = \"energy-conserving\"\n"),
                   "integrator: has no meaning without time_step");
     check_problem(text("steps = 2\ntime_tolerance = \"1 um\"\n"), "time_tolerance: has no meaning without time_step");
@@ -151,8 +147,8 @@ TEST_CASE("mistakes in time steps give one line each") {
     check_problem(text("time_step = \"1 ms\"\ntime_tolerance = 1e-6\n"), "time_tolerance: 1e-06 has no unit");
     check_problem(text("time_step = \"1 ms\"\nintegrator = \"energy-conservin\"\n"),
                   "did you mean \"energy-conserving\"");
-    check_problem(world(ball + "[[cable]]\nname = \"c\"\npoints = [[-295, 5, 12], [-295, 5, 18]]\n"
-                               "target = { length_ratio = 0.9 }\n",
-                        "time_step = \"1 ms\"\nintegrator = \"energy-conserving\"\n"),
+    check_problem(impact_world(ball + "[[cable]]\nname = \"c\"\npoints = [[-295, 5, 12], [-295, 5, 18]]\n"
+                                      "target = { length_ratio = 0.9 }\n",
+                               "time_step = \"1 ms\"\nintegrator = \"energy-conserving\"\n"),
                   "cable \"c\" is driven by its length");
 }

@@ -14,14 +14,14 @@
 #include "simulation/stepper/state_file.hpp"
 
 using namespace pliant;
+using robot::testing::g;
 
 namespace {
 
-constexpr double g = 9.81;
 constexpr double pi = std::numbers::pi;
 
 /// A small clamped cube, which takes no part, and what the test adds.
-std::string world(const std::string& more, const std::string& program) {
+std::string jointed_world(const std::string& more, const std::string& program) {
     return R"(
 name = "jointed"
 length_unit = "mm"
@@ -52,14 +52,14 @@ std::string at_rest() {
     return fmt::format("steps = 2\ngravity = [0, 0, {}]\n", -g);
 }
 
-struct Run {
+struct JointedRun {
     robot::testing::Built built;
     sim::Trajectory result;
     [[nodiscard]] const sim::Step& last() const { return result.steps.back(); }
     [[nodiscard]] const sim::JointState& joint(std::size_t k = 0) const { return last().joints.at(k); }
 };
 
-Run run(const std::string& text) {
+JointedRun run_jointed(const std::string& text) {
     auto built = robot::testing::build(robot::parse_robot(text, "jointed.toml"));
     sim::Trajectory result = robot::testing::run_to_the_end(built);
     return {std::move(built), std::move(result)};
@@ -89,11 +89,11 @@ TEST_CASE("a bar on a hinge swings with the period of a physical pendulum") {
     const double inertia = bar_inertia + bar_kg * bar_m * bar_m / 4;
     const double period = 2 * pi * std::sqrt(inertia / (bar_kg * g * bar_m / 2));
     const double spin = 0.5;  // 0.04 rad at most
-    const Run r =
-        run(world(bar("bar", true, 0,
-                      fmt::format("angular_velocity = [0, {}, 0]\nvelocity = [{}, 0, 0]", spin, -spin * bar_m / 2)) +
-                      joint("hinge", "world", "bar", 0, 0, about_y),
-                  in_time(2.1 * period, period / 200)));
+    const JointedRun r = run_jointed(jointed_world(
+        bar("bar", true, 0,
+            fmt::format("angular_velocity = [0, {}, 0]\nvelocity = [{}, 0, 0]", spin, -spin * bar_m / 2)) +
+            joint("hinge", "world", "bar", 0, 0, about_y),
+        in_time(2.1 * period, period / 200)));
     std::vector<double> crossings;
     const auto angle = [&](std::size_t k) { return r.result.steps[k].joints[0].coordinate; };
     for (std::size_t k = 2; k < r.result.steps.size(); ++k) {
@@ -108,11 +108,11 @@ TEST_CASE("a bar on a hinge swings with the period of a physical pendulum") {
 }
 
 TEST_CASE("a double pendulum keeps its energy") {
-    const Run r =
-        run(world(bar("upper", false) + bar("lower", false, 100) + joint("hinge", "world", "upper", 0, 0, about_y) +
-                      "[[joint]]\nname = \"elbow\"\nkind = \"hinge\"\nbetween = [\"upper\", \"lower\"]\n"
-                      "point = [100, 0, 0]\naxis = [0, 1, 0]\n",
-                  in_time(0.3, 0.0005)));
+    const JointedRun r = run_jointed(
+        jointed_world(bar("upper", false) + bar("lower", false, 100) + joint("hinge", "world", "upper", 0, 0, about_y) +
+                          "[[joint]]\nname = \"elbow\"\nkind = \"hinge\"\nbetween = [\"upper\", \"lower\"]\n"
+                          "point = [100, 0, 0]\naxis = [0, 1, 0]\n",
+                      in_time(0.3, 0.0005)));
     const auto energy = [&](std::size_t k) { return r.result.steps[k].energy_J + r.result.steps[k].kinetic_energy_J; };
     const double scale = 2 * bar_kg * g * bar_m;
     double most = 0, off = 0;
@@ -126,8 +126,8 @@ TEST_CASE("a double pendulum keeps its energy") {
 }
 
 TEST_CASE("a motor that holds a bar level reports the bar's weight and its torque") {
-    const Run r = run(
-        world(bar("bar", false) + joint("motor", "world", "bar", 0, 0, about_y + "\nangle = \"0 deg\""), at_rest()));
+    const JointedRun r = run_jointed(jointed_world(
+        bar("bar", false) + joint("motor", "world", "bar", 0, 0, about_y + "\nangle = \"0 deg\""), at_rest()));
     CHECK(r.joint().force_N.z == near(bar_kg * g, {.relative = 1e-3}));
     // About y by the right hand a torque below zero lifts what lies along x.
     CHECK(r.joint().torque_Nm.y == near(-bar_kg * g * bar_m / 2, {.relative = 2e-3}));
@@ -138,28 +138,29 @@ TEST_CASE("a motor that holds a bar level reports the bar's weight and its torqu
 TEST_CASE("a hinge with a spring turns until its torque balances the weight, and a limit stops it") {
     const double stiffness = 0.02;
     const std::string springy = about_y + fmt::format("\nstiffness = \"{} N*m/rad\"", stiffness);
-    const Run r = run(world(bar("bar", false) + joint("hinge", "world", "bar", 0, 0, springy), at_rest()));
+    const JointedRun r =
+        run_jointed(jointed_world(bar("bar", false) + joint("hinge", "world", "bar", 0, 0, springy), at_rest()));
     const double angle = r.joint().coordinate;
     CHECK(stiffness * angle == near(bar_kg * g * bar_m / 2 * std::cos(angle), {.relative = 2e-3}));
     CHECK(angle > 0.2);
-    const Run stopped = run(
-        world(bar("bar", false) + joint("hinge", "world", "bar", 0, 0, about_y + "\nlimits = [-10, 5]"), at_rest()));
+    const JointedRun stopped = run_jointed(jointed_world(
+        bar("bar", false) + joint("hinge", "world", "bar", 0, 0, about_y + "\nlimits = [-10, 5]"), at_rest()));
     CHECK(stopped.joint().coordinate == near(5 * pi / 180, {.absolute = 1e-3}));
 }
 
 TEST_CASE("a slider sinks on its spring, transmits torque, and is moved by a force") {
     const double stiffness = 100;
-    const Run r = run(
-        world(bar("bar", false) + joint("slider", "world", "bar", 0, 0, "axis = [0, 0, 1]\nstiffness = \"0.1 N/mm\""),
-              at_rest()));
+    const JointedRun r = run_jointed(jointed_world(
+        bar("bar", false) + joint("slider", "world", "bar", 0, 0, "axis = [0, 0, 1]\nstiffness = \"0.1 N/mm\""),
+        at_rest()));
     CHECK(r.joint().coordinate == near(-bar_kg * g / stiffness, {.relative = 2e-3}));
     CHECK(r.joint().effort == near(bar_kg * g, {.relative = 2e-3}));
     CHECK(r.joint().force_N.z == near(bar_kg * g, {.relative = 2e-3}));
     CHECK(r.joint().torque_Nm.y == near(-bar_kg * g * bar_m / 2, {.relative = 2e-3}));
     const double T = 0.1, force = 0.02;  // grows evenly
-    const Run pushed =
-        run(world(bar("bar", false) + joint("slider", "world", "bar", 0, 0, "axis = [1, 0, 0]\nforce = \"20 mN\""),
-                  in_time(T, 0.001)));
+    const JointedRun pushed = run_jointed(
+        jointed_world(bar("bar", false) + joint("slider", "world", "bar", 0, 0, "axis = [1, 0, 0]\nforce = \"20 mN\""),
+                      in_time(T, 0.001)));
     CHECK(pushed.joint().coordinate == near(force / bar_kg * T * T / 6, {.relative = 0.01}));
     CHECK(pushed.joint().effort == near(force, {.relative = 1e-6}));
 }
@@ -172,10 +173,10 @@ TEST_CASE("two boxes glued together move as one") {
             name, low, high, vy);
     };
     const std::string program = in_time(0.1, 0.0005);
-    const Run whole = run(world(box("one", -20, 20, 0), program));
-    const Run glued = run(
-        world(box("left", -20, 0, -20 * 0.01) + box("right", 0, 20, 20 * 0.01) + joint("glue", "left", "right", 0, 0),
-              program));
+    const JointedRun whole = run_jointed(jointed_world(box("one", -20, 20, 0), program));
+    const JointedRun glued = run_jointed(jointed_world(
+        box("left", -20, 0, -20 * 0.01) + box("right", 0, 20, 20 * 0.01) + joint("glue", "left", "right", 0, 0),
+        program));
     const auto& one = whole.last().objects[0];
     const auto &left = glued.last().objects[0], &right = glued.last().objects[1];
     const Vec3 middle = 0.5 * (left.position_m + right.position_m);
@@ -185,9 +186,9 @@ TEST_CASE("two boxes glued together move as one") {
 }
 
 TEST_CASE("a motor follows its angle over several turns") {
-    const Run r =
-        run(world(bar("bar", false) + joint("motor", "world", "bar", 0, 0, "axis = [0, 0, 1]\nangle = \"720 deg\""),
-                  in_time(1, 0.01, false)));
+    const JointedRun r = run_jointed(
+        jointed_world(bar("bar", false) + joint("motor", "world", "bar", 0, 0, "axis = [0, 0, 1]\nangle = \"720 deg\""),
+                      in_time(1, 0.01, false)));
     for (std::size_t k = 1; k < r.result.steps.size(); k += 9) {
         const sim::Step& step = r.result.steps[k];
         CHECK(step.joints[0].coordinate == near(4 * pi * step.time, {.absolute = 0.01}));
@@ -196,14 +197,14 @@ TEST_CASE("a motor follows its angle over several turns") {
 }
 
 TEST_CASE("a ball joint transmits a force and no torque") {
-    const Run r = run(world(bar("bar", true) + joint("ball", "world", "bar", 0, 0), at_rest()));
+    const JointedRun r = run_jointed(jointed_world(bar("bar", true) + joint("ball", "world", "bar", 0, 0), at_rest()));
     CHECK(r.joint().force_N.z == near(bar_kg * g, {.relative = 1e-3}));
     CHECK(norm(r.joint().torque_Nm) < 1e-9);
 }
 
 TEST_CASE("a cable turns a hinged link until the torques balance") {
     const double stiffness = 0.05;
-    const Run r = run(world(
+    const JointedRun r = run_jointed(jointed_world(
         bar("bar", false) +
             joint("hinge", "world", "bar", 0, 0, about_y + fmt::format("\nstiffness = \"{} N*m/rad\"", stiffness)) +
             "[[cable]]\nname = \"pull\"\npoints = [[0, 0, 80], [80, 0, 0]]\nanchor = \"first\"\n"
@@ -221,7 +222,7 @@ TEST_CASE("a cable turns a hinged link until the torques balance") {
 namespace {
 
 /// A light beam of 60 mm, clamped, with a block of 10 mm glued to its end face, which a plate keeps rigid.
-std::string beam(double block_kg, const std::string& program) {
+std::string beam_with_block(double block_kg, const std::string& program) {
     return fmt::format(R"(
 name = "beam"
 length_unit = "mm"
@@ -253,7 +254,7 @@ TEST_CASE("a soft beam with a rigid block glued to its end sinks and swings as T
     const Flexibility f;
     const double m = 1e-3, c = 5e-3;
     {
-        const Run r = run(beam(m, "steps = 2\n"));
+        const JointedRun r = run_jointed(beam_with_block(m, "steps = 2\n"));
         const double sunk = 5e-3 - r.last().markers[0].position_m.z;
         const double wanted = m * g * (f.by_force + c * f.across);
         MESSAGE("sunk by ", sunk, " m, wanted ", wanted);
@@ -267,7 +268,8 @@ TEST_CASE("a soft beam with a rigid block glued to its end sinks and swings as T
     const double d = f.across * M + f.by_moment * M * c, e = f.across * M * c + f.by_moment * (J + M * c * c);
     const double largest = 0.5 * (a + e) + std::sqrt(0.25 * (a - e) * (a - e) + b * d);
     const double period = 2 * pi * std::sqrt(largest);
-    const Run r = run(beam(M, fmt::format("duration = \"{} s\"\ntime_step = \"{} s\"\n", 2.2 * period, period / 120)));
+    const JointedRun r = run_jointed(
+        beam_with_block(M, fmt::format("duration = \"{} s\"\ntime_step = \"{} s\"\n", 2.2 * period, period / 120)));
     std::vector<double> turns;  // where it comes to rest
     const auto height = [&](std::size_t k) { return r.result.steps[k].markers[0].position_m.z; };
     for (std::size_t k = 1; k + 1 < r.result.steps.size(); ++k) {
@@ -282,10 +284,10 @@ TEST_CASE("a soft beam with a rigid block glued to its end sinks and swings as T
 
 TEST_CASE("joints give the same bits on any number of threads, and after reading from bytes") {
     const auto built = robot::testing::build(robot::parse_robot(
-        world(bar("upper", false) + bar("lower", false, 100, "angular_velocity = [0, 30, 0]") +
-                  joint("motor", "world", "upper", 0, 0, about_y + "\ntorque = \"0.02 N*m\"\ndamping = 1e-4") +
-                  joint("hinge", "upper", "lower", 100, 0, about_y),
-              in_time(0.1, 0.005)),
+        jointed_world(bar("upper", false) + bar("lower", false, 100, "angular_velocity = [0, 30, 0]") +
+                          joint("motor", "world", "upper", 0, 0, about_y + "\ntorque = \"0.02 N*m\"\ndamping = 1e-4") +
+                          joint("hinge", "upper", "lower", 100, 0, about_y),
+                      in_time(0.1, 0.005)),
         "jointed.toml"));
     Progress silent;
     const auto steps = [&](sim::Stepper& stepper, sim::RobotState& robot, int from, int to) {
@@ -311,7 +313,7 @@ TEST_CASE("joints give the same bits on any number of threads, and after reading
 TEST_CASE("mistakes in joints give one line each") {
     using robot::testing::check_problem;
     const auto check = [&](const std::string& keys, const std::string& wanted) {
-        check_problem(world(bar("bar", false) + "[[joint]]\nname = \"it\"\n" + keys, at_rest()), wanted);
+        check_problem(jointed_world(bar("bar", false) + "[[joint]]\nname = \"it\"\n" + keys, at_rest()), wanted);
     };
     const std::string held = "between = [\"world\", \"bar\"]\npoint = [0, 0, 0]\n";
     check("kind = \"weld\"\n" + held, "glue");

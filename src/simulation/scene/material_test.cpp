@@ -15,20 +15,20 @@ using namespace pliant::robot;
 namespace {
 
 /// A bar of one material; `table` is what stands in the file before the body, `name` the body's material.
-std::string bar(const std::string& table, const std::string& name) {
+std::string bar_of(const std::string& table, const std::string& name) {
     return "name = \"bar\"\nlength_unit = \"mm\"\n" + table + "\n[[body]]\nname = \"bar\"\nmaterial = \"" + name +
            "\"\ngeometry = { box = [[0, 0, 0], [20, 10, 10]] }\n[[fixed]]\nname = \"clamp\"\n" +
            "box = [[0, 0, 0], [0, 10, 10]]\n";
 }
 
 MaterialSpec material_of(const std::string& table, const std::string& name = "soft") {
-    const Result<Robot> robot = parse_robot(bar(table, name), "bar.toml");
+    const Result<Robot> robot = parse_robot(bar_of(table, name), "bar.toml");
     REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
     return robot->materials.at(static_cast<std::size_t>(robot->bodies.at(0).material));
 }
 
-void check_problem(const std::string& table, const std::string& wanted, const std::string& name = "soft") {
-    const Result<Robot> robot = parse_robot(bar(table, name), "bar.toml");
+void check_material_problem(const std::string& table, const std::string& wanted, const std::string& name = "soft") {
+    const Result<Robot> robot = parse_robot(bar_of(table, name), "bar.toml");
     REQUIRE_FALSE(robot);
     const std::string& found = robot.error().message;
     CHECK_MESSAGE(found.find(wanted) != std::string::npos, "found \"", found, "\", wanted \"", wanted, "\"");
@@ -80,17 +80,19 @@ TEST_CASE("shape-blend takes a shape parameter from rigid to extremely soft, and
     CHECK(a_of("poisson_ratio = 0.49925") > 1e-3);
     CHECK(a_of("shape_parameter = 1000") == near(1e-3, {.relative = 1e-12}));
     for (const char* value : {"1e9", "1e300", "1001", "0", "-7", "1e-12", "0.999"})
-        check_problem(soft + "shape_parameter = " + value, "is not possible; R_omega is from 1 (rigid) to 1000");
+        check_material_problem(soft + "shape_parameter = " + value,
+                               "is not possible; R_omega is from 1 (rigid) to 1000");
     for (const char* value : {"nan", "inf", "-inf", "true"}) {
-        const Result<Robot> robot = parse_robot(bar(soft + "shape_parameter = " + value, "soft"), "bar.toml");
+        const Result<Robot> robot = parse_robot(bar_of(soft + "shape_parameter = " + value, "soft"), "bar.toml");
         REQUIRE_FALSE(robot);
         CHECK(robot.error().message.find("material.soft.shape_parameter: is ") != std::string::npos);
         CHECK(robot.error().message.find('\n') == std::string::npos);  // one line is enough
     }
     CHECK(a_of("poisson_ratio = 0.499") == near(0.002 / 1.499, {.relative = 1e-12}));
-    check_problem(soft + "poisson_ratio = 0.4999999", "at most 0.49925");
-    check_problem(soft + "shape_parameter = \"thesis\"\nstiffest = \"12 GPa\"", "is 1000 times youngs_modulus");
-    check_problem(soft + "shape_parameter = \"small-strain\"\nstiffest = \"12 GPa\"", "takes R_omega 1500");
+    check_material_problem(soft + "poisson_ratio = 0.4999999", "at most 0.49925");
+    check_material_problem(soft + "shape_parameter = \"thesis\"\nstiffest = \"12 GPa\"",
+                           "is 1000 times youngs_modulus");
+    check_material_problem(soft + "shape_parameter = \"small-strain\"\nstiffest = \"12 GPa\"", "takes R_omega 1500");
 }
 
 TEST_CASE("shape-blend computes R_omega from two moduli, by the name of a map") {
@@ -113,41 +115,43 @@ TEST_CASE("shape-blend computes R_omega from two moduli, by the name of a map") 
     CHECK(std::get<material::ShapeBlend>(stiff.law).a == 1);
     CHECK(std::get<material::ShapeBlend>(stiff.law).weight_Pa == near(45e6, {.relative = 1e-12}));
     CHECK(stiff.poisson_ratio == near(0, {.absolute = 1e-12}));  // a rigid target keeps no volume
-    check_problem(soft + "shape_parameter = \"thesis\"", "stiffest: is missing");
-    check_problem(soft + "shape_parameter = \"thesis\"\nstiffest = \"10 MPa\"", "is below youngs_modulus");
-    check_problem(soft + "shape_parameter = \"T3.9\"\nstiffest = \"45 MPa\"", "small-strain");
-    check_problem(soft + "shape_parameter = 7\nstiffest = \"45 MPa\"", "goes with a shape_parameter by name");
-    check_problem(soft + "shape_parameter = \"calibrated\"\nstiffest = \"45 MPa\"", "shape_curve");
-    check_problem(soft + "shape_parameter = \"calibrated\"\nstiffest = \"45 MPa\"\nshape_curve = [0, 0, 0.5]",
-                  "gives R_omega 0.5");
-    check_problem(soft + "shape_parameter = \"thesis\"\nstiffest = \"45 MPa\"\nshape_curve = [0, 0, 1]",
-                  "goes with shape_parameter = \"calibrated\"");
-    check_problem("[material.soft]\nyoungs_modulus = \"1 MPa\"\nstiffest = \"45 MPa\"", "unknown key");
+    check_material_problem(soft + "shape_parameter = \"thesis\"", "stiffest: is missing");
+    check_material_problem(soft + "shape_parameter = \"thesis\"\nstiffest = \"10 MPa\"", "is below youngs_modulus");
+    check_material_problem(soft + "shape_parameter = \"T3.9\"\nstiffest = \"45 MPa\"", "small-strain");
+    check_material_problem(soft + "shape_parameter = 7\nstiffest = \"45 MPa\"", "goes with a shape_parameter by name");
+    check_material_problem(soft + "shape_parameter = \"calibrated\"\nstiffest = \"45 MPa\"", "shape_curve");
+    check_material_problem(soft + "shape_parameter = \"calibrated\"\nstiffest = \"45 MPa\"\nshape_curve = [0, 0, 0.5]",
+                           "gives R_omega 0.5");
+    check_material_problem(soft + "shape_parameter = \"thesis\"\nstiffest = \"45 MPa\"\nshape_curve = [0, 0, 1]",
+                           "goes with shape_parameter = \"calibrated\"");
+    check_material_problem("[material.soft]\nyoungs_modulus = \"1 MPa\"\nstiffest = \"45 MPa\"", "unknown key");
 }
 
 TEST_CASE("constants that do not fit their law are refused") {
-    check_problem("[material.soft]\nlaw = \"mooney-rivlin\"\nyoungs_modulus = \"1 MPa\"",
-                  "does not determine the constants of \"mooney-rivlin\"");
-    check_problem("[material.soft]\nlaw = \"mooney-rivlin\"\nc10 = \"0.1 MPa\"\nc01 = \"-0.2 MPa\"",
-                  "the initial shear modulus, 2 (c10 + c01), is -0.2 MPa");
-    check_problem("[material.soft]\nlaw = \"yeoh\"\nc10 = \"-1 kPa\"", "a stable solid needs one above zero");
-    check_problem("[material.soft]\nlaw = \"ogden\"\nmu = [\"1 MPa\"]\nalpha = [1, 2]", "has 1 values and alpha 2");
-    check_problem("[material.soft]\nlaw = \"ogden\"\nmu = [\"1 MPa\"]\nalpha = [0]", "0 is not possible");
-    check_problem("[material.soft]\nlaw = \"ogden\"\nmu = [\"1\"]\nalpha = [2]", "has no unit");
-    check_problem("[material.soft]\nlaw = \"yeoh\"\nc10 = \"1 MPa\"\nbulk_modulus = \"1 MPa\"\npoisson_ratio = 0.4",
-                  "stands beside bulk_modulus");
-    check_problem("[material.soft]\nlaw = \"yeoh\"\nc10 = \"1 MPa\"\nbulk_modulus = \"-1 MPa\"", "above zero");
-    check_problem("[material.soft]\nyoungs_modulus = \"1 MPa\"\nc10 = \"1 MPa\"", "unknown key");
+    check_material_problem("[material.soft]\nlaw = \"mooney-rivlin\"\nyoungs_modulus = \"1 MPa\"",
+                           "does not determine the constants of \"mooney-rivlin\"");
+    check_material_problem("[material.soft]\nlaw = \"mooney-rivlin\"\nc10 = \"0.1 MPa\"\nc01 = \"-0.2 MPa\"",
+                           "the initial shear modulus, 2 (c10 + c01), is -0.2 MPa");
+    check_material_problem("[material.soft]\nlaw = \"yeoh\"\nc10 = \"-1 kPa\"", "a stable solid needs one above zero");
+    check_material_problem("[material.soft]\nlaw = \"ogden\"\nmu = [\"1 MPa\"]\nalpha = [1, 2]",
+                           "has 1 values and alpha 2");
+    check_material_problem("[material.soft]\nlaw = \"ogden\"\nmu = [\"1 MPa\"]\nalpha = [0]", "0 is not possible");
+    check_material_problem("[material.soft]\nlaw = \"ogden\"\nmu = [\"1\"]\nalpha = [2]", "has no unit");
+    check_material_problem(
+        "[material.soft]\nlaw = \"yeoh\"\nc10 = \"1 MPa\"\nbulk_modulus = \"1 MPa\"\npoisson_ratio = 0.4",
+        "stands beside bulk_modulus");
+    check_material_problem("[material.soft]\nlaw = \"yeoh\"\nc10 = \"1 MPa\"\nbulk_modulus = \"-1 MPa\"", "above zero");
+    check_material_problem("[material.soft]\nyoungs_modulus = \"1 MPa\"\nc10 = \"1 MPa\"", "unknown key");
 }
 
 TEST_CASE("a body may name a material of the library") {
     const auto m = material_of("", "elastosil-m4601");
     CHECK(std::get<material::Yeoh>(m.law).c10_Pa == near(0.11e6, {.relative = 1e-12}));
     CHECK(m.resin == "elastosil-m4601");
-    check_problem("", "no material \"elastosil\" in the library", "elastosil");
-    check_problem("", "material: is empty; name a material of this file or of the library", "");
-    check_problem("", "elastosil-m4601", "elastosil");
-    check_problem("[material.soft]\nyoungs_modulus = \"1 MPa\"", "and the library", "unobtainium");
+    check_material_problem("", "no material \"elastosil\" in the library", "elastosil");
+    check_material_problem("", "material: is empty; name a material of this file or of the library", "");
+    check_material_problem("", "elastosil-m4601", "elastosil");
+    check_material_problem("[material.soft]\nyoungs_modulus = \"1 MPa\"", "and the library", "unobtainium");
 }
 
 TEST_CASE("a material may start from one of the library") {
@@ -168,10 +172,10 @@ TEST_CASE("a material may start from one of the library") {
     CHECK(other.poisson_ratio == 0.45);  // the library's constants went with its law
     CHECK(other.density_kg_m3 == near(1130, {.relative = 1e-12}));
 
-    check_problem("[material.soft]\nbase = \"elastosil\"", "the library has no material \"elastosil\"");
-    check_problem("[material.soft]\nbase = \"ninjaflex\"\nyoungs_modulu = \"1 MPa\"",
-                  "did you mean \"youngs_modulus\"?");
-    check_problem("[material.soft]\nbase = \"ninjaflex\"\ntitle = \"mine\"", "unknown key");
+    check_material_problem("[material.soft]\nbase = \"elastosil\"", "the library has no material \"elastosil\"");
+    check_material_problem("[material.soft]\nbase = \"ninjaflex\"\nyoungs_modulu = \"1 MPa\"",
+                           "did you mean \"youngs_modulus\"?");
+    check_material_problem("[material.soft]\nbase = \"ninjaflex\"\ntitle = \"mine\"", "unknown key");
 }
 
 TEST_CASE("every library material is valid, stable in its range, and in the reference") {

@@ -17,15 +17,6 @@ constexpr double surface_share = 1e-3;
 /// As a share of the mean edge: the distance by which a chord as long as the radius cuts off an arc.
 constexpr double reach_share = 1.0 / 8;
 
-double mean_edge(const mesh::TetMesh& mesh) {
-    double sum = 0;
-    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-        for (const auto& [a, b] : mesh::edge_corners)
-            sum += norm(mesh.points[mesh.tet(t)[a]] - mesh.points[mesh.tet(t)[b]]);
-    }
-    return sum / std::max(6.0 * static_cast<double>(mesh.tet_count()), 1.0);
-}
-
 /// Gives every notch of a region except the first a new region at the end; returns those.
 std::vector<int> part_notches(mesh::TetMesh& mesh, int region) {
     DisjointSets sets(mesh.points.size());
@@ -50,6 +41,15 @@ std::vector<int> part_notches(mesh::TetMesh& mesh, int region) {
 }
 
 }  // namespace
+
+double mean_edge(const mesh::TetMesh& mesh) {
+    double sum = 0;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        for (const auto& [a, b] : mesh::edge_corners)
+            sum += norm(mesh.points[mesh.tet(t)[a]] - mesh.points[mesh.tet(t)[b]]);
+    }
+    return sum / std::max(6.0 * static_cast<double>(mesh.tet_count()), 1.0);
+}
 
 mesh::TetMesh tets_of_bodies(const Robot& robot, const mesh::TetMesh& all) {
     mesh::TetMesh bodies{all.order, all.points, {}, {}, all.region_names, {}};

@@ -17,6 +17,9 @@ namespace pliant::robot {
 /// The tets that carry material, on the nodes of a description's mesh.
 [[nodiscard]] mesh::TetMesh tets_of_bodies(const Robot& robot, const mesh::TetMesh& all);
 
+/// The mean length of the edges of all tets; 0 without any.
+[[nodiscard]] double mean_edge(const mesh::TetMesh& mesh);
+
 /// Metres throughout. The robot must outlive it.
 struct ModelDraft {
     /// Sets the meshes and the tolerances; `mesh` is that of build_mesh().

@@ -18,8 +18,6 @@ using robot::testing::check_problem;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 sim::Trajectory simulate(const std::string& text) {
     return robot::testing::run(robot::testing::build(parse_robot(text, "nasty.toml")));
 }
@@ -48,7 +46,7 @@ std::string robot_of(const std::string& rest) {
 }
 
 /// A bar of 10 x 10 x 60 mm along z from two blocks, held at its foot, with what hangs on its end.
-std::string bar(const std::string& lower, const std::string& upper, const std::string& rest) {
+std::string bar_of_two_blocks(const std::string& lower, const std::string& upper, const std::string& rest) {
     return robot_of(fmt::format(R"(
 {}
 [[body]]
@@ -124,7 +122,8 @@ TEST_CASE("membrane: a strip 80 times as long as thick bends as a plate at low p
 }
 
 TEST_CASE("column: above its critical load it buckles sideways, or a warning says that it is unstable") {
-    const double I = 8 * std::pow(5, 3) / 12 * 1e-12, critical_N = pi * pi * 1e6 * I / (4 * 0.01);
+    const double I = 8 * std::pow(5, 3) / 12 * 1e-12,
+                 critical_N = std::numbers::pi * std::numbers::pi * 1e6 * I / (4 * 0.01);
     const sim::Trajectory result = simulate(robot_of(fmt::format(R"(
 [[body]]
 name = "column"
@@ -212,11 +211,11 @@ TEST_CASE("slivers: two blocks misaligned by 0.01 mm stretch as aligned ones do"
     const std::string pull =
         "load = [{ name = \"pull\", plane = { point = [0, 0, 60], normal = [0, 0, 1] }, "
         "force = [\"0 N\", \"0 N\", \"5 N\"] }]\nprogram = { steps = 2 }\n";
-    std::string out = bar("rubber", "rubber", pull);
+    std::string out = bar_of_two_blocks("rubber", "rubber", pull);
     const std::string straight = "[[0, 0, 30], [10, 10, 60]]";
     out.replace(out.find(straight), straight.size(), "[[0.01, 0.01, 30], [10.01, 10.01, 60]]");
     const sim::Trajectory shifted = simulate_to_the_end(out),
-                          aligned = simulate_to_the_end(bar("rubber", "rubber", pull));
+                          aligned = simulate_to_the_end(bar_of_two_blocks("rubber", "rubber", pull));
     CHECK(rise_mm(shifted) / rise_mm(aligned) == near(1, {.relative = 3e-3}));
 }
 
@@ -280,7 +279,7 @@ steps = 3
 }
 
 TEST_CASE("stiffness: of two blocks, the one 100,000 times softer deforms as computed") {
-    const sim::Trajectory result = simulate_to_the_end(bar("soft", "hard", R"(
+    const sim::Trajectory result = simulate_to_the_end(bar_of_two_blocks("soft", "hard", R"(
 material.soft = { youngs_modulus = "10 kPa", poisson_ratio = 0 }
 material.hard = { youngs_modulus = "1 GPa", poisson_ratio = 0 }
 load = [{ name = "pull", plane = { point = [0, 0, 60], normal = [0, 0, 1] }, force = ["0 N", "0 N", "0.01 N"] }]
@@ -318,7 +317,8 @@ steps = 14
 
 TEST_CASE("a guide point far outside the robot is refused, with its distance") {
     check_problem(
-        bar("rubber", "rubber",
+        bar_of_two_blocks(
+            "rubber", "rubber",
             "cable = [{ name = \"flexor\", points = [[5, 5, 10], [30, 5, 40]], target = { length_ratio = 0.9 } "
             "}]\n"),
         "lies outside every body, by 20 mm");

@@ -21,7 +21,7 @@ using pliant::test::holds;
 namespace {
 
 /// A finger with a notch, a cable, a chamber's worth of air and a load that all follow its parameters.
-const char* const finger = R"(
+const char* const finger_text = R"(
 name = "finger"
 length_unit = "mm"
 parameters = { height = 12, depth = 5, place = 20, angle = 8, radius = 2.5, ratio = 0.96 }
@@ -61,7 +61,7 @@ struct Case {
     Robot robot;
     mesh::TetMesh mesh;
 
-    explicit Case(int order) : text(finger) {
+    explicit Case(int order) : text(finger_text) {
         text.replace(text.find("ORDER"), 5, std::to_string(order));
         robot = *read({});
         Progress silent;

@@ -17,18 +17,20 @@
 using namespace pliant;
 using namespace pliant::robot;
 using pliant::test::replaced;
+using testing::build_text;
 using testing::Built;
 using testing::check_problem;
+using testing::last_step;
 
 namespace {
 
-const std::string head = R"(name = "block"
+const std::string block_head = R"(name = "block"
 length_unit = "mm"
 material.soft = { youngs_modulus = "100 kPa", poisson_ratio = 0.4 }
 )";
 
 /// An eighth of a block on three planes of symmetry, drawn out by a fifth.
-const std::string eighth = head + R"(mesh = { size = "5 mm" }
+const std::string eighth = block_head + R"(mesh = { size = "5 mm" }
 body = [{ name = "block", material = "soft", geometry = { box = [[0, 0, 0], [10, 10, 10]] } }]
 fixed = [
   { name = "x", plane = { point = [0, 0, 0], normal = [1, 0, 0] }, directions = "normal" },
@@ -40,18 +42,10 @@ marker = [{ name = "corner", point = [10, 10, 10] }]
 program = { steps = 2, tolerance = 1e-6 }
 )";
 
-Built build(const std::string& text) {
-    return testing::build(parse_robot(text, "block.toml"));
-}
-
-sim::Step last_step(const Built& built) {
-    return testing::run_to_the_end(built).steps.back();
-}
-
 }  // namespace
 
 TEST_CASE("rollers and symmetry planes hold single directions: a stretched block becomes thinner") {
-    const sim::Step last = last_step(build(eighth));
+    const sim::Step last = last_step(build_text(eighth));
     const Vec3 corner = last.markers[0].position_m;
     CHECK(corner.x == near(0.012, {.relative = 1e-9}));
     CHECK(corner.y == near(corner.z, {.relative = 1e-6}));
@@ -80,7 +74,7 @@ TEST_CASE("a spring holds a block against a load") {
         "[[spring]]\nname = \"s\"\npoints = [[10, 5, 5], [30, 5, 5]]\nanchor = \"last\"\nstiffness = \"0.05 N/mm\"\n"
         "[[load]]\nname = \"pull\"\nplane = { point = [0, 0, 0], normal = [1, 0, 0] }\nforce = [\"-0.1 N\", \"0 N\", "
         "\"0 N\"]\n";
-    const sim::Step last = last_step(build(sprung));
+    const sim::Step last = last_step(build_text(sprung));
     REQUIRE(last.springs.size() == 1);
     CHECK(last.springs[0].force_N == near(0.1, {.relative = 1e-5}));
     CHECK(last.springs[0].length_m == near(0.022, {.relative = 1e-5}));
@@ -92,7 +86,7 @@ TEST_CASE("a spring holds a block against a load") {
 TEST_CASE("a load acts on the outer faces that its selector chooses") {
     const std::string pull = "[[load]]\nname = \"pull\"\nforce = [\"0.1 N\", \"0 N\", \"0 N\"]\n";
     const auto nodes = [&](const std::string& place) {
-        return build(eighth + pull + place).model.description().loads.at(0).nodes;
+        return build_text(eighth + pull + place).model.description().loads.at(0).nodes;
     };
     const auto box = nodes("box = [[10, 0, 0], [10, 10, 10]]\n");
     CHECK(nodes("plane = { point = [10, 0, 0], normal = [-1, 0, 0] }\n") == box);
@@ -106,14 +100,14 @@ TEST_CASE("a load acts on the outer faces that its selector chooses") {
 
 TEST_CASE("mesh and surface files can be scaled, mirrored, rotated, moved and repeated") {
     const test::Folder folder("placed");
-    const Built once = build(eighth);
+    const Built once = build_text(eighth);
     mesh::TetMesh unit = mesh::scaled(once.model.mesh(), 100);  // a cube of side 1 in the file's unit
     unit.region_names = {"block"};
     REQUIRE(mesh::write_tet_mesh(folder.path() / "cube.vtk", unit));
     const std::string place =
         "place = { scale = 10, mirror = { normal = [1, 0, 0] }, rotate = { angle = 90, axis = [0, 0, 1] }, "
         "move = [0, 0, 5], repeat = { count = 3, move = [20, 0, 0] } }";
-    const std::string text = head + "mesh = { file = \"cube.vtk\", order = 1, " + place + " }\n" +
+    const std::string text = block_head + "mesh = { file = \"cube.vtk\", order = 1, " + place + " }\n" +
                              "body = [{ name = \"block\", material = \"soft\", region = \"all\" }]\n" +
                              "fixed = [{ name = \"floor\", box = [[-10, -10, 5], [100, 0, 5]] }]\n";
     const auto read = [&](const std::string& t) { return parse_robot(t, folder.path() / "block.toml"); };
@@ -139,7 +133,7 @@ TEST_CASE("mesh and surface files can be scaled, mirrored, rotated, moved and re
 TEST_CASE("surfaces of chambers and obstacles can be placed too") {
     const test::Folder folder("placed");
     REQUIRE(mesh::write_stl(folder.path() / "cube.stl", mesh::test::cube()));
-    const std::string text = head + R"(mesh = { size = "4 mm", order = 1 }
+    const std::string text = block_head + R"(mesh = { size = "4 mm", order = 1 }
 body = [{ name = "block", material = "soft", geometry = { difference = [
     { box = [[0, 0, 0], [10, 10, 10]] }, { box = [[3, 3, 3], [7, 7, 7]] }] } }]
 fixed = [{ name = "floor", box = [[0, 0, 0], [10, 10, 0]] }]

@@ -17,17 +17,13 @@
 #include "simulation/scene/test_run.hpp"
 
 using namespace pliant;
+using robot::testing::g;
+using robot::testing::run_text;
 
 namespace {
 
-constexpr double g = 9.81;
-
 std::string data(const std::string& file) {
     return std::string(std::getenv("PLIANT_REFERENCE_DATA")) + "/softrobots/" + file;
-}
-
-sim::Trajectory run(const std::string& text) {
-    return robot::testing::run_to_the_end(robot::testing::build(robot::parse_robot(text, "scene.toml")));
 }
 
 /// Where the scene places a finger of its gripper: turned about x by half a turn or not at all, then about z, then
@@ -66,7 +62,7 @@ mesh::TetMesh gripper_mesh() {
     return all;
 }
 
-std::string cable(const Place& place) {
+std::string finger_cable(const Place& place) {
     const auto text = [](const Vec3& p) { return fmt::format("[{}, {}, {}]", p.x, p.y, p.z); };
     std::string points = text(place.pull_point);
     for (const Vec3& p : {Vec3{-17.5, 12.5, 2.5},
@@ -91,7 +87,7 @@ std::string cable(const Place& place) {
 }  // namespace
 
 TEST_CASE("the tripod rests on the ground, and the contact force equals its weight") {
-    const sim::Trajectory lies = run(fmt::format(R"(
+    const sim::Trajectory lies = run_text(fmt::format(R"(
 name = "tripod"
 length_unit = "mm"
 material.silicone = {{ youngs_modulus = "250 kPa", poisson_ratio = 0.45, density = "1427 kg/m^3" }}
@@ -103,7 +99,7 @@ obstacle = [{{ name = "ground", plane = {{ point = [0, 0, 0], normal = [0, 0, 1]
 steps = 4
 gravity = [0, 0, -9.81]
 )",
-                                                 data("tripod/tripod_mid.gidmsh")));
+                                                      data("tripod/tripod_mid.gidmsh")));
     CHECK(lies.steps.back().contacts[0].force_N.z == near(0.032 * g, {.relative = 0.01}));
     for (const std::string& warning : lies.warnings) CHECK(warning.find("leaves open") == std::string::npos);
 }
@@ -139,8 +135,8 @@ gravity = [0, -0.981, 0]
 key = [{{ time = "0.6 s", one = "20 mm", two = "20 mm", three = "20 mm", floor = 0 }}, {{ time = "1.2 s", floor = 1 }}]
 )",
                                    (folder / "gripper.vtk").string());
-    for (const Place& place : fingers) text += cable(place);
-    const sim::Trajectory held = run(text);
+    for (const Place& place : fingers) text += finger_cable(place);
+    const sim::Trajectory held = run_text(text);
     const sim::Step &last = held.steps.back(), &before = held.steps[held.steps.size() - 6];
     CHECK(last.objects[0].position_m.y > -0.090);  // the floor is at -0.145
     CHECK(last.objects[0].position_m.y == near(before.objects[0].position_m.y, {.absolute = 1e-4}));

@@ -14,7 +14,7 @@ using namespace pliant;
 namespace {
 
 /// Supports, cable and material as that README gives them.
-std::string finger(const std::string& mesh, int order, int steps) {
+std::string cable_finger(const std::string& mesh, int order, int steps) {
     const std::string folder = std::getenv("PLIANT_REFERENCE_DATA");
     return fmt::format(R"(
 name = "cable finger"
@@ -49,8 +49,8 @@ steps = {}
                        folder, mesh, order, steps);
 }
 
-sim::Trajectory simulate(const std::string& text) {
-    return robot::testing::run(robot::testing::build(robot::parse_robot(text, "robot.toml")));
+sim::Trajectory simulate_text(const std::string& text) {
+    return robot::testing::run(robot::testing::build_text(text));
 }
 
 void check_pull(const sim::Trajectory& result) {
@@ -71,14 +71,14 @@ void check_pull(const sim::Trajectory& result) {
 }  // namespace
 
 TEST_CASE("finger.vtk, linear and quadratic, is pulled by 0 to 50 mm") {
-    const auto linear = robot::testing::build(robot::parse_robot(finger("finger.vtk", 1, 25), "finger.toml"));
+    const auto linear = robot::testing::build(robot::parse_robot(cable_finger("finger.vtk", 1, 25), "finger.toml"));
     CHECK(linear.model.description().supports[0].nodes.size() == 20);
     check_pull(robot::testing::run(linear));
-    check_pull(simulate(finger("finger.vtk", 2, 25)));
+    check_pull(simulate_text(cable_finger("finger.vtk", 2, 25)));
 }
 
 TEST_CASE("finger_7k.vtk, linear, is pulled by 0 to 50 mm") {
-    check_pull(simulate(finger("finger_7k.vtk", 1, 25)));
+    check_pull(simulate_text(cable_finger("finger_7k.vtk", 1, 25)));
 }
 
 namespace {
@@ -117,9 +117,9 @@ steps = {2}
 }  // namespace
 
 TEST_CASE("with self-contact the finger is pulled by 75 mm, well past the touching of its flanks") {
-    std::string text = finger("finger_7k.vtk", 1, 30) + "[contact]\n";
+    std::string text = cable_finger("finger_7k.vtk", 1, 30) + "[contact]\n";
     text.replace(text.find("50 mm"), 5, "75 mm");
-    const sim::Trajectory result = simulate(text);
+    const sim::Trajectory result = simulate_text(text);
     REQUIRE_MESSAGE(result.converged, result.message);
     CHECK(result.warnings.empty());
     double before = 0;
@@ -135,7 +135,7 @@ TEST_CASE("with self-contact the finger is pulled by 75 mm, well past the touchi
 }
 
 TEST_CASE("the pneunet inflates to 4.5 times its volume, past its largest pressure") {
-    const sim::Trajectory grown = simulate(pneunet("volume_ratio = 4.5", 30));
+    const sim::Trajectory grown = simulate_text(pneunet("volume_ratio = 4.5", 30));
     REQUIRE_MESSAGE(grown.converged, grown.message);
     CHECK(grown.iterations.size() < 800);  // a solver that crawls along its folds takes thousands
     double highest = 0;
@@ -144,7 +144,7 @@ TEST_CASE("the pneunet inflates to 4.5 times its volume, past its largest pressu
     CHECK(grown.steps.back().chambers[0].volume_ratio == near(4.5, {.relative = 1e-6}));
 
     // With pressure control it stops at the maximum, keeps the results so far, and says so.
-    const sim::Trajectory pressed = simulate(pneunet("pressure = \"150 kPa\"", 30));
+    const sim::Trajectory pressed = simulate_text(pneunet("pressure = \"150 kPa\"", 30));
     CHECK_FALSE(pressed.converged);
     CHECK(pressed.message.find("its pressure has a maximum of") != std::string::npos);
     CHECK(pressed.steps.back().chambers[0].pressure_Pa > 0.9 * highest);
@@ -152,7 +152,7 @@ TEST_CASE("the pneunet inflates to 4.5 times its volume, past its largest pressu
 
 TEST_CASE("a mesh with many slivers inflates by 146 %") {
     const std::string folder = std::getenv("PLIANT_REFERENCE_DATA");
-    const sim::Trajectory result = simulate(fmt::format(R"(
+    const sim::Trajectory result = simulate_text(fmt::format(R"(
 name = "bellows"
 length_unit = "cm"
 material.soft = {{ youngs_modulus = "500 kPa", poisson_ratio = 0.3 }}
@@ -166,17 +166,17 @@ target = {{ volume_ratio = 2.46 }}
 [program]
 steps = 20
 )",
-                                                        folder));
+                                                             folder));
     REQUIRE_MESSAGE(result.converged, result.message);
     CHECK(result.steps.back().chambers[0].volume_ratio == near(2.46, {.relative = 1e-9}));
     for (const sim::Step& step : result.steps) CHECK(step.min_J > 0);
 }
 
 TEST_CASE("pulled by 60 mm the coarse finger touches itself; without contact it crosses, with a warning") {
-    std::string text = finger("finger.vtk", 1, 24);
+    std::string text = cable_finger("finger.vtk", 1, 24);
     text.replace(text.find("50 mm"), 5, "60 mm");
-    const sim::Trajectory touching = simulate(text), always = simulate(text + "[contact]\n");
-    const sim::Trajectory through = simulate(text + "[contact]\nself = false\n");
+    const sim::Trajectory touching = simulate_text(text), always = simulate_text(text + "[contact]\n");
+    const sim::Trajectory through = simulate_text(text + "[contact]\nself = false\n");
     REQUIRE_MESSAGE(always.converged, always.message);
     CHECK(always.steps.back().cables[0].tension_N == near(5.87, {.relative = 0.01}));
     for (const sim::Step& step : touching.steps) CHECK(step.met == (step.index >= 23));

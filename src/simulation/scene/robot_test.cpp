@@ -17,7 +17,10 @@
 
 using namespace pliant;
 using namespace pliant::robot;
+using testing::build_text;
+using testing::Built;
 using testing::check_problem;
+using testing::last_step;
 using testing::problem;
 
 namespace {
@@ -263,16 +266,6 @@ TEST_CASE("a load is spread over the outer surface in its box") {
 
 namespace {
 
-using testing::Built;
-
-Built build(const std::string& text, const std::vector<std::string>& assignments = {}) {
-    return testing::build(parse_robot(text, "bar.toml", assignments));
-}
-
-sim::Step last_step(const Built& built) {
-    return testing::run_to_the_end(built).steps.back();
-}
-
 std::string chamber(const std::string& air, const std::string& target) {
     return good + "[[chamber]]\nname = \"air\"\n" + air + "\ntarget = { " + target + " }\n";
 }
@@ -309,7 +302,7 @@ std::string region(const std::string& name, const std::string& material, const s
 }  // namespace
 
 TEST_CASE("a drawn chamber is cut out of the body and closed by its wall") {
-    const Built built = build(chamber(room, "volume_ratio = 1.2"));
+    const Built built = build_text(chamber(room, "volume_ratio = 1.2"));
     CHECK(mesh::volume(built.model.mesh()) == near(1e-9 * (4000 - 100 - 192), {.relative = 1e-12}));
     REQUIRE(built.model.description().chambers.size() == 1);
     CHECK(built.robot.chambers[0].target.value == 1.2);
@@ -327,11 +320,11 @@ TEST_CASE("a cavity can be named by a point inside it") {
                                     "geometry = { difference = [{ box = [[20, 0, 0], [40, 10, 10]] }, { box = [[24, 3, "
                                     "3], [36, 7, 7]] }] }");
     const std::string air = "[[chamber]]\nname = \"air\"\ninside = [30, 5, 5]\ntarget = { volume_ratio = 1.2 }\n";
-    const Built built = build(hollow + air);
+    const Built built = build_text(hollow + air);
     CHECK(mesh::volume(built.model.mesh()) == near(1e-9 * (4000 - 100 - 192), {.relative = 1e-12}));
     const sim::Step found = last_step(built);
     CHECK(found.chambers[0].volume_m3 == near(1.2 * 192e-9, {.relative = 1e-6}));
-    const sim::Step drawn = last_step(build(chamber(room, "volume_ratio = 1.2")));
+    const sim::Step drawn = last_step(build_text(chamber(room, "volume_ratio = 1.2")));
     CHECK(found.chambers[0].pressure_Pa == near(drawn.chambers[0].pressure_Pa, {.relative = 0.05}));
     check_problem(good + air, "bar.toml:39: chamber \"air\": inside: the point (30, 5, 5) lies in the material");
     check_problem(hollow + air + "geometry = { box = [[0, 0, 0], [1, 1, 1]] }\n",
@@ -350,7 +343,7 @@ TEST_CASE("a cavity with an opening is closed by a cap, and its rim must be held
     check_problem(pot + air, "open to the outside; close each mouth with cap");
     check_problem(pot + air + cap, "the chamber is open; close it with a body");
     const std::string held = "[[fixed]]\nname = \"flange\"\nbox = [[20, 0, 10], [40, 10, 10]]\n";
-    const Built built = build(pot + air + cap + held);
+    const Built built = build_text(pot + air + cap + held);
     CHECK(mesh::volume(built.model.mesh()) == near(1e-9 * (4000 - 100 - 12 * 4 * 7), {.relative = 1e-12}));
     CHECK(last_step(built).chambers[0].volume_m3 == near(336e-9, {.relative = 0.01}));
 }
@@ -419,7 +412,7 @@ TEST_CASE("chambers without air, or not closed, are refused") {
 
 TEST_CASE("a pressure load acts on the faces in its box") {
     const std::string load = "[[load]]\nname = \"push\"\nbox = [[40, 0, 0], [40, 10, 10]]\n";
-    const Built built = build(good + load + "pressure = \"2 kPa\"\n", {"cable.flexor.target.length_ratio=1"});
+    const Built built = build_text(good + load + "pressure = \"2 kPa\"\n", {"cable.flexor.target.length_ratio=1"});
     CHECK(built.robot.loads[0].pressure_Pa == near(2e3, {.relative = 1e-12}));
     CHECK(built.model.description().loads.empty());
     REQUIRE(built.model.description().pressures.size() == 1);
@@ -434,7 +427,7 @@ TEST_CASE("a pressure load acts on the faces in its box") {
 
 TEST_CASE("a support rotates in degrees, about an axis through a point in the file's unit") {
     const std::string box = "box = [[0, 0, 0], [0, 10, 10]]";
-    const Built built = build(with(box, box + "\nrotate = { angle = 90, axis = [2, 0, 0], center = [0, 5, 5] }"));
+    const Built built = build_text(with(box, box + "\nrotate = { angle = 90, axis = [2, 0, 0], center = [0, 5, 5] }"));
     const sim::Support& clamp = built.model.description().supports[0];
     const Vec3 turned = clamp.position({0, 0.010, 0.005}, 1);
     CHECK(norm(turned - Vec3{0, 0.005, 0.010}) < 1e-12);
@@ -461,9 +454,10 @@ flexor = 0.98
 air = "10 kPa"
 gravity = 0.5
 )";
-    const Built built = build(with("steps = 3\n", "steps = 3\ngravity = [0, 0, -9.81]\n" + keys) +
-                              "[[chamber]]\nname = \"air\"\n" + room + "\ntarget = { pressure = \"40 kPa\" }\n" +
-                              "[[load]]\nname = \"push\"\nbox = [[40, 0, 0], [40, 10, 10]]\npressure = \"2 kPa\"\n");
+    const Built built =
+        build_text(with("steps = 3\n", "steps = 3\ngravity = [0, 0, -9.81]\n" + keys) +
+                   "[[chamber]]\nname = \"air\"\n" + room + "\ntarget = { pressure = \"40 kPa\" }\n" +
+                   "[[load]]\nname = \"push\"\nbox = [[40, 0, 0], [40, 10, 10]]\npressure = \"2 kPa\"\n");
     CHECK(built.robot.program.duration == 4);
     const sim::Description& d = built.model.description();
     const auto flexor = [&](double t) { return d.cables[0].target.at(t); };
@@ -512,13 +506,13 @@ TEST_CASE("mistakes in keys are named") {
 
 TEST_CASE("bodies of a mesh file are regions, or parts of them in a box") {
     const MeshFile file;
-    const Built whole = build(file.robot(region("all", "soft", "region = \"all\"")));
+    const Built whole = build_text(file.robot(region("all", "soft", "region = \"all\"")));
     const double total = mesh::volume(whole.model.mesh());
     CHECK(total == near(1e-9 * (4000 - 100), {.relative = 1e-12}));
 
     // The box takes its tets from the body before it.
     const std::string end = region("end", "hard", "region = \"right\"\nbox = [[30, -1, -1], [41, 11, 11]]");
-    const Built split = build(
+    const Built split = build_text(
         file.robot(region("left", "hard", "region = \"left\"") + region("right", "soft", "region = \"right\"") + end));
     const mesh::TetMesh& mesh = split.model.mesh();
     CHECK(mesh::volume(mesh, 0) == near(1e-9 * (2000 - 100), {.relative = 1e-12}));
@@ -568,7 +562,7 @@ TEST_CASE("a geometry file given as a robot is recognised as one; a robot file w
 
 TEST_CASE("a guide point just outside the mesh is carried and counted, one farther away is refused") {
     const std::string outside = with("points = [[0, 5, 8], [40, 5, 8]]", "points = [[0, 5, 8], [40.4, 5, 8]]");
-    const Built built = build(outside);
+    const Built built = build_text(outside);
     const auto& notes = built.model.description().notes;
     REQUIRE(notes.size() == 1);
     // The cable's two ends, where it leaves the body, and the flanks of the notch.
@@ -576,7 +570,7 @@ TEST_CASE("a guide point just outside the mesh is carried and counted, one farth
     CHECK(problem(outside, {"mesh.point_reach=0 mm"}).find("lies outside every body, by 0.4 mm") != std::string::npos);
     CHECK(problem(outside, {"mesh.point_reach=0.5 mm"}).empty());
     CHECK(problem(outside, {"mesh.point_reach=-1 mm"}).find("must not be below zero") != std::string::npos);
-    CHECK(build(good).model.description().notes.empty());
+    CHECK(build_text(good).model.description().notes.empty());
 }
 
 TEST_CASE("a support along a line is refused at rest, and allowed as a pendulum in dynamics") {

@@ -9,16 +9,20 @@
 
 #include "base/core/near.hpp"
 #include "simulation/run/step_record.hpp"
+#include "simulation/scene/test_beam.hpp"
 #include "simulation/scene/test_run.hpp"
 
 using namespace pliant;
+using robot::testing::beam_edge;
+using robot::testing::beam_length;
+using robot::testing::beam_modulus;
+using robot::testing::g;
+using robot::testing::run_text;
 
 namespace {
 
-constexpr double g = 9.81, E = 1e6, edge = 0.01, length = 0.1;
-
 /// A beam of 100 x 10 x 10 mm, clamped at x = 0, with a rigid plate at the other end.
-std::string beam(const std::string& more, const std::string& program = "steps = 2\n") {
+std::string sensed_beam(const std::string& more, const std::string& program = "steps = 2\n") {
     return R"(
 name = "beam"
 length_unit = "mm"
@@ -45,10 +49,6 @@ point = [100, 5, 5]
            program;
 }
 
-sim::Trajectory run(const std::string& text, const std::vector<std::string>& changes = {}) {
-    return robot::testing::run_to_the_end(robot::testing::build(robot::parse_robot(text, "sensor.toml", changes)));
-}
-
 double reading(const sim::Step& step, const std::string& sensor, const std::string& name) {
     for (const sim::SensorState& s : step.sensors) {
         if (s.name != sensor) continue;
@@ -72,7 +72,7 @@ std::string along(double from, double to, double step, double z) {
 }
 
 /// A soft cube of 20 mm that nothing holds, `low` above the ground.
-std::string cube(double low, const std::string& more, const std::string& program) {
+std::string loose_cube(double low, const std::string& more, const std::string& program) {
     return fmt::format(R"(
 name = "cube"
 length_unit = "mm"
@@ -99,28 +99,28 @@ friction = 0.5
 }  // namespace
 
 TEST_CASE("a bent beam: its backbone sensor reads the curvature, a strain sensor beside it the strain") {
-    const double angle = 0.5, EI = E * std::pow(edge, 4) / 12;
-    const sim::Trajectory result =
-        run(beam(torque(0, -EI * angle / length) + "[[sensor]]\nname = \"spine\"\nkind = \"backbone\"\n" +
-                 along(10, 90, 10, 5) + "[[sensor]]\nname = \"skin\"\nkind = \"strain\"\n" + along(10, 90, 5, 10)));
+    const double angle = 0.5, EI = beam_modulus * std::pow(beam_edge, 4) / 12;
+    const sim::Trajectory result = run_text(
+        sensed_beam(torque(0, -EI * angle / beam_length) + "[[sensor]]\nname = \"spine\"\nkind = \"backbone\"\n" +
+                    along(10, 90, 10, 5) + "[[sensor]]\nname = \"skin\"\nkind = \"strain\"\n" + along(10, 90, 5, 10)));
     const sim::Step& end = result.steps.back();
-    const double curvature = angle / length;
+    const double curvature = angle / beam_length;
     CHECK(reading(end, "spine", "bend") == near(0.8 * angle, {.relative = 0.02}));
     CHECK(reading(end, "spine", "curvature") == near(curvature, {.relative = 0.02}));
     CHECK(reading(end, "spine", "curvature_4") == near(curvature, {.relative = 0.03}));
     CHECK(std::abs(reading(end, "spine", "twist")) < 1e-3 * angle);
-    CHECK(reading(end, "skin", "strain") == near(-curvature * edge / 2, {.relative = 0.03}));
-    CHECK(reading(end, "skin", "length") == near(0.08 * (1 - curvature * edge / 2), {.relative = 0.002}));
+    CHECK(reading(end, "skin", "strain") == near(-curvature * beam_edge / 2, {.relative = 0.03}));
+    CHECK(reading(end, "skin", "length") == near(0.08 * (1 - curvature * beam_edge / 2), {.relative = 0.002}));
     const sim::Step& rest = result.steps.front();
     CHECK(std::abs(reading(rest, "spine", "curvature")) < 1e-9);
     CHECK(std::abs(reading(rest, "skin", "strain")) < 1e-12);
 }
 
 TEST_CASE("a twisted bar: its backbone sensor reads Saint-Venant's twist, and no curvature") {
-    const double moment = 3e-3, GJ = E / 2 * 0.140577 * std::pow(edge, 4);
-    const sim::Trajectory result =
-        run(beam(torque(moment, 0) + "[[sensor]]\nname = \"spine\"\nkind = \"backbone\"\n" + along(20, 80, 10, 5)),
-            {"mesh.size=4 mm"});
+    const double moment = 3e-3, GJ = beam_modulus / 2 * 0.140577 * std::pow(beam_edge, 4);
+    const sim::Trajectory result = run_text(
+        sensed_beam(torque(moment, 0) + "[[sensor]]\nname = \"spine\"\nkind = \"backbone\"\n" + along(20, 80, 10, 5)),
+        {"mesh.size=4 mm"});
     const sim::Step& end = result.steps.back();
     CHECK(reading(end, "spine", "twist") == near(moment * 0.06 / GJ, {.relative = 0.02}));
     CHECK(reading(end, "spine", "twist_rate_3") == near(moment / GJ, {.relative = 0.03}));
@@ -133,8 +133,8 @@ TEST_CASE("a sensor line drawn as an arc reads its curvature, without twist") {
         const double a = 0.1 * k;  // of a circle of 4.5 mm about (50, 5, 9.5)
         points += fmt::format("[{}, 5, {}], ", 50 + 4.5 * std::sin(a), 5 + 4.5 * (1 - std::cos(a)));
     }
-    const sim::Trajectory result =
-        run(beam("[[sensor]]\nname = \"arc\"\nkind = \"backbone\"\npoints = [" + points + "]\n", "steps = 1\n"));
+    const sim::Trajectory result = run_text(
+        sensed_beam("[[sensor]]\nname = \"arc\"\nkind = \"backbone\"\npoints = [" + points + "]\n", "steps = 1\n"));
     const sim::Step& rest = result.steps.front();
     CHECK(reading(rest, "arc", "curvature_4") == near(1 / 4.5e-3, {.relative = 0.002}));
     CHECK(std::abs(reading(rest, "arc", "twist")) < 1e-12);
@@ -155,14 +155,14 @@ axes = [[0, 0, 1], [1, 0, 0]]
 )",
                            low + 15);
     };
-    const sim::Trajectory falls =
-        run(cube(50, sensors(50), "duration = \"0.05 s\"\ntime_step = \"0.005 s\"\ngravity = [0, 0, -9.81]\n"));
+    const sim::Trajectory falls = run_text(
+        loose_cube(50, sensors(50), "duration = \"0.05 s\"\ntime_step = \"0.005 s\"\ngravity = [0, 0, -9.81]\n"));
     CHECK(reading(falls.steps.front(), "straight", "acceleration_z") == near(g, {.relative = 1e-12}));
     for (std::size_t k = 1; k < falls.steps.size(); ++k) {
         for (const char* axis : {"acceleration_x", "acceleration_y", "acceleration_z"})
             CHECK(std::abs(reading(falls.steps[k], "straight", axis)) < 1e-3 * g);
     }
-    const sim::Trajectory rests = run(cube(
+    const sim::Trajectory rests = run_text(loose_cube(
         0, sensors(0), "duration = \"0.4 s\"\ntime_step = \"0.01 s\"\nmass_damping = 30\ngravity = [0, 0, -9.81]\n"));
     CHECK(reading(rests.steps.back(), "straight", "acceleration_z") == near(g, {.relative = 0.01}));
     CHECK(reading(rests.steps.back(), "turned", "acceleration_x") == near(g, {.relative = 0.01}));
@@ -171,7 +171,7 @@ axes = [[0, 0, 1], [1, 0, 0]]
 
 TEST_CASE("a motion sensor on a spinning object reads its rotation and centripetal acceleration") {
     const double w = 5;
-    const sim::Trajectory result = run(cube(0, R"(
+    const sim::Trajectory result = run_text(loose_cube(0, R"(
 [[object]]
 name = "block"
 geometry = { box = [[100, 0, 100], [120, 20, 110]] }
@@ -190,7 +190,7 @@ between = ["block", "middle"]
 name = "middle"
 point = [10, 10, 10]
 )",
-                                            "duration = \"0.1 s\"\ntime_step = \"0.002 s\"\n"));
+                                                       "duration = \"0.1 s\"\ntime_step = \"0.002 s\"\n"));
     const sim::Step& end = result.steps.back();
     CHECK(reading(end, "gyro", "angular_velocity_x") == near(w, {.relative = 0.01}));
     CHECK(std::abs(reading(end, "gyro", "angular_velocity_y")) < 1e-3 * w);
@@ -199,7 +199,7 @@ point = [10, 10, 10]
 }
 
 TEST_CASE("a contact sensor under a body reads its weight over its area") {
-    const sim::Trajectory result = run(cube(0, R"(
+    const sim::Trajectory result = run_text(loose_cube(0, R"(
 [[sensor]]
 name = "sole"
 kind = "contact"
@@ -209,7 +209,7 @@ name = "top"
 kind = "contact"
 plane = { point = [0, 0, 20], normal = [0, 0, 1] }
 )",
-                                            "steps = 3\ngravity = [0, 0, -9.81]\n"));
+                                                       "steps = 3\ngravity = [0, 0, -9.81]\n"));
     const sim::Step& end = result.steps.back();
     const double weight = 8e-3 * g;
     CHECK(reading(end, "sole", "force_z") == near(weight, {.relative = 0.002}));
@@ -221,7 +221,7 @@ plane = { point = [0, 0, 20], normal = [0, 0, 1] }
 }
 
 TEST_CASE("sensors of cables and chambers read the reported values, and are stored with the step") {
-    const sim::Trajectory result = run(beam(R"(
+    const sim::Trajectory result = run_text(sensed_beam(R"(
 [[cable]]
 name = "flexor"
 points = [[90, 5, 8], [10, 5, 8]]
@@ -256,7 +256,7 @@ chamber = "air"
 
 TEST_CASE("mistakes in sensors give one line each") {
     using robot::testing::check_problem;
-    const auto sensor = [](const std::string& keys) { return beam("[[sensor]]\nname = \"it\"\n" + keys); };
+    const auto sensor = [](const std::string& keys) { return sensed_beam("[[sensor]]\nname = \"it\"\n" + keys); };
     check_problem(sensor("kind = \"strane\"\n"), "did you mean \"strain\"");
     check_problem(sensor("kind = \"strain\"\npoints = [[1, 5, 5]]\n"), "points: needs at least 2 points");
     check_problem(sensor("kind = \"backbone\"\npoints = [[1, 5, 5], [50, 5, 5]]\n"), "points: needs at least 3 points");

@@ -13,6 +13,8 @@
 
 namespace pliant::robot::testing {
 
+inline constexpr double g = 9.81;  ///< m/s^2
+
 using Built = Scene;
 
 inline Built build(Result<Robot> robot) {
@@ -21,6 +23,10 @@ inline Built build(Result<Robot> robot) {
     Result<Scene> scene = build_scene(std::move(*robot), silent);
     REQUIRE_MESSAGE(scene, (scene ? "" : scene.error().message));
     return std::move(*scene);
+}
+
+inline Built build_text(const std::string& text, const std::vector<std::string>& assignments = {}) {
+    return build(parse_robot(text, "bar.toml", assignments));
 }
 
 /// The error for a text, whether from reading or from building; "" if there is none.
@@ -47,6 +53,14 @@ inline sim::Trajectory run_to_the_end(const Built& built) {
     sim::Trajectory result = run(built);
     REQUIRE_MESSAGE(result.converged, result.message);
     return result;
+}
+
+inline sim::Step last_step(const Built& built) {
+    return run_to_the_end(built).steps.back();
+}
+
+inline sim::Trajectory run_text(const std::string& text, const std::vector<std::string>& assignments = {}) {
+    return run_to_the_end(build_text(text, assignments));
 }
 
 inline sim::Trajectory run_file(const std::string& path, const std::vector<std::string>& assignments) {

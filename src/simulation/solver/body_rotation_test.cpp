@@ -9,10 +9,12 @@
 
 #include "base/core/near.hpp"
 #include "simulation/peers/reference_problems.hpp"
+#include "simulation/solver/test_arc.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
 using linalg::Matrix3;
+using testing::bent;
 
 namespace {
 
@@ -26,17 +28,6 @@ Description bar(int order) {
     d.material_of_region = {0, 1};
     d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
     return d;
-}
-
-/// Bent to an arc; plane cross-sections stay plane.
-Eigen::VectorXd bent(const Eigen::VectorXd& rest, double radius_m) {
-    Eigen::VectorXd x = rest;
-    for (Eigen::Index i = 0; i < x.size(); i += 3) {
-        const double angle = x[i] / radius_m, r = radius_m - x[i + 2];
-        x[i] = r * std::sin(angle);
-        x[i + 2] = radius_m - r * std::cos(angle);
-    }
-    return x;
 }
 
 struct Bar {

@@ -7,30 +7,23 @@
 
 #include "base/core/near.hpp"
 #include "simulation/run/live.hpp"
+#include "simulation/run/test_bar.hpp"
 #include "simulation/run/test_problems.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::bar_side;
 
 namespace {
-
-constexpr double side = 0.01;
 
 /// A bar of 4 x 1 x 1 cm along x whose cable drags in its guides, to be shortened to 0.85 in one step.
 Model dragging_bar(double friction = 0.4) {
     Description d;
-    d.mesh = reference::kuhn_box({4 * side, side, side}, 8, 2, 2, [](Vec3) { return 0; });
+    d.mesh = reference::kuhn_box({4 * bar_side, bar_side, bar_side}, 8, 2, 2, [](Vec3) { return 0; });
     d.materials = {{"A", material::neo_hookean(1e6, 0.4), 1000}};
     d.material_of_region = {0};
     d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
-    Cable cable{"flexor", {{{}, {}, {0, side / 2, side}}}, {CableTarget::Kind::length_ratio, 0.85}};
-    for (int k = 1; k <= 4; ++k)
-        cable.points.push_back({reference::nodes_where(d.mesh,
-                                                       [&](Vec3 p) {
-                                                           return norm(p - Vec3{k * side, side / 2, side}) < 1e-9;
-                                                       }),
-                                {1.0},
-                                {}});
+    Cable cable = testing::flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.85});
     cable.friction = friction;
     d.cables = {cable};
     auto model = Model::create(std::move(d));

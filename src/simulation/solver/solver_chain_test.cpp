@@ -9,26 +9,27 @@
 
 #include "base/core/near.hpp"
 #include "simulation/actuators/attach.hpp"
+#include "simulation/run/test_bar.hpp"
 #include "simulation/run/test_problems.hpp"
 #include "simulation/solver/pressure_limit.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
+using testing::bar_side;
 using testing::solve;
 
 namespace {
 
-constexpr double side = 0.01;
-
 /// A bar of 4 x 1 x 1 cm whose free end is moved sideways.
 Description pushed_bar() {
     Description d;
-    d.mesh = reference::kuhn_box({4 * side, side, side}, 8, 2, 2, [](Vec3) { return 0; });
+    d.mesh = reference::kuhn_box({4 * bar_side, bar_side, bar_side}, 8, 2, 2, [](Vec3) { return 0; });
     d.materials = {{"A", material::neo_hookean(1e6, 0.4), 1000}};
     d.material_of_region = {0};
-    d.supports = {
-        {"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}},
-        {"grip", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * side - 1e-9; }), {0, 0, 0.5 * side}}};
+    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}},
+                  {"grip",
+                   reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 4 * bar_side - 1e-9; }),
+                   {0, 0, 0.5 * bar_side}}};
     return d;
 }
 
@@ -36,13 +37,7 @@ Description pushed_bar() {
 Description pulled_bar(double length_ratio) {
     Description d = pushed_bar();
     d.supports.pop_back();
-    Cable cable{"flexor", {{{}, {}, {0, side / 2, side}}}, {CableTarget::Kind::length_ratio, length_ratio}};
-    for (int k = 1; k <= 4; ++k) {
-        const Vec3 at{k * side, side / 2, side};
-        cable.points.push_back(
-            {reference::nodes_where(d.mesh, [&](Vec3 p) { return norm(p - at) < 1e-9; }), {1.0}, {}});
-    }
-    d.cables = {cable};
+    d.cables = {testing::flexor(d.mesh, {CableTarget::Kind::length_ratio, length_ratio})};
     return d;
 }
 

@@ -14,6 +14,7 @@
 #include "simulation/run/simulate.hpp"
 #include "simulation/solver/corner_nesting.hpp"
 #include "simulation/solver/equilibrium.hpp"
+#include "simulation/solver/test_arc.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
@@ -34,17 +35,6 @@ Description pushed(Vec3 size, int along, int across, int order, double force_N) 
     return d;
 }
 
-/// Bent to an arc; plane cross-sections stay plane.
-Eigen::VectorXd bent(const Equilibrium& system, double radius_m) {
-    Eigen::VectorXd x = system.rest().x;
-    for (Eigen::Index i = 0; i < x.size(); i += 3) {
-        const double angle = x[i] / radius_m, r = radius_m - x[i + 2];
-        x[i] = r * std::sin(angle);
-        x[i + 2] = radius_m - r * std::cos(angle);
-    }
-    return x;
-}
-
 /// A pushed body bent to an arc: its tangent and out-of-balance force there.
 struct Bent {
     Model model;
@@ -55,7 +45,7 @@ struct Bent {
 
     Bent(const Description& d, double radius_m, bool project) : model(Model::create(d).value()) {
         State state = system.rest();
-        state.x = bent(system, radius_m);
+        state.x = testing::bent(system.rest().x, radius_m);
         const Controls controls = system.controls(1);
         system.add_tangent(state, controls, layout, values, project);
         positions = system.restrict_to_free(state.x);

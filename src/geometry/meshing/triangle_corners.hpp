@@ -1,0 +1,30 @@
+// The triangles of a surface by their corners.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "geometry/mesh/tri_mesh.hpp"
+
+namespace pliant::mesh {
+
+using Corners = std::array<Vec3, 3>;
+
+/// The corners of a triangle of the surface.
+[[nodiscard]] inline Corners corners(const TriMesh& surface, std::size_t triangle) {
+    const auto& [a, b, c] = surface.triangles[triangle];
+    const auto& p = surface.points;
+    return {p[static_cast<std::size_t>(a)], p[static_cast<std::size_t>(b)], p[static_cast<std::size_t>(c)]};
+}
+
+/// The sum of the areas of all triangles.
+[[nodiscard]] inline double surface_area(const TriMesh& surface) {
+    double sum = 0;
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+        const Corners t = corners(surface, i);
+        sum += norm(cross(t[1] - t[0], t[2] - t[0])) / 2;
+    }
+    return sum;
+}
+
+}  // namespace pliant::mesh
