@@ -32,6 +32,8 @@ endfunction()
 add_library(pliant_flags INTERFACE)
 target_compile_options(pliant_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                                               $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # false alarms of GCC 12
+                                              # The sources of a group are taken for headers.
+                                              $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>
                                               $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>) # what ccache asks for
 # All code may become part of the shared library, which shows its public interface alone.
 target_compile_options(pliant_flags INTERFACE -fPIC -fvisibility=hidden -fvisibility-inlines-hidden)

@@ -47,17 +47,17 @@ const std::array<Place, 3> fingers{{{"one", false, 105, {20, 0, 0}, {3, 10.5, 3}
                                     {"three", true, 65, {-10, 0, 34}, {3, 10.5, 31.5}}}};
 
 mesh::TetMesh gripper_mesh() {
-    const Result<mesh::TetMesh> finger = mesh::read_tet_mesh(data("cable_finger/finger.vtk"));
-    REQUIRE(finger);
-    mesh::TetMesh all = *finger;
+    const Result<mesh::TetMesh> read = mesh::read_tet_mesh(data("cable_finger/finger.vtk"));
+    REQUIRE(read);
+    mesh::TetMesh all = *read;
     all.points.clear();
     all.nodes.clear();
     all.region.clear();
     for (const Place& place : fingers) {
         const int first = static_cast<int>(all.points.size());
-        for (const Vec3& p : finger->points) all.points.push_back(place(p));
-        for (const int node : finger->nodes) all.nodes.push_back(first + node);
-        all.region.insert(all.region.end(), finger->region.begin(), finger->region.end());
+        for (const Vec3& p : read->points) all.points.push_back(place(p));
+        for (const int node : read->nodes) all.nodes.push_back(first + node);
+        all.region.insert(all.region.end(), read->region.begin(), read->region.end());
     }
     return all;
 }
