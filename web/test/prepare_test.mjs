@@ -149,11 +149,11 @@ test('the slicer moves, scales and copies the part as the platform view shows it
 
 test('the first layers of a large job are shown while it is being sliced', async (t) => {
   const { page, wrong } = await withTable(t);
-  await page.getByTestId('option-layer').fill('2');
+  await page.getByTestId('option-layer').fill('1');
   await page.getByTestId('slice').click();
   await page.waitForSelector('[data-testid=under-way] canvas', { timeout: 120_000 });
   assert.ok(await page.getByTestId('cancel-slice').isVisible(), 'it is still being sliced');
-  assert.match(await page.getByTestId('under-way').innerText(), /of 6500 layers/);
+  assert.match(await page.getByTestId('under-way').innerText(), /of 13000 layers/);
   await page.getByTestId('cancel-slice').click();
   await page.getByTestId('slice').waitFor({ timeout: 60_000 });
   assert.deepEqual(wrong, []);
