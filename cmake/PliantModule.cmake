@@ -183,7 +183,7 @@ function(pliant_module)
   set(tests ${files})
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
   list(FILTER files EXCLUDE REGEX "^test_.*|_test\\.cpp$")
-  list(REMOVE_ITEM files ${M_EXCEPT} ${M_ALONE} "")
+  list(REMOVE_ITEM files ${M_EXCEPT} ${M_ALONE} "") # it asks for one at least
   pliant_grouped(files sources ${files})
   pliant_part(${library} ${kind} SOURCES ${files} ${M_ALONE} ${M_SOURCES} USES ${M_USES} PRIVATE_USES ${M_PRIVATE_USES})
   if(PLIANT_TESTS AND tests)

@@ -51,10 +51,6 @@ std::vector<Crossing> crossings(const TriangleTree& tree, const std::vector<Vec3
     return found;
 }
 
-Vec3 area_normal(const Corners& t) {
-    return 0.5 * cross(t[1] - t[0], t[2] - t[0]);
-}
-
 /// Approximate distance of a point from a triangle: exact along its plane's normal, and zero over the triangle.
 double distance_to(const Corners& t, const Vec3& p) {
     const Vec3 n = area_normal(t);

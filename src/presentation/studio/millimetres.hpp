@@ -1,9 +1,11 @@
 // Lengths as pages get them.
 #pragma once
 
+#include "presentation/report/units.hpp"
+
 namespace pliant::studio {
 
-inline constexpr double mm_per_m = 1e3;
+using report::mm_per_m;
 
 /// Of the whole micrometres of a machine.
 [[nodiscard]] constexpr double mm(int um) {
