@@ -36,6 +36,18 @@ Svd svd(const MatrixXd& A, SvdParts parts) {
     return result;
 }
 
+std::optional<VectorXd> positive_solution(const MatrixXd& A, const VectorXd& b) {
+    const Eigen::LLT<MatrixXd> llt(A);
+    if (llt.info() != Eigen::Success) return std::nullopt;
+    return llt.solve(b);
+}
+
+std::optional<MatrixXd> positive_inverse(const MatrixXd& A) {
+    const Eigen::LLT<MatrixXd> llt(A);
+    if (llt.info() != Eigen::Success) return std::nullopt;
+    return llt.solve(MatrixXd::Identity(A.rows(), A.cols()));
+}
+
 VectorXd least_squares(const MatrixXd& A, const VectorXd& b) {
     return A.colPivHouseholderQr().solve(b);
 }

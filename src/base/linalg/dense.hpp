@@ -33,6 +33,11 @@ enum class SvdParts {
 /// A = U diag(sigma) V^T.
 [[nodiscard]] Svd svd(const Eigen::MatrixXd& A, SvdParts parts);
 
+/// A^-1 b of a symmetric positive definite matrix, of which the lower triangle is read; empty if it is none.
+[[nodiscard]] std::optional<Eigen::VectorXd> positive_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+/// A^-1, likewise.
+[[nodiscard]] std::optional<Eigen::MatrixXd> positive_inverse(const Eigen::MatrixXd& A);
+
 /// The x that minimises |A x - b|. Where columns are linearly dependent, some unknowns are zero.
 [[nodiscard]] Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 /// The same, but empty where columns are linearly dependent.

@@ -33,6 +33,21 @@ TEST_CASE("eigenpairs of a symmetric matrix give it back") {
     for (Eigen::Index k = 1; k < 7; ++k) CHECK(found.values[k] >= found.values[k - 1]);
 }
 
+TEST_CASE("a positive definite matrix is solved with, any other is refused") {
+    const MatrixXd B = random_matrix(9, 5, 3), M = B.transpose() * B, A = random_matrix(5, 5, 2);
+    const VectorXd b = A.col(0);
+    const auto x = positive_solution(M, b);
+    REQUIRE(x);
+    CHECK(off(M * *x, b) < 1e-13);
+    const auto inverse = positive_inverse(M);
+    REQUIRE(inverse);
+    CHECK(off(M * *inverse, MatrixXd::Identity(5, 5)) < 1e-13);
+    MatrixXd indefinite = M;
+    indefinite(3, 3) = -1;
+    CHECK(!positive_solution(indefinite, b));
+    CHECK(!positive_inverse(indefinite));
+}
+
 TEST_CASE("generalized eigenpairs satisfy their equation, and need a positive definite M") {
     const MatrixXd A = random_matrix(5, 5, 2), B = random_matrix(9, 5, 3), K = A + A.transpose(), M = B.transpose() * B;
     const auto found = generalized_eigenpairs(K, M);

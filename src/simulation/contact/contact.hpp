@@ -117,6 +117,9 @@ public:
     /// The pairs that are closer than their reach, in an order that depends on x alone.
     [[nodiscard]] Pairs find(std::span<const double> x) const;
 
+    /// All pairs that are closer than `within_m`, also those beyond their reach, on which nothing acts at x.
+    [[nodiscard]] Pairs find_near(std::span<const double> x, double within_m) const;
+
     /// Energy, J; infinite if a pair touches.
     [[nodiscard]] double energy(const Pairs& pairs, std::span<const double> x) const;
     /// Adds the gradient of the energy, minus the contact forces, N, to `gradient` (3 nodes).
@@ -215,8 +218,9 @@ private:
     [[nodiscard]] bool edge_and_triangle_belong_together(std::span<const int, 5> nodes) const;
     [[nodiscard]] Pair make_pair(bool edges, std::span<const int> nodes, double reach_m, double area_m2) const;
     [[nodiscard]] Pairs search_pairs(std::span<const double> x) const;
-    void find_planes(std::span<const double> x, Pairs& pairs) const;
-    void find_planes(const Side& side, std::span<const double> x, Pairs& pairs) const;
+    /// `within_m`: 0 stands for the reach of each pair.
+    void find_planes(std::span<const double> x, double within_m, Pairs& pairs) const;
+    void find_planes(const Side& side, std::span<const double> x, double within_m, Pairs& pairs) const;
     void shorten_to_planes(const Side& side, std::span<const double> x, std::span<const double> dx, double& step) const;
     [[nodiscard]] double largest_plane_step(std::span<const double> x, std::span<const double> dx) const;
 

@@ -407,7 +407,7 @@ Pairs Contact::find(std::span<const double> x) const {
     const bool clear = is_clear(x, {});
     Pairs pairs = clear ? Pairs{} : search_pairs(x);
     if (!clear && pairs.empty()) note_clearance(x);
-    find_planes(x, pairs);
+    find_planes(x, 0, pairs);
     const std::lock_guard lock(memory_->mutex);
     memory_->found.x.assign(x.begin(), x.end());
     memory_->found.pairs = pairs;
@@ -431,6 +431,21 @@ Pairs Contact::search_pairs(std::span<const double> x) const {
               : Search(*this, x, {}, most, Search::What::pairs, settings_.self).run(Pairs{}, consider);
     Pairs pairs;
     for (const Pairs& piece : pieces) pairs.insert(pairs.end(), piece.begin(), piece.end());
+    return pairs;
+}
+
+Pairs Contact::find_near(std::span<const double> x, double within_m) const {
+    const auto consider = [&](const Search::Candidate& c, Pairs& found) {
+        if (!(c.squared_distance(x) < within_m * within_m)) return;
+        const double apart = std::sqrt(c.squared_distance(rest_));
+        if (left_out(c.first_nodes(), c.second_nodes(), apart)) return;
+        const double reach = this->reach(obstacle_of(c.nodes), apart);
+        found.push_back(make_pair(c.features() == Features::edge_edge, c.nodes, reach, c.area_m2));
+    };
+    const Search search(*this, x, {}, within_m, Search::What::pairs, settings_.self);
+    Pairs pairs;
+    for (const Pairs& piece : search.run(Pairs{}, consider)) pairs.insert(pairs.end(), piece.begin(), piece.end());
+    find_planes(x, within_m, pairs);
     return pairs;
 }
 
@@ -487,11 +502,11 @@ std::vector<std::pair<std::size_t, std::size_t>> Contact::meetings(bool self) co
     return meetings;
 }
 
-void Contact::find_planes(std::span<const double> x, Pairs& pairs) const {
-    visit_moving_sides([&](const Side& side) { find_planes(side, x, pairs); });
+void Contact::find_planes(std::span<const double> x, double within_m, Pairs& pairs) const {
+    visit_moving_sides([&](const Side& side) { find_planes(side, x, within_m, pairs); });
 }
 
-void Contact::find_planes(const Side& side, std::span<const double> x, Pairs& pairs) const {
+void Contact::find_planes(const Side& side, std::span<const double> x, double within_m, Pairs& pairs) const {
     for (const Plane& plane : planes_) {
         for (std::size_t i = 0; i < side.surface.points.size(); ++i) {
             const int point = side.surface.points[i];
@@ -502,7 +517,8 @@ void Contact::find_planes(const Side& side, std::span<const double> x, Pairs& pa
             pair.normal = plane.normal;
             pair.reach_m = reach(plane.obstacle, distance(pair, stencil_at(pair.nodes, rest_)));
             pair.area_m2 = side.areas.points[i];
-            if (distance(pair, stencil_at(pair.nodes, x)) < pair.reach_m) pairs.push_back(pair);
+            const double within = within_m > 0 ? within_m : pair.reach_m;
+            if (distance(pair, stencil_at(pair.nodes, x)) < within) pairs.push_back(pair);
         }
     }
 }

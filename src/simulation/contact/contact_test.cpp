@@ -84,16 +84,17 @@ Key key_of(bool edges, std::array<int, 4> n) {
     return {edges, n[0], n[1], n[2], n[3]};
 }
 
+/// The pairs that are closer than `limit` of their distance at rest.
+template <class Limit>
 std::vector<Key> brute_force_pairs(const Surface& s, std::span<const double> rest, std::span<const double> x,
-                                   double distance) {
+                                   const Limit& limit) {
     std::vector<Key> found;
     const auto offer = [&](Features features, const std::array<int, 4>& n) {
         const auto apart = [&](std::span<const double> at) {
             const Stencil p{node_at(at, n[0]), node_at(at, n[1]), node_at(at, n[2]), node_at(at, n[3])};
             return std::sqrt(squared_distance(nearest(features, p), p));
         };
-        if (apart(x) < std::min(distance, 0.5 * apart(rest)))
-            found.push_back(key_of(features == Features::edge_edge, n));
+        if (apart(x) < limit(apart(rest))) found.push_back(key_of(features == Features::edge_edge, n));
     };
     for (const int p : s.points)
         for (const auto& t : s.triangles)
@@ -134,12 +135,24 @@ TEST_CASE("the contact pairs agree with a search over all features") {
     const Surface surface = make_surface(body.triangles);
     for (const double drop : {1.2e-3, 1.6e-3, 1.9e-3}) {
         const Vector x = approached(contact, 125, drop, 5e-5, 4);
-        std::vector<Key> found;
-        for (const Pair& pair : contact.find(span(x)))
-            found.push_back(key_of(pair.kind == PairKind::edge_edge, pair.nodes));
-        std::sort(found.begin(), found.end());
+        const auto keys_of = [](const Pairs& pairs) {
+            std::vector<Key> keys;
+            for (const Pair& pair : pairs) keys.push_back(key_of(pair.kind == PairKind::edge_edge, pair.nodes));
+            std::sort(keys.begin(), keys.end());
+            return keys;
+        };
+        const auto within_reach = [](double at_rest) { return std::min(usual.distance_m, 0.5 * at_rest); };
+        const std::vector<Key> found = keys_of(contact.find(span(x)));
         CHECK(found.size() > 50);
-        CHECK(found == brute_force_pairs(surface, contact.rest(), span(x), usual.distance_m));
+        CHECK(found == brute_force_pairs(surface, contact.rest(), span(x), within_reach));
+        // Features of one box are near each other at rest, and belong together; those of both were two boxes apart.
+        std::vector<Key> near_by = keys_of(contact.find_near(span(x), 2 * usual.distance_m));
+        CHECK(near_by.size() > found.size());
+        CHECK(std::includes(near_by.begin(), near_by.end(), found.begin(), found.end()));
+        for (const Key& key : brute_force_pairs(surface, contact.rest(), span(x), [](double at_rest) {
+                 return at_rest > 4 * usual.distance_m ? 2 * usual.distance_m : 0;
+             }))
+            CHECK(std::binary_search(near_by.begin(), near_by.end(), key));
     }
 }
 

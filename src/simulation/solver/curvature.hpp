@@ -57,6 +57,12 @@ public:
         (void)force, (void)normals, (void)wanted;
         return std::nullopt;
     }
+    /// columns (3 free, k) <- A^-1 columns, where A is the tangent of everything except contact and friction, at the
+    /// state of the last refresh(). False: it cannot be, or would take too long.
+    [[nodiscard]] virtual bool solve_without_contact(Eigen::MatrixXd& columns) {
+        (void)columns;
+        return false;
+    }
     /// Retraction: the positions reached along the direction `motion` (3n); x + motion to first order.
     [[nodiscard]] virtual Eigen::VectorXd retract(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const {
         return x + motion;

@@ -10,6 +10,7 @@
 #include "simulation/solver/body_rotation.hpp"
 #include "simulation/solver/corner_nesting.hpp"
 #include "simulation/solver/curvature.hpp"
+#include "simulation/solver/inverse_without_contact.hpp"
 #include "simulation/solver/step_memory.hpp"
 #include "simulation/solver/tangent_inverse.hpp"
 
@@ -21,7 +22,11 @@ using Effort = TangentInverse::Effort;
 class Newton final : public Curvature, private NewtonRates {
 public:
     Newton(const Equilibrium& system, const FactoredLaplacian& laplacian)
-        : system_(&system), laplacian_(&laplacian), layout_(laplacian.tangent_layout()), rotation_(system, laplacian) {
+        : system_(&system),
+          laplacian_(&laplacian),
+          layout_(laplacian.tangent_layout()),
+          rotation_(system, laplacian),
+          without_contact_(system, laplacian) {
         corners_ = nest_in_corners(system.model());
         two_levels_ = starts_on_two_levels();
         inverse_ = make_inverse();
@@ -147,6 +152,10 @@ public:
                 !project(share_ == 0 ? smallest_share_of_projection : std::min(4 * share_, 1.0)))
                 return std::nullopt;
         }
+    }
+
+    [[nodiscard]] bool solve_without_contact(Eigen::MatrixXd& columns) override {
+        return !reused_ && !system_->has_skew() && without_contact_.solve(tangent_, columns);
     }
 
 private:
@@ -383,6 +392,7 @@ private:
     bool straight_ = false;                   ///< the next step needs no rotation
     Eigen::VectorXd positions_;               ///< of the free nodes, where the tangent was made
     BodyRotation rotation_;                   ///< since the factor was made
+    InverseWithoutContact without_contact_;
     StepMemory memory_{most_steps};           ///< of the steps since then, rotated back to the state of the factor
     std::shared_ptr<const StepPair> learnt_;  ///< not yet in the memory
     SolverMemory::Cliques touching_;          ///< contact pairs to be included in the next pattern

@@ -462,10 +462,17 @@ void Equilibrium::add_contact(const Eigen::VectorXd& x, const Controls& controls
         controls.friction->add_gradient(all, gradient);
         energy += controls.friction->energy(all);
     }
-    forces += Eigen::Map<const Eigen::VectorXd>(gradient.data(), forces.size());
-    if (const auto count = static_cast<std::size_t>(model_->object_points().count()); count > 0)
-        model_->object_points().add_forces(
-            std::span(gradient).subspan(static_cast<std::size_t>(forces.size()), 3 * count), view(forces));
+    add_carried(gradient, forces);
+}
+
+Eigen::VectorXd Equilibrium::contact_gradient(const contact::Pairs& pairs, const std::vector<double>& x,
+                                              const Controls& controls) const {
+    std::vector<double> on_all(x.size(), 0.0);
+    contact(controls)->add_gradient(pairs, x, on_all);
+    if (controls.friction) controls.friction->add_gradient(x, on_all);
+    Eigen::VectorXd forces = Eigen::VectorXd::Zero(rest_.size());
+    add_carried(on_all, forces);
+    return restrict_to_free(forces);
 }
 
 void Equilibrium::add_carried(const std::vector<double>& on_all, Eigen::VectorXd& forces) const {
@@ -665,32 +672,32 @@ TangentLayout Equilibrium::lay_out_tangent_beside_tets(const std::vector<std::ve
 }
 
 void Equilibrium::add_tangent_at(const State& state, const Controls& controls, const TangentLayout& layout,
-                                 std::span<double> values, bool project) const {
+                                 std::span<double> values, bool project, TangentParts parts) const {
     model_->elements().add_tangent(view(state.x), layout.element_sums, values, project);
-    add_tangent_beside_tets(state, controls, layout, values, project);
+    add_tangent_beside_tets(state, controls, layout, values, project, parts);
 }
 
 /// The derivative of the force at share s of the path with respect to the end is s times the tangent there.
 void Equilibrium::add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
-                              std::span<double> values, bool project) const {
+                              std::span<double> values, bool project, TangentParts parts) const {
     if (controls.inertia && !controls.inertia->means().empty()) {
         Controls still = controls;
         still.inertia = nullptr;
         for (const Inertia::Mean& at : controls.inertia->means()) {
             std::vector<double> there(values.size(), 0.0);
-            add_tangent_at(on_the_way(state, *controls.inertia, at.share), still, layout, there, project);
+            add_tangent_at(on_the_way(state, *controls.inertia, at.share), still, layout, there, project, parts);
             for (std::size_t k = 0; k < values.size(); ++k) values[k] += at.weight * at.share * there[k];
         }
         controls.inertia->add_hessian(index_of(layout.nodes), layout.pattern, values);
         if (fluid_) add_drag_tangent(state.x, controls, *controls.inertia, layout, values);
     } else {
-        add_tangent_at(state, controls, layout, values, project);
+        add_tangent_at(state, controls, layout, values, project, parts);
     }
     if (layout.nodes == TangentNodes::free) decouple_rollers(layout.pattern, values);
 }
 
 void Equilibrium::add_tangent_beside_tets(const State& state, const Controls& controls, const TangentLayout& layout,
-                                          std::span<double> values, bool project) const {
+                                          std::span<double> values, bool project, TangentParts parts) const {
     const linalg::SymmetricPattern& pattern = layout.pattern;
     const std::vector<int>& index = index_of(layout.nodes);
     for (const Plate& plate : plates_) plate.add_hessian(view(state.x), index, pattern, values);
@@ -711,7 +718,8 @@ void Equilibrium::add_tangent_beside_tets(const State& state, const Controls& co
         controls.inertia->add_hessian(index, pattern, values);
         if (fluid_) add_drag_tangent(state.x, controls, *controls.inertia, layout, values);
     }
-    if (const contact::Contact* contact = this->contact(controls)) {
+    const contact::Contact* contact = parts == TangentParts::all ? this->contact(controls) : nullptr;
+    if (contact != nullptr) {
         const std::vector<double> x = with_obstacles(state.x, controls.obstacles);
         const contact::BlockVisitor add = [&](int a, int b, const linalg::Matrix3& block) {
             const int i = index[static_cast<std::size_t>(a)];

@@ -75,6 +75,9 @@ struct Evaluation {
 /// order.
 enum class TangentNodes { free, all };
 
+/// What a tangent includes: everything, or everything except contact and friction.
+enum class TangentParts { all, without_contact };
+
 /// Sparsity pattern of the tangent; rebuilt when contact couples further nodes.
 struct TangentLayout {
     linalg::SymmetricPattern pattern;  ///< over these nodes, block 3
@@ -127,10 +130,14 @@ public:
     /// `project` every part is replaced by the nearest positive semi-definite one. Over the free nodes, rollers are
     /// decoupled along the directions in which they are held. Precondition: min_J > 0.
     void add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
-                     std::span<double> values, bool project) const;
+                     std::span<double> values, bool project, TangentParts parts = TangentParts::all) const;
     /// The same without the tets: plates, springs, inertia, contact and actuators alone.
     void add_tangent_beside_tets(const State& state, const Controls& controls, const TangentLayout& layout,
-                                 std::span<double> values, bool project) const;
+                                 std::span<double> values, bool project, TangentParts parts = TangentParts::all) const;
+    /// (3 free) gradient of the energy of `pairs` and of the friction in `controls`, at positions `x` of all nodes of
+    /// contact, as of with_obstacles(). Precondition: the model has contact.
+    [[nodiscard]] Eigen::VectorXd contact_gradient(const contact::Pairs& pairs, const std::vector<double>& x,
+                                                   const Controls& controls) const;
     /// Adds the skew part, which add_tangent leaves out: of a law without an energy, of torques and of pressure on
     /// patches with a free rim (over all nodes: on all patches). A matrix S with S^T = -S, of which `values` hold the
     /// blocks at and below the diagonal.
@@ -251,7 +258,7 @@ private:
                                                  const Evaluation& e) const;
     void fill_residual(const Balance& balance, Evaluation& e) const;
     void add_tangent_at(const State& state, const Controls& controls, const TangentLayout& layout,
-                        std::span<double> values, bool project) const;
+                        std::span<double> values, bool project, TangentParts parts) const;
 
     const Model* model_;
     std::vector<FreeRoller> rollers_;

@@ -2,14 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "simulation/solver/line_search.hpp"
+
 namespace pliant::sim {
 namespace {
 
-constexpr double cable_share = 0.1;       // of the tolerance, for the length of a cable with friction
+constexpr double cable_share = 0.1;  // of the tolerance, for the length of a cable with friction
+// A round is only solved as well as the friction that it is solved with is likely to be.
+constexpr double first_tolerance = 30;    // of the tolerance, and the most that any round has
+constexpr double share_of_misfit = 0.3;   // of the round before
 constexpr double loose_residual = 10;     // of the tolerance, if sliding contact alternates between states
 constexpr double loose_cable_length = 1;  // likewise
 
@@ -49,9 +55,12 @@ StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, con
     if (rubs) known.reset();
     StepOutcome total;
     std::vector<double> misfits;
+    StepSettings of_round = settings;
+    if (cables_drag || (controls.friction && !controls.friction->pairs().empty()))
+        of_round.tolerance *= first_tolerance;
     for (int round = 1; round <= rounds; ++round) {
         StepOutcome outcome =
-            solvers.solve(system, controls, settings, next, progress, std::exchange(known, std::nullopt));
+            solvers.solve(system, controls, of_round, next, progress, std::exchange(known, std::nullopt));
         outcome.iterations += total.iterations;
         outcome.history.insert(outcome.history.begin(), total.history.begin(), total.history.end());
         total = std::move(outcome);
@@ -60,8 +69,11 @@ StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, con
         if (cables_drag) system.freeze_cable_friction(next.x, wanted, start.drives, controls);
         total.evaluation = system.evaluate(next, controls);
         const Misfit misfit{total.evaluation.residual, system.cable_friction_error(next, wanted)};
-        if (misfit.within(settings.tolerance, 1, cable_share)) break;
+        if (misfit.within(settings.tolerance, 1, cable_share) && is_converged(total.evaluation, settings.tolerance))
+            break;
         misfits.push_back(misfit.residual);
+        of_round.tolerance =
+            std::clamp(share_of_misfit * misfit.residual, settings.tolerance, first_tolerance * settings.tolerance);
         if (round < rounds && !rounds_are_vain(misfits, rounds, loose_residual * settings.tolerance)) continue;
         total.converged = total.loose = misfit.within(settings.tolerance, loose_residual, loose_cable_length);
         total.reason = misfit.text(settings.tolerance);

@@ -18,7 +18,8 @@ struct StepStart {
 
 /// Friction depends on the forces, which depend on friction: it is frozen, the step solved, and frozen again until both
 /// agree, at most `rounds` times (lagging, Li et al. 2020, section 5; likewise for cable friction in guides). Without
-/// friction one solution is enough. `evaluation` of the outcome is that with the friction of the state itself.
+/// friction one solution is enough. A round is solved to a share of what the friction of the one before was off by, the
+/// last one to the tolerance. `evaluation` of the outcome is that with the friction of the state itself.
 ///
 /// Sliding contact may alternate between two states for ever. If the state is then within ten times the tolerance, and
 /// its cables within the tolerance, it is accepted as `loose`, and `reason` gives the error; otherwise the step did not

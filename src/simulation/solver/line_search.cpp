@@ -28,7 +28,7 @@ std::optional<LineSearch::Found> LineSearch::search(const State& from, const Eva
     const double cost = constraint_penalty(now);  // a full step removes it
     const double start = now.energy_J + cost;
     const double slope = direction.slope_J - cost;
-    for (double alpha = path.longest; alpha > path.shortest_share * path.longest; alpha *= 0.5) {
+    for (double alpha = path.longest; alpha > path.shortest; alpha *= 0.5) {
         State next = from;
         next.x = path.at(alpha);
         next.multiplier += alpha * (direction.multiplier - from.multiplier);

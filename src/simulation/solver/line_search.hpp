@@ -33,8 +33,8 @@ public:
     LineSearch(const SolvedActuators& solved, std::size_t actuators, const Forces& forces);
 
     struct Path {
-        double longest = 1;         ///< the first step length
-        double shortest_share = 0;  ///< of that one: shorter steps are no progress
+        double longest = 1;   ///< the first step length
+        double shortest = 0;  ///< steps that are not longer than this are no progress
         /// Positions at a step length, which decreases from call to call.
         std::function<Eigen::VectorXd(double)> at;
     };

@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "base/core/counted.hpp"
+#include "base/linalg/dense.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
+#include "simulation/solver/contact_step.hpp"
 #include "simulation/solver/line_search.hpp"
 #include "simulation/solver/solved_actuators.hpp"
 
@@ -54,9 +56,14 @@ public:
     bool iterate(TangentChoice choice, double tolerance) {
         const Errors errors{std::max(evaluation_.residual, tolerance), evaluation_.violation, tolerance};
         if (!curvature_.refresh(state_, controls_, choice, errors)) return false;
-        const Direction direction = find_direction();
+        const Terms terms = terms_here();
+        const Direction direction = find_direction(terms);
         if (!direction.dx.allFinite()) return false;
-        return search(direction);
+        Way way = way_of(direction);
+        const bool whole = way.longest() == 1;
+        if (whole && search(direction, way, {1, 0.5})) return true;
+        if (step_through_contact(terms, !whole)) return true;
+        return search(direction, way, {whole ? 0.5 : way.longest(), curvature_.smallest_share() * way.longest()});
     }
 
 private:
@@ -84,19 +91,31 @@ private:
         Eigen::VectorXd dx, change;
     };
 
-    [[nodiscard]] Direction find_direction() {
-        const Eigen::VectorXd gradient = system_.restrict_to_free(evaluation_.out_of_balance);
-        const Eigen::MatrixXd forces = gradients_of(&Actuator::add_gradient);
-        const Eigen::VectorXd now = solved_.scaled(state_.multiplier);
-        std::optional<Move> move;
-        if (!solved_.empty()) move = solve_constrained(gradient, forces, now);
-        if (!move) move = solve_by_columns(gradient, forces, now);
+    /// Of the equations at the state, over the free nodes and the solved actuators.
+    struct Terms {
+        Eigen::VectorXd gradient;     ///< of the energy and of the constraints with their multipliers
+        Eigen::MatrixXd forces;       ///< (3 free, solved) of the constraints
+        Eigen::VectorXd multipliers;  ///< (solved) scaled
+    };
+    [[nodiscard]] Terms terms_here() const {
+        return {system_.restrict_to_free(evaluation_.out_of_balance), gradients_of(&Actuator::add_gradient),
+                solved_.scaled(state_.multiplier)};
+    }
 
-        Direction direction{std::move(move->dx), state_.multiplier, 0};
-        solved_.add(move->change, direction.multiplier);
-        Eigen::VectorXd energy_gradient = gradient;
+    [[nodiscard]] Direction find_direction(const Terms& terms) {
+        std::optional<Move> move;
+        if (!solved_.empty()) move = solve_constrained(terms);
+        if (!move) move = solve_by_columns(terms);
+        return direction_of(std::move(*move), terms);
+    }
+
+    [[nodiscard]] Direction direction_of(Move move, const Terms& terms) const {
+        Direction direction{std::move(move.dx), state_.multiplier, 0};
+        solved_.add(move.change, direction.multiplier);
+        Eigen::VectorXd energy_gradient = terms.gradient;
         for (Eigen::Index k = 0; k < solved_.count(); ++k) {
-            if (solved_.all()[static_cast<std::size_t>(k)].drives_measure) energy_gradient -= forces.col(k) * now[k];
+            if (solved_.all()[static_cast<std::size_t>(k)].drives_measure)
+                energy_gradient -= terms.forces.col(k) * terms.multipliers[k];
         }
         direction.slope_J = energy_gradient.dot(direction.dx);
         return direction;
@@ -108,30 +127,43 @@ private:
     }
 
     /// One solution for the gradient and one for each solved actuator; then the multipliers that combine them.
-    [[nodiscard]] Move solve_by_columns(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& forces,
-                                        const Eigen::VectorXd& now) {
-        const Eigen::MatrixXd A = by_gaps_ ? gradients_of(&Actuator::add_measure_gradient) : forces;
-        Eigen::MatrixXd columns(gradient.size(), 1 + A.cols());
-        columns.col(0) = gradient;
-        columns.rightCols(A.cols()) = forces;
+    [[nodiscard]] Move solve_by_columns(const Terms& terms) {
+        const Eigen::MatrixXd A = by_gaps_ ? gradients_of(&Actuator::add_measure_gradient) : terms.forces;
+        Eigen::MatrixXd columns(terms.gradient.size(), 1 + A.cols());
+        columns.col(0) = terms.gradient;
+        columns.rightCols(A.cols()) = terms.forces;
         curvature_.solve(columns);
-        Move move{-columns.col(0), Eigen::VectorXd::Zero(solved_.count())};
+        return combine({columns.col(0), columns.rightCols(A.cols())}, A, terms.multipliers);
+    }
+
+    struct Solutions {
+        Eigen::VectorXd gradient;  ///< H^-1 gradient
+        Eigen::MatrixXd forces;    ///< (3 free, solved) H^-1 times the forces of the constraints
+    };
+    /// `A`: gradients of the measures; `now`: scaled multipliers.
+    [[nodiscard]] Move combine(const Solutions& solutions, const Eigen::MatrixXd& A, const Eigen::VectorXd& now) const {
+        Move move{-solutions.gradient, Eigen::VectorXd::Zero(solved_.count())};
         if (solved_.empty()) return move;
-        Eigen::MatrixXd S = A.transpose() * columns.rightCols(A.cols());
         // Violation after the unconstrained step; then the correction of the current multipliers.
         const Eigen::VectorXd violation =
-            evaluation_.constraint_violation(solved_.actuators()) - A.transpose() * columns.col(0);
-        S.diagonal() += compliances();
-        move.change = solved_.change(S, violation, now);
-        move.dx -= columns.rightCols(A.cols()) * move.change;
+            evaluation_.constraint_violation(solved_.actuators()) - A.transpose() * solutions.gradient;
+        move.change = solved_.change(yielding_to(A, solutions.forces), violation, now);
+        move.dx -= solutions.forces * move.change;
         return move;
+    }
+
+    /// S: how the measures yield to the multipliers, with the compliance of sealed gas.
+    [[nodiscard]] Eigen::MatrixXd yielding_to(const Eigen::MatrixXd& A, const Eigen::MatrixXd& solutions) const {
+        Eigen::MatrixXd S = A.transpose() * solutions;
+        S.diagonal() += compliances();
+        return S;
     }
 
     /// One solution with all constraints, where the curvature offers that. Cables that turn out to push become slack,
     /// those that turn out too long are pulled, and it is repeated.
-    [[nodiscard]] std::optional<Move> solve_constrained(const Eigen::VectorXd& gradient, const Eigen::MatrixXd& forces,
-                                                        const Eigen::VectorXd& now) {
+    [[nodiscard]] std::optional<Move> solve_constrained(const Terms& terms) {
         if (by_gaps_ || compliances().any()) return std::nullopt;
+        const auto& [gradient, forces, now] = terms;
         const Eigen::VectorXd violation = evaluation_.constraint_violation(solved_.actuators());
         std::vector<bool> holds = solved_.taut(now, violation);
         for (Eigen::Index round = 0; round < 2 * solved_.count() + 2; ++round) {
@@ -153,12 +185,87 @@ private:
         return std::nullopt;
     }
 
-    bool search(const Direction& direction) {
+    /// A step whose contact and friction are solved as they are, for a direction of which the whole cannot be taken.
+    /// `cut_short`: because it leads through something. Pairs further away are taken in until none of them is met
+    /// unseen.
+    bool step_through_contact(const Terms& terms, bool cut_short) {
+        if (system_.model().contact(controls_.met) == nullptr || by_gaps_) return false;
+        if (!cut_short && !controls_.friction && !system_.touches(state_, controls_)) return false;
+        for (const double beyond : {0.5, 1.0, 2.0, 4.0}) {
+            const ContactStep contact(system_, state_, controls_, beyond);
+            if (contact.size() > most_contact) return false;
+            if (contact.nodes().empty() || holds_rollers(contact.nodes())) continue;
+            const std::optional<Direction> direction = find_direction_through(contact, terms);
+            if (!direction || !direction->dx.allFinite()) continue;
+            Way way = way_of(*direction);
+            return search(*direction, way, {way.longest(), smallest_contact_share * way.longest()});
+        }
+        return false;
+    }
+
+    /// Rollers are held along some directions, in which they have no compliance.
+    [[nodiscard]] bool holds_rollers(const std::vector<int>& nodes) const {
+        return std::ranges::any_of(system_.rollers(), [&](const FreeRoller& roller) {
+            return std::ranges::binary_search(nodes, static_cast<int>(roller.free));
+        });
+    }
+
+    /// Without contact first, then with the forces that contact has at the end of the step.
+    [[nodiscard]] std::optional<Direction> find_direction_through(const ContactStep& contact, const Terms& terms) {
+        const Eigen::VectorXd others = terms.gradient - contact.gradient();
+        const Eigen::Index solved = solved_.count();
+        Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(others.size(), 1 + solved + contact.size());
+        columns.col(0) = others;
+        columns.middleCols(1, solved) = terms.forces;
+        for (Eigen::Index k = 0; k < contact.size(); ++k) columns(contact.row(k), 1 + solved + k) = 1;
+        if (!curvature_.solve_without_contact(columns)) return std::nullopt;
+
+        Solutions solutions{columns.col(0), columns.middleCols(1, solved)};
+        const Move without = combine(solutions, terms.forces, terms.multipliers);
+        const Eigen::MatrixXd yielding =
+            hold(columns.rightCols(contact.size()), solutions, terms.forces, terms.multipliers + without.change);
+        Eigen::MatrixXd compliance(contact.size(), contact.size());
+        Eigen::VectorXd without_m(contact.size());
+        for (Eigen::Index k = 0; k < contact.size(); ++k) {
+            compliance.row(k) = yielding.row(contact.row(k));
+            without_m[k] = without.dx[contact.row(k)];
+        }
+        const auto pressed = contact.solve(0.5 * (compliance + compliance.transpose()), without_m);
+        if (!pressed) return std::nullopt;
+        Eigen::MatrixXd gradient = others + *pressed;
+        if (!curvature_.solve_without_contact(gradient)) return std::nullopt;
+        solutions.gradient = gradient.col(0);
+        return direction_of(combine(solutions, terms.forces, terms.multipliers), terms);
+    }
+
+    /// The motions `yielding` (3 free, k), less what the constraints that hold prevent. `multipliers`: a cable without
+    /// tension does not hold.
+    [[nodiscard]] Eigen::MatrixXd hold(Eigen::MatrixXd yielding, const Solutions& solutions,
+                                       const Eigen::MatrixXd& forces, const Eigen::VectorXd& multipliers) const {
+        std::vector<Eigen::Index> held;
+        for (Eigen::Index k = 0; k < solved_.count(); ++k) {
+            if (multipliers[k] > 0 || !solved_.all()[static_cast<std::size_t>(k)].only_pulls) held.push_back(k);
+        }
+        if (held.empty()) return yielding;
+        const Eigen::MatrixXd S = yielding_to(forces, solutions.forces)(held, held);
+        const Eigen::MatrixXd change = forces(Eigen::all, held).transpose() * yielding;
+        // Not by its inverse: cables may be parallel.
+        yielding -= solutions.forces(Eigen::all, held) * (linalg::pseudo_inverse(S) * change);
+        return yielding;
+    }
+
+    class Way;
+    [[nodiscard]] Way way_of(const Direction& direction) const {
         Eigen::VectorXd motion = Eigen::VectorXd::Zero(state_.x.size());
         system_.add_free(direction.dx, 1, motion);
-        Way way(*this, motion);
-        const LineSearch::Path path{way.longest(), curvature_.smallest_share(),
-                                    [&](double alpha) { return way.at(alpha); }};
+        return Way(*this, std::move(motion));
+    }
+
+    struct Shares {
+        double first, smallest;  ///< of the direction: which are tried
+    };
+    bool search(const Direction& direction, Way& way, const Shares& shares) {
+        const LineSearch::Path path{shares.first, shares.smallest, [&](double alpha) { return way.at(alpha); }};
         std::optional<LineSearch::Found> found = search_.search(
             state_, evaluation_, direction, path, [&](const State& next) { return system_.evaluate(next, controls_); });
         if (found) accept(std::move(*found));
@@ -169,7 +276,7 @@ private:
     /// one is used, up to the largest step without contact.
     class Way {
     public:
-        Way(const StepSolver& solver, const Eigen::VectorXd& motion) : solver_(solver), motion_(motion) {
+        Way(const StepSolver& solver, Eigen::VectorXd motion) : solver_(solver), motion_(std::move(motion)) {
             rotated_ = free_end(1);
             if (!rotated_) longest_ = solver_.system_.largest_step(solver_.state_.x, motion_, solver_.controls_);
         }
@@ -194,7 +301,7 @@ private:
         }
 
         const StepSolver& solver_;
-        const Eigen::VectorXd& motion_;
+        Eigen::VectorXd motion_;
         std::optional<Eigen::VectorXd> rotated_;  ///< end of the whole retraction
         double longest_ = 1;
     };
@@ -221,6 +328,9 @@ private:
         }
         return force;
     }
+
+    static constexpr Eigen::Index most_contact = 450;       // coordinates: one solution for each
+    static constexpr double smallest_contact_share = 1e-2;  // of such a step
 
     const Equilibrium& system_;
     Curvature& curvature_;

@@ -1,0 +1,36 @@
+#include "simulation/solver/inverse_without_contact.hpp"
+
+#include "base/core/parallel.hpp"
+
+namespace pliant::sim {
+
+bool InverseWithoutContact::solve(const std::shared_ptr<const SolverMemory::Tangent>& tangent,
+                                  Eigen::MatrixXd& columns) {
+    if (!tangent || !is_quick()) return false;
+    if (of_ != tangent) {
+        of_ = tangent;
+        usable_ = factorise(*tangent, false) || factorise(*tangent, true);
+    }
+    return usable_ && inverse_->solve(columns, 0) == TangentInverse::Outcome::solved;
+}
+
+bool InverseWithoutContact::is_quick() const {
+    // Multiply-adds for each pair of nodes; an iteration on levels takes as long as some 6000 of them.
+    constexpr double most = 60000;
+    const linalg::SymmetricPattern& pattern = laplacian_->tangent_layout()->pattern;
+    return 27 * laplacian_->work() < most * static_cast<double>(pattern.node_row.size());
+}
+
+/// Contact couples no nodes here, so the pattern, and with it the order of elimination, is that of the Laplacian. In
+/// double precision: a light object that nothing holds moves far more easily than a surface yields.
+bool InverseWithoutContact::factorise(const SolverMemory::Tangent& tangent, bool project) {
+    const TangentLayout& layout = *laplacian_->tangent_layout();
+    values_.resize(layout.pattern.entries());
+    parallel_clear(values_.span());
+    system_->add_tangent(tangent.state, tangent.controls, layout, values_.span(), project,
+                         TangentParts::without_contact);
+    if (!inverse_) inverse_ = make_direct_inverse(laplacian_->analysis(), true);
+    return inverse_->set(values_.span(), system_->free_positions(tangent.state.x), TangentInverse::Effort::all);
+}
+
+}  // namespace pliant::sim
