@@ -124,7 +124,7 @@ TEST_CASE("nothing that is near is left out, and where something is met unseen t
 }
 
 TEST_CASE("a body that begins to slip takes a few iterations, and arrives where it would without") {
-    const Model cube = lifted_cube({.lift_N = 2, .push_N = 1.5, .slip_m = 1e-6, .across = 6});
+    const Model cube = lifted_cube({.lift_N = 2, .push_N = 1.5, .slip_m = 1e-6, .across = 5});
     const Pushed at(cube);
     const StepSettings settings{.tolerance = 1e-8};
     Plain plain(at.system, at.laplacian);
@@ -135,7 +135,7 @@ TEST_CASE("a body that begins to slip takes a few iterations, and arrives where 
     REQUIRE(without.converged);
     REQUIRE(with.converged);
     MESSAGE(without.iterations, " iterations without the small problem, ", with.iterations, " with it");
-    CHECK(3 * with.iterations <= 2 * without.iterations);
+    CHECK(4 * with.iterations <= 3 * without.iterations);
     CHECK((quick.x - slow.x).norm() < 1e-5 * (slow.x - at.lifted.x).norm());
     CHECK((slow.x - at.lifted.x).lpNorm<Eigen::Infinity>() > 10 * slip);
 }

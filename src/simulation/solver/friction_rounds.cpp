@@ -59,18 +59,19 @@ StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, con
     if (cables_drag || (controls.friction && !controls.friction->pairs().empty()))
         of_round.tolerance *= first_tolerance;
     for (int round = 1; round <= rounds; ++round) {
+        if (round == rounds) of_round.tolerance = settings.tolerance;
         StepOutcome outcome =
             solvers.solve(system, controls, of_round, next, progress, std::exchange(known, std::nullopt));
         outcome.iterations += total.iterations;
         outcome.history.insert(outcome.history.begin(), total.history.begin(), total.history.end());
         total = std::move(outcome);
         if (!total.converged || !rubs) break;
+        const bool held = constraints_hold(total.evaluation, settings.tolerance);
         controls.friction = system.freeze_friction(next, start.state, controls, start.controls);
         if (cables_drag) system.freeze_cable_friction(next.x, wanted, start.drives, controls);
         total.evaluation = system.evaluate(next, controls);
         const Misfit misfit{total.evaluation.residual, system.cable_friction_error(next, wanted)};
-        if (misfit.within(settings.tolerance, 1, cable_share) && is_converged(total.evaluation, settings.tolerance))
-            break;
+        if (held && misfit.within(settings.tolerance, 1, cable_share)) break;
         misfits.push_back(misfit.residual);
         of_round.tolerance =
             std::clamp(share_of_misfit * misfit.residual, settings.tolerance, first_tolerance * settings.tolerance);

@@ -14,8 +14,12 @@ constexpr double close = 0.05;  // an error
 
 }  // namespace
 
+bool constraints_hold(const Evaluation& evaluation, double tolerance) {
+    return evaluation.violation <= violation_share * tolerance;
+}
+
 bool is_converged(const Evaluation& evaluation, double tolerance) {
-    return evaluation.residual <= tolerance && evaluation.violation <= violation_share * tolerance;
+    return evaluation.residual <= tolerance && constraints_hold(evaluation, tolerance);
 }
 
 LineSearch::LineSearch(const SolvedActuators& solved, std::size_t actuators, const Forces& forces)

@@ -19,6 +19,7 @@ struct Direction {
 };
 
 /// The constraint violation must be below this share of the tolerance, because the tension is sensitive to it.
+[[nodiscard]] bool constraints_hold(const Evaluation& evaluation, double tolerance);
 [[nodiscard]] bool is_converged(const Evaluation& evaluation, double tolerance);
 
 /// The search of one step of the program: it remembers the penalties of the constraints and the last errors.

@@ -329,7 +329,9 @@ private:
         return force;
     }
 
-    static constexpr Eigen::Index most_contact = 450;       // coordinates: one solution for each
+    /// Coordinates of the nodes that touch. Each takes one more solution: with more of them, as much time as the steps
+    /// that are saved.
+    static constexpr Eigen::Index most_contact = 120;
     static constexpr double smallest_contact_share = 1e-2;  // of such a step
 
     const Equilibrium& system_;
