@@ -392,7 +392,7 @@ private:
     bool straight_ = false;                   ///< the next step needs no rotation
     Eigen::VectorXd positions_;               ///< of the free nodes, where the tangent was made
     BodyRotation rotation_;                   ///< since the factor was made
-    InverseWithoutContact without_contact_;
+    InverseWithoutContact without_contact_;   ///< for the nodes that touch
     StepMemory memory_{most_steps};           ///< of the steps since then, rotated back to the state of the factor
     std::shared_ptr<const StepPair> learnt_;  ///< not yet in the memory
     SolverMemory::Cliques touching_;          ///< contact pairs to be included in the next pattern

@@ -15,10 +15,13 @@ bool InverseWithoutContact::solve(const std::shared_ptr<const SolverMemory::Tang
 }
 
 bool InverseWithoutContact::is_quick() const {
-    // Multiply-adds for each pair of nodes; an iteration on levels takes as long as some 6000 of them.
-    constexpr double most = 60000;
+    // Multiply-adds for each pair of nodes; an iteration on levels takes as long as some 6000 of them. The limit of
+    // nodes is one of memory: a slender body of any size has a factor that is quickly made.
+    constexpr double most_for_a_pair = 60000;
+    constexpr int most_nodes = 30000;
     const linalg::SymmetricPattern& pattern = laplacian_->tangent_layout()->pattern;
-    return 27 * laplacian_->work() < most * static_cast<double>(pattern.node_row.size());
+    return pattern.nodes <= most_nodes &&
+           27 * laplacian_->work() < most_for_a_pair * static_cast<double>(pattern.node_row.size());
 }
 
 /// Contact couples no nodes here, so the pattern, and with it the order of elimination, is that of the Laplacian. In

@@ -17,8 +17,8 @@ public:
         : system_(&system), laplacian_(&laplacian) {}
 
     /// columns (3 free, k) <- A^-1 columns at the state of `tangent`, or with the positive projection of A where A is
-    /// not positive definite. The factor is kept for the next call with the same tangent. False: neither has one, or
-    /// the factorisation would take much longer than an iteration with the preconditioner on levels.
+    /// not positive definite. The factor is kept for the next call with the same tangent. False: neither has one, or it
+    /// would take too much memory, or much longer than an iteration with the preconditioner on levels.
     [[nodiscard]] bool solve(const std::shared_ptr<const SolverMemory::Tangent>& tangent, Eigen::MatrixXd& columns);
 
 private:

@@ -189,7 +189,8 @@ private:
     /// `cut_short`: because it leads through something. Pairs further away are taken in until none of them is met
     /// unseen.
     bool step_through_contact(const Terms& terms, bool cut_short) {
-        if (system_.model().contact(controls_.met) == nullptr || by_gaps_) return false;
+        const bool by_means = controls_.inertia && !controls_.inertia->means().empty();
+        if (system_.model().contact(controls_.met) == nullptr || by_gaps_ || by_means) return false;
         if (!cut_short && !controls_.friction && !system_.touches(state_, controls_)) return false;
         for (const double beyond : {0.5, 1.0, 2.0, 4.0}) {
             const ContactStep contact(system_, state_, controls_, beyond);
