@@ -185,7 +185,11 @@ for (const [theme, width] of [['light', 1440], ['dark', 390]]) {
     }
     await page.getByTestId('tab-move').click();
     await page.getByTestId('open').click();
-    await page.waitForFunction(() => [...document.querySelectorAll('.open-list .thumb')].every((thumb) => thumb.getBoundingClientRect().top > window.innerHeight || thumb.querySelector('img')?.complete));
+    await page.waitForFunction(() => {
+      const thumbs = [...document.querySelectorAll('.open-list .thumb')];
+      const hasExamples = thumbs.length > 1; // beside the finger of the folder
+      return hasExamples && thumbs.every((thumb) => thumb.getBoundingClientRect().top > window.innerHeight || thumb.querySelector('img')?.complete);
+    });
     await see('gallery');
     await page.keyboard.press('Escape');
     await page.getByTestId('section-print').click();
