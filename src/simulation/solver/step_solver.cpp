@@ -191,13 +191,18 @@ private:
     bool step_through_contact(const Terms& terms, bool cut_short) {
         const bool by_means = controls_.inertia && !controls_.inertia->means().empty();
         if (system_.model().contact(controls_.met) == nullptr || by_gaps_ || by_means) return false;
-        if (!cut_short && !controls_.friction && !system_.touches(state_, controls_)) return false;
+        const bool rubs = controls_.friction && !controls_.friction->pairs().empty();
+        if (!cut_short && !rubs && !system_.touches(state_, controls_)) return false;
         for (const double beyond : {0.5, 1.0, 2.0, 4.0}) {
             const ContactStep contact(system_, state_, controls_, beyond);
             if (contact.size() > most_contact) return false;
             if (contact.nodes().empty() || holds_rollers(contact.nodes())) continue;
-            const std::optional<Direction> direction = find_direction_through(contact, terms);
-            if (!direction || !direction->dx.allFinite()) continue;
+            std::optional<Reduced> reduced = reduce_to(contact, terms);
+            if (!reduced) return false;
+            const auto pressed = contact.solve(reduced->compliance, reduced->without_m);
+            if (!pressed) continue;
+            const std::optional<Direction> direction = find_direction_under(*pressed, *std::move(reduced), terms);
+            if (!direction) return false;
             Way way = way_of(*direction);
             return search(*direction, way, {way.longest(), smallest_contact_share * way.longest()});
         }
@@ -211,32 +216,45 @@ private:
         });
     }
 
-    /// Without contact first, then with the forces that contact has at the end of the step.
-    [[nodiscard]] std::optional<Direction> find_direction_through(const ContactStep& contact, const Terms& terms) {
-        const Eigen::VectorXd others = terms.gradient - contact.gradient();
+    /// A step without contact, and what is left of it at the nodes that touch.
+    struct Reduced {
+        Eigen::VectorXd others;      ///< (3 free) gradient of everything except contact
+        Solutions solutions;         ///< for it, and for the constraints
+        Eigen::MatrixXd compliance;  ///< of the nodes that touch
+        Eigen::VectorXd without_m;   ///< their motion
+    };
+    [[nodiscard]] std::optional<Reduced> reduce_to(const ContactStep& contact, const Terms& terms) {
+        Reduced reduced{terms.gradient - contact.gradient(), {}, {}, {}};
         const Eigen::Index solved = solved_.count();
-        Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(others.size(), 1 + solved + contact.size());
-        columns.col(0) = others;
+        Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(reduced.others.size(), 1 + solved + contact.size());
+        columns.col(0) = reduced.others;
         columns.middleCols(1, solved) = terms.forces;
         for (Eigen::Index k = 0; k < contact.size(); ++k) columns(contact.row(k), 1 + solved + k) = 1;
         if (!curvature_.solve_without_contact(columns)) return std::nullopt;
 
-        Solutions solutions{columns.col(0), columns.middleCols(1, solved)};
-        const Move without = combine(solutions, terms.forces, terms.multipliers);
-        const Eigen::MatrixXd yielding =
-            hold(columns.rightCols(contact.size()), solutions, terms.forces, terms.multipliers + without.change);
+        reduced.solutions = {columns.col(0), columns.middleCols(1, solved)};
+        const Move without = combine(reduced.solutions, terms.forces, terms.multipliers);
+        const Eigen::MatrixXd yielding = hold(columns.rightCols(contact.size()), reduced.solutions, terms.forces,
+                                              terms.multipliers + without.change);
         Eigen::MatrixXd compliance(contact.size(), contact.size());
-        Eigen::VectorXd without_m(contact.size());
+        reduced.without_m.resize(contact.size());
         for (Eigen::Index k = 0; k < contact.size(); ++k) {
             compliance.row(k) = yielding.row(contact.row(k));
-            without_m[k] = without.dx[contact.row(k)];
+            reduced.without_m[k] = without.dx[contact.row(k)];
         }
-        const auto pressed = contact.solve(0.5 * (compliance + compliance.transpose()), without_m);
-        if (!pressed) return std::nullopt;
-        Eigen::MatrixXd gradient = others + *pressed;
+        reduced.compliance = 0.5 * (compliance + compliance.transpose());
+        return reduced;
+    }
+
+    /// The step under the forces (3 free) that contact has at its end.
+    [[nodiscard]] std::optional<Direction> find_direction_under(const Eigen::VectorXd& pressed, Reduced reduced,
+                                                                const Terms& terms) {
+        Eigen::MatrixXd gradient = reduced.others + pressed;
         if (!curvature_.solve_without_contact(gradient)) return std::nullopt;
-        solutions.gradient = gradient.col(0);
-        return direction_of(combine(solutions, terms.forces, terms.multipliers), terms);
+        reduced.solutions.gradient = gradient.col(0);
+        Direction direction = direction_of(combine(reduced.solutions, terms.forces, terms.multipliers), terms);
+        if (!direction.dx.allFinite()) return std::nullopt;
+        return direction;
     }
 
     /// The motions `yielding` (3 free, k), less what the constraints that hold prevent. `multipliers`: a cable without
