@@ -31,6 +31,8 @@ public:
         return Eigen::Map<const Eigen::Matrix3f>(rounded_.data() + at).cast<double>() +
                Eigen::Map<const Eigen::Matrix3f>(rest_.data() + at).cast<double>();
     }
+    /// For kernels; valid as long as this is.
+    [[nodiscard]] RowBlocks blocks() const { return {start.data(), column.data(), rounded_.data(), rest_.data()}; }
     [[nodiscard]] Eigen::Matrix3d diagonal(int row) const { return block(diagonal_[row]); }
     /// y (3 rows, columns) <- A x, for one column or two interleaved ones (multiply_rows). On all cores; bit-identical
     /// on any number of them.
@@ -44,8 +46,6 @@ private:
     template <class Visit>
     void for_blocks(std::span<const double> values, const Visit& visit) const;
     void put(int entry, const Eigen::Matrix3d& block) const;
-    [[nodiscard]] RowBlocks blocks() const { return {start.data(), column.data(), rounded_.data(), rest_.data()}; }
-
     // Entries from the diagonal on have the order of the pattern's column of the same node; the others do not.
     std::vector<int> diagonal_;    ///< (rows) entry of the diagonal block
     std::vector<int> first_pair_;  ///< (rows) its pair in the pattern

@@ -14,6 +14,7 @@ namespace {
 constexpr int modes = RigidMotions::count;
 constexpr std::size_t coarsening_grain = 512;  // nodes, or groups, per parallel piece
 constexpr std::size_t restricting_pieces = 8;
+constexpr std::size_t least_multiplied = 16, multiplying_pieces = 64;  // each has work space for all nodes
 
 using Block36 = Eigen::Matrix<float, 3, modes>;
 using Block33 = Eigen::Matrix3f;
@@ -22,12 +23,12 @@ Eigen::Map<Block36> block36(const AlignedArray<float>& values, std::size_t entry
     return Eigen::Map<Block36>(values.data() + 18 * entry);
 }
 
-/// A set of groups that is emptied in constant time.
+/// A set of indices below `count` that is emptied in constant time.
 class Seen {
 public:
-    explicit Seen(int groups) : mark_(static_cast<std::size_t>(groups), -1) {}
-    /// True at the first call with `group` in a given `round`.
-    bool is_new(int group, int round) { return std::exchange(mark_[group], round) != round; }
+    explicit Seen(int count) : mark_(static_cast<std::size_t>(count), -1) {}
+    /// True at the first call with `index` in a given `round`.
+    bool is_new(int index, int round) { return std::exchange(mark_[index], round) != round; }
 
 private:
     std::vector<int> mark_;
@@ -38,31 +39,23 @@ private:
 CoarseSpace::CoarseSpace(const BlockRows& matrix)
     : groups_(aggregate(matrix)), members_(members_of(groups_.of_node, groups_.count)) {
     find_groups(matrix);
-    find_pattern();
+    find_pattern(matrix);
     const auto nodes = static_cast<std::size_t>(matrix.rows());
     rigid_.resize(18 * nodes);
     prolongation_.resize(18 * moving_.item.size());
-    product_.resize(18 * pulling_.item.size());
     dropped_.resize(static_cast<std::size_t>(groups_.count) * modes);
 }
 
 void CoarseSpace::find_groups(const BlockRows& matrix) {
-    // Row i: the groups that visit(j, add) adds for each node j coupled to i, without duplicates.
-    const auto rows = [&](const auto& visit) {
-        return make_lists(matrix.rows(), [&] {
-            return [&, seen = Seen(groups_.count)](int i, std::vector<int>& row) mutable {
-                const auto begin = static_cast<std::ptrdiff_t>(row.size());
-                const auto add = [&](int group) {
-                    if (seen.is_new(group, i)) row.push_back(group);
-                };
-                for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) visit(matrix.column[k], add);
-                std::sort(row.begin() + begin, row.end());
-            };
-        });
-    };
-    moving_ = rows([&](int j, const auto& add) { add(groups_.of_node[j]); });
-    pulling_ = rows([&](int j, const auto& add) {
-        for (const int group : moving_[static_cast<std::size_t>(j)]) add(group);
+    moving_ = make_lists(matrix.rows(), [&] {
+        return [&, seen = Seen(groups_.count)](int i, std::vector<int>& row) mutable {
+            const auto begin = static_cast<std::ptrdiff_t>(row.size());
+            for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
+                const int group = groups_.of_node[matrix.column[k]];
+                if (seen.is_new(group, i)) row.push_back(group);
+            }
+            std::sort(row.begin() + begin, row.end());
+        };
     });
     use_start_ = members_of(moving_.item, groups_.count).start;
     use_.resize(moving_.item.size());
@@ -72,14 +65,23 @@ void CoarseSpace::find_groups(const BlockRows& matrix) {
     }
 }
 
-void CoarseSpace::find_pattern() {
-    // For each group, the later ones that exert a force on a node that it moves.
+std::span<const MotionUse> CoarseSpace::uses(std::size_t group) const {
+    return std::span(use_).subspan(static_cast<std::size_t>(use_start_[group]),
+                                   static_cast<std::size_t>(use_start_[group + 1] - use_start_[group]));
+}
+
+void CoarseSpace::find_pattern(const BlockRows& matrix) {
+    // For each group, the later ones that move a node on which it exerts a force.
     const Lists later = make_lists(groups_.count, [&] {
-        return [&, seen = Seen(groups_.count)](int g, std::vector<int>& row) mutable {
+        return [&, seen = Seen(groups_.count), reached = Seen(matrix.rows())](int g, std::vector<int>& row) mutable {
             const auto begin = static_cast<std::ptrdiff_t>(row.size());
-            for (int u = use_start_[g]; u < use_start_[g + 1]; ++u) {
-                for (const int h : pulling_[static_cast<std::size_t>(use_[u].node)]) {
-                    if (h > g && seen.is_new(h, g)) row.push_back(h);
+            for (const MotionUse& use : uses(static_cast<std::size_t>(g))) {
+                for (int k = matrix.start[use.node]; k < matrix.start[use.node + 1]; ++k) {
+                    const int j = matrix.column[k];
+                    if (!reached.is_new(j, g)) continue;
+                    for (const int h : moving_[static_cast<std::size_t>(j)]) {
+                        if (h > g && seen.is_new(h, g)) row.push_back(h);
+                    }
                 }
             }
             std::sort(row.begin() + begin, row.end());
@@ -105,8 +107,7 @@ void CoarseSpace::set(const Fine& fine) {
     turns_.assign(static_cast<std::size_t>(groups_.count), Block33::Identity());
     set_rigid_motions(fine.positions);
     smooth(fine.matrix, fine.inverse_diagonal, fine.damping);
-    find_pulls(fine.matrix);
-    multiply();
+    multiply(fine.matrix);
 }
 
 /// Translations, and rotations about the centre of each group, orthonormalised.
@@ -146,68 +147,56 @@ void CoarseSpace::smooth(const BlockRows& matrix, const float* inverse_diagonal,
     });
 }
 
-Eigen::Map<CoarseSpace::Pull> CoarseSpace::pull(int entry) const {
-    return Eigen::Map<Pull>(product_.data() + 18 * static_cast<std::size_t>(entry));
-}
-
-/// A P.
-void CoarseSpace::find_pulls(const BlockRows& matrix) {
-    const auto nodes = static_cast<std::size_t>(matrix.rows());
-    parallel_for(nodes, coarsening_grain, [&](std::size_t begin, std::size_t end) {
-        std::vector<int> slot(static_cast<std::size_t>(groups_.count));
-        for (std::size_t i = begin; i < end; ++i) {
-            for (int e = pulling_.start[i]; e < pulling_.start[i + 1]; ++e) {
-                slot[pulling_.item[e]] = e;
-                pull(e).setZero();
-            }
-            for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
-                const int j = matrix.column[k];
-                const Eigen::Matrix3d a = matrix.block(k);
-                for (int e = moving_.start[j]; e < moving_.start[j + 1]; ++e)
-                    pull(slot[moving_.item[e]]).noalias() +=
-                        a * block36(prolongation_, static_cast<std::size_t>(e)).cast<double>();
-            }
-        }
-    });
-}
-
-/// P^T A P.
-void CoarseSpace::multiply() {
-    constexpr std::size_t groups_at_once = 16;
-    parallel_for(static_cast<std::size_t>(groups_.count), groups_at_once, [&](std::size_t begin, std::size_t end) {
-        std::vector<int> slot(static_cast<std::size_t>(groups_.count));
-        std::vector<Matrix6> sums;  // with this group (columns) and every later one (rows)
+/// P^T A P: for each group A times its motions, a force on every node in reach, and the work of these forces on the
+/// motions of this group and the later ones.
+void CoarseSpace::multiply(const BlockRows& matrix) {
+    const auto groups = static_cast<std::size_t>(groups_.count);
+    const GroupMotions motions{moving_.start.data(), moving_.item.data(), prolongation_.data()};
+    const std::size_t groups_at_once =
+        std::max(least_multiplied, (groups + multiplying_pieces - 1) / multiplying_pieces);
+    parallel_for(groups, groups_at_once, [&](std::size_t begin, std::size_t end) {
+        std::vector<int> place_of_group(groups), place_of_node(groups_.of_node.size(), -1), reached;
+        std::vector<double> forces, sums;
         for (std::size_t g = begin; g < end; ++g) {
-            const int first = pattern_.node_start[2 * g];
-            const int groups = (pattern_.node_start[2 * g + 1] - first) / 2;
-            sums.assign(static_cast<std::size_t>(groups), Matrix6::Zero());
-            for (int p = 0; p < groups; ++p) slot[pattern_.node_row[first + 2 * p] / 2] = p;
-            for (int u = use_start_[g]; u < use_start_[g + 1]; ++u) {
-                const Pull mine = block36(prolongation_, static_cast<std::size_t>(use_[u].entry)).cast<double>();
-                const int i = use_[u].node;
-                for (int e = pulling_.start[i]; e < pulling_.start[i + 1]; ++e) {
-                    if (pulling_.item[e] < static_cast<int>(g)) continue;
-                    sums[static_cast<std::size_t>(slot[pulling_.item[e]])].noalias() += pull(e).transpose() * mine;
+            for (const MotionUse& use : uses(g)) {
+                for (int k = matrix.start[use.node]; k < matrix.start[use.node + 1]; ++k) {
+                    int& place = place_of_node[static_cast<std::size_t>(matrix.column[k])];
+                    if (place >= 0) continue;
+                    place = static_cast<int>(reached.size());
+                    reached.push_back(matrix.column[k]);
                 }
             }
+            forces.assign(3 * modes_stored * reached.size(), 0);
+            add_forces_of_group(matrix.blocks(), motions, uses(g), place_of_node.data(), forces.data());
+            const int first = pattern_.node_start[2 * g];
+            const int partners = (pattern_.node_start[2 * g + 1] - first) / 2;  // itself and later ones
+            for (int p = 0; p < partners; ++p) place_of_group[pattern_.node_row[first + 2 * p] / 2] = p;
+            sums.assign(modes * modes_stored * static_cast<std::size_t>(partners), 0);
+            add_products_with_groups(motions, reached, forces.data(), static_cast<int>(g), place_of_group.data(),
+                                     sums.data());
             for (int m = 0; m < modes; ++m) {
-                if (dropped_[g * modes + m]) sums[0](m, m) = 1;
+                if (dropped_[g * modes + m]) sums[modes_stored * m + m] = 1;
             }
             put(g, sums);
+            for (const int j : reached) place_of_node[static_cast<std::size_t>(j)] = -1;
+            reached.clear();
         }
     });
 }
 
-/// Stores the columns of a group in the pattern, which has two nodes for each.
-void CoarseSpace::put(std::size_t group, std::span<const Matrix6> sums) {
-    for (std::size_t p = 0; p < sums.size(); ++p) {
+/// Stores the columns of a group in the pattern, which has two nodes for each. sums (partners, 6 of the partner,
+/// modes_stored of the group).
+void CoarseSpace::put(std::size_t group, std::span<const double> sums) {
+    using Sum = Eigen::Matrix<double, modes, modes_stored, Eigen::RowMajor>;
+    for (std::size_t p = 0; p < sums.size() / Sum::SizeAtCompileTime; ++p) {
+        const Eigen::Map<const Sum> sum(sums.data() + p * Sum::SizeAtCompileTime);
         for (const int half : {0, 1}) {
             for (const int row : {0, 1}) {
                 if (p == 0 && row < half) continue;
                 // The second node of a group begins with its own diagonal, so it has one pair less than the first.
                 const std::size_t pair =
                     static_cast<std::size_t>(pattern_.node_start[2 * group + half]) + 2 * p + row - half;
-                Eigen::Map<Eigen::Matrix3d>(coarse_.data() + 9 * pair) = sums[p].block<3, 3>(3 * row, 3 * half);
+                Eigen::Map<Eigen::Matrix3d>(coarse_.data() + 9 * pair) = sum.block<3, 3>(3 * row, 3 * half);
             }
         }
     }

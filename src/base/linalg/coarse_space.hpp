@@ -10,6 +10,7 @@
 #include "base/linalg/aggregates.hpp"
 #include "base/linalg/block_rows.hpp"
 #include "base/linalg/coarse_level.hpp"
+#include "base/linalg/group_products.hpp"
 #include "base/linalg/lists.hpp"
 #include "base/linalg/sparse.hpp"
 
@@ -29,33 +30,22 @@ public:
     void add_prolonged(const double* coarse, float* fine) const override;
 
 private:
-    using Matrix6 = Eigen::Matrix<double, 6, 6>;
-    using Pull = Eigen::Matrix<double, 3, 6>;
     void find_groups(const BlockRows& matrix);
-    void find_pattern();
+    void find_pattern(const BlockRows& matrix);
     void set_rigid_motions(std::span<const double> positions);
     void smooth(const BlockRows& matrix, const float* inverse_diagonal, float damping);
-    void find_pulls(const BlockRows& matrix);
-    void multiply();
-    void put(std::size_t group, std::span<const Matrix6> sums);
-    /// Entry of A P. Where a body bends easily, the forces that a group's motion exerts on a node nearly cancel: in
-    /// single precision only noise would be left.
-    [[nodiscard]] Eigen::Map<Pull> pull(int entry) const;
-
-    struct Use {
-        int node, entry;
-    };
+    void multiply(const BlockRows& matrix);
+    void put(std::size_t group, std::span<const double> sums);
+    [[nodiscard]] std::span<const MotionUse> uses(std::size_t group) const;
 
     Aggregates groups_;
     Lists members_;  ///< nodes of each group
-    // P and A P by rows of nodes, in blocks of 3 by 6, each column by column.
+    // P by rows of nodes, in blocks of 3 by 6, each column by column.
     Lists moving_;                        ///< groups in each row of P: their smoothed motions move the node
-    Lists pulling_;                       ///< groups in each row of A P: their motions exert a force on the node
     std::vector<int> use_start_;          ///< (groups + 1)
-    std::vector<Use> use_;                ///< where each group appears in P
+    std::vector<MotionUse> use_;          ///< where each group appears in P
     AlignedArray<float> rigid_;           ///< (nodes, 18) rigid motions of the node's own group
     AlignedArray<float> prolongation_;    ///< (entries of P, 18)
-    AlignedArray<double> product_;        ///< (entries of A P, 18)
     std::vector<double> positions_;       ///< (nodes, 3) at the last set()
     std::vector<Eigen::Matrix3f> turns_;  ///< (groups) rotations since then
     std::vector<float> sums_;             ///< work space

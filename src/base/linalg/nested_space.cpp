@@ -10,7 +10,8 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr std::size_t node_grain = 1024;  // per parallel piece
+constexpr std::size_t node_grain = 1024;                        // per parallel piece
+constexpr std::size_t least_columns = 256, column_pieces = 64;  // each has work space for all columns
 
 /// Calls visit(pair, column, a, b) for each pair of fine nodes, each moving end a of its row and b of its column.
 template <class Visit>
@@ -65,29 +66,36 @@ void NestedSpace::find_pattern(const SymmetricPattern& fine) {
 
 void NestedSpace::set(const Fine& fine) {
     positions_.resize(3 * corner_.size());
-    parallel_for(corner_.size(), node_grain, [&](std::size_t begin, std::size_t end) {
+    const std::size_t at_once = std::max(least_columns, (corner_.size() + column_pieces - 1) / column_pieces);
+    parallel_for(corner_.size(), at_once, [&](std::size_t begin, std::size_t end) {
+        std::vector<int> place(corner_.size());  // of each row in its column
         for (std::size_t c = begin; c < end; ++c) {
             std::copy_n(fine.positions.data() + 3 * static_cast<std::size_t>(corner_[c]), 3, positions_.data() + 3 * c);
-            const auto first = static_cast<std::size_t>(pattern_.node_start[c]);
-            double* const sums = coarse_.data() + 9 * first;
-            std::fill_n(sums, 9 * (static_cast<std::size_t>(pattern_.node_start[c + 1]) - first), 0.0);
-            for (const int i : on_[c]) add_row(fine.matrix, static_cast<int>(c), i, sums);
+            const int first = pattern_.node_start[c], count = pattern_.node_start[c + 1] - first;
+            for (int p = 0; p < count; ++p) place[pattern_.node_row[first + p]] = p;
+            const std::span<double> sums = std::span(coarse_).subspan(9 * static_cast<std::size_t>(first), 9 * count);
+            std::ranges::fill(sums, 0.0);
+            for (const int i : on_[c]) add_row(fine.matrix.blocks(), static_cast<int>(c), i, place, sums);
+            for (int p = 0; p < count; ++p) Eigen::Map<Eigen::Matrix3d>(sums.data() + 9 * p).transposeInPlace();
         }
     });
 }
 
-/// What row `fine` of the matrix adds to the blocks of column `coarse`, from the diagonal on.
-void NestedSpace::add_row(const BlockRows& matrix, int coarse, int fine, double* sums) const {
-    const auto begin = pattern_.node_row.begin() + pattern_.node_start[coarse],
-               end = pattern_.node_row.begin() + pattern_.node_start[coarse + 1];
+/// What row `fine` of the matrix adds to the blocks of column `coarse`, from the diagonal on, each transposed.
+void NestedSpace::add_row(const RowBlocks& matrix, int coarse, int fine, std::span<const int> place,
+                          std::span<double> sums) const {
     const double own = share(fine);
     for (int k = matrix.start[fine]; k < matrix.start[fine + 1]; ++k) {
         const int j = matrix.column[k];
         const std::array<int, 2>& ends = nesting_.ends[static_cast<std::size_t>(j)];
+        const double weight = own * share(j);
+        const std::size_t at = 9 * static_cast<std::size_t>(k);
         for (std::size_t e = ends[0] == ends[1] ? 1 : 0; e < 2; ++e) {
             if (ends[e] < coarse) continue;
-            const auto at = static_cast<std::size_t>(std::lower_bound(begin, end, ends[e]) - begin);
-            Eigen::Map<Eigen::Matrix3d>(sums + 9 * at) += own * share(j) * matrix.block(k).transpose();
+            double* const sum = sums.data() + 9 * static_cast<std::size_t>(place[static_cast<std::size_t>(ends[e])]);
+            for (std::size_t q = 0; q < 9; ++q)
+                sum[q] +=
+                    weight * (static_cast<double>(matrix.value[at + q]) + static_cast<double>(matrix.rest[at + q]));
         }
     }
 }

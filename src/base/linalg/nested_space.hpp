@@ -38,7 +38,8 @@ private:
         const auto& ends = nesting_.ends[static_cast<std::size_t>(fine)];
         return ends[0] == ends[1] ? 1.0 : 0.5;
     }
-    void add_row(const BlockRows& matrix, int coarse, int fine, double* sums) const;
+    void add_row(const RowBlocks& matrix, int coarse, int fine, std::span<const int> place,
+                 std::span<double> sums) const;
 
     Nesting nesting_;
     SymmetricPattern pattern_;
