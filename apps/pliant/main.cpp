@@ -27,14 +27,20 @@ std::string meant(const std::string& word, const std::vector<std::string>& names
     return longer.size() == 1 ? longer.front() : pliant::nearest_name(word, names);
 }
 
+/// The option that is nearest to a word; "": none is. Dashes do not count, since all have them.
+std::string nearest_option(const std::string& word, const std::vector<std::string>& names) {
+    const std::size_t begin = std::min(word.find_first_not_of('-'), word.size());
+    const std::string nearest = pliant::nearest_name(word.substr(begin), names);
+    return nearest.empty() ? "" : "--" + nearest;
+}
+
 /// For a first word that is neither a command nor an option.
 int refuse(const CLI::App& app, const std::string& word) {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
         names.push_back(command->get_name());
     const bool option = word.starts_with('-');
-    const std::string nearest =
-        option ? pliant::nearest_name(word, std::vector<std::string>{"--help", "--version"}) : meant(word, names);
+    const std::string nearest = option ? nearest_option(word, {"help", "version"}) : meant(word, names);
     fmt::print(stderr, "pliant: there is no {} \"{}\"; {}\n", option ? "option" : "command", word,
                nearest.empty() ? "pliant --help lists them" : "did you mean \"" + nearest + "\"?");
     return pliant::app::exit_bad_input;
@@ -57,9 +63,9 @@ std::string unknown_option(const CLI::App& command) {
     const std::string word = found->substr(0, found->find('='));
     std::vector<std::string> names;
     for (const CLI::Option* option : command.get_options()) {
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        for (const std::string& name : option->get_lnames()) names.push_back(name);
     }
-    const std::string nearest = pliant::nearest_name(word, names);
+    const std::string nearest = nearest_option(word, names);
     return fmt::format("pliant {}: there is no option \"{}\"; {}", command.get_name(), word,
                        nearest.empty() ? fmt::format("pliant {} --help lists them", command.get_name())
                                        : "did you mean \"" + nearest + "\"?");
