@@ -65,12 +65,18 @@ BoxTree::Fit BoxTree::fit(std::span<const Bounds> items) const {
             put(items[held[i]], fit.leaves[l], i);
         }
     }
-    for (std::size_t n = nodes_.size(); n-- > 0;) {
-        if (nodes_[n].next == n + 1) continue;
-        fit.nodes[n].add(fit.nodes[n + 1]);
-        fit.nodes[n].add(fit.nodes[nodes_[n + 1].next]);
-    }
+    for_children([&](std::size_t node, std::size_t child) { fit.nodes[node].add(fit.nodes[child]); });
     return fit;
+}
+
+BoxTree::MovingFit BoxTree::fit(std::span<const Bounds> start, std::span<const Bounds> end,
+                                std::span<const char> moves) const {
+    MovingFit moving{fit(start), fit(end), std::vector<char>(nodes_.size(), 0)};
+    for (std::size_t l = 0; l < leaf_count(); ++l) {
+        for (const int item : leaf(l)) moving.moves[node_of_leaf_[l]] |= moves[static_cast<std::size_t>(item)];
+    }
+    for_children([&](std::size_t node, std::size_t child) { moving.moves[node] |= moving.moves[child]; });
+    return moving;
 }
 
 }  // namespace pliant

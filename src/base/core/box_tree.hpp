@@ -104,15 +104,21 @@ public:
     /// The boxes at both ends of a motion.
     struct MovingFit {
         Fit start, end;
+        std::vector<char> moves;  ///< (nodes of the tree) whether anything below moves
     };
-    /// As visit_overlaps, for pairs that may overlap during the motion.
+    /// `moves`: whether each item does.
+    [[nodiscard]] MovingFit fit(std::span<const Bounds> start, std::span<const Bounds> end,
+                                std::span<const char> moves) const;
+    /// As visit_overlaps, for pairs that may overlap during the motion; without those of which neither moves, of which
+    /// a leaf that moves may give some.
     template <class Visit>
     void visit_meetings(const MovingFit& fit, std::size_t l, const BoxTree& other, const MovingFit& other_fit,
                         Visit&& visit) const {
         const std::size_t own = node_of_leaf_[l];
         const MovingBounds box{fit.start.nodes[own], fit.end.nodes[own]};
         const auto enters = [&](std::size_t n) {
-            return box.may_meet({other_fit.start.nodes[n], other_fit.end.nodes[n]});
+            return (fit.moves[own] || other_fit.moves[n]) &&
+                   box.may_meet({other_fit.start.nodes[n], other_fit.end.nodes[n]});
         };
         const auto hits = [&](std::size_t i, std::size_t m) {
             const std::size_t n = other.node_of_leaf_[m];
@@ -181,6 +187,15 @@ private:
         return bits;
     }
     std::size_t split(std::span<const Vec3> centres, std::size_t begin, std::size_t end);
+    /// Calls join(node, child) for both children of each node, those further down first.
+    template <class Join>
+    void for_children(const Join& join) const {
+        for (std::size_t n = nodes_.size(); n-- > 0;) {
+            if (nodes_[n].next == n + 1) continue;
+            join(n, n + 1);
+            join(n, nodes_[n + 1].next);
+        }
+    }
 
     std::vector<int> order_;
     std::vector<Node> nodes_;

@@ -40,6 +40,31 @@ IndexPairs by_tree(const BoxTree& a, const std::vector<Bounds>& in_a, const BoxT
     return found;
 }
 
+/// Boxes at both ends of a motion; those that begin on one side of a plane stay where they are.
+struct Moving {
+    Moving(std::size_t count, unsigned seed)
+        : start(random_boxes(count, 0.1, seed)), end(random_boxes(count, 0.1, seed + 1)), moves(count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            moves[i] = start[i].low[0] > 0.2 ? 1 : 0;
+            if (moves[i] == 0) end[i] = start[i];
+        }
+    }
+    [[nodiscard]] MovingBounds at(std::size_t i) const { return {start[i], end[i]}; }
+    std::vector<Bounds> start, end;
+    std::vector<char> moves;
+};
+
+IndexPairs meetings_by_tree(const BoxTree& a, const Moving& in_a, const BoxTree& b, const Moving& in_b) {
+    IndexPairs found;
+    const auto fit_a = a.fit(in_a.start, in_a.end, in_a.moves), fit_b = b.fit(in_b.start, in_b.end, in_b.moves);
+    for (std::size_t l = 0; l < a.leaf_count(); ++l)
+        a.visit_meetings(fit_a, l, b, fit_b, [&](int i, int j) {
+            found.emplace_back(&a == &b ? std::min(i, j) : i, &a == &b ? std::max(i, j) : j);
+        });
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
 }  // namespace
 
 TEST_CASE("a tree finds the same overlaps as testing all pairs, after its boxes have moved") {
@@ -56,6 +81,38 @@ TEST_CASE("a tree finds the same overlaps as testing all pairs, after its boxes 
         }
         CHECK(by_tree(tree, now, tree, now) == own);
         CHECK(by_tree(tree, now, other, there) == both);
+    }
+}
+
+TEST_CASE("a tree finds what may meet on the way and moves, and few that do not move") {
+    for (const std::size_t count : {1u, 8u, 64u, 333u}) {
+        CAPTURE(count);
+        const Moving first(count, 3), second(2 * count + 1, 7);
+        const BoxTree tree(first.start), other(second.start);
+        std::size_t still_pairs = 0;
+        const auto check = [&](const IndexPairs& found, const Moving& a, const Moving& b, bool self) {
+            CHECK(std::adjacent_find(found.begin(), found.end()) == found.end());
+            IndexPairs wanted;
+            for (std::size_t i = 0; i < a.start.size(); ++i) {
+                for (std::size_t j = self ? i + 1 : 0; j < b.start.size(); ++j) {
+                    if (!a.at(i).may_meet(b.at(j))) continue;
+                    if (a.moves[i] == 0 && b.moves[j] == 0)
+                        ++still_pairs;
+                    else
+                        wanted.emplace_back(i, j);
+                }
+            }
+            IndexPairs moving = found;
+            std::erase_if(moving, [&](const auto& pair) {
+                return a.moves[static_cast<std::size_t>(pair.first)] == 0 &&
+                       b.moves[static_cast<std::size_t>(pair.second)] == 0;
+            });
+            CHECK(moving == wanted);
+            return found.size() - moving.size();
+        };
+        const std::size_t found_still = check(meetings_by_tree(tree, first, tree, first), first, first, true) +
+                                        check(meetings_by_tree(tree, first, other, second), first, second, false);
+        if (count == 333) CHECK(found_still < still_pairs / 4);
     }
 }
 

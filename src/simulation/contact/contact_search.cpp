@@ -29,24 +29,41 @@ Stencil stencil_at(std::span<const int> nodes, std::span<const double> x) {
     return {node_at(x, nodes[0]), node_at(x, nodes[1]), node_at(x, nodes[2]), node_at(x, nodes[3])};
 }
 
-/// Boxes of the features' points at x or, if dx is given, over the motion from x to x + dx.
+/// Calls visit(node) for the nodes of a feature.
+template <class Nodes, class Visit>
+void for_nodes(const Nodes& feature, const Visit& visit) {
+    if constexpr (std::is_same_v<Nodes, int>) {
+        visit(feature);
+    } else {
+        for (const int node : feature) visit(node);
+    }
+}
+
+/// Boxes of the features' points at x or, if dx is given, at x + dx.
 template <class Nodes>
 std::vector<Bounds> boxes_of(const std::vector<Nodes>& features, std::span<const double> x, std::span<const double> dx,
                              double margin) {
     std::vector<Bounds> boxes(features.size());
     for (std::size_t f = 0; f < features.size(); ++f) {
-        const auto add = [&](int node) {
+        for_nodes(features[f], [&](int node) {
             const Vec3 p = node_at(x, node);
             boxes[f].add(dx.empty() ? p : p + node_at(dx, node));
-        };
-        if constexpr (std::is_same_v<Nodes, int>) {
-            add(features[f]);
-        } else {
-            for (const int node : features[f]) add(node);
-        }
+        });
         boxes[f].widen(margin);
     }
     return boxes;
+}
+
+/// Whether each feature has a node that moves.
+template <class Nodes>
+std::vector<char> moving_ones(const std::vector<Nodes>& features, std::span<const double> dx) {
+    std::vector<char> moves(features.size(), 0);
+    for (std::size_t f = 0; f < features.size(); ++f) {
+        for_nodes(features[f], [&](int node) {
+            if (node_at(dx, node) != Vec3{}) moves[f] = 1;
+        });
+    }
+    return moves;
 }
 
 /// Features of one kind of one side.
@@ -148,9 +165,9 @@ private:
 
     template <class Nodes>
     [[nodiscard]] Group fitted(const BoxTree& tree, const std::vector<Nodes>& features) const {
-        Group group{&tree, {tree.fit(boxes_of(features, x_, {}, margin_ / 2)), {}}};
-        if (!dx_.empty()) group.fit.end = tree.fit(boxes_of(features, x_, dx_, margin_ / 2));
-        return group;
+        const std::vector<Bounds> start = boxes_of(features, x_, {}, margin_ / 2);
+        if (dx_.empty()) return {&tree, {tree.fit(start), {}, {}}};
+        return {&tree, tree.fit(start, boxes_of(features, x_, dx_, margin_ / 2), moving_ones(features, dx_))};
     }
 
     /// The group, built on first use.
