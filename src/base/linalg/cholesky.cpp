@@ -93,6 +93,11 @@ void Cholesky::solve_fields(std::span<double> fields, int count) const {
     }
 }
 
+void Cholesky::inverse_part(std::span<const int> unknowns, std::span<double> result) const {
+    assert(result.size() == unknowns.size() * unknowns.size());
+    std::visit([&](const auto& factor) { factor.inverse_part(unknowns, result.data()); }, state_->factor);
+}
+
 std::optional<double> Cholesky::solve_and_refine(std::span<const double> values, std::span<double> right_hand_sides,
                                                  int columns, double tolerance, int limit) const {
     const SymmetricPattern& pattern = state_->pattern;

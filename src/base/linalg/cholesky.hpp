@@ -42,6 +42,10 @@ public:
     /// right-hand side. Faster than solve() with all of them. Precondition: block 1.
     void solve_fields(std::span<double> fields, int count) const;
 
+    /// result (unknowns, unknowns) <- these rows and columns of the inverse of the matrix. A solution for each of them
+    /// would go down and up the whole elimination tree; this goes down from them to the root. Preconditions: distinct.
+    void inverse_part(std::span<const int> unknowns, std::span<double> result) const;
+
     /// As solve(), followed by conjugate gradients with the factor as preconditioner until the error, in the energy
     /// norm of the matrix, is about `tolerance` relative to the solution; `values` are those of the factor. Returns the
     /// error of the first iteration, an upper bound of the error of solve() alone, or nothing if `limit` further

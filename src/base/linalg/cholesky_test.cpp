@@ -6,8 +6,12 @@
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <array>
+#include <numeric>
 #include <random>
+
+#include "base/linalg/simd_targets.hpp"
 
 using namespace pliant::linalg;
 
@@ -132,6 +136,46 @@ TEST_CASE("fields of three components agree with Eigen's solver, in both precisi
                     CHECK((x.transpose() - expected).norm() <
                           (precision == Precision::single_ ? 1e-4 : 1e-10) * expected.norm());
                 }
+            }
+        }
+    }
+}
+
+TEST_CASE("a part of the inverse agrees with Eigen's solver, in both precisions, on one core and on several") {
+    struct Shape {
+        int nx, ny, nz, block;
+    };
+    for (const Shape& g : {Shape{2, 2, 2, 3}, {40, 3, 3, 3}, {13, 12, 11, 3}, {30, 30, 2, 1}}) {
+        const auto pattern = hexahedra(g.nx, g.ny, g.nz, g.block);
+        std::vector<double> values;
+        const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> independent(springs(pattern, values, 1e-1));
+        std::vector<int> unknowns(static_cast<std::size_t>(pattern.size()));
+        std::iota(unknowns.begin(), unknowns.end(), 0);
+        std::shuffle(unknowns.begin(), unknowns.end(), std::mt19937(3));
+        for (const std::size_t count : {0, 1, 8, 21}) {
+            const std::span<const int> some = std::span(unknowns).first(count);
+            const auto n = static_cast<Eigen::Index>(count);
+            Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(pattern.size(), n);
+            for (Eigen::Index k = 0; k < n; ++k) columns(some[static_cast<std::size_t>(k)], k) = 1;
+            columns = independent.solve(columns).eval();
+            Eigen::MatrixXd expected(n, n);
+            for (Eigen::Index k = 0; k < n; ++k) expected.row(k) = columns.row(some[static_cast<std::size_t>(k)]);
+            for (const Precision precision : {Precision::single_, Precision::double_}) {
+                Cholesky cholesky(pattern, precision);
+                REQUIRE(cholesky.factorise(values));
+                const auto found = [&] {
+                    Eigen::MatrixXd part(n, n);
+                    cholesky.inverse_part(some, {part.data(), count * count});
+                    return part;
+                };
+                on_each_simd_target([&](const char* target) {
+                    CAPTURE(target);
+                    CHECK((found() - expected).norm() <=
+                          (precision == Precision::single_ ? 1e-4 : 1e-11) * expected.norm());
+                });
+                const Eigen::MatrixXd on_all = found();
+                const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+                CHECK(found() == on_all);
             }
         }
     }

@@ -30,6 +30,9 @@ public:
     /// right-hand side. Precondition: block 1.
     void solve_fields(double* fields, int count) const;
 
+    /// result (unknowns, unknowns) <- these rows and columns of the inverse.
+    void inverse_part(std::span<const int> unknowns, double* result) const;
+
     /// Frees the work space of factorise() and keeps the factor.
     void release_work_space();
 
@@ -55,6 +58,7 @@ private:
 
     class Sweep;       ///< passes right-hand sides through the tree
     class FieldSweep;  ///< the same for fields
+    class InversePart;
 
     std::shared_ptr<const Analysis> analysis_;
     int block_;

@@ -594,6 +594,28 @@ void upper_double(const Panel<double>& p, int n, double* x, const double* y) {
 void upper_float(const Panel<float>& p, int n, float* x, const float* y) {
     solve_upper_any(p, n, x, y);
 }
+template <class Real>
+void add_lane_products_of(int count, const Real* a, const Real* b, Real* sums) {
+    using L = Lanes<Real>;
+    using V = typename L::V;
+    for (int part = 0; part < lanes; part += L::width) {
+        V rows[lanes];
+        for (int i = 0; i < lanes; ++i) rows[i] = L::load(sums, i, part);
+        for (int u = 0; u < count; ++u) {
+            const V right = L::load(b, u, part);
+            for (int i = 0; i < lanes; ++i)
+                rows[i] = hn::MulAdd(hn::Set(typename L::D(), a[u * lanes + i]), right, rows[i]);
+        }
+        for (int i = 0; i < lanes; ++i) L::store(rows[i], sums, i, part);
+    }
+}
+
+void lane_products_double(int count, const double* a, const double* b, double* sums) {
+    add_lane_products_of(count, a, b, sums);
+}
+void lane_products_float(int count, const float* a, const float* b, float* sums) {
+    add_lane_products_of(count, a, b, sums);
+}
 void lower_lanes_double(const Panel<double>& p, double* x, const LaneRows<double>& rows) {
     solve_lower_lanes_of(p, x, rows);
 }
@@ -625,6 +647,8 @@ HWY_EXPORT(lower_double);
 HWY_EXPORT(lower_float);
 HWY_EXPORT(upper_double);
 HWY_EXPORT(upper_float);
+HWY_EXPORT(lane_products_double);
+HWY_EXPORT(lane_products_float);
 HWY_EXPORT(lower_lanes_double);
 HWY_EXPORT(lower_lanes_float);
 HWY_EXPORT(upper_lanes_double);
@@ -697,6 +721,15 @@ void solve_upper_lanes(const Panel<double>& panel, double* x, const LaneRows<dou
 template <>
 void solve_upper_lanes(const Panel<float>& panel, float* x, const LaneRows<float>& rows) {
     HWY_DYNAMIC_DISPATCH(upper_lanes_float)(panel, x, rows);
+}
+
+template <>
+void add_lane_products(int count, const double* a, const double* b, double* sums) {
+    HWY_DYNAMIC_DISPATCH(lane_products_double)(count, a, b, sums);
+}
+template <>
+void add_lane_products(int count, const float* a, const float* b, float* sums) {
+    HWY_DYNAMIC_DISPATCH(lane_products_float)(count, a, b, sums);
 }
 
 }  // namespace pliant::linalg

@@ -87,4 +87,8 @@ void solve_lower_lanes(const Panel<Real>& panel, Real* x, const LaneRows<Real>& 
 template <class Real>
 void solve_upper_lanes(const Panel<Real>& panel, Real* x, const LaneRows<Real>& rows);
 
+/// sums (lanes, lanes) += a^T b, for a and b (count, lanes).
+template <class Real>
+void add_lane_products(int count, const Real* a, const Real* b, Real* sums);
+
 }  // namespace pliant::linalg

@@ -54,6 +54,12 @@ void ContactStep::number_nodes() {
     }
 }
 
+std::vector<int> ContactStep::rows() const {
+    std::vector<int> rows;
+    for (const int node : nodes_) rows.insert(rows.end(), {3 * node, 3 * node + 1, 3 * node + 2});
+    return rows;
+}
+
 std::vector<double> ContactStep::motion(const Eigen::VectorXd& delta) const {
     Eigen::VectorXd full = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(place_.size()));
     for (std::size_t node = 0; node < place_.size(); ++node) {
@@ -123,11 +129,11 @@ std::optional<Eigen::VectorXd> ContactStep::solve(const Eigen::MatrixXd& complia
     const Problem problem{*std::move(stiffness), without_m};
     Place at{Eigen::VectorXd::Zero(size()), start_, 0};
     at.value = value(problem, at.delta, at.x);
+    const std::vector<int> at_nodes = rows();
     double at_first = 0;
     for (int iteration = 0;; ++iteration) {
         Eigen::VectorXd forces = gradient(at.x);
-        Eigen::VectorXd slope = problem.stiffness * (at.delta - without_m);
-        for (Eigen::Index k = 0; k < size(); ++k) slope[k] += forces[row(k)];
+        const Eigen::VectorXd slope = problem.stiffness * (at.delta - without_m) + forces(at_nodes);
         if (iteration == 0) at_first = slope.norm();
         if (slope.norm() <= small * at_first) return forces;
         if (iteration < most_iterations && descend(problem, slope, at)) continue;

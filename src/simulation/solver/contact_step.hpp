@@ -32,8 +32,8 @@ public:
     [[nodiscard]] const std::vector<int>& nodes() const { return nodes_; }
     /// Number of their coordinates, in the order of nodes().
     [[nodiscard]] Eigen::Index size() const { return 3 * static_cast<Eigen::Index>(nodes_.size()); }
-    /// Index of such a coordinate among those of all free nodes.
-    [[nodiscard]] Eigen::Index row(Eigen::Index k) const { return 3 * nodes_[static_cast<std::size_t>(k / 3)] + k % 3; }
+    /// (size) indices of these coordinates among those of all free nodes.
+    [[nodiscard]] std::vector<int> rows() const;
 
     /// (3 free) gradient of Ψ at the state, N.
     [[nodiscard]] Eigen::VectorXd gradient() const { return gradient(start_); }

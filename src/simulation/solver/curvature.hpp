@@ -13,7 +13,7 @@
 #include <optional>
 #include <span>
 
-#include "base/linalg/analysis.hpp"
+#include "base/linalg/cholesky.hpp"
 #include "simulation/elements/element_kernels.hpp"
 #include "simulation/parts/robot_names.hpp"
 #include "simulation/solver/equilibrium.hpp"
@@ -57,12 +57,9 @@ public:
         (void)force, (void)normals, (void)wanted;
         return std::nullopt;
     }
-    /// columns (3 free, k) <- A^-1 columns, where A is the tangent of everything except contact and friction, at the
-    /// state of the last refresh(). False: it cannot be, or would take too long.
-    [[nodiscard]] virtual bool solve_without_contact(Eigen::MatrixXd& columns) {
-        (void)columns;
-        return false;
-    }
+    /// The factor, over the free nodes, of the tangent of everything except contact and friction, at the state of the
+    /// last refresh(); valid until the next. Null: there is none, or it would take too long.
+    [[nodiscard]] virtual const linalg::Cholesky* factor_without_contact() { return nullptr; }
     /// Retraction: the positions reached along the direction `motion` (3n); x + motion to first order.
     [[nodiscard]] virtual Eigen::VectorXd retract(const Eigen::VectorXd& x, const Eigen::VectorXd& motion) const {
         return x + motion;

@@ -10,7 +10,7 @@
 #include "simulation/solver/body_rotation.hpp"
 #include "simulation/solver/corner_nesting.hpp"
 #include "simulation/solver/curvature.hpp"
-#include "simulation/solver/inverse_without_contact.hpp"
+#include "simulation/solver/factor_without_contact.hpp"
 #include "simulation/solver/step_memory.hpp"
 #include "simulation/solver/tangent_inverse.hpp"
 
@@ -154,8 +154,8 @@ public:
         }
     }
 
-    [[nodiscard]] bool solve_without_contact(Eigen::MatrixXd& columns) override {
-        return !reused_ && !system_->has_skew() && without_contact_.solve(tangent_, columns);
+    [[nodiscard]] const linalg::Cholesky* factor_without_contact() override {
+        return reused_ || system_->has_skew() ? nullptr : without_contact_.at(tangent_);
     }
 
 private:
@@ -392,7 +392,7 @@ private:
     bool straight_ = false;                   ///< the next step needs no rotation
     Eigen::VectorXd positions_;               ///< of the free nodes, where the tangent was made
     BodyRotation rotation_;                   ///< since the factor was made
-    InverseWithoutContact without_contact_;   ///< for the nodes that touch
+    FactorWithoutContact without_contact_;    ///< for the nodes that touch
     StepMemory memory_{most_steps};           ///< of the steps since then, rotated back to the state of the factor
     std::shared_ptr<const StepPair> learnt_;  ///< not yet in the memory
     SolverMemory::Cliques touching_;          ///< contact pairs to be included in the next pattern

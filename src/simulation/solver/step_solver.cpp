@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/core/counted.hpp"
+#include "base/linalg/cholesky.hpp"
 #include "base/linalg/dense.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
@@ -218,59 +219,57 @@ private:
 
     /// A step without contact, and what is left of it at the nodes that touch.
     struct Reduced {
-        Eigen::VectorXd others;      ///< (3 free) gradient of everything except contact
-        Solutions solutions;         ///< for it, and for the constraints
-        Eigen::MatrixXd compliance;  ///< of the nodes that touch
-        Eigen::VectorXd without_m;   ///< their motion
+        const linalg::Cholesky* factor;  ///< of the tangent of everything except contact
+        Eigen::VectorXd others;          ///< (3 free) gradient of everything except contact
+        Solutions solutions;             ///< for it, and for the constraints
+        Eigen::MatrixXd compliance;      ///< of the nodes that touch
+        Eigen::VectorXd without_m;       ///< their motion
     };
     [[nodiscard]] std::optional<Reduced> reduce_to(const ContactStep& contact, const Terms& terms) {
-        Reduced reduced{terms.gradient - contact.gradient(), {}, {}, {}};
+        Reduced reduced{curvature_.factor_without_contact(), terms.gradient - contact.gradient(), {}, {}, {}};
+        if (reduced.factor == nullptr) return std::nullopt;
         const Eigen::Index solved = solved_.count();
-        Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(reduced.others.size(), 1 + solved + contact.size());
+        Eigen::MatrixXd columns(reduced.others.size(), 1 + solved);
         columns.col(0) = reduced.others;
-        columns.middleCols(1, solved) = terms.forces;
-        for (Eigen::Index k = 0; k < contact.size(); ++k) columns(contact.row(k), 1 + solved + k) = 1;
-        if (!curvature_.solve_without_contact(columns)) return std::nullopt;
-
-        reduced.solutions = {columns.col(0), columns.middleCols(1, solved)};
+        columns.rightCols(solved) = terms.forces;
+        reduced.factor->solve({columns.data(), static_cast<std::size_t>(columns.size())},
+                              static_cast<int>(columns.cols()));
+        reduced.solutions = {columns.col(0), columns.rightCols(solved)};
         const Move without = combine(reduced.solutions, terms.forces, terms.multipliers);
-        const Eigen::MatrixXd yielding = hold(columns.rightCols(contact.size()), reduced.solutions, terms.forces,
-                                              terms.multipliers + without.change);
-        Eigen::MatrixXd compliance(contact.size(), contact.size());
-        reduced.without_m.resize(contact.size());
-        for (Eigen::Index k = 0; k < contact.size(); ++k) {
-            compliance.row(k) = yielding.row(contact.row(k));
-            reduced.without_m[k] = without.dx[contact.row(k)];
-        }
-        reduced.compliance = 0.5 * (compliance + compliance.transpose());
+
+        const std::vector<int> rows = contact.rows();
+        reduced.without_m = without.dx(rows);
+        Eigen::MatrixXd& compliance = reduced.compliance;
+        compliance.resize(contact.size(), contact.size());
+        reduced.factor->inverse_part(rows, {compliance.data(), static_cast<std::size_t>(compliance.size())});
+        hold(rows, reduced.solutions, terms.forces, terms.multipliers + without.change, compliance);
         return reduced;
     }
 
     /// The step under the forces (3 free) that contact has at its end.
     [[nodiscard]] std::optional<Direction> find_direction_under(const Eigen::VectorXd& pressed, Reduced reduced,
-                                                                const Terms& terms) {
-        Eigen::MatrixXd gradient = reduced.others + pressed;
-        if (!curvature_.solve_without_contact(gradient)) return std::nullopt;
-        reduced.solutions.gradient = gradient.col(0);
+                                                                const Terms& terms) const {
+        reduced.solutions.gradient = reduced.others + pressed;
+        reduced.factor->solve(view(reduced.solutions.gradient), 1);
         Direction direction = direction_of(combine(reduced.solutions, terms.forces, terms.multipliers), terms);
         if (!direction.dx.allFinite()) return std::nullopt;
         return direction;
     }
 
-    /// The motions `yielding` (3 free, k), less what the constraints that hold prevent. `multipliers`: a cable without
-    /// tension does not hold.
-    [[nodiscard]] Eigen::MatrixXd hold(Eigen::MatrixXd yielding, const Solutions& solutions,
-                                       const Eigen::MatrixXd& forces, const Eigen::VectorXd& multipliers) const {
+    /// The compliance of some rows, less what the constraints that hold prevent. `multipliers`: a cable without tension
+    /// does not hold.
+    void hold(const std::vector<int>& rows, const Solutions& solutions, const Eigen::MatrixXd& forces,
+              const Eigen::VectorXd& multipliers, Eigen::MatrixXd& compliance) const {
         std::vector<Eigen::Index> held;
         for (Eigen::Index k = 0; k < solved_.count(); ++k) {
             if (multipliers[k] > 0 || !solved_.all()[static_cast<std::size_t>(k)].only_pulls) held.push_back(k);
         }
-        if (held.empty()) return yielding;
+        if (held.empty()) return;
         const Eigen::MatrixXd S = yielding_to(forces, solutions.forces)(held, held);
-        const Eigen::MatrixXd change = forces(Eigen::all, held).transpose() * yielding;
-        // Not by its inverse: cables may be parallel.
-        yielding -= solutions.forces(Eigen::all, held) * (linalg::pseudo_inverse(S) * change);
-        return yielding;
+        const Eigen::MatrixXd yielding = solutions.forces(rows, held);  // to the multipliers
+        // Not by the inverse of S: cables may be parallel.
+        const Eigen::MatrixXd prevented = yielding * (linalg::pseudo_inverse(S) * yielding.transpose());
+        compliance -= 0.5 * (prevented + prevented.transpose());
     }
 
     class Way;

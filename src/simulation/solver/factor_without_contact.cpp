@@ -1,20 +1,19 @@
-#include "simulation/solver/inverse_without_contact.hpp"
+#include "simulation/solver/factor_without_contact.hpp"
 
 #include "base/core/parallel.hpp"
 
 namespace pliant::sim {
 
-bool InverseWithoutContact::solve(const std::shared_ptr<const SolverMemory::Tangent>& tangent,
-                                  Eigen::MatrixXd& columns) {
-    if (!tangent || !is_quick()) return false;
+const linalg::Cholesky* FactorWithoutContact::at(const std::shared_ptr<const SolverMemory::Tangent>& tangent) {
+    if (!tangent || !is_quick()) return nullptr;
     if (of_ != tangent) {
         of_ = tangent;
         usable_ = factorise(*tangent, false) || factorise(*tangent, true);
     }
-    return usable_ && inverse_->solve(columns, 0) == TangentInverse::Outcome::solved;
+    return usable_ ? &*factor_ : nullptr;
 }
 
-bool InverseWithoutContact::is_quick() const {
+bool FactorWithoutContact::is_quick() const {
     // Multiply-adds for each pair of nodes; an iteration on levels takes as long as some 6000 of them. The limit of
     // nodes is one of memory: a slender body of any size has a factor that is quickly made.
     constexpr double most_for_a_pair = 60000;
@@ -26,14 +25,14 @@ bool InverseWithoutContact::is_quick() const {
 
 /// Contact couples no nodes here, so the pattern, and with it the order of elimination, is that of the Laplacian. In
 /// double precision: a light object that nothing holds moves far more easily than a surface yields.
-bool InverseWithoutContact::factorise(const SolverMemory::Tangent& tangent, bool project) {
+bool FactorWithoutContact::factorise(const SolverMemory::Tangent& tangent, bool project) {
     const TangentLayout& layout = *laplacian_->tangent_layout();
     values_.resize(layout.pattern.entries());
     parallel_clear(values_.span());
     system_->add_tangent(tangent.state, tangent.controls, layout, values_.span(), project,
                          TangentParts::without_contact);
-    if (!inverse_) inverse_ = make_direct_inverse(laplacian_->analysis(), true);
-    return inverse_->set(values_.span(), system_->free_positions(tangent.state.x), TangentInverse::Effort::all);
+    if (!factor_) factor_.emplace(laplacian_->analysis(), 3, linalg::Precision::double_);
+    return factor_->factorise(values_.span());
 }
 
 }  // namespace pliant::sim
