@@ -347,9 +347,9 @@ private:
         return force;
     }
 
-    /// Coordinates of the nodes that touch. Each takes one more solution: with more of them, as much time as the steps
-    /// that are saved.
-    static constexpr Eigen::Index most_contact = 120;
+    /// Coordinates of the nodes that touch. With more of them the dense problem takes as much time as the steps that
+    /// are saved.
+    static constexpr Eigen::Index most_contact = 240;
     static constexpr double smallest_contact_share = 1e-2;  // of such a step
 
     const Equilibrium& system_;
