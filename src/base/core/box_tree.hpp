@@ -109,8 +109,8 @@ public:
     /// `moves`: whether each item does.
     [[nodiscard]] MovingFit fit(std::span<const Bounds> start, std::span<const Bounds> end,
                                 std::span<const char> moves) const;
-    /// As visit_overlaps, for pairs that may overlap during the motion; without those of which neither moves, of which
-    /// a leaf that moves may give some.
+    /// As visit_overlaps, for pairs that may overlap during the motion. Pairs of items that both stay where they are
+    /// may be left out.
     template <class Visit>
     void visit_meetings(const MovingFit& fit, std::size_t l, const BoxTree& other, const MovingFit& other_fit,
                         Visit&& visit) const {

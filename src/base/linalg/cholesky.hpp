@@ -43,7 +43,7 @@ public:
     void solve_fields(std::span<double> fields, int count) const;
 
     /// result (unknowns, unknowns) <- these rows and columns of the inverse of the matrix. A solution for each of them
-    /// would go down and up the whole elimination tree; this goes down from them to the root. Preconditions: distinct.
+    /// would go down and up the whole elimination tree; this goes down from them to the root.
     void inverse_part(std::span<const int> unknowns, std::span<double> result) const;
 
     /// As solve(), followed by conjugate gradients with the factor as preconditioner until the error, in the energy
