@@ -75,15 +75,12 @@ void CoarseSpace::find_pattern(const BlockRows& matrix) {
     const Lists later = make_lists(groups_.count, [&] {
         return [&, seen = Seen(groups_.count), reached = Seen(matrix.rows())](int g, std::vector<int>& row) mutable {
             const auto begin = static_cast<std::ptrdiff_t>(row.size());
-            for (const MotionUse& use : uses(static_cast<std::size_t>(g))) {
-                for (int k = matrix.start[use.node]; k < matrix.start[use.node + 1]; ++k) {
-                    const int j = matrix.column[k];
-                    if (!reached.is_new(j, g)) continue;
-                    for (const int h : moving_[static_cast<std::size_t>(j)]) {
-                        if (h > g && seen.is_new(h, g)) row.push_back(h);
-                    }
+            visit_reached(matrix, static_cast<std::size_t>(g), [&](int j) {
+                if (!reached.is_new(j, g)) return;
+                for (const int h : moving_[static_cast<std::size_t>(j)]) {
+                    if (h > g && seen.is_new(h, g)) row.push_back(h);
                 }
-            }
+            });
             std::sort(row.begin() + begin, row.end());
         };
     });
@@ -158,14 +155,12 @@ void CoarseSpace::multiply(const BlockRows& matrix) {
         std::vector<int> place_of_group(groups), place_of_node(groups_.of_node.size(), -1), reached;
         std::vector<double> forces, sums;
         for (std::size_t g = begin; g < end; ++g) {
-            for (const MotionUse& use : uses(g)) {
-                for (int k = matrix.start[use.node]; k < matrix.start[use.node + 1]; ++k) {
-                    int& place = place_of_node[static_cast<std::size_t>(matrix.column[k])];
-                    if (place >= 0) continue;
-                    place = static_cast<int>(reached.size());
-                    reached.push_back(matrix.column[k]);
-                }
-            }
+            visit_reached(matrix, g, [&](int j) {
+                int& place = place_of_node[static_cast<std::size_t>(j)];
+                if (place >= 0) return;
+                place = static_cast<int>(reached.size());
+                reached.push_back(j);
+            });
             forces.assign(3 * modes_stored * reached.size(), 0);
             add_forces_of_group(matrix.blocks(), motions, uses(g), place_of_node.data(), forces.data());
             const int first = pattern_.node_start[2 * g];

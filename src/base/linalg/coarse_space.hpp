@@ -37,6 +37,13 @@ private:
     void multiply(const BlockRows& matrix);
     void put(std::size_t group, std::span<const double> sums);
     [[nodiscard]] std::span<const MotionUse> uses(std::size_t group) const;
+    /// Calls visit(node) for the nodes on which the motions of a group exert a force; for some of them several times.
+    template <class Visit>
+    void visit_reached(const BlockRows& matrix, std::size_t group, const Visit& visit) const {
+        for (const MotionUse& use : uses(group)) {
+            for (int k = matrix.start[use.node]; k < matrix.start[use.node + 1]; ++k) visit(matrix.column[k]);
+        }
+    }
 
     Aggregates groups_;
     Lists members_;  ///< nodes of each group
