@@ -28,12 +28,15 @@ after(async () => {
 
 const text = (page, id) => page.getByTestId(id).textContent();
 const head = (page) => page.evaluate(() => window.pliant.frame.value.head);
-/// A print that has begun, and goes on as slowly as a real one.
+/// A print that has begun, and goes on as slowly as a real one. On a busy machine the page can take longer to slow it
+/// down than the whole of it lasts at 300 times: hence 60.
 async function printing(page) {
-  await takeTwin(page, '300');
+  await takeTwin(page, '60');
   await startPrint(page);
   await page.waitForFunction(() => Number(document.querySelector('[data-testid=print-layer]')?.textContent) >= 1, null, patience);
   await page.getByRole('button', { name: '1×', exact: true }).click();
+  await page.waitForSelector('button[aria-pressed=true]:text-is("1×")');
+  assert.equal(await text(page, 'print-state'), 'Printing');
 }
 /// Types into a field and leaves it, as people do.
 async function type(page, id, value) {
