@@ -388,19 +388,25 @@ void Elements::add_rotated(const AlignedArray<double>& rotations, Direction dire
     });
 }
 
-void Elements::add_mass(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern,
-                        std::span<double> values, double factor) const {
-    const Eigen::MatrixXd shares = mass_shares(nodes_per_tet_);
-    for (std::size_t t = 0; t < tet_count(); ++t) {
-        for (int b = 0; b < nodes_per_tet_; ++b) {
-            const int j = free_index[node(t, b)];
-            for (int a = 0; j >= 0 && a < nodes_per_tet_; ++a) {
-                const int i = free_index[node(t, a)];
-                if (i < j) continue;
-                const double entry = factor * tet_mass_[t] * shares(a, b);
-                pattern.add_block(values, i, j, [&](int r, int c) { return r == c ? entry : 0.0; });
+void Elements::add_mass(const BlockSums& sums, const std::vector<int>& free_index,
+                        const linalg::SymmetricPattern& pattern, std::span<double> values, double factor) const {
+    const auto fill = [&, shares = mass_shares(nodes_per_tet_)](std::size_t b, double* entries) {
+        std::array<double, lanes> mass{};
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+            const std::size_t tet = tet_[b * lanes + lane];
+            if (tet != no_tet) mass[lane] = factor * tet_mass_[tet];
+        }
+        for (int j = 0; j < nodes_per_tet_; ++j) {
+            for (int i = 0; i <= j; ++i, entries += lanes) {
+                for (std::size_t lane = 0; lane < lanes; ++lane) entries[lane] = mass[lane] * shares(i, j);
             }
         }
+    };
+    const auto entries = scratch_.lend(pattern.node_row.size());
+    parallel_clear({entries.data(), pattern.node_row.size()});
+    sums.add(fill, 1, {entries.data(), pattern.node_row.size()}, scratch_);
+    for (std::size_t k = 0; k < pattern.node_row.size(); ++k) {
+        for (const std::size_t on_diagonal : {0, 4, 8}) values[9 * k + on_diagonal] += entries.data()[k];
     }
     for (const Lump& lump : lumps_) {
         for (std::size_t b = 0; b < lump.nodes.size(); ++b) {
@@ -427,18 +433,29 @@ void Elements::apply_mass(std::span<const double> u, std::span<double> result) c
     }
 }
 
-void Elements::apply_mass(std::span<const double> tet_mass, std::span<const double> u, std::span<double> result) const {
-    const Eigen::MatrixXd shares = mass_shares(nodes_per_tet_);
+template <int width>
+void Elements::apply_mass_of(std::span<const double> tet_mass, std::span<const double> u,
+                             std::span<double> result) const {
+    const Eigen::Matrix<double, width, width> shares = mass_shares(width);
+    Eigen::Matrix<double, 3, width> at_nodes;
     for (std::size_t t = 0; t < tet_count(); ++t) {
-        for (int a = 0; a < nodes_per_tet_; ++a) {
-            double* r = result.data() + 3 * static_cast<std::size_t>(node(t, a));
-            for (int b = 0; b < nodes_per_tet_; ++b) {
-                const double mass = tet_mass[t] * shares(a, b);
-                const double* v = u.data() + 3 * static_cast<std::size_t>(node(t, b));
-                for (int i = 0; i < 3; ++i) r[i] += mass * v[i];
-            }
+        for (int a = 0; a < width; ++a) {
+            const double* from = u.data() + 3 * static_cast<std::size_t>(node(t, a));
+            for (int i = 0; i < 3; ++i) at_nodes(i, a) = from[i];
+        }
+        const Eigen::Matrix<double, 3, width> momentum = tet_mass[t] * (at_nodes * shares);
+        for (int a = 0; a < width; ++a) {
+            double* to = result.data() + 3 * static_cast<std::size_t>(node(t, a));
+            for (int i = 0; i < 3; ++i) to[i] += momentum(i, a);
         }
     }
+}
+
+void Elements::apply_mass(std::span<const double> tet_mass, std::span<const double> u, std::span<double> result) const {
+    if (nodes_per_tet_ == 4)
+        apply_mass_of<4>(tet_mass, u, result);
+    else
+        apply_mass_of<10>(tet_mass, u, result);
 }
 
 std::vector<double> Elements::mass_products(std::span<const double> u, std::span<const double> v) const {

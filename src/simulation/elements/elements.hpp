@@ -66,9 +66,9 @@ public:
                      std::span<double> result) const;
 
     /// The consistent mass matrix of straight tets, M_ab = integral of density N_a N_b, with the masses of objects and
-    /// point masses: factor * M added to a pattern of block 3, and result (3n) += M u.
-    void add_mass(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern, std::span<double> values,
-                  double factor) const;
+    /// point masses: factor * M added to a pattern of block 3, of which these are the sums, and result (3n) += M u.
+    void add_mass(const BlockSums& sums, const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern,
+                  std::span<double> values, double factor) const;
     void apply_mass(std::span<const double> u, std::span<double> result) const;
     /// The same for the tets alone, with given masses (m).
     void apply_mass(std::span<const double> tet_mass, std::span<const double> u, std::span<double> result) const;
@@ -140,6 +140,8 @@ private:
                                                 double* forces) const;
     void tangent_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law, bool project,
                             double* blocks) const;
+    template <int width>
+    void apply_mass_of(std::span<const double> tet_mass, std::span<const double> u, std::span<double> result) const;
     template <class ForcesOf>
     void add_batches(std::span<double> result, const ForcesOf& forces_of) const;
 

@@ -140,19 +140,16 @@ History Inertia::start_weights(const Eigen::VectorXd& force_weights, const Eigen
     return {4.0 / 3 * by_from, 4.0 / 3 * mass, -1.0 / 3 * by_from, -1.0 / 3 * mass, 0};
 }
 
-double Inertia::energy(const Eigen::VectorXd& x) const {
-    const Eigen::VectorXd off = this->off(x);
-    const Eigen::VectorXd motion = x - from_;
-    return 0.5 * mass_rate_ * off.dot(mass_times(off)) + 0.5 * rate_ * motion.dot(damping_force(motion));
+double Inertia::evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& forces) const {
+    const Eigen::VectorXd off = this->off(x), motion = x - from_;
+    const Eigen::VectorXd inertia = mass_rate_ * mass_times(off), damping = rate_ * damping_force(motion);
+    forces += inertia + damping;
+    return 0.5 * (off.dot(inertia) + motion.dot(damping));
 }
 
-void Inertia::add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& forces) const {
-    forces += mass_rate_ * mass_times(off(x)) + rate_ * damping_force(x - from_);
-}
-
-void Inertia::add_hessian(const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
+void Inertia::add_hessian(const BlockSums& sums, const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
                           std::span<double> values) const {
-    elements_->add_mass(index, pattern, values, mass_entry_);
+    elements_->add_mass(sums, index, pattern, values, mass_entry_);
     if (!stiffness_) return;
     const linalg::SymmetricPattern& own = *stiffness_->pattern;
     const double factor = rate_ * damping_.stiffness_s;

@@ -13,6 +13,7 @@
 
 namespace pliant::sim {
 
+class BlockSums;
 class Elements;
 
 /// Motion so far: positions and velocities (3n) of the last two steps.
@@ -78,11 +79,11 @@ public:
     /// the start of a motion it is too large.
     [[nodiscard]] Eigen::VectorXd error(const Eigen::VectorXd& x) const;
 
-    [[nodiscard]] double energy(const Eigen::VectorXd& x) const;
-    /// forces (3n) += gradient: inertia and damping.
-    void add_gradient(const Eigen::VectorXd& x, Eigen::VectorXd& forces) const;
-    /// For a pattern (block 3) that holds the elements' cliques; `index` (n) of each node in it, or -1.
-    void add_hessian(const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
+    /// Energy of inertia and damping at x, J; forces (3n) += its gradient.
+    double evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& forces) const;
+    /// For a pattern (block 3) that holds the elements' cliques, of which these are the sums; `index` (n) of each node
+    /// in it, or -1.
+    void add_hessian(const BlockSums& sums, const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
                      std::span<double> values) const;
 
     /// History at the start of the step, and the length of the step.

@@ -148,7 +148,7 @@ private:
         VectorXd force = VectorXd::Zero(sim::force_size(at.system()));
         if (at.controls().inertia) {
             VectorXd inertia = VectorXd::Zero(h.x.size());
-            from(at, unknown).add_gradient(VectorXd::Zero(h.x.size()), inertia);
+            (void)from(at, unknown).evaluate(VectorXd::Zero(h.x.size()), inertia);
             force.head(h.x.size()) += inertia;
             add_joint_force(at, h.x, force);
         }

@@ -294,8 +294,7 @@ Evaluation Equilibrium::evaluate_mean(const State& state, const Controls& contro
         balance.internal += at.weight * here.internal;
         balance.driving += at.weight * here.driving;
     }
-    mean.energy_J += inertia.energy(state.x);
-    inertia.add_gradient(state.x, balance.internal);
+    mean.energy_J += inertia.evaluate(state.x, balance.internal);
     if (fluid_) add_drag(state.x, controls, inertia, balance.internal, mean.energy_J);
     return mean;
 }
@@ -337,8 +336,7 @@ Evaluation Equilibrium::evaluate_at(const State& state, const Controls& controls
     }
     if (fluid_) add_buoyancy(state.x, controls, internal, e.energy_J);
     if (inertia != nullptr) {
-        e.energy_J += inertia->energy(state.x);
-        inertia->add_gradient(state.x, internal);
+        e.energy_J += inertia->evaluate(state.x, internal);
         if (fluid_) add_drag(state.x, controls, *inertia, internal, e.energy_J);
     }
     fill_actuators(state, controls, e);
@@ -680,18 +678,19 @@ void Equilibrium::add_tangent_at(const State& state, const Controls& controls, c
 /// The derivative of the force at share s of the path with respect to the end is s times the tangent there.
 void Equilibrium::add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                               std::span<double> values, bool project, TangentParts parts) const {
-    if (controls.inertia && !controls.inertia->means().empty()) {
-        Controls still = controls;
-        still.inertia = nullptr;
-        for (const Inertia::Mean& at : controls.inertia->means()) {
+    const Inertia* inertia = controls.inertia.get();
+    if (inertia != nullptr && !inertia->means().empty()) {
+        for (const Inertia::Mean& at : inertia->means()) {
             std::vector<double> there(values.size(), 0.0);
-            add_tangent_at(on_the_way(state, *controls.inertia, at.share), still, layout, there, project, parts);
+            add_tangent_at(on_the_way(state, *inertia, at.share), controls, layout, there, project, parts);
             for (std::size_t k = 0; k < values.size(); ++k) values[k] += at.weight * at.share * there[k];
         }
-        controls.inertia->add_hessian(index_of(layout.nodes), layout.pattern, values);
-        if (fluid_) add_drag_tangent(state.x, controls, *controls.inertia, layout, values);
     } else {
         add_tangent_at(state, controls, layout, values, project, parts);
+    }
+    if (inertia != nullptr) {
+        inertia->add_hessian(layout.element_sums, index_of(layout.nodes), layout.pattern, values);
+        if (fluid_) add_drag_tangent(state.x, controls, *inertia, layout, values);
     }
     if (layout.nodes == TangentNodes::free) decouple_rollers(layout.pattern, values);
 }
@@ -713,10 +712,6 @@ void Equilibrium::add_tangent_beside_tets(const State& state, const Controls& co
         visit_carried(layout, values, [&](const contact::BlockVisitor& visit) {
             fluid_->visit_buoyancy(all, gravity_at(controls.time), project, visit);
         });
-    }
-    if (controls.inertia) {
-        controls.inertia->add_hessian(index, pattern, values);
-        if (fluid_) add_drag_tangent(state.x, controls, *controls.inertia, layout, values);
     }
     const contact::Contact* contact = parts == TangentParts::all ? this->contact(controls) : nullptr;
     if (contact != nullptr) {

@@ -123,15 +123,15 @@ public:
     /// For the body, its actuators and these groups.
     [[nodiscard]] TangentLayout lay_out_tangent(const std::vector<std::vector<int>>& touching = {},
                                                 TangentNodes nodes = TangentNodes::free) const;
-    /// Over all nodes, for everything except the tets. Preconditions: no inertia and no gap elements, which need the
-    /// tets' pattern too.
+    /// Over all nodes, for everything except tets and inertia. Precondition: no gap elements, which need the tets'
+    /// pattern too.
     [[nodiscard]] TangentLayout lay_out_tangent_beside_tets(const std::vector<std::vector<int>>& touching) const;
     /// Adds the symmetric part of the tangent at fixed multipliers, without constraints and gas compliance. With
     /// `project` every part is replaced by the nearest positive semi-definite one. Over the free nodes, rollers are
     /// decoupled along the directions in which they are held. Precondition: min_J > 0.
     void add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                      std::span<double> values, bool project, TangentParts parts = TangentParts::all) const;
-    /// The same without the tets: plates, springs, inertia, contact and actuators alone.
+    /// The same without tets, inertia and drag: plates, springs, contact and actuators alone.
     void add_tangent_beside_tets(const State& state, const Controls& controls, const TangentLayout& layout,
                                  std::span<double> values, bool project, TangentParts parts = TangentParts::all) const;
     /// (3 free) gradient of the energy of `pairs` and of the friction in `controls`, at positions `x` of all nodes of
