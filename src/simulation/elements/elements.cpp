@@ -9,6 +9,7 @@
 #include "base/core/parallel.hpp"
 #include "geometry/mesh/order_in_space.hpp"
 #include "simulation/elements/blend_kernels.hpp"
+#include "simulation/elements/mass_kernel.hpp"
 #include "simulation/material/response.hpp"
 #include "simulation/parts/description.hpp"
 
@@ -284,7 +285,7 @@ BatchResult Elements::forces_one_by_one(std::size_t batch, std::span<const doubl
     return result;
 }
 
-/// result (3n) += what `forces_of(batch, bound of its stiffness, forces)` writes for the nodes of each batch.
+/// result (3n) += what `forces_of(batch, forces)` writes for the nodes of each batch.
 template <class ForcesOf>
 void Elements::add_batches(std::span<double> result, const ForcesOf& forces_of) const {
     const auto lists = scratch_.lend(sums_.space());
@@ -292,8 +293,7 @@ void Elements::add_batches(std::span<double> result, const ForcesOf& forces_of) 
         BatchForces forces;
         sums_.clear(piece, lists.data());
         for (std::size_t b = begin; b < end; ++b) {
-            const double stiffness = material::stiffness_bound(law_of_batch(b));
-            forces_of(b, stiffness, forces.values);
+            forces_of(b, forces.values);
             sums_.add(b, forces.values, lists.data());
         }
     });
@@ -364,8 +364,8 @@ void Elements::apply_laplacian(std::span<const double> u, std::span<double> resu
 }
 
 void Elements::add_rotation_term(const RotatingStep& rotating, std::span<double> result) const {
-    add_batches(result, [&](std::size_t b, double stiffness, double* forces) {
-        batch_rotation_term(batch(b), rotating, stiffness, forces);
+    add_batches(result, [&](std::size_t b, double* forces) {
+        batch_rotation_term(batch(b), rotating, material::stiffness_bound(law_of_batch(b)), forces);
     });
 }
 
@@ -382,23 +382,29 @@ void Elements::find_rotations(std::span<const double> before, std::span<const do
 void Elements::add_rotated(const AlignedArray<double>& rotations, Direction direction, std::span<const double> u,
                            std::span<double> result) const {
     const std::size_t stride = 9 * points() * lanes;
-    add_batches(result, [&](std::size_t b, double stiffness, double* forces) {
-        batch_rotated(batch(b), rotations.data() + b * stride, direction == Direction::back, u.data(), stiffness,
-                      forces);
+    add_batches(result, [&](std::size_t b, double* forces) {
+        batch_rotated(batch(b), rotations.data() + b * stride, direction == Direction::back, u.data(),
+                      material::stiffness_bound(law_of_batch(b)), forces);
     });
+}
+
+Elements::LaneMasses Elements::lane_masses(std::size_t batch, std::span<const double> tet_mass) const {
+    LaneMasses masses;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const std::size_t tet = tet_[batch * lanes + lane];
+        if (tet != no_tet) masses.values[lane] = tet_mass[tet];
+    }
+    return masses;
 }
 
 void Elements::add_mass(const BlockSums& sums, const std::vector<int>& free_index,
                         const linalg::SymmetricPattern& pattern, std::span<double> values, double factor) const {
     const auto fill = [&, shares = mass_shares(nodes_per_tet_)](std::size_t b, double* entries) {
-        std::array<double, lanes> mass{};
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-            const std::size_t tet = tet_[b * lanes + lane];
-            if (tet != no_tet) mass[lane] = factor * tet_mass_[tet];
-        }
+        const LaneMasses mass = lane_masses(b, tet_mass_);
         for (int j = 0; j < nodes_per_tet_; ++j) {
             for (int i = 0; i <= j; ++i, entries += lanes) {
-                for (std::size_t lane = 0; lane < lanes; ++lane) entries[lane] = mass[lane] * shares(i, j);
+                for (std::size_t lane = 0; lane < lanes; ++lane)
+                    entries[lane] = factor * mass.values[lane] * shares(i, j);
             }
         }
     };
@@ -433,29 +439,12 @@ void Elements::apply_mass(std::span<const double> u, std::span<double> result) c
     }
 }
 
-template <int width>
-void Elements::apply_mass_of(std::span<const double> tet_mass, std::span<const double> u,
-                             std::span<double> result) const {
-    const Eigen::Matrix<double, width, width> shares = mass_shares(width);
-    Eigen::Matrix<double, 3, width> at_nodes;
-    for (std::size_t t = 0; t < tet_count(); ++t) {
-        for (int a = 0; a < width; ++a) {
-            const double* from = u.data() + 3 * static_cast<std::size_t>(node(t, a));
-            for (int i = 0; i < 3; ++i) at_nodes(i, a) = from[i];
-        }
-        const Eigen::Matrix<double, 3, width> momentum = tet_mass[t] * (at_nodes * shares);
-        for (int a = 0; a < width; ++a) {
-            double* to = result.data() + 3 * static_cast<std::size_t>(node(t, a));
-            for (int i = 0; i < 3; ++i) to[i] += momentum(i, a);
-        }
-    }
-}
-
 void Elements::apply_mass(std::span<const double> tet_mass, std::span<const double> u, std::span<double> result) const {
-    if (nodes_per_tet_ == 4)
-        apply_mass_of<4>(tet_mass, u, result);
-    else
-        apply_mass_of<10>(tet_mass, u, result);
+    const Eigen::MatrixXd shares = mass_shares(nodes_per_tet_);
+    add_batches(result, [&](std::size_t b, double* forces) {
+        const LaneMasses mass = lane_masses(b, tet_mass);
+        batch_momentum(batch(b), mass.values, shares.data(), u.data(), forces);
+    });
 }
 
 std::vector<double> Elements::mass_products(std::span<const double> u, std::span<const double> v) const {

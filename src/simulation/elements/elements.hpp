@@ -140,8 +140,11 @@ private:
                                                 double* forces) const;
     void tangent_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law, bool project,
                             double* blocks) const;
-    template <int width>
-    void apply_mass_of(std::span<const double> tet_mass, std::span<const double> u, std::span<double> result) const;
+    /// Masses of the tets of a batch, kg; 0 in empty lanes.
+    struct LaneMasses {
+        alignas(64) double values[lanes] = {};
+    };
+    [[nodiscard]] LaneMasses lane_masses(std::size_t batch, std::span<const double> tet_mass) const;
     template <class ForcesOf>
     void add_batches(std::span<double> result, const ForcesOf& forces_of) const;
 
