@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <utility>
 
+#include "base/core/aligned_array.hpp"
 #include "base/linalg/graph.hpp"
+#include "base/linalg/symmetric_product.hpp"
 
 namespace pliant::linalg {
 namespace {
@@ -13,30 +15,32 @@ namespace {
 constexpr std::ptrdiff_t most_counted = 32;  // rows of a column up to which counting the smaller ones, without
                                              // branches, is used
 
-/// Adds factor * B v_j to r_i and, off the diagonal, factor * B^T v_i to r_j.
-template <int block>
-void add_block_product(const double* B, double factor, bool diagonal, const double* vi, const double* vj, double* ri,
-                       double* rj) {
-    for (int c = 0; c < block; ++c) {
-        double transposed = 0;
-        for (int r = diagonal ? c : 0; r < block; ++r) {
-            ri[r] += factor * B[block * c + r] * vj[c];
-            if (!diagonal || r > c) transposed += B[block * c + r] * vi[r];
+void add_scalar_product(const SymmetricPattern& p, std::span<const double> values, std::span<const double> v,
+                        double factor, std::span<double> result) {
+    for (int j = 0; j < p.nodes; ++j) {
+        for (int k = p.node_start[j]; k < p.node_start[j + 1]; ++k) {
+            const int i = p.node_row[k];
+            result[i] += factor * values[k] * v[j];
+            if (i != j) result[j] += factor * values[k] * v[i];
         }
-        rj[c] += factor * transposed;
     }
 }
 
-template <int block>
-void add_product_of(const SymmetricPattern& p, std::span<const double> values, std::span<const double> v, double factor,
-                    std::span<double> result) {
-    for (int j = 0; j < p.nodes; ++j) {
-        for (int k = p.node_start[j]; k < p.node_start[j + 1]; ++k) {
-            const std::size_t i = static_cast<std::size_t>(p.node_row[k]) * block;
-            const std::size_t column = static_cast<std::size_t>(j) * block;
-            add_block_product<block>(values.data() + static_cast<std::size_t>(k) * block * block, factor, i == column,
-                                     v.data() + i, v.data() + column, result.data() + i, result.data() + column);
+/// In arrays with four numbers for each node, which suit SIMD.
+void add_block_product(const SymmetricPattern& p, std::span<const double> values, std::span<const double> v,
+                       double factor, std::span<double> result) {
+    const auto nodes = static_cast<std::size_t>(p.nodes);
+    AlignedArray<double> padded(8 * nodes);
+    double *from = padded.data(), *to = from + 4 * nodes;
+    for (std::size_t i = 0; i < nodes; ++i) {
+        for (std::size_t c = 0; c < 4; ++c) {
+            from[4 * i + c] = c < 3 ? v[3 * i + c] : 0;
+            to[4 * i + c] = 0;
         }
+    }
+    add_symmetric_product(p, values.data(), from, to);
+    for (std::size_t i = 0; i < nodes; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) result[3 * i + c] += factor * to[4 * i + c];
     }
 }
 
@@ -91,9 +95,9 @@ void add_product(const SymmetricPattern& pattern, std::span<const double> values
                  double factor, std::span<double> result) {
     assert(pattern.block == 1 || pattern.block == 3);
     if (pattern.block == 1)
-        add_product_of<1>(pattern, values, v, factor, result);
+        add_scalar_product(pattern, values, v, factor, result);
     else
-        add_product_of<3>(pattern, values, v, factor, result);
+        add_block_product(pattern, values, v, factor, result);
 }
 
 }  // namespace pliant::linalg
