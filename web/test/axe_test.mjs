@@ -30,12 +30,8 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-/// Waits until the page is drawn and no colour is on its way to another.
-async function still(page) {
-  await redrawn(page);
-  const moves = (a) => a.playState === 'running' && a.effect?.getTiming().iterations !== Infinity;
-  await page.waitForFunction(`!document.getAnimations().some(${moves})`);
-}
+/// Colours change at once: nothing that is looked at is on its way from one to another.
+const wide = { viewport: { width: 1440, height: 900 }, reducedMotion: 'reduce' };
 
 /// What axe finds, a line each: everything in the theme that is on, and in the other one what depends on colours.
 async function found(page, where) {
@@ -45,7 +41,7 @@ async function found(page, where) {
   for (const theme of [first, first === 'dark' ? 'light' : 'dark']) {
     await page.emulateMedia({ colorScheme: theme });
     await page.waitForFunction((t) => document.documentElement.dataset.theme === t, theme);
-    await still(page);
+    await redrawn(page);
     const options = { resultTypes: ['violations'], ...(theme === first ? {} : { runOnly: ['color-contrast', 'link-in-text-block'] }) };
     const violations = await page.evaluate(async (o) => (await window.axe.run(document, o)).violations, options);
     wrong.push(...violations.flatMap((v) => v.nodes.map((n) => `${where}, ${theme}: ${v.impact} ${v.id}: ${n.target.join(' ')}: ${n.failureSummary?.split('\n')[1]?.trim()}`)));
@@ -117,7 +113,7 @@ async function* views(page) {
 }
 
 test('axe finds no problem in any view', async (t) => {
-  const { page } = await openPage(browser, studio.address, t, { colorScheme: 'dark', viewport: { width: 1440, height: 900 } });
+  const { page } = await openPage(browser, studio.address, t, { colorScheme: 'dark', ...wide });
   await settled(page);
   assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
   const wrong = [];
@@ -209,7 +205,7 @@ async function understood(page, see) {
 }
 
 test('axe finds no problem in building and analysing robots, at any width', async (t) => {
-  const { page } = await openPage(browser, studio.address, t, { colorScheme: 'light', viewport: { width: 1440, height: 900 } });
+  const { page } = await openPage(browser, studio.address, t, { colorScheme: 'light', ...wide });
   await settled(page);
   // Coarse and linear: it is the page that is looked at.
   await page.evaluate(() => window.pliant.post('/api/robot/set', { changes: [{ key: 'mesh.size', value: '8 mm' }, { key: 'program.steps', value: 2 }] }));
@@ -290,7 +286,7 @@ async function* steps(page) {
 }
 
 test('axe finds no problem in any state of preparing and printing, at any width', async (t) => {
-  const { page } = await openPage(browser, studio.address, t, { colorScheme: 'light', viewport: { width: 1440, height: 900 } });
+  const { page } = await openPage(browser, studio.address, t, { colorScheme: 'light', ...wide });
   await settled(page);
   const wrong = [];
   for await (const where of steps(page)) {
