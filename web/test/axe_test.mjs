@@ -268,11 +268,12 @@ async function* steps(page) {
   await startPrint(page);
   await page.getByTestId('enlarge-light').waitFor({ timeout: 60_000 });
   await page.evaluate(() => document.querySelectorAll('.print details').forEach((d) => (d.open = true)));
-  await setSpeed(page, 10); // slow enough to be looked at
+  await setSpeed(page, 1); // slow enough to be looked at
   yield 'a print';
   await page.getByTestId('enlarge-light').click();
   yield 'the light enlarged';
   await page.keyboard.press('Escape');
+  await setSpeed(page, 10); // a print pauses at the end of a layer
   await page.getByTestId('pause').click();
   await page.getByTestId('resume').waitFor({ timeout: 60_000 });
   yield 'paused';

@@ -110,7 +110,7 @@ test('the job is shown in 3D quickly, and can be cut at any layer; layers count 
 
 test('the emergency stop has one place in the window, in every section and above every dialog', async (t) => {
   const { page } = await openPage(browser, `${studio.address}#print`, t);
-  await takeTwin(page, '300');
+  await takeTwin(page, '60');
   await startPrint(page);
   await page.waitForSelector('[data-testid=enlarge-light]'); // a print that is paused before its first exposure shows none
   await page.getByTestId('pause').click();
