@@ -13,7 +13,7 @@ using namespace pliant::linalg;
 
 namespace {
 
-/// Numbers between -1 and 1 that repeat.
+/// Numbers between -1 and 1, the same in every run.
 class RepeatingNumbers {
 public:
     double next() {

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/core/near.hpp"
+#include "base/linalg/simd_targets.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/peers/reference_problems.hpp"
 
@@ -52,11 +53,15 @@ TEST_CASE("the assembled mass matrix is that of the products, and moves the whol
         elements.add_mass(elements.block_sums(index, pattern), index, pattern, values, factor);
 
         const std::vector<double> u = waves(3 * index.size());
-        std::vector<double> assembled(u.size(), 0.0), product(u.size(), 0.0);
+        std::vector<double> assembled(u.size(), 0.0);
         linalg::add_product(pattern, values, u, 1 / factor, assembled);
-        elements.apply_mass(u, product);
-        for (std::size_t i = 0; i < u.size(); ++i)
-            CHECK(assembled[i] == near(product[i], {.relative = 1e-12, .absolute = 1e-15}));
+        linalg::on_each_simd_target([&](const char* target) {
+            CAPTURE(target);
+            std::vector<double> product(u.size(), 0.0);
+            elements.apply_mass(u, product);
+            for (std::size_t i = 0; i < u.size(); ++i)
+                CHECK(product[i] == near(assembled[i], {.relative = 1e-12, .absolute = 1e-15}));
+        });
 
         std::vector<double> along(u.size(), 0.0), momentum(u.size(), 0.0);
         for (std::size_t i = 1; i < along.size(); i += 3) along[i] = 1;
