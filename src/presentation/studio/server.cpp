@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <map>
+#include <stop_token>
 #include <thread>
 
 #include "presentation/studio/access.hpp"
 #include "presentation/studio/examples.hpp"
+#include "presentation/studio/hang_up.hpp"
 #include "presentation/studio/help_pages.hpp"
 
 namespace pliant::studio {
@@ -199,13 +202,27 @@ void write_all(mg_connection* wire, const std::shared_ptr<Connection>& connectio
     mg_websocket_write(wire, MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE, "\x03\xe9", 2);  // 1001, going away
 }
 
+/// The library looks up to two seconds later whether it should stop, wherever it waits for a connection or a request.
+void stop(mg_context* context, int port) {
+    std::jthread calls([port](const std::stop_token& stopped) {
+        while (!stopped.stop_requested()) {
+            hang_up(port);
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+    });
+    mg_stop(context);
+}
+
 }  // namespace
 
 Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Server::~Server() {
     state_->studio.close();
-    if (state_->context != nullptr) mg_stop(state_->context);
+    if (port() > 0)
+        stop(state_->context, port());
+    else if (state_->context != nullptr)
+        mg_stop(state_->context);
     mg_exit_library();
 }
 
