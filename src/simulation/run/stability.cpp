@@ -84,10 +84,11 @@ void Stability::assemble(const State& state, const Controls& controls, bool proj
 /// positive projection.
 bool Stability::take_metric(const State& state, const Controls& controls) {
     const Eigen::VectorXd positions = system_->free_positions(state.x);
-    // Only a factor finds every negative direction of a metric: levels serve where it would be far too large.
+    // Only a factor finds every negative direction of a metric: levels serve where it would be far too large. In double
+    // precision: in single, tangents a little beyond the limit of stability pass as positive definite.
     auto inverse = levels_are_quicker(layout_->pattern, false, laplacian_->work())
                        ? make_levels_inverse(layout_->pattern, nest_in_corners(system_->model()))
-                       : make_direct_inverse(laplacian_->analysis(), false);
+                       : make_direct_inverse(laplacian_->analysis(), true);
     AlignedArray<double> values(stiffness_.size());
     std::ranges::copy(stiffness_.span(), values.span().begin());
     if (!inverse->set(values.span(), positions, TangentInverse::Effort::usual)) {
