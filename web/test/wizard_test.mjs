@@ -50,7 +50,7 @@ test('setting up a machine from the list, over its port, with axes and vats keep
   await next(page, 1);
   await page.getByTestId('wizard-device').fill(realpathSync(join(folder, 'printer')));
   await page.getByTestId('ask-board').click();
-  await page.getByTestId('board').waitFor({ timeout: 60_000 });
+  await page.getByTestId('board').waitFor({ timeout: 60_000 }).catch(async () => assert.fail(await page.getByTestId('wizard').innerText()));
   assert.match(await page.getByTestId('board').innerText(), /Pliant twin.*responds/);
   await page.getByTestId('baud').fill('250000');
   await next(page, 2);
