@@ -46,7 +46,6 @@ async function shown(page, check, given) {
 }
 const beyond = (page, l) => shown(page, (k) => Number(document.querySelector('[data-testid=print-layer]').textContent) > k, l);
 const state = (page, id, value) => shown(page, ([i, v]) => document.querySelector(`[data-testid="${i}"]`)?.dataset.state === v, [id, value]);
-const height = (page) => page.evaluate(() => Number(document.querySelector('[data-testid=part]')?.dataset.height ?? 0));
 
 /// How many pixels of the 3D view have the hue of the job's material.
 async function coloured(page) {
@@ -107,7 +106,8 @@ test('an open door pauses the print with a message; an empty vat asks for resin;
   assert.equal(await text(page, 'print-state'), 'Paused', 'it does not go on by itself');
   await page.getByTestId('resume').click();
   await beyond(page, stopped);
-  assert.ok((await height(page)) >= (stopped - 1) * 0.1 - 1e-6, 'what has cured is seen');
+  // What has cured is seen, as soon as the page has drawn it.
+  await shown(page, (mm) => Number(document.querySelector('[data-testid=part]')?.dataset.height ?? 0) >= mm, (stopped - 1) * 0.1 - 1e-6);
 
   await shown(page, () => /Resin is needed/.test(document.querySelector('[data-testid=prompt]')?.textContent ?? ''));
   assert.match(await text(page, 'prompt'), /Fill the vat of slot 1 with semi-flex, up to 20 ml/);
@@ -147,8 +147,7 @@ test('a second print on the same machine begins with an empty platform; the part
   assert.ok(near > 2000, `${near} pixels of the part when it is looked at alone`);
   // A page that comes later sees the same part.
   const other = await openPage(browser, `${studio.address}#print`, t);
-  await other.page.waitForSelector('[data-testid=part]');
-  assert.ok((await height(other.page)) > 0);
+  await shown(other.page, () => Number(document.querySelector('[data-testid=part]')?.dataset.height ?? 0) > 0);
   await page.getByTestId('cancel').click();
   await page.getByTestId('cancel-sure').click();
   await page.getByTestId('leave').waitFor({ timeout: 60000 });
