@@ -173,3 +173,24 @@ test('axes on the virtual printer: home, jog and swap; the emergency stop stays 
   await page.getByTestId('axes-leave').click();
   assert.deepEqual(wrong, []);
 });
+
+test('what is typed as a port is not mixed with a port that is found meanwhile', async (t) => {
+  const { page } = await openPage(browser, `${studio.address}#print`, t);
+  let found;
+  const begun = new Promise((done) => (found = done));
+  await page.route('**/api/print/ports', async (route) => {
+    await begun;
+    await route.fulfill({ json: { ports: [{ device: '/dev/ttyACM7', name: 'a board' }], displays: [], without: '' } });
+  });
+  await page.getByTestId('wizard-machine').click();
+  await at(page, 0);
+  await page.getByTestId('from-tower').check();
+  await page.getByTestId('printer-file-name').fill('typed.toml');
+  await next(page, 1);
+  await page.getByTestId('wizard-device').focus();
+  found();
+  await page.getByText('/dev/ttyACM7 a board').waitFor();
+  await page.keyboard.type('/dev/ttyUSB0');
+  assert.equal(await page.getByTestId('wizard-device').inputValue(), '/dev/ttyUSB0');
+  await page.getByTestId('wizard-close').click();
+});

@@ -9,6 +9,9 @@ export interface Ports {
   without: string;
 }
 
+/// Somebody is about to type there: nothing is put in under their hands.
+const isTypedIn = (field: string) => (document.activeElement as HTMLElement | null)?.dataset.testid === field;
+
 export function usePorts(): [Ports | null, () => void] {
   const [ports, setPorts] = useState<Ports | null>(null);
   const look = () =>
@@ -16,8 +19,8 @@ export function usePorts(): [Ports | null, () => void] {
       .then((r) => r.json())
       .then((p: Ports) => {
         setPorts(p);
-        if (!device.value) device.value = p.ports[0]?.device ?? '';
-        if (!projectorAt.value) projectorAt.value = p.displays.length > 1 ? String(p.displays[p.displays.length - 1].number) : 'light';
+        if (!device.value && !isTypedIn('wizard-device')) device.value = p.ports[0]?.device ?? '';
+        if (!projectorAt.value && !isTypedIn('wizard-projector')) projectorAt.value = p.displays.length > 1 ? String(p.displays[p.displays.length - 1].number) : 'light';
       })
       .catch((e: Error) => say(e.message));
   useEffect(look, []);
