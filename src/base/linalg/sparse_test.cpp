@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <cstdint>
+#include <random>
 #include <vector>
 
 #include "base/linalg/simd_targets.hpp"
@@ -12,18 +12,6 @@
 using namespace pliant::linalg;
 
 namespace {
-
-/// Numbers between -1 and 1, the same in every run.
-class RepeatingNumbers {
-public:
-    double next() {
-        state_ = state_ * 6364136223846793005U + 1442695040888963407U;
-        return 2 * (static_cast<double>(state_ >> 11) * 0x1p-53) - 1;
-    }
-
-private:
-    std::uint64_t state_ = 1;
-};
 
 struct StoredMatrix {
     SymmetricPattern pattern;
@@ -37,13 +25,14 @@ StoredMatrix some_matrix(int nodes, int block) {
     Lists cliques;
     for (int i = 0; i + 3 < nodes; i += 2) cliques.push_back(std::vector<int>{i, i + 1, i + 3});
     StoredMatrix m{make_pattern(nodes, block, cliques), {}, Eigen::MatrixXd::Zero(nodes * block, nodes * block)};
-    RepeatingNumbers numbers;
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> any(-1, 1);
     for (int j = 0; j < nodes; ++j) {
         for (int k = m.pattern.node_start[j]; k < m.pattern.node_start[j + 1]; ++k) {
             for (int c = 0; c < block; ++c) {
                 for (int r = 0; r < block; ++r) {
                     const int row = m.pattern.node_row[k] * block + r, column = j * block + c;
-                    const double value = numbers.next();
+                    const double value = any(random);
                     m.values.push_back(row >= column ? value : 1e3);
                     if (row >= column) m.dense(row, column) = m.dense(column, row) = value;
                 }
@@ -62,10 +51,11 @@ TEST_CASE("the product of a symmetric matrix is that of the dense one, with ever
             for (const int nodes : {1, 2, 4, 5, 12, 63}) {
                 CAPTURE(nodes);
                 const StoredMatrix m = some_matrix(nodes, block);
-                RepeatingNumbers numbers;
+                std::mt19937 random(2);
+                std::uniform_real_distribution<double> any(-1, 1);
                 Eigen::VectorXd v(m.dense.rows()), sum(m.dense.rows());
-                for (double& number : v) number = numbers.next();
-                for (double& number : sum) number = numbers.next();
+                for (double& number : v) number = any(random);
+                for (double& number : sum) number = any(random);
                 const Eigen::VectorXd wanted = sum - 2.5 * m.dense * v;
                 const auto size = static_cast<std::size_t>(v.size());
                 add_product(m.pattern, m.values, {v.data(), size}, -2.5, {sum.data(), size});
