@@ -77,10 +77,9 @@ Aggregates take_neighbourhoods(const Neighbours& all) {
     return result;
 }
 
-Aggregates aggregate(const BlockRows& matrix) {
-    const Neighbours all{matrix.start, matrix.column};
+Aggregates aggregate(const Neighbours& all) {
     Aggregates groups = take_neighbourhoods(all);
-    while (too_many(groups.count, matrix.rows())) {
+    while (too_many(groups.count, static_cast<int>(all.start.size()) - 1)) {
         Aggregates paired = pair_up(all, groups);
         if (paired.count == groups.count) break;  // no groups are adjacent
         groups = std::move(paired);

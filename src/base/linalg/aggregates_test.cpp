@@ -7,12 +7,14 @@
 #include <cmath>
 #include <vector>
 
+#include "base/linalg/symmetric_blocks.hpp"
+
 using namespace pliant::linalg;
 
 namespace {
 
 /// Cells of a box, each a clique of its eight corners.
-BlockRows box(int along, int across) {
+Lists box(int along, int across) {
     const int side = across + 1;
     const auto node = [&](int i, int j, int k) { return (i * side + j) * side + k; };
     std::vector<std::vector<int>> cliques;
@@ -25,15 +27,14 @@ BlockRows box(int along, int across) {
             }
         }
     }
-    return BlockRows(make_pattern((along + 1) * side * side, 3, cliques));
+    return SymmetricBlocks(make_pattern((along + 1) * side * side, 3, cliques)).neighbours();
 }
 
 /// Number of nodes of a group reachable from its first one within the group.
-std::size_t reached(const BlockRows& matrix, const Aggregates& groups, const std::vector<int>& nodes) {
+std::size_t reached(const Lists& neighbours, const Aggregates& groups, const std::vector<int>& nodes) {
     std::vector<int> found{nodes.front()};
     for (std::size_t k = 0; k < found.size(); ++k) {
-        for (int e = matrix.start[found[k]]; e < matrix.start[found[k] + 1]; ++e) {
-            const int j = matrix.column[e];
+        for (const int j : neighbours[static_cast<std::size_t>(found[k])]) {
             if (groups.of_node[j] == groups.of_node[nodes.front()] &&
                 std::find(found.begin(), found.end(), j) == found.end())
                 found.push_back(j);
@@ -47,23 +48,23 @@ std::size_t reached(const BlockRows& matrix, const Aggregates& groups, const std
 TEST_CASE("every node is in one connected group, and the number of groups is limited") {
     for (const auto& [along, across] : {std::pair{1, 1}, {40, 2}, {30, 12}, {60, 30}}) {
         CAPTURE(along);
-        const BlockRows matrix = box(along, across);
-        const Aggregates groups = aggregate(matrix);
-        CHECK(groups.count <= std::max(1.0, 8 * std::sqrt(matrix.rows())));
-        CHECK(groups.count * 400 >= matrix.rows());
+        const Lists neighbours = box(along, across);
+        const Aggregates groups = aggregate({neighbours.start, neighbours.item});
+        CHECK(groups.count <= std::max(1.0, 8 * std::sqrt(neighbours.count())));
+        CHECK(groups.count * 400 >= neighbours.count());
         const Lists members = members_of(groups.of_node, groups.count);
-        REQUIRE(members.item.size() == static_cast<std::size_t>(matrix.rows()));
+        REQUIRE(members.item.size() == static_cast<std::size_t>(neighbours.count()));
         for (int g = 0; g < groups.count; ++g) {
             const std::vector<int> nodes(members.item.begin() + members.start[g],
                                          members.item.begin() + members.start[g + 1]);
             REQUIRE(!nodes.empty());
             CHECK(std::is_sorted(nodes.begin(), nodes.end()));
-            CHECK(reached(matrix, groups, nodes) == nodes.size());
+            CHECK(reached(neighbours, groups, nodes) == nodes.size());
         }
     }
 }
 
 TEST_CASE("isolated nodes stay alone, however many they are") {
-    const BlockRows matrix(make_pattern(1000, 3, {}));
-    CHECK(aggregate(matrix).count == 1000);
+    const Lists alone = SymmetricBlocks(make_pattern(1000, 3, {})).neighbours();
+    CHECK(aggregate({alone.start, alone.item}).count == 1000);
 }

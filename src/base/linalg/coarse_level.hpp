@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "base/linalg/block_rows.hpp"
 #include "base/linalg/sparse.hpp"
+#include "base/linalg/symmetric_blocks.hpp"
 
 namespace pliant::linalg {
 
@@ -14,7 +14,7 @@ public:
     /// The fine level: the matrix A; the node positions (nodes, 3); the inverses of its diagonal blocks D (nodes, 9);
     /// and 4/3 of the inverse of the largest eigenvalue of D^-1 A.
     struct Fine {
-        const BlockRows& matrix;
+        const SymmetricBlocks& matrix;
         std::span<const double> positions;
         const float* inverse_diagonal;
         float damping;

@@ -12,7 +12,7 @@ namespace {
 class FactoredSolver final : public CoarseSolver {
 public:
     FactoredSolver(const SymmetricPattern& pattern, bool stays_double)
-        : factor_(pattern, Precision::single_), stays_double_(stays_double) {}
+        : factor_(pattern, Precision::single_), stays_double_(stays_double), is_large_(pattern.nodes > most_kept) {}
 
     [[nodiscard]] bool set(std::span<const double> values, std::span<const double>) override {
         if (!stays_double_ && factor_.precision() == Precision::double_) factor_.use(Precision::single_);
@@ -21,14 +21,16 @@ public:
             factor_.use(Precision::double_);
             found = factor_.factorise(values);
         }
-        factor_.release_work_space();
+        if (is_large_) factor_.release_work_space();
         return found;
     }
     void solve(std::span<double> right_hand_sides, int columns) override { factor_.solve(right_hand_sides, columns); }
 
 private:
+    static constexpr int most_kept = 5000;  // mapping work space of fewer nodes again takes longer than it is worth
+
     Cholesky factor_;
-    bool stays_double_;
+    bool stays_double_, is_large_;
 };
 
 class GroupedSolver final : public CoarseSolver {

@@ -36,22 +36,24 @@ private:
 
 }  // namespace
 
-CoarseSpace::CoarseSpace(const BlockRows& matrix)
-    : groups_(aggregate(matrix)), members_(members_of(groups_.of_node, groups_.count)) {
-    find_groups(matrix);
+CoarseSpace::CoarseSpace(const SymmetricBlocks& matrix) : CoarseSpace(matrix, matrix.neighbours()) {}
+
+CoarseSpace::CoarseSpace(const SymmetricBlocks& matrix, const Lists& neighbours)
+    : groups_(aggregate({neighbours.start, neighbours.item})), members_(members_of(groups_.of_node, groups_.count)) {
+    find_groups(neighbours);
     find_pattern(matrix);
-    const auto nodes = static_cast<std::size_t>(matrix.rows());
+    const auto nodes = static_cast<std::size_t>(matrix.nodes());
     rigid_.resize(18 * nodes);
     prolongation_.resize(18 * moving_.item.size());
     dropped_.resize(static_cast<std::size_t>(groups_.count) * modes);
 }
 
-void CoarseSpace::find_groups(const BlockRows& matrix) {
-    moving_ = make_lists(matrix.rows(), [&] {
+void CoarseSpace::find_groups(const Lists& neighbours) {
+    moving_ = make_lists(neighbours.count(), [&] {
         return [&, seen = Seen(groups_.count)](int i, std::vector<int>& row) mutable {
             const auto begin = static_cast<std::ptrdiff_t>(row.size());
-            for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
-                const int group = groups_.of_node[matrix.column[k]];
+            for (const int j : neighbours[static_cast<std::size_t>(i)]) {
+                const int group = groups_.of_node[j];
                 if (seen.is_new(group, i)) row.push_back(group);
             }
             std::sort(row.begin() + begin, row.end());
@@ -60,7 +62,7 @@ void CoarseSpace::find_groups(const BlockRows& matrix) {
     use_start_ = members_of(moving_.item, groups_.count).start;
     use_.resize(moving_.item.size());
     std::vector<int> next(use_start_.begin(), use_start_.end() - 1);
-    for (int i = 0; i < matrix.rows(); ++i) {
+    for (int i = 0; i < neighbours.count(); ++i) {
         for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e) use_[next[moving_.item[e]]++] = {i, e};
     }
 }
@@ -70,10 +72,10 @@ std::span<const MotionUse> CoarseSpace::uses(std::size_t group) const {
                                    static_cast<std::size_t>(use_start_[group + 1] - use_start_[group]));
 }
 
-void CoarseSpace::find_pattern(const BlockRows& matrix) {
+void CoarseSpace::find_pattern(const SymmetricBlocks& matrix) {
     // For each group, the later ones that move a node on which it exerts a force.
     const Lists later = make_lists(groups_.count, [&] {
-        return [&, seen = Seen(groups_.count), reached = Seen(matrix.rows())](int g, std::vector<int>& row) mutable {
+        return [&, seen = Seen(groups_.count), reached = Seen(matrix.nodes())](int g, std::vector<int>& row) mutable {
             const auto begin = static_cast<std::ptrdiff_t>(row.size());
             visit_reached(matrix, static_cast<std::size_t>(g), [&](int j) {
                 if (!reached.is_new(j, g)) return;
@@ -120,8 +122,12 @@ void CoarseSpace::set_rigid_motions(std::span<const double> positions) {
 }
 
 /// P = (1 - damping D^-1 A) rigid motions.
-void CoarseSpace::smooth(const BlockRows& matrix, const float* inverse_diagonal, float damping) {
-    const auto nodes = static_cast<std::size_t>(matrix.rows());
+void CoarseSpace::smooth(const SymmetricBlocks& matrix, const float* inverse_diagonal, float damping) {
+    const auto nodes = static_cast<std::size_t>(matrix.nodes());
+    const LowerTriangle m = matrix.triangle();
+    const auto block = [&](int pair) {
+        return Eigen::Map<const Block33>(m.value + 9 * static_cast<std::size_t>(pair));
+    };
     parallel_for(nodes, coarsening_grain, [&](std::size_t begin, std::size_t end) {
         std::vector<int> slot(static_cast<std::size_t>(groups_.count));
         for (std::size_t i = begin; i < end; ++i) {
@@ -129,16 +135,22 @@ void CoarseSpace::smooth(const BlockRows& matrix, const float* inverse_diagonal,
                 slot[moving_.item[e]] = e;
                 block36(prolongation_, static_cast<std::size_t>(e)).setZero();
             }
-            for (int k = matrix.start[i]; k < matrix.start[i + 1]; ++k) {
-                const int j = matrix.column[k];
-                block36(prolongation_, static_cast<std::size_t>(slot[groups_.of_node[j]])).noalias() +=
-                    matrix.block(k).cast<float>() * block36(rigid_, static_cast<std::size_t>(j));
+            const auto sum = [&](int j) {
+                return block36(prolongation_, static_cast<std::size_t>(slot[groups_.of_node[j]]));
+            };
+            for (int e = m.left_start[i]; e < m.left_start[i + 1]; ++e) {
+                const int j = m.left_column[e];
+                sum(j).noalias() += block(m.left_pair[e]) * block36(rigid_, static_cast<std::size_t>(j));
+            }
+            for (int k = m.start[i]; k < m.start[i + 1]; ++k) {
+                const int j = m.row[k];
+                sum(j).noalias() += block(k).transpose() * block36(rigid_, static_cast<std::size_t>(j));
             }
             const Block33 step = -damping * Eigen::Map<const Block33>(inverse_diagonal + 9 * i);
             for (int e = moving_.start[i]; e < moving_.start[i + 1]; ++e) {
-                auto block = block36(prolongation_, static_cast<std::size_t>(e));
-                block = (step * block).eval();
-                if (moving_.item[e] == groups_.of_node[i]) block += block36(rigid_, i);
+                auto motions = block36(prolongation_, static_cast<std::size_t>(e));
+                motions = (step * motions).eval();
+                if (moving_.item[e] == groups_.of_node[i]) motions += block36(rigid_, i);
             }
         }
     });
@@ -146,7 +158,7 @@ void CoarseSpace::smooth(const BlockRows& matrix, const float* inverse_diagonal,
 
 /// P^T A P: for each group A times its motions, a force on every node in reach, and the work of these forces on the
 /// motions of this group and the later ones.
-void CoarseSpace::multiply(const BlockRows& matrix) {
+void CoarseSpace::multiply(const SymmetricBlocks& matrix) {
     const auto groups = static_cast<std::size_t>(groups_.count);
     const GroupMotions motions{moving_.start.data(), moving_.item.data(), prolongation_.data()};
     const std::size_t groups_at_once =
@@ -162,7 +174,7 @@ void CoarseSpace::multiply(const BlockRows& matrix) {
                 reached.push_back(j);
             });
             forces.assign(3 * modes_stored * reached.size(), 0);
-            add_forces_of_group(matrix.blocks(), motions, uses(g), place_of_node.data(), forces.data());
+            add_forces_of_group(matrix.triangle(), motions, uses(g), place_of_node.data(), forces.data());
             const int first = pattern_.node_start[2 * g];
             const int partners = (pattern_.node_start[2 * g + 1] - first) / 2;  // itself and later ones
             for (int p = 0; p < partners; ++p) place_of_group[pattern_.node_row[first + 2 * p] / 2] = p;

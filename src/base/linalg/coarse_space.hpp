@@ -8,18 +8,18 @@
 
 #include "base/core/aligned_array.hpp"
 #include "base/linalg/aggregates.hpp"
-#include "base/linalg/block_rows.hpp"
 #include "base/linalg/coarse_level.hpp"
 #include "base/linalg/group_products.hpp"
 #include "base/linalg/lists.hpp"
 #include "base/linalg/sparse.hpp"
+#include "base/linalg/symmetric_blocks.hpp"
 
 namespace pliant::linalg {
 
 /// Six unknowns per group, stored as two nodes of three: its translations and its rotations.
 class CoarseSpace final : public CoarseLevel {
 public:
-    explicit CoarseSpace(const BlockRows& matrix);
+    explicit CoarseSpace(const SymmetricBlocks& matrix);
 
     void set(const Fine& fine) override;
     /// Always true: the coarse space of a rotated body is the old one, rotated.
@@ -30,19 +30,18 @@ public:
     void add_prolonged(const double* coarse, float* fine) const override;
 
 private:
-    void find_groups(const BlockRows& matrix);
-    void find_pattern(const BlockRows& matrix);
+    CoarseSpace(const SymmetricBlocks& matrix, const Lists& neighbours);
+    void find_groups(const Lists& neighbours);
+    void find_pattern(const SymmetricBlocks& matrix);
     void set_rigid_motions(std::span<const double> positions);
-    void smooth(const BlockRows& matrix, const float* inverse_diagonal, float damping);
-    void multiply(const BlockRows& matrix);
+    void smooth(const SymmetricBlocks& matrix, const float* inverse_diagonal, float damping);
+    void multiply(const SymmetricBlocks& matrix);
     void put(std::size_t group, std::span<const double> sums);
     [[nodiscard]] std::span<const MotionUse> uses(std::size_t group) const;
     /// Calls visit(node) for the nodes on which the motions of a group exert a force; for some of them several times.
     template <class Visit>
-    void visit_reached(const BlockRows& matrix, std::size_t group, const Visit& visit) const {
-        for (const MotionUse& use : uses(group)) {
-            for (int k = matrix.start[use.node]; k < matrix.start[use.node + 1]; ++k) visit(matrix.column[k]);
-        }
+    void visit_reached(const SymmetricBlocks& matrix, std::size_t group, const Visit& visit) const {
+        for (const MotionUse& use : uses(group)) matrix.visit_neighbours(use.node, visit);
     }
 
     Aggregates groups_;

@@ -61,14 +61,14 @@ struct Lattice {
 };
 
 struct Coarse {
-    explicit Coarse(const Lattice& lattice) : rows(lattice.pattern), space(rows) {
-        rows.set(lattice.values);
-        space.set({rows, lattice.positions, lattice.inverse_diagonal.data(), 0.3F});
+    explicit Coarse(const Lattice& lattice) : blocks(lattice.pattern), space(blocks) {
+        blocks.set(lattice.values);
+        space.set({blocks, lattice.positions, lattice.inverse_diagonal.data(), 0.3F});
     }
     /// P, one column per coarse unknown.
     [[nodiscard]] Eigen::MatrixXd prolongation() const {
         const int size = space.pattern().size();
-        Eigen::MatrixXd P(3 * rows.rows(), size);
+        Eigen::MatrixXd P(3 * blocks.nodes(), size);
         for (int c = 0; c < size; ++c) {
             const Eigen::VectorXd unit = Eigen::VectorXd::Unit(size, c);
             Eigen::VectorXf column = Eigen::VectorXf::Zero(P.rows());
@@ -77,7 +77,7 @@ struct Coarse {
         }
         return P;
     }
-    BlockRows rows;
+    SymmetricBlocks blocks;
     CoarseSpace space;
 };
 

@@ -43,7 +43,7 @@ HWY_INLINE void add_block(const double* factors, const Row* rows, double* to) {
     }
 }
 
-void forces_of_group(const RowBlocks& matrix, const GroupMotions& motions, std::span<const MotionUse> uses,
+void forces_of_group(const LowerTriangle& matrix, const GroupMotions& motions, std::span<const MotionUse> uses,
                      const int* place, double* forces) {
     for (const MotionUse& use : uses) {
         const float* motion = motions.motion + 3 * GroupMotions::modes * static_cast<std::size_t>(use.entry);
@@ -52,13 +52,25 @@ void forces_of_group(const RowBlocks& matrix, const GroupMotions& motions, std::
             for (std::size_t r = 0; r < 3; ++r) by_rows[r][m] = static_cast<double>(motion[3 * m + r]);
         }
         const Row rows[3] = {Row::load(by_rows[0]), Row::load(by_rows[1]), Row::load(by_rows[2])};
-        for (int k = matrix.start[use.node]; k < matrix.start[use.node + 1]; ++k) {
-            const std::size_t at = 9 * static_cast<std::size_t>(k);
-            // The block of the row of this node, by columns, is the one of its column, by rows.
-            double block[9];
+        const auto force_on = [&](int node) {
+            return forces + 3 * modes_stored * static_cast<std::size_t>(place[node]);
+        };
+        double block[9];
+        // A block of the row of this node, by columns, is the one of its column, by rows.
+        for (int e = matrix.left_start[use.node]; e < matrix.left_start[use.node + 1]; ++e) {
+            const std::size_t at = 9 * static_cast<std::size_t>(matrix.left_pair[e]);
             for (std::size_t b = 0; b < 9; ++b)
                 block[b] = static_cast<double>(matrix.value[at + b]) + static_cast<double>(matrix.rest[at + b]);
-            add_block(block, rows, forces + 3 * modes_stored * static_cast<std::size_t>(place[matrix.column[k]]));
+            add_block(block, rows, force_on(matrix.left_column[e]));
+        }
+        for (int k = matrix.start[use.node]; k < matrix.start[use.node + 1]; ++k) {
+            const std::size_t at = 9 * static_cast<std::size_t>(k);
+            for (std::size_t c = 0; c < 3; ++c) {
+                for (std::size_t r = 0; r < 3; ++r)
+                    block[3 * r + c] = static_cast<double>(matrix.value[at + 3 * c + r]) +
+                                       static_cast<double>(matrix.rest[at + 3 * c + r]);
+            }
+            add_block(block, rows, force_on(matrix.row[k]));
         }
     }
 }
@@ -89,7 +101,7 @@ namespace pliant::linalg {
 HWY_EXPORT(forces_of_group);
 HWY_EXPORT(products_with_groups);
 
-void add_forces_of_group(const RowBlocks& matrix, const GroupMotions& motions, std::span<const MotionUse> uses,
+void add_forces_of_group(const LowerTriangle& matrix, const GroupMotions& motions, std::span<const MotionUse> uses,
                          const int* place, double* forces) {
     HWY_DYNAMIC_DISPATCH(forces_of_group)(matrix, motions, uses, place, forces);
 }

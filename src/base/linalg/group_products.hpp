@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "base/linalg/row_products.hpp"
+#include "base/linalg/lower_triangle.hpp"
 
 namespace pliant::linalg {
 
@@ -28,7 +28,7 @@ inline constexpr std::size_t modes_stored = 8;
 /// forces (places, 3, modes_stored) += A times the motions of a group: place[j] is where the force on node j goes.
 /// Accumulated in double precision: where a body bends easily, the forces on a node nearly cancel. Precondition:
 /// `place` has one for each node that is coupled to a node of `uses`.
-void add_forces_of_group(const RowBlocks& matrix, const GroupMotions& motions, std::span<const MotionUse> uses,
+void add_forces_of_group(const LowerTriangle& matrix, const GroupMotions& motions, std::span<const MotionUse> uses,
                          const int* place, double* forces);
 
 /// sums (places, 6, modes_stored) += (motions of group h)^T forces, for each group h >= `first` that moves one of the

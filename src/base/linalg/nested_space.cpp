@@ -69,35 +69,21 @@ void NestedSpace::set(const Fine& fine) {
     const std::size_t at_once = std::max(least_columns, (corner_.size() + column_pieces - 1) / column_pieces);
     parallel_for(corner_.size(), at_once, [&](std::size_t begin, std::size_t end) {
         std::vector<int> place(corner_.size());  // of each row in its column
+        std::vector<double> mirrored;
         for (std::size_t c = begin; c < end; ++c) {
             std::copy_n(fine.positions.data() + 3 * static_cast<std::size_t>(corner_[c]), 3, positions_.data() + 3 * c);
             const int first = pattern_.node_start[c], count = pattern_.node_start[c + 1] - first;
             for (int p = 0; p < count; ++p) place[pattern_.node_row[first + p]] = p;
             const std::span<double> sums = std::span(coarse_).subspan(9 * static_cast<std::size_t>(first), 9 * count);
             std::ranges::fill(sums, 0.0);
-            for (const int i : on_[c]) add_row(fine.matrix.blocks(), static_cast<int>(c), i, place, sums);
-            for (int p = 0; p < count; ++p) Eigen::Map<Eigen::Matrix3d>(sums.data() + 9 * p).transposeInPlace();
+            mirrored.assign(sums.size(), 0.0);
+            const CornerSums to{static_cast<int>(c), place.data(), sums.data(), mirrored.data()};
+            for (const int i : on_[c]) add_to_corners(fine.matrix.triangle(), i, share(i), followers(), to);
+            for (std::size_t at = 0; at < sums.size(); at += 9)
+                Eigen::Map<Eigen::Matrix3d>(sums.data() + at) +=
+                    Eigen::Map<const Eigen::Matrix3d>(mirrored.data() + at).transpose();
         }
     });
-}
-
-/// What row `fine` of the matrix adds to the blocks of column `coarse`, from the diagonal on, each transposed.
-void NestedSpace::add_row(const RowBlocks& matrix, int coarse, int fine, std::span<const int> place,
-                          std::span<double> sums) const {
-    const double own = share(fine);
-    for (int k = matrix.start[fine]; k < matrix.start[fine + 1]; ++k) {
-        const int j = matrix.column[k];
-        const std::array<int, 2>& ends = nesting_.ends[static_cast<std::size_t>(j)];
-        const double weight = own * share(j);
-        const std::size_t at = 9 * static_cast<std::size_t>(k);
-        for (std::size_t e = ends[0] == ends[1] ? 1 : 0; e < 2; ++e) {
-            if (ends[e] < coarse) continue;
-            double* const sum = sums.data() + 9 * static_cast<std::size_t>(place[static_cast<std::size_t>(ends[e])]);
-            for (std::size_t q = 0; q < 9; ++q)
-                sum[q] +=
-                    weight * (static_cast<double>(matrix.value[at + q]) + static_cast<double>(matrix.rest[at + q]));
-        }
-    }
 }
 
 void NestedSpace::restrict(const float* fine, double* coarse) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/linalg/coarse_level.hpp"
+#include "base/linalg/nested_products.hpp"
 
 namespace pliant::linalg {
 
@@ -33,13 +34,8 @@ public:
 
 private:
     void find_pattern(const SymmetricPattern& fine);
-    /// How much of a coarse node's motion a fine node makes.
-    [[nodiscard]] double share(int fine) const {
-        const auto& ends = nesting_.ends[static_cast<std::size_t>(fine)];
-        return ends[0] == ends[1] ? 1.0 : 0.5;
-    }
-    void add_row(const RowBlocks& matrix, int coarse, int fine, std::span<const int> place,
-                 std::span<double> sums) const;
+    [[nodiscard]] Followers followers() const { return {nesting_.ends.data()}; }
+    [[nodiscard]] double share(int fine) const { return followers().share(fine); }
 
     Nesting nesting_;
     SymmetricPattern pattern_;

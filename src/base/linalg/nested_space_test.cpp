@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "base/linalg/simd_targets.hpp"
+
 using namespace pliant;
 using namespace pliant::linalg;
 
@@ -60,11 +62,11 @@ Eigen::MatrixXd dense(const SymmetricPattern& p, std::span<const double> values)
 
 /// Node i is at (i, 2 i, -i).
 void set(NestedSpace& space, const SymmetricPattern& pattern, const Matrix& m) {
-    BlockRows rows(pattern);
-    rows.set(m.values);
+    SymmetricBlocks blocks(pattern);
+    blocks.set(m.values);
     std::vector<double> positions;
     for (int i = 0; i < pattern.nodes; ++i) positions.insert(positions.end(), {1.0 * i, 2.0 * i, -1.0 * i});
-    space.set({rows, positions, nullptr, 0});
+    space.set({blocks, positions, nullptr, 0});
 }
 
 }  // namespace
@@ -72,13 +74,16 @@ void set(NestedSpace& space, const SymmetricPattern& pattern, const Matrix& m) {
 TEST_CASE("the coarse matrix is exact for motions of the corners") {
     const SymmetricPattern fine = pattern();
     const Matrix m = random_blocks(fine);
-    NestedSpace space(fine, nesting);
-    set(space, fine, m);
     const Eigen::MatrixXd P = prolongation();
     const Eigen::MatrixXd expected = P.transpose() * m.dense * P;
-    CHECK((dense(space.pattern(), space.values()) - expected).cwiseAbs().maxCoeff() < 1e-14 * m.dense.norm());
-    const std::vector<double> corners = {0, 0, 0, 3, 6, -3, 5, 10, -5};
-    CHECK(std::ranges::equal(space.positions(), corners));
+    on_each_simd_target([&](const char* target) {
+        CAPTURE(target);
+        NestedSpace space(fine, nesting);
+        set(space, fine, m);
+        CHECK((dense(space.pattern(), space.values()) - expected).cwiseAbs().maxCoeff() < 1e-14 * m.dense.norm());
+        const std::vector<double> corners = {0, 0, 0, 3, 6, -3, 5, 10, -5};
+        CHECK(std::ranges::equal(space.positions(), corners));
+    });
 }
 
 TEST_CASE("restriction is the transpose of prolongation") {

@@ -31,8 +31,8 @@ void fill_randomly(Interleaved<float>& v, std::size_t size) {
 
 }  // namespace
 
-SmoothedLevels::SmoothedLevels(const SymmetricPattern& pattern, BlockRows matrix, std::unique_ptr<CoarseLevel> space,
-                               std::unique_ptr<CoarseSolver> coarse, Kind kind)
+SmoothedLevels::SmoothedLevels(const SymmetricPattern& pattern, SymmetricBlocks matrix,
+                               std::unique_ptr<CoarseLevel> space, std::unique_ptr<CoarseSolver> coarse, Kind kind)
     : size_(static_cast<std::size_t>(pattern.size())),
       kind_(kind),
       matrix_(std::move(matrix)),
@@ -96,9 +96,13 @@ bool SmoothedLevels::invert_diagonal() {
     parallel_for(size_ / 3, smoothing_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Eigen::Matrix3d block = matrix_.diagonal(static_cast<int>(i));
-            const Eigen::LLT<Eigen::Matrix3d> llt(block);
-            definite[i] = llt.info() == Eigen::Success ? 1 : 0;
-            Eigen::Map<Eigen::Matrix3f>(inverse_diagonal_.data() + 9 * i) = block.inverse().cast<float>();
+            // Sylvester's criterion: the leading minors are positive.
+            Eigen::Matrix3d inverse;
+            double determinant = 0;
+            bool invertible = false;
+            block.computeInverseAndDetWithCheck(inverse, determinant, invertible, 0);
+            definite[i] = block(0, 0) > 0 && inverse(2, 2) * determinant > 0 && determinant > 0 ? 1 : 0;
+            Eigen::Map<Eigen::Matrix3f>(inverse_diagonal_.data() + 9 * i) = inverse.cast<float>();
         }
     });
     return std::all_of(definite.begin(), definite.end(), [](char d) { return d != 0; });
@@ -256,17 +260,17 @@ const Interleaved<float>& SmoothedLevels::apply(const Interleaved<double>& right
 }
 
 SmoothedLevels levels_on_groups(const SymmetricPattern& pattern) {
-    BlockRows rows(pattern);
-    auto groups = std::make_unique<CoarseSpace>(rows);
+    SymmetricBlocks blocks(pattern);
+    auto groups = std::make_unique<CoarseSpace>(blocks);
     auto factor = make_factored_solver(groups->pattern(), true);
-    return {pattern, std::move(rows), std::move(groups), std::move(factor), SmoothedLevels::Kind::groups};
+    return {pattern, std::move(blocks), std::move(groups), std::move(factor), SmoothedLevels::Kind::groups};
 }
 
 SmoothedLevels levels_on_corners(const SymmetricPattern& pattern, Nesting corners, int most_factored) {
     auto space = std::make_unique<NestedSpace>(pattern, std::move(corners));
     auto coarse = space->pattern().nodes > most_factored ? make_grouped_solver(space->pattern())
                                                          : make_factored_solver(space->pattern(), false);
-    return {pattern, BlockRows(pattern), std::move(space), std::move(coarse), SmoothedLevels::Kind::corners};
+    return {pattern, SymmetricBlocks(pattern), std::move(space), std::move(coarse), SmoothedLevels::Kind::corners};
 }
 
 }  // namespace pliant::linalg

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "base/core/aligned_array.hpp"
-#include "base/linalg/block_rows.hpp"
 #include "base/linalg/coarse_level.hpp"
 #include "base/linalg/coarse_solver.hpp"
 #include "base/linalg/interleaved.hpp"
 #include "base/linalg/nested_space.hpp"
+#include "base/linalg/symmetric_blocks.hpp"
 
 namespace pliant::linalg {
 
@@ -24,7 +24,7 @@ public:
     enum class Kind { groups, corners };
     /// Preconditions: `matrix` has the blocks of `pattern`, which are 3 by 3, `space` was made for them, and `coarse`
     /// for the pattern of `space`.
-    SmoothedLevels(const SymmetricPattern& pattern, BlockRows matrix, std::unique_ptr<CoarseLevel> space,
+    SmoothedLevels(const SymmetricPattern& pattern, SymmetricBlocks matrix, std::unique_ptr<CoarseLevel> space,
                    std::unique_ptr<CoarseSolver> coarse, Kind kind);
 
     /// See TwoLevel::set(). False: not positive definite.
@@ -40,7 +40,7 @@ public:
     /// M^-1 right, of `columns` interleaved columns (up to most_columns); valid until the next call.
     [[nodiscard]] const Interleaved<float>& apply(const Interleaved<double>& right, std::size_t columns);
 
-    [[nodiscard]] const BlockRows& matrix() const { return matrix_; }
+    [[nodiscard]] SymmetricBlocks& matrix() { return matrix_; }
     [[nodiscard]] std::size_t size() const { return size_; }  ///< of one column
 
 private:
@@ -64,7 +64,7 @@ private:
     std::size_t size_;
     Kind kind_;
     std::size_t columns_ = 1;
-    BlockRows matrix_;
+    SymmetricBlocks matrix_;
     std::unique_ptr<CoarseLevel> space_;
     std::unique_ptr<CoarseSolver> coarse_;
     AlignedArray<float> inverse_diagonal_;

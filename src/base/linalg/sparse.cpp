@@ -38,7 +38,7 @@ void add_block_product(const SymmetricPattern& p, std::span<const double> values
             to[4 * i + c] = 0;
         }
     }
-    add_symmetric_product(p, values.data(), from, to);
+    add_symmetric_product({nodes, p.node_start.data(), p.node_row.data()}, values.data(), from, to);
     for (std::size_t i = 0; i < nodes; ++i) {
         for (std::size_t c = 0; c < 3; ++c) result[3 * i + c] += factor * to[4 * i + c];
     }
