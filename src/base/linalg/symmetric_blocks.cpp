@@ -10,7 +10,7 @@
 namespace pliant::linalg {
 namespace {
 
-constexpr int least_columns = 1024, most_pieces = 32;  // of a product
+constexpr int columns_at_once = 1024, most_pieces = 32;  // of a product: at least so many, in at most so many pieces
 constexpr std::size_t pairs_at_once = 4096, receivers_at_once = 1024;
 
 /// Calls visit(at, in_four) for the numbers of a node: where they are among interleaved columns, and where if each
@@ -54,7 +54,7 @@ SymmetricBlocks::SymmetricBlocks(const SymmetricPattern& pattern)
 }
 
 void SymmetricBlocks::make_pieces() {
-    const int columns = std::max(least_columns, (nodes() + most_pieces - 1) / most_pieces);
+    const int columns = std::max(columns_at_once, (nodes() + most_pieces - 1) / most_pieces);
     for (int begin = 0; begin < nodes(); begin += columns)
         pieces_.push_back({begin, std::min(begin + columns, nodes()), 0, {}});
     place_.resize(row_.size());
