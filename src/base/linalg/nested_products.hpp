@@ -15,18 +15,10 @@ struct Followers {
     [[nodiscard]] double share(int node) const { return ends[node][0] == ends[node][1] ? 1.0 : 0.5; }
 };
 
-/// Sums over the nodes that follow a coarse one, for each coarse node from `first` on: of what their columns of the
-/// matrix give to its followers, (places, 9), blocks by columns. place[c]: where those of coarse node c are.
-struct CornerSums {
-    int first;
-    const int* place;
-    double* below;     ///< of blocks from the diagonal down
-    double* mirrored;  ///< of those above it, transposed
-};
-
-/// Adds column `node` of the matrix, times `weight`. In double precision, since where a body bends easily the blocks
-/// nearly cancel.
-void add_to_corners(const LowerTriangle& matrix, int node, double weight, const Followers& followers,
-                    const CornerSums& sums);
+/// sums (places, 9) += `weight` times what column `node` of the lower triangle, with half of its diagonal block, gives
+/// to the coarse nodes: place[c] is where the sum of coarse node c goes. Blocks by columns. In double precision, since
+/// where a body bends easily the blocks nearly cancel.
+void add_column_to_corners(const LowerTriangle& matrix, int node, double weight, const Followers& followers,
+                           const int* place, double* sums);
 
 }  // namespace pliant::linalg

@@ -31,7 +31,9 @@ void for_pairs(const SymmetricPattern& fine, const Nesting& nesting, const Visit
 
 NestedSpace::NestedSpace(const SymmetricPattern& fine, Nesting nesting) : nesting_(std::move(nesting)) {
     find_pattern(fine);
+    left_ = blocks_left_of_diagonal(pattern_);
     coarse_.resize(pattern_.entries());
+    mirrored_.resize(pattern_.entries());
 }
 
 void NestedSpace::find_pattern(const SymmetricPattern& fine) {
@@ -64,25 +66,38 @@ void NestedSpace::find_pattern(const SymmetricPattern& fine) {
     }
 }
 
+/// With A = H + H^T, H its lower triangle with half the diagonal: P^T A P = G + G^T, G = P^T H P. Column c of G is made
+/// of the columns of H of the nodes that follow c. Of each pair of coarse nodes coarse_ gets the block of G below the
+/// diagonal, mirrored_ the one above.
 void NestedSpace::set(const Fine& fine) {
     positions_.resize(3 * corner_.size());
     const std::size_t at_once = std::max(least_columns, (corner_.size() + column_pieces - 1) / column_pieces);
     parallel_for(corner_.size(), at_once, [&](std::size_t begin, std::size_t end) {
-        std::vector<int> place(corner_.size());  // of each row in its column
-        std::vector<double> mirrored;
+        std::vector<int> place(corner_.size());  // of each coarse node among those coupled to one
+        std::vector<double> sums;
         for (std::size_t c = begin; c < end; ++c) {
             std::copy_n(fine.positions.data() + 3 * static_cast<std::size_t>(corner_[c]), 3, positions_.data() + 3 * c);
-            const int first = pattern_.node_start[c], count = pattern_.node_start[c + 1] - first;
-            for (int p = 0; p < count; ++p) place[pattern_.node_row[first + p]] = p;
-            const std::span<double> sums = std::span(coarse_).subspan(9 * static_cast<std::size_t>(first), 9 * count);
-            std::ranges::fill(sums, 0.0);
-            mirrored.assign(sums.size(), 0.0);
-            const CornerSums to{static_cast<int>(c), place.data(), sums.data(), mirrored.data()};
-            for (const int i : on_[c]) add_to_corners(fine.matrix.triangle(), i, share(i), followers(), to);
-            for (std::size_t at = 0; at < sums.size(); at += 9)
-                Eigen::Map<Eigen::Matrix3d>(sums.data() + at) +=
-                    Eigen::Map<const Eigen::Matrix3d>(mirrored.data() + at).transpose();
+            const int first = pattern_.node_start[c], last = pattern_.node_start[c + 1];
+            int coupled = 0;
+            for (const int e : left_.column[c]) place[e] = coupled++;
+            for (int k = first; k < last; ++k) place[pattern_.node_row[k]] = coupled++;
+            sums.assign(9 * static_cast<std::size_t>(coupled), 0.0);
+            for (const int i : on_[c])
+                add_column_to_corners(fine.matrix.triangle(), i, share(i), followers(), place.data(), sums.data());
+            const double* from = sums.data();
+            const auto put = [&](std::vector<double>& to, int pair) {
+                std::copy_n(from, 9, to.data() + 9 * static_cast<std::size_t>(pair));
+            };
+            for (int e = left_.column.start[c]; e < left_.column.start[c + 1]; ++e, from += 9)
+                put(mirrored_, left_.pair[e]);
+            put(mirrored_, first);
+            for (int k = first; k < last; ++k, from += 9) put(coarse_, k);
         }
+    });
+    parallel_for(pattern_.node_row.size(), node_grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t at = 9 * begin; at < 9 * end; at += 9)
+            Eigen::Map<Eigen::Matrix3d>(coarse_.data() + at) +=
+                Eigen::Map<const Eigen::Matrix3d>(mirrored_.data() + at).transpose();
     });
 }
 

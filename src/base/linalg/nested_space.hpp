@@ -42,7 +42,8 @@ private:
     Lists on_;                 ///< (coarse nodes) fine nodes that depend on each
     std::vector<int> corner_;  ///< (coarse nodes) the fine node at the same place
     std::vector<double> positions_;
-    std::vector<double> coarse_;
+    LeftBlocks left_;
+    std::vector<double> coarse_, mirrored_;  ///< (entries of the pattern)
 };
 
 }  // namespace pliant::linalg

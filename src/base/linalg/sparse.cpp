@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "base/core/aligned_array.hpp"
@@ -89,6 +90,26 @@ SymmetricPattern make_pattern(int nodes, int block, const Lists& cliques) {
     pattern.node_start = std::move(rows.start);
     pattern.node_row = std::move(rows.item);
     return pattern;
+}
+
+LeftBlocks blocks_left_of_diagonal(const SymmetricPattern& pattern) {
+    const auto visit = [&](const auto& use) {
+        for (int j = 0; j < pattern.nodes; ++j)
+            for (int k = pattern.node_start[j] + 1; k < pattern.node_start[j + 1]; ++k) use(pattern.node_row[k], j, k);
+    };
+    LeftBlocks left;
+    std::vector<int>& start = left.column.start;
+    start.assign(static_cast<std::size_t>(pattern.nodes) + 1, 0);
+    visit([&](int i, int, int) { ++start[i + 1]; });
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    left.column.item.resize(static_cast<std::size_t>(start.back()));
+    left.pair.resize(left.column.item.size());
+    std::vector<int> next(start.begin(), start.end() - 1);
+    visit([&](int i, int j, int k) {
+        left.column.item[next[i]] = j;
+        left.pair[next[i]++] = k;
+    });
+    return left;
 }
 
 void add_product(const SymmetricPattern& pattern, std::span<const double> values, std::span<const double> v,

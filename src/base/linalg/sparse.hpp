@@ -44,6 +44,13 @@ struct SymmetricPattern {
 /// skipped; every diagonal is present.
 [[nodiscard]] SymmetricPattern make_pattern(int nodes, int block, const Lists& cliques);
 
+/// The blocks of each row left of the diagonal.
+struct LeftBlocks {
+    Lists column;           ///< (nodes) their columns, ascending
+    std::vector<int> pair;  ///< of each of these items, as an index into `node_row`
+};
+[[nodiscard]] LeftBlocks blocks_left_of_diagonal(const SymmetricPattern& pattern);
+
 /// result (size) += factor * matrix * v (size).
 void add_product(const SymmetricPattern& pattern, std::span<const double> values, std::span<const double> v,
                  double factor, std::span<double> result);

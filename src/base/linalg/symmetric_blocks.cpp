@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numeric>
 
 #include "base/core/parallel.hpp"
 #include "base/linalg/symmetric_product.hpp"
@@ -31,21 +30,8 @@ void spread(const Real* x, std::size_t node, Real* to) {
 }  // namespace
 
 SymmetricBlocks::SymmetricBlocks(const SymmetricPattern& pattern)
-    : start_(pattern.node_start), row_(pattern.node_row), left_pair_(row_.size() - start_.size() + 1) {
+    : start_(pattern.node_start), row_(pattern.node_row), left_(blocks_left_of_diagonal(pattern)) {
     assert(pattern.block == 3);
-    const auto visit_left = [&](const auto& use) {
-        for (int j = 0; j < nodes(); ++j)
-            for (int k = start_[j] + 1; k < start_[j + 1]; ++k) use(row_[k], j, k);
-    };
-    left_.start.assign(start_.size(), 0);
-    visit_left([&](int i, int, int) { ++left_.start[i + 1]; });
-    std::partial_sum(left_.start.begin(), left_.start.end(), left_.start.begin());
-    left_.item.resize(left_pair_.size());
-    std::vector<int> next(left_.start.begin(), left_.start.end() - 1);
-    visit_left([&](int i, int j, int k) {
-        left_.item[next[i]] = j;
-        left_pair_[next[i]++] = k;
-    });
     for (AlignedArray<float>* numbers : {&value_, &rest_}) {
         numbers->resize(9 * row_.size() + 1);  // kernels read columns four rows at a time
         (*numbers)[9 * row_.size()] = 0;

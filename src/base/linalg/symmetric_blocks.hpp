@@ -34,15 +34,15 @@ public:
     [[nodiscard]] Eigen::Matrix3d diagonal(int node) const { return block(start_[node]); }
     /// For kernels; valid as long as this is.
     [[nodiscard]] LowerTriangle triangle() const {
-        return {start_.data(),     row_.data(),   left_.start.data(), left_.item.data(),
-                left_pair_.data(), value_.data(), rest_.data()};
+        return {start_.data(), row_.data(), left_.column.start.data(), left_.column.item.data(), left_.pair.data(),
+                value_.data(), rest_.data()};
     }
     /// The nodes to which each node is coupled, itself included, in ascending order.
     [[nodiscard]] Lists neighbours() const;
     /// Calls visit(j) for them.
     template <class Visit>
     void visit_neighbours(int node, const Visit& visit) const {
-        for (const int j : left_[static_cast<std::size_t>(node)]) visit(j);
+        for (const int j : left_.column[static_cast<std::size_t>(node)]) visit(j);
         for (int k = start_[node]; k < start_[node + 1]; ++k) visit(row_[k]);
     }
 
@@ -74,8 +74,7 @@ private:
     void put(int pair, const Eigen::Matrix3d& block);
 
     std::vector<int> start_, row_;  ///< as in the pattern
-    Lists left_;                    ///< (nodes) columns of the blocks left of the diagonal
-    std::vector<int> left_pair_;    ///< their pairs
+    LeftBlocks left_;
     AlignedArray<float> value_, rest_;
     std::vector<Piece> pieces_;
     std::vector<int> place_;     ///< (pairs) place of the row in the piece of the column
