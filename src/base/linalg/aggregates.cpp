@@ -41,9 +41,9 @@ Aggregates pair_up(const Neighbours& all, const Aggregates& groups) {
 }
 
 /// The time to factorise the coarse level grows with the square of the number of groups, everything else with the
-/// number of nodes: balanced by measurements from 23,000 nodes to 190,000.
+/// number of nodes: balanced by measurements from 12,000 nodes to 190,000.
 bool too_many(int groups, int nodes) {
-    return static_cast<std::int64_t>(groups) * groups > std::int64_t{64} * nodes;
+    return static_cast<std::int64_t>(groups) * groups > std::int64_t{16} * nodes;
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct Neighbours {
     std::span<const int> column;
 };
 
-/// Groups about as large as a node and its neighbours, and larger if there would otherwise be more than 8 sqrt(nodes).
+/// Groups about as large as a node and its neighbours, and larger if there would otherwise be more than 4 sqrt(nodes).
 [[nodiscard]] Aggregates aggregate(const Neighbours& neighbours);
 /// Groups about as large as a node and its neighbours, however many there are.
 [[nodiscard]] Aggregates take_neighbourhoods(const Neighbours& neighbours);

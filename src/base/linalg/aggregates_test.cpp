@@ -50,7 +50,7 @@ TEST_CASE("every node is in one connected group, and the number of groups is lim
         CAPTURE(along);
         const Lists neighbours = box(along, across);
         const Aggregates groups = aggregate({neighbours.start, neighbours.item});
-        CHECK(groups.count <= std::max(1.0, 8 * std::sqrt(neighbours.count())));
+        CHECK(groups.count <= std::max(1.0, 4 * std::sqrt(neighbours.count())));
         CHECK(groups.count * 400 >= neighbours.count());
         const Lists members = members_of(groups.of_node, groups.count);
         REQUIRE(members.item.size() == static_cast<std::size_t>(neighbours.count()));
