@@ -66,32 +66,16 @@ void NestedSpace::find_pattern(const SymmetricPattern& fine) {
     }
 }
 
-/// With A = H + H^T, H its lower triangle with half the diagonal: P^T A P = G + G^T, G = P^T H P. Column c of G is made
-/// of the columns of H of the nodes that follow c. Of each pair of coarse nodes coarse_ gets the block of G below the
-/// diagonal, mirrored_ the one above.
+/// With A = H + H^T, H its lower triangle with half the diagonal: P^T A P = G + G^T, G = P^T H P.
 void NestedSpace::set(const Fine& fine) {
     positions_.resize(3 * corner_.size());
     const std::size_t at_once = std::max(least_columns, (corner_.size() + column_pieces - 1) / column_pieces);
     parallel_for(corner_.size(), at_once, [&](std::size_t begin, std::size_t end) {
-        std::vector<int> place(corner_.size());  // of each coarse node among those coupled to one
-        std::vector<double> sums;
+        ColumnSums column;
+        column.place.resize(corner_.size());
         for (std::size_t c = begin; c < end; ++c) {
             std::copy_n(fine.positions.data() + 3 * static_cast<std::size_t>(corner_[c]), 3, positions_.data() + 3 * c);
-            const int first = pattern_.node_start[c], last = pattern_.node_start[c + 1];
-            int coupled = 0;
-            for (const int e : left_.column[c]) place[e] = coupled++;
-            for (int k = first; k < last; ++k) place[pattern_.node_row[k]] = coupled++;
-            sums.assign(9 * static_cast<std::size_t>(coupled), 0.0);
-            for (const int i : on_[c])
-                add_column_to_corners(fine.matrix.triangle(), i, share(i), followers(), place.data(), sums.data());
-            const double* from = sums.data();
-            const auto put = [&](std::vector<double>& to, int pair) {
-                std::copy_n(from, 9, to.data() + 9 * static_cast<std::size_t>(pair));
-            };
-            for (int e = left_.column.start[c]; e < left_.column.start[c + 1]; ++e, from += 9)
-                put(mirrored_, left_.pair[e]);
-            put(mirrored_, first);
-            for (int k = first; k < last; ++k, from += 9) put(coarse_, k);
+            make_column(fine.matrix.triangle(), c, column);
         }
     });
     parallel_for(pattern_.node_row.size(), node_grain, [&](std::size_t begin, std::size_t end) {
@@ -99,6 +83,25 @@ void NestedSpace::set(const Fine& fine) {
             Eigen::Map<Eigen::Matrix3d>(coarse_.data() + at) +=
                 Eigen::Map<const Eigen::Matrix3d>(mirrored_.data() + at).transpose();
     });
+}
+
+/// Column c of G, from the columns of H of the nodes that follow c: its blocks from the diagonal down go to coarse_,
+/// those from the diagonal up to mirrored_, where the pair of the same two nodes is.
+void NestedSpace::make_column(const LowerTriangle& matrix, std::size_t c, ColumnSums& column) {
+    const int diagonal = pattern_.node_start[c], end = pattern_.node_start[c + 1];
+    int coupled = 0;
+    for (const int e : left_.column[c]) column.place[e] = coupled++;
+    for (int k = diagonal; k < end; ++k) column.place[pattern_.node_row[k]] = coupled++;
+    column.sums.assign(9 * static_cast<std::size_t>(coupled), 0.0);
+    for (const int i : on_[c])
+        add_column_to_corners(matrix, i, share(i), followers(), column.place.data(), column.sums.data());
+    const double* from = column.sums.data();
+    const auto put = [&](std::vector<double>& to, int pair) {
+        std::copy_n(from, 9, to.data() + 9 * static_cast<std::size_t>(pair));
+    };
+    for (int e = left_.column.start[c]; e < left_.column.start[c + 1]; ++e, from += 9) put(mirrored_, left_.pair[e]);
+    put(mirrored_, diagonal);
+    for (int k = diagonal; k < end; ++k, from += 9) put(coarse_, k);
 }
 
 void NestedSpace::restrict(const float* fine, double* coarse) {

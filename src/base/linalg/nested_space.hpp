@@ -33,7 +33,13 @@ public:
     void add_prolonged(const double* coarse, float* fine) const override;
 
 private:
+    /// Work space for one column.
+    struct ColumnSums {
+        std::vector<int> place;    ///< (coarse nodes) of each node among those coupled to the column's
+        std::vector<double> sums;  ///< (places, 9)
+    };
     void find_pattern(const SymmetricPattern& fine);
+    void make_column(const LowerTriangle& matrix, std::size_t c, ColumnSums& column);
     [[nodiscard]] Followers followers() const { return {nesting_.ends.data()}; }
     [[nodiscard]] double share(int fine) const { return followers().share(fine); }
 
