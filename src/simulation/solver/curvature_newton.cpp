@@ -235,6 +235,8 @@ private:
         tangent_ = std::make_shared<const SolverMemory::Tangent>(SolverMemory::Tangent{*at_.state, *at_.controls});
         positions_ = system_->free_positions(at_.state->x);
         assemble(false, values_);
+        has_tangent_ = true;
+        has_projection_ = false;
         share_ = 0;
         if (!cautious && (usable_ = inverse_->set(values_.span(), positions_, Effort::usual))) {
             share_wanted_ = smallest_share_of_projection;
@@ -259,12 +261,16 @@ private:
         return false;
     }
 
-    /// Adds its share of the projection to the tangent, in the memory of one matrix.
+    /// Adds its share of the projection to the tangent: of a large body in the memory of one matrix, so that each share
+    /// takes both to be assembled.
     [[nodiscard]] bool set_blend_in_parts() {
-        assemble(false, values_);
+        const bool keep = layout_->pattern.entries() <= most_kept;
+        AlignedArray<double>& projection = keep ? projected_ : values_;
+        if (!has_tangent_) assemble(false, values_);
         inverse_->take(values_.span(), positions_);
-        assemble(true, values_);
-        return inverse_->move_towards(values_.span(), share_);
+        if (!has_projection_) assemble(true, projection);
+        has_tangent_ = has_projection_ = keep;
+        return inverse_->move_towards(projection.span(), share_);
     }
 
     /// (tangent + skew)^-1 b by GMRES, right-preconditioned with H^-1. If H is the tangent, the product is v + skew
@@ -345,6 +351,7 @@ private:
 
     void recall_tangent(const TangentInverse::Memory& memory) {
         positions_ = system_->free_positions(tangent_->state.x);
+        has_tangent_ = has_projection_ = false;
         if (share_ > 0 && inverse_->keeps_matrix()) {
             (void)set_blend_in_parts();
             return;
@@ -372,6 +379,7 @@ private:
     static constexpr double straight_share = 0.05;  // of the tolerance: error that a step without rotation may add
     static constexpr double well_led = 0.3;
     static constexpr std::size_t most_remembered = 20000;
+    static constexpr std::size_t most_kept = 8000000;  // entries of a matrix that may be in memory twice
     static constexpr double skew_tolerance = 1e-8;
     static constexpr int skew_limit = 60;
 
@@ -380,8 +388,9 @@ private:
     std::shared_ptr<const TangentLayout> layout_;
     std::shared_ptr<const linalg::Analysis> analysis_;  ///< of its pattern, computed on demand
     std::unique_ptr<TangentInverse> inverse_;
-    AlignedArray<double> values_;     ///< tangent, or the part of it that was set last
-    AlignedArray<double> projected_;  ///< its positive projection, computed on demand
+    AlignedArray<double> values_;                        ///< tangent, or the part of it that was set last
+    AlignedArray<double> projected_;                     ///< its positive projection, computed on demand
+    bool has_tangent_ = false, has_projection_ = false;  ///< on levels: whether they are those of this state
     AlignedArray<double> blended_;
     struct {
         const State* state;
