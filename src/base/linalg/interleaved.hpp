@@ -9,14 +9,14 @@
 
 namespace pliant::linalg {
 
-/// Numbers of all nodes, those of several columns interleaved, followed by two that are read but not used.
+/// Numbers of all nodes, those of several columns interleaved.
 template <class Real>
 class Interleaved {
 public:
     void resize(std::size_t size) {
-        if (values_.size() == size + 2) return;
-        values_.resize(size + 2);
-        std::fill_n(values_.data(), size + 2, Real(0));
+        if (values_.size() == size) return;
+        values_.resize(size);
+        std::fill_n(values_.data(), size, Real(0));
     }
     [[nodiscard]] Real* data() const { return values_.data(); }
     [[nodiscard]] Real& operator[](std::size_t i) const { return values_[i]; }

@@ -96,12 +96,12 @@ bool SmoothedLevels::invert_diagonal() {
     parallel_for(size_ / 3, smoothing_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Eigen::Matrix3d block = matrix_.diagonal(static_cast<int>(i));
-            // Sylvester's criterion: the leading minors are positive.
-            Eigen::Matrix3d inverse;
+            Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
             double determinant = 0;
             bool invertible = false;
             block.computeInverseAndDetWithCheck(inverse, determinant, invertible, 0);
-            definite[i] = block(0, 0) > 0 && inverse(2, 2) * determinant > 0 && determinant > 0 ? 1 : 0;
+            // Sylvester's criterion: the leading minors are positive. The second is inverse(2, 2) times the third.
+            definite[i] = block(0, 0) > 0 && determinant > 0 && inverse(2, 2) > 0 ? 1 : 0;
             Eigen::Map<Eigen::Matrix3f>(inverse_diagonal_.data() + 9 * i) = inverse.cast<float>();
         }
     });

@@ -145,7 +145,7 @@ TEST_CASE("a product in pieces is that of the whole, and the same bits on any nu
     std::vector<double> values(pattern.entries());
     for (double& v : values) v = number(random);
     const auto size = static_cast<std::size_t>(pattern.size());
-    std::vector<double> x(2 * size + 2), whole(size), first, y(2 * size), one(size);
+    std::vector<double> x(2 * size), whole(size), first, y(2 * size), one(size);
     for (double& v : x) v = number(random);
     add_product(pattern, values, std::span(x).first(size), 1, whole);
     for (const std::size_t threads : {1, 2, 4}) {

@@ -22,8 +22,8 @@ struct SplitBlocks {
 };
 
 /// product (places, columns, 4) += matrix * v (places, columns, 4), for one column of v or two; the last number of four
-/// is zero in v, and not used in the product. Both arrays are aligned to 64 bytes. Two columns give the same bits as
-/// each alone, and take little longer than one. `blocks` (blocks, 9): each by columns.
+/// is zero in v, and not used in the product. Both arrays are aligned to the size of a place. Two columns give the same
+/// bits as each alone, and take little longer than one. `blocks` (blocks, 9): each by columns.
 void add_symmetric_product(const BlockColumns& at, const double* blocks, const double* v, double* product);
 void add_symmetric_product(const BlockColumns& at, const SplitBlocks& blocks, int columns, const double* v,
                            double* product);

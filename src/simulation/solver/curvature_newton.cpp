@@ -98,6 +98,7 @@ public:
         const bool same_pattern = recall_pattern(known);
         const bool is_at_hand = same_pattern && usable_ && tangent_ == known.tangent && share_ == known.rates.share_ &&
                                 inverse_->memory().in_double == known.inverse.in_double;
+        if (!is_at_hand) has_tangent_ = has_projection_ = false;
         static_cast<NewtonRates&>(*this) = known.rates;
         tangent_ = known.tangent;
         memory_.set_pairs(known.pairs);
@@ -351,7 +352,6 @@ private:
 
     void recall_tangent(const TangentInverse::Memory& memory) {
         positions_ = system_->free_positions(tangent_->state.x);
-        has_tangent_ = has_projection_ = false;
         if (share_ > 0 && inverse_->keeps_matrix()) {
             (void)set_blend_in_parts();
             return;
