@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 
 #include "base/core/aligned_array.hpp"
@@ -93,22 +92,18 @@ SymmetricPattern make_pattern(int nodes, int block, const Lists& cliques) {
 }
 
 LeftBlocks blocks_left_of_diagonal(const SymmetricPattern& pattern) {
-    const auto visit = [&](const auto& use) {
-        for (int j = 0; j < pattern.nodes; ++j)
-            for (int k = pattern.node_start[j] + 1; k < pattern.node_start[j + 1]; ++k) use(pattern.node_row[k], j, k);
+    const auto by_rows = [&](const auto& what) {
+        return graph_of(pattern.nodes, [&](const auto& use) {
+            for (int j = 0; j < pattern.nodes; ++j)
+                for (int k = pattern.node_start[j] + 1; k < pattern.node_start[j + 1]; ++k)
+                    use(pattern.node_row[k], what(j, k));
+        });
     };
+    Graph columns = by_rows([](int column, int) { return column; });
     LeftBlocks left;
-    std::vector<int>& start = left.column.start;
-    start.assign(static_cast<std::size_t>(pattern.nodes) + 1, 0);
-    visit([&](int i, int, int) { ++start[i + 1]; });
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    left.column.item.resize(static_cast<std::size_t>(start.back()));
-    left.pair.resize(left.column.item.size());
-    std::vector<int> next(start.begin(), start.end() - 1);
-    visit([&](int i, int j, int k) {
-        left.column.item[next[i]] = j;
-        left.pair[next[i]++] = k;
-    });
+    left.column.start = std::move(columns.start);
+    left.column.item = std::move(columns.other);
+    left.pair = by_rows([](int, int pair) { return pair; }).other;
     return left;
 }
 

@@ -111,7 +111,14 @@ void SymmetricBlocks::move_towards(std::span<const double> values, double share)
 /// Of the diagonal blocks of the pattern the lower triangle counts.
 void SymmetricBlocks::complete_diagonal() {
     parallel_for(start_.size() - 1, pairs_at_once, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) put(start_[i], block(start_[i]).selfadjointView<Eigen::Lower>());
+        for (std::size_t i = begin; i < end; ++i) {
+            for (const AlignedArray<float>* numbers : {&value_, &rest_}) {
+                float* const block = numbers->data() + 9 * static_cast<std::size_t>(start_[i]);
+                block[3] = block[1];
+                block[6] = block[2];
+                block[7] = block[5];
+            }
+        }
     });
 }
 
