@@ -9,6 +9,10 @@
 
 namespace pliant::linalg {
 
+/// How much of an earlier coarse level serves a new matrix: all of it, rotated with the nodes; all of it as it is,
+/// because it was made for this very matrix; or nothing.
+enum class Reuse { turned, kept, none };
+
 class CoarseLevel {
 public:
     /// The fine level: the matrix A; the node positions (nodes, 3); the inverses of its diagonal blocks D (nodes, 9);
@@ -26,6 +30,8 @@ public:
     /// Reuses everything from the last set(), rotated with the nodes, which are now at `positions`. False: this level
     /// cannot be rotated, but set() is fast. Precondition: set() was called.
     [[nodiscard]] virtual bool turn(std::span<const double> positions) = 0;
+    /// Reuses everything from the last set() as it is. False: this level cannot, but set() is fast.
+    [[nodiscard]] virtual bool turn_back() = 0;
 
     /// Pattern and values of P^T A P, as of the last set(). Blocks of 3.
     [[nodiscard]] virtual const SymmetricPattern& pattern() const = 0;

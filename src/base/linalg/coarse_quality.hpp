@@ -8,6 +8,10 @@ namespace pliant::linalg {
 /// What conjugate gradients have gained with an up-to-date coarse level.
 class CoarseQuality {
 public:
+    CoarseQuality() = default;
+    explicit CoarseQuality(double usual_gain) : usual_gain_(usual_gain) {}
+    [[nodiscard]] double usual_gain() const { return usual_gain_; }
+
     /// An up-to-date level reduced the squared error from `begun` to `now` in `iterations`.
     void learn(int iterations, double begun, double now) { usual_gain_ = std::log(begun / now) / iterations; }
 

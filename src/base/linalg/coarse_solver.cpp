@@ -11,11 +11,11 @@ namespace {
 /// A body that bends easily may be too ill-conditioned for single precision.
 class FactoredSolver final : public CoarseSolver {
 public:
-    FactoredSolver(const SymmetricPattern& pattern, bool stays_double)
-        : factor_(pattern, Precision::single_), stays_double_(stays_double), is_large_(pattern.nodes > most_kept) {}
+    explicit FactoredSolver(const SymmetricPattern& pattern)
+        : factor_(pattern, Precision::single_), is_large_(pattern.nodes > most_kept) {}
 
-    [[nodiscard]] bool set(std::span<const double> values, std::span<const double>) override {
-        if (!stays_double_ && factor_.precision() == Precision::double_) factor_.use(Precision::single_);
+    [[nodiscard]] bool set(std::span<const double> values, std::span<const double>, Reuse) override {
+        if (factor_.precision() == Precision::double_) factor_.use(Precision::single_);
         bool found = factor_.factorise(values);
         if (!found && factor_.precision() == Precision::single_) {
             factor_.use(Precision::double_);
@@ -30,15 +30,16 @@ private:
     static constexpr int most_kept = 5000;  // mapping work space of fewer nodes again takes longer than it is worth
 
     Cholesky factor_;
-    bool stays_double_, is_large_;
+    bool is_large_;
 };
 
 class GroupedSolver final : public CoarseSolver {
 public:
     explicit GroupedSolver(const SymmetricPattern& pattern) : levels_(levels_on_groups(pattern)) {}
 
-    [[nodiscard]] bool set(std::span<const double> values, std::span<const double> positions) override {
-        return levels_.set(values, positions);
+    [[nodiscard]] bool set(std::span<const double> values, std::span<const double> positions, Reuse reuse) override {
+        levels_.take(values, positions);
+        return levels_.prepare(reuse);
     }
     void solve(std::span<double> right_hand_sides, int columns) override {
         const std::size_t size = levels_.size(), count = static_cast<std::size_t>(columns);
@@ -62,8 +63,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<CoarseSolver> make_factored_solver(const SymmetricPattern& pattern, bool stays_double) {
-    return std::make_unique<FactoredSolver>(pattern, stays_double);
+std::unique_ptr<CoarseSolver> make_factored_solver(const SymmetricPattern& pattern) {
+    return std::make_unique<FactoredSolver>(pattern);
 }
 
 std::unique_ptr<CoarseSolver> make_grouped_solver(const SymmetricPattern& pattern) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "base/linalg/coarse_level.hpp"
 #include "base/linalg/sparse.hpp"
 
 namespace pliant::linalg {
@@ -15,7 +16,7 @@ public:
 
     /// `values` belong to the pattern and must stay valid until the next call; `positions` (nodes, 3) are those of its
     /// nodes. False: not positive definite.
-    [[nodiscard]] virtual bool set(std::span<const double> values, std::span<const double> positions) = 0;
+    [[nodiscard]] virtual bool set(std::span<const double> values, std::span<const double> positions, Reuse reuse) = 0;
     /// In place, for one or two right-hand sides stored one after the other: the same symmetric and positive definite
     /// operator until the next set() or build(), to single precision.
     virtual void solve(std::span<double> right_hand_sides, int columns) = 0;
@@ -25,9 +26,8 @@ public:
     [[nodiscard]] virtual bool build() { return true; }
 };
 
-/// `stays_double`: a matrix that single precision could not factorise is factorised in double precision, and so are all
-/// later ones; otherwise single precision is tried again each time.
-[[nodiscard]] std::unique_ptr<CoarseSolver> make_factored_solver(const SymmetricPattern& pattern, bool stays_double);
+/// A matrix that single precision cannot factorise is factorised in double precision.
+[[nodiscard]] std::unique_ptr<CoarseSolver> make_factored_solver(const SymmetricPattern& pattern);
 /// Smoothing, and groups of nodes as the next level, which is factorised. Precondition: blocks of 3, whose unknowns are
 /// displacements of nodes.
 [[nodiscard]] std::unique_ptr<CoarseSolver> make_grouped_solver(const SymmetricPattern& pattern);

@@ -103,7 +103,7 @@ void CoarseSpace::find_pattern(const SymmetricBlocks& matrix) {
 
 void CoarseSpace::set(const Fine& fine) {
     positions_.assign(fine.positions.begin(), fine.positions.end());
-    turns_.assign(static_cast<std::size_t>(groups_.count), Block33::Identity());
+    (void)turn_back();
     set_rigid_motions(fine.positions);
     smooth(fine.matrix, fine.inverse_diagonal, fine.damping);
     multiply(fine.matrix);
@@ -214,6 +214,11 @@ bool CoarseSpace::turn(std::span<const double> positions) {
         for (std::size_t g = begin; g < end; ++g)
             turns_[g] = rotation_between(members_[g], positions_, positions).cast<float>();
     });
+    return true;
+}
+
+bool CoarseSpace::turn_back() {
+    turns_.assign(static_cast<std::size_t>(groups_.count), Block33::Identity());
     return true;
 }
 

@@ -24,6 +24,7 @@ public:
     void set(const Fine& fine) override;
     /// Always true: the coarse space of a rotated body is the old one, rotated.
     [[nodiscard]] bool turn(std::span<const double> positions) override;
+    [[nodiscard]] bool turn_back() override;
     [[nodiscard]] const SymmetricPattern& pattern() const override { return pattern_; }
     [[nodiscard]] std::span<const double> values() const override { return coarse_; }
     void restrict(const float* fine, double* coarse) override;

@@ -26,6 +26,7 @@ public:
 
     void set(const Fine& fine) override;
     [[nodiscard]] bool turn(std::span<const double>) override { return false; }
+    [[nodiscard]] bool turn_back() override { return false; }
     [[nodiscard]] const SymmetricPattern& pattern() const override { return pattern_; }
     [[nodiscard]] std::span<const double> values() const override { return coarse_; }
     [[nodiscard]] std::span<const double> positions() const override { return positions_; }

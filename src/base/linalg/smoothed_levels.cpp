@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t smoothing_grain = 4096;  // nodes per parallel piece
 constexpr int degree = 2;                      // of the smoothing polynomial
 constexpr float smoothed_part = 0.06F;  // lower end of the part of the spectrum that is smoothed, of its upper end
-constexpr int first_powers = 12, later_powers = 1;
+constexpr int powers = 12;
 constexpr int lanczos_steps = 6;
 constexpr float safety_of_powers = 1.15F, safety_of_lanczos = 1.05F;  // both approach from below
 
@@ -52,43 +52,44 @@ void SmoothedLevels::set_columns(std::size_t count) {
     coarse_side_.resize(count * coarse_size_);
 }
 
-bool SmoothedLevels::set(std::span<const double> values, std::span<const double> positions) {
-    take(values, positions);
-    return prepare();
-}
-
 void SmoothedLevels::take(std::span<const double> values, std::span<const double> positions) {
     matrix_.set(values);
     positions_.assign(positions.begin(), positions.end());
 }
 
-bool SmoothedLevels::move_towards(std::span<const double> values, double share) {
+void SmoothedLevels::move_towards(std::span<const double> values, double share) {
     matrix_.move_towards(values, share);
-    return prepare();
 }
 
-bool SmoothedLevels::prepare() {
+bool SmoothedLevels::prepare(Reuse reuse) {
+    turned_ = built_;  // whatever happens, until there is a coarse level of this matrix
     if (!invert_diagonal()) return false;
     set_columns(1);
-    if (kind_ == Kind::groups)
-        find_largest_by_powers();
-    else
-        find_largest_by_lanczos();
-    if (!built_ || !space_->turn(positions_)) return set_coarse();
-    turned_ = true;
-    return true;
+    if (built_ && reuse == Reuse::turned && space_->turn(positions_)) {
+        raise_largest();
+        return true;
+    }
+    if (built_ && reuse == Reuse::kept && space_->turn_back()) {
+        largest_ = largest_of_base_;
+        turned_ = false;
+        return true;
+    }
+    find_largest();
+    return set_coarse(reuse);
 }
 
 /// Makes the coarse level for the present matrix and positions.
-bool SmoothedLevels::set_coarse() {
+bool SmoothedLevels::set_coarse(Reuse reuse) {
     space_->set({matrix_, positions_, inverse_diagonal_.data(), 4.0F / 3 / upper()});
     turned_ = false;
-    built_ = coarse_->set(space_->values(), space_->positions());
+    built_ = coarse_->set(space_->values(), space_->positions(), reuse);
     return built_;
 }
 
 bool SmoothedLevels::build() {
-    return turned_ ? set_coarse() : coarse_->build();
+    if (!turned_) return coarse_->build();
+    find_largest();
+    return set_coarse(Reuse::none);
 }
 
 bool SmoothedLevels::invert_diagonal() {
@@ -118,19 +119,34 @@ void SmoothedLevels::apply_inverse_diagonal(const Rough& from, Rough& to) const 
     });
 }
 
-/// Power iteration with D^-1 A, in the inner product of D: continues where the last matrix left it.
+void SmoothedLevels::find_largest() {
+    if (kind_ == Kind::groups)
+        find_largest_by_powers();
+    else
+        find_largest_by_lanczos();
+}
+
+/// Power iteration with D^-1 A, in the inner product of D. Independent of earlier matrices.
 void SmoothedLevels::find_largest_by_powers() {
-    if (!powered_) fill_randomly(top_, size_);
-    std::fill_n(side_.data(), size_, 0.0F);
-    for (int k = 0; k < (powered_ ? later_powers : first_powers); ++k) {
-        std::copy_n(top_.data(), size_, correction_.data());
-        advance(correction_, Start::where_it_is, 0, 1);  // step: -D^-1 A top
-        const double squared = dot(step_, step_, size_);
-        largest_ = std::max(powered_ ? largest_ : 0, static_cast<float>(std::sqrt(squared / dot(top_, top_, size_))));
-        const float shrink = static_cast<float>(-1 / std::sqrt(squared));
-        for_numbers(size_, [&](std::size_t i) { top_[i] = shrink * step_[i]; });
+    fill_randomly(top_, size_);
+    for (int k = 0; k < powers; ++k) {
+        largest_ = step_of_powers();
+        for_numbers(size_, [&](std::size_t i) { top_[i] = step_[i] / -largest_; });
     }
-    powered_ = true;
+    largest_of_base_ = largest_;
+}
+
+/// The eigenvalue for a matrix near that of the coarse level.
+void SmoothedLevels::raise_largest() {
+    largest_ = std::max(largest_of_base_, step_of_powers());
+}
+
+/// step <- -D^-1 A top; returns its length, which is that of the eigenvalue once top has length 1.
+float SmoothedLevels::step_of_powers() {
+    std::fill_n(side_.data(), size_, 0.0F);
+    std::copy_n(top_.data(), size_, correction_.data());
+    advance(correction_, Start::where_it_is, 0, 1);
+    return static_cast<float>(std::sqrt(dot(step_, step_, size_)));
 }
 
 /// Lanczos with D^-1 A, in the inner product of D, plus the error that it knows of: where a surface begins to wrinkle,
@@ -262,14 +278,14 @@ const Interleaved<float>& SmoothedLevels::apply(const Interleaved<double>& right
 SmoothedLevels levels_on_groups(const SymmetricPattern& pattern) {
     SymmetricBlocks blocks(pattern);
     auto groups = std::make_unique<CoarseSpace>(blocks);
-    auto factor = make_factored_solver(groups->pattern(), true);
+    auto factor = make_factored_solver(groups->pattern());
     return {pattern, std::move(blocks), std::move(groups), std::move(factor), SmoothedLevels::Kind::groups};
 }
 
 SmoothedLevels levels_on_corners(const SymmetricPattern& pattern, Nesting corners, int most_factored) {
     auto space = std::make_unique<NestedSpace>(pattern, std::move(corners));
     auto coarse = space->pattern().nodes > most_factored ? make_grouped_solver(space->pattern())
-                                                         : make_factored_solver(space->pattern(), false);
+                                                         : make_factored_solver(space->pattern());
     return {pattern, SymmetricBlocks(pattern), std::move(space), std::move(coarse), SmoothedLevels::Kind::corners};
 }
 

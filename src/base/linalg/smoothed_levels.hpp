@@ -27,11 +27,10 @@ public:
     SmoothedLevels(const SymmetricPattern& pattern, SymmetricBlocks matrix, std::unique_ptr<CoarseLevel> space,
                    std::unique_ptr<CoarseSolver> coarse, Kind kind);
 
-    /// See TwoLevel::set(). False: not positive definite.
-    [[nodiscard]] bool set(std::span<const double> values, std::span<const double> positions);
     /// See TwoLevel.
     void take(std::span<const double> values, std::span<const double> positions);
-    [[nodiscard]] bool move_towards(std::span<const double> values, double share);
+    void move_towards(std::span<const double> values, double share);
+    [[nodiscard]] bool prepare(Reuse reuse);
     /// Makes a level that was turned anew; false: not positive definite. Precondition: is_turned().
     [[nodiscard]] bool build();
     /// True if a coarse level was made for an earlier matrix, and rotated.
@@ -46,12 +45,14 @@ public:
 private:
     using Rough = Interleaved<float>;
     enum class Start { zero, where_it_is };
-    [[nodiscard]] bool prepare();
-    [[nodiscard]] bool set_coarse();
+    [[nodiscard]] bool set_coarse(Reuse reuse);
     void set_columns(std::size_t count);
     [[nodiscard]] bool invert_diagonal();
     void apply_inverse_diagonal(const Rough& from, Rough& to) const;
+    void find_largest();
     void find_largest_by_powers();
+    void raise_largest();
+    [[nodiscard]] float step_of_powers();
     void find_largest_by_lanczos();
     /// Upper end of the spectrum of D^-1 A.
     [[nodiscard]] float upper() const;
@@ -70,9 +71,9 @@ private:
     AlignedArray<float> inverse_diagonal_;
     std::size_t coarse_size_;
     std::vector<double> coarse_side_;  ///< (columns, coarse unknowns)
-    Rough top_;                        ///< groups: approximate eigenvector of D^-1 A for the largest eigenvalue
-    float largest_ = 0;                ///< that eigenvalue
-    bool powered_ = false;             ///< both were found for an earlier matrix
+    Rough top_;                        ///< groups: approximate eigenvector of D^-1 A for the largest eigenvalue,
+    float largest_of_base_ = 0;        ///< and that eigenvalue, both of the matrix that the coarse level was made for
+    float largest_ = 0;                ///< that eigenvalue of the present matrix
     Rough side_, correction_, step_, rest_;
     Rough one_;                      ///< work space for a single column
     std::vector<double> positions_;  ///< current node positions

@@ -122,15 +122,32 @@ TwoLevel& TwoLevel::operator=(TwoLevel&&) noexcept = default;
 TwoLevel::~TwoLevel() = default;
 
 bool TwoLevel::set(std::span<const double> values, std::span<const double> positions) {
-    return state_->levels.set(values, positions);
+    take(values, positions);
+    return prepare(Reuse::turned);
 }
 
 void TwoLevel::take(std::span<const double> values, std::span<const double> positions) {
     state_->levels.take(values, positions);
 }
 
-bool TwoLevel::move_towards(std::span<const double> values, double share) {
-    return state_->levels.move_towards(values, share);
+void TwoLevel::move_towards(std::span<const double> values, double share) {
+    state_->levels.move_towards(values, share);
+}
+
+bool TwoLevel::prepare(Reuse reuse) {
+    return state_->levels.prepare(reuse);
+}
+
+bool TwoLevel::is_turned() const {
+    return state_->levels.is_turned();
+}
+
+double TwoLevel::usual_gain() const {
+    return state_->quality.usual_gain();
+}
+
+void TwoLevel::set_usual_gain(double gain) {
+    state_->quality = CoarseQuality(gain);
 }
 
 TwoLevel::Outcome TwoLevel::solve(std::span<double> right_hand_sides, int columns, double tolerance, int limit) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "base/linalg/coarse_level.hpp"
 #include "base/linalg/nested_space.hpp"
 #include "base/linalg/sparse.hpp"
 
@@ -29,10 +30,19 @@ public:
     /// `values` belong to the pattern, and are copied; `positions` (nodes, 3) are the current node positions. False if
     /// the matrix is found not to be positive definite; solve() must not be called then.
     [[nodiscard]] bool set(std::span<const double> values, std::span<const double> positions);
-    /// As set(), for a matrix in two parts, so that memory for one suffices: take() copies the first; move_towards()
-    /// adds `share` of the difference from it to `values`, and prepares to solve.
+    /// The same in steps, for a matrix in two parts, so that memory for one suffices: take() copies the first;
+    /// move_towards() adds `share` of the difference from it to `values`; prepare() makes what solves. `reuse`: what
+    /// set() does is `turned`, which is as `none` if there is no coarse level yet.
     void take(std::span<const double> values, std::span<const double> positions);
-    [[nodiscard]] bool move_towards(std::span<const double> values, double share);
+    void move_towards(std::span<const double> values, double share);
+    [[nodiscard]] bool prepare(Reuse reuse);
+    /// True if a coarse level was made for an earlier matrix. With take() and prepare(none) of that one, then take()
+    /// and prepare(turned) of this one, and set_usual_gain(), another TwoLevel of this pattern finds the same solutions
+    /// to the bit.
+    [[nodiscard]] bool is_turned() const;
+    /// What conjugate gradients have gained in an iteration with a coarse level that was not turned.
+    [[nodiscard]] double usual_gain() const;
+    void set_usual_gain(double gain);
 
     enum class Outcome { solved, indefinite, slow };
     /// Solves in place for `columns` right-hand sides, stored one after the other, until the error, in the energy norm,

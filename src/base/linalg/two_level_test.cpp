@@ -147,6 +147,36 @@ TEST_CASE("a rotated body reuses its coarse level, a different one gets a new on
     CHECK(levels.iterations() <= fresh.iterations() + 12);
 }
 
+TEST_CASE("what was solved before matters no further than the matrix of the coarse level") {
+    const Problem base = beam(48, 4);
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+    const Problem other = beam(48, 4, turn * turn), last = beam(48, 4, turn);
+    const auto solve = [&](TwoLevel& levels, const Problem& p, Reuse reuse) {
+        levels.take(p.values, p.positions);
+        REQUIRE(levels.prepare(reuse));
+        Eigen::VectorXd x = p.force;
+        REQUIRE(levels.solve(p.whole(x), 1, 1e-4, limit) == Outcome::solved);
+        return x;
+    };
+    TwoLevel levels(base.pattern);
+    const Eigen::VectorXd first = solve(levels, base, Reuse::turned);
+    CHECK_FALSE(levels.is_turned());
+    (void)solve(levels, other, Reuse::turned);
+    const Eigen::VectorXd turned = solve(levels, last, Reuse::turned);
+    CHECK(levels.is_turned());
+    const double gain = levels.usual_gain();
+    CHECK(solve(levels, base, Reuse::kept) == first);
+    CHECK_FALSE(levels.is_turned());
+    CHECK(solve(levels, last, Reuse::turned) == turned);
+
+    TwoLevel again(base.pattern);
+    (void)solve(again, other, Reuse::turned);
+    again.take(base.values, base.positions);
+    REQUIRE(again.prepare(Reuse::none));
+    again.set_usual_gain(gain);
+    CHECK(solve(again, last, Reuse::turned) == turned);
+}
+
 TEST_CASE("an indefinite matrix is found on setting it or while solving") {
     for (const double shift : {-0.05, -3.0, -1e3}) {
         Problem p = beam(24, 3);

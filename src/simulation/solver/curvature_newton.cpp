@@ -79,6 +79,7 @@ public:
     [[nodiscard]] std::shared_ptr<const SolverMemory> memory() const override {
         auto memory = std::make_shared<SolverMemory>();
         memory->tangent = tangent_;
+        if (inverse_->keeps_matrix()) memory->base = base();
         memory->inverse = inverse_->memory();
         memory->rates = *this;
         memory->touching = room_for_;
@@ -96,22 +97,27 @@ public:
         none.rates.two_levels_ = starts_on_two_levels();
         const SolverMemory& known = memory != nullptr ? *memory : none;
         const bool same_pattern = recall_pattern(known);
+        const SolverMemory::Matrix base_at_hand = base();
         const bool is_at_hand = same_pattern && usable_ && tangent_ == known.tangent && share_ == known.rates.share_ &&
-                                inverse_->memory().in_double == known.inverse.in_double;
+                                inverse_->memory().in_double == known.inverse.in_double &&
+                                (!inverse_->keeps_matrix() || base_at_hand == known.base);
         if (!is_at_hand) has_tangent_ = has_projection_ = false;
         static_cast<NewtonRates&>(*this) = known.rates;
         tangent_ = known.tangent;
         memory_.set_pairs(known.pairs);
         learnt_ = known.learnt;
         if (!tangent_) {
-            if (same_pattern) inverse_ = make_inverse();  // without what the last one learned about its precision
+            if (same_pattern) renew_inverse();  // without what the last one learned about its precision
             return;
         }
         rotation_.begin(tangent_->state.x);
         if (known.followed) rotation_.follow(*known.followed);
         if (!usable_) return;
         if (is_at_hand) return inverse_->restore(known.inverse);
-        recall_tangent(known.inverse);
+        if (inverse_->keeps_matrix())
+            recall_levels(known, same_pattern ? base_at_hand : SolverMemory::Matrix{});
+        else
+            recall_tangent(known.inverse);
     }
 
     void update_convergence(double before, double after) override {
@@ -167,6 +173,11 @@ private:
         return make_direct_inverse(analysis_, system_->has_skew());
     }
 
+    void renew_inverse() {
+        inverse_ = make_inverse();
+        set_ = base_ = {};
+    }
+
     /// True if a factor from an earlier state is expected to reduce the error, which is `far` times the tolerance, at
     /// less than the cost of a new one. The skew part belongs to the state at which it was computed, and GMRES needs a
     /// single matrix.
@@ -214,7 +225,7 @@ private:
         Outcome outcome = inverse_->solve(columns, enough_);
         if (outcome == Outcome::slow) {
             two_levels_ = false;
-            inverse_ = make_inverse();
+            renew_inverse();
             usable_ = false;
         }
         // Indefiniteness was only detected while solving.
@@ -235,25 +246,30 @@ private:
         rotation_.begin(at_.state->x);
         tangent_ = std::make_shared<const SolverMemory::Tangent>(SolverMemory::Tangent{*at_.state, *at_.controls});
         positions_ = system_->free_positions(at_.state->x);
-        assemble(false, values_);
-        has_tangent_ = true;
-        has_projection_ = false;
+        has_tangent_ = has_projection_ = false;
         share_ = 0;
-        if (!cautious && (usable_ = inverse_->set(values_.span(), positions_, Effort::usual))) {
+        if (!inverse_->keeps_matrix()) assemble(false, values_);
+        if (!cautious && (usable_ = set_tangent())) {
             share_wanted_ = smallest_share_of_projection;
             return true;
         }
         return project(cautious ? 1 : std::max(0.5 * share_wanted_, smallest_share_of_projection));
     }
 
+    [[nodiscard]] bool set_tangent() {
+        return inverse_->keeps_matrix() ? set_levels(0, linalg::Reuse::turned)
+                                        : inverse_->set(values_.span(), positions_, Effort::usual);
+    }
+
     /// Sets the tangent with `share` of its projection, or more if necessary.
     [[nodiscard]] bool project(double share) {
         if (share_ == 0 && !inverse_->keeps_matrix()) assemble(true, projected_);
         for (; share <= 1; share *= 2) {
-            share_ = share_wanted_ = share;
+            share_wanted_ = share;
             if (inverse_->keeps_matrix()) {
-                usable_ = set_blend_in_parts();
+                usable_ = set_levels(share, linalg::Reuse::turned);
             } else {
+                share_ = share;
                 blend();
                 usable_ = inverse_->set(blended_.span(), positions_, share < 1 ? Effort::little : Effort::all);
             }
@@ -262,17 +278,26 @@ private:
         return false;
     }
 
-    /// Adds its share of the projection to the tangent: of a large body in the memory of one matrix, so that each share
+    /// Sets the tangent with `share` of its projection: of a large body in the memory of one matrix, so that each share
     /// takes both to be assembled.
-    [[nodiscard]] bool set_blend_in_parts() {
+    [[nodiscard]] bool set_levels(double share, linalg::Reuse reuse) {
+        base_ = base();
+        set_ = {tangent_, share_ = share};
         const bool keep = layout_->pattern.entries() <= most_kept;
-        AlignedArray<double>& projection = keep ? projected_ : values_;
         if (!has_tangent_) assemble(false, values_);
+        has_tangent_ = true;
         inverse_->take(values_.span(), positions_);
-        if (!has_projection_) assemble(true, projection);
-        has_tangent_ = has_projection_ = keep;
-        return inverse_->move_towards(projection.span(), share_);
+        if (share > 0) {
+            AlignedArray<double>& projection = keep ? projected_ : values_;
+            if (!has_projection_) assemble(true, projection);
+            has_tangent_ = has_projection_ = keep;
+            inverse_->move_towards(projection.span(), share);
+        }
+        return inverse_->prepare(reuse);
     }
+
+    /// The matrix that the coarse level was made for.
+    [[nodiscard]] SolverMemory::Matrix base() const { return inverse_->is_turned() ? base_ : set_; }
 
     /// (tangent + skew)^-1 b by GMRES, right-preconditioned with H^-1. If H is the tangent, the product is v + skew
     /// H^-1 v. If H had to be made positive definite it is not: the tangent's symmetric part may be indefinite although
@@ -307,7 +332,7 @@ private:
         room_for_ = std::make_shared<const SolverMemory::Cliques>(touching_);
         layout_ = std::make_shared<const TangentLayout>(system_->lay_out_tangent(touching_));
         analysis_ = nullptr;
-        inverse_ = make_inverse();
+        renew_inverse();
         // Pairs that have separated are dropped next time, so that the pattern does not grow without bound.
         if (touching_.size() > most_remembered) touching_.clear();
     }
@@ -346,16 +371,32 @@ private:
         layout_ = std::move(layout);
         analysis_ = room_for_ ? known.analysis : nullptr;
         two_levels_ = known.rates.two_levels_;
-        inverse_ = make_inverse();
+        renew_inverse();
         return false;
+    }
+
+    /// `at_hand`: the matrix that the present coarse level was made for.
+    void recall_levels(const SolverMemory& known, const SolverMemory::Matrix& at_hand) {
+        const SolverMemory::Matrix own{known.tangent, known.rates.share_};
+        const SolverMemory::Matrix& base = known.base.tangent ? known.base : own;
+        if (base == own) {
+            set_again(own, base == at_hand ? linalg::Reuse::kept : linalg::Reuse::none);
+        } else {
+            if (base != at_hand) set_again(base, linalg::Reuse::none);
+            set_again(own, linalg::Reuse::turned);
+        }
+        inverse_->restore(known.inverse);
+    }
+
+    void set_again(const SolverMemory::Matrix& matrix, linalg::Reuse reuse) {
+        tangent_ = matrix.tangent;
+        positions_ = system_->free_positions(tangent_->state.x);
+        has_tangent_ = has_projection_ = false;
+        (void)set_levels(matrix.share, reuse);
     }
 
     void recall_tangent(const TangentInverse::Memory& memory) {
         positions_ = system_->free_positions(tangent_->state.x);
-        if (share_ > 0 && inverse_->keeps_matrix()) {
-            (void)set_blend_in_parts();
-            return;
-        }
         assemble(false, values_);
         if (share_ > 0) {
             assemble(true, projected_);
@@ -407,6 +448,8 @@ private:
     SolverMemory::Cliques touching_;          ///< contact pairs to be included in the next pattern
     std::shared_ptr<const SolverMemory::Cliques> room_for_;  ///< those included in the current pattern
     std::shared_ptr<const SolverMemory::Tangent> tangent_;   ///< the state at which it was made
+    SolverMemory::Matrix set_;                               ///< of levels: the matrix that was set last,
+    SolverMemory::Matrix base_;                              ///< and that of their coarse level, if it was turned
 };
 
 }  // namespace

@@ -45,6 +45,13 @@ struct SolverMemory {
         Controls controls;
     };
     std::shared_ptr<const Tangent> tangent;  ///< state at which it was made; null: none yet
+    /// A matrix: the tangent at a state, with a share of its projection.
+    struct Matrix {
+        std::shared_ptr<const Tangent> tangent;
+        double share = 0;
+        bool operator==(const Matrix&) const = default;
+    };
+    Matrix base;  ///< of levels: the matrix that the coarse level was made for; tangent null: the inverse's own
     TangentInverse::Memory inverse;
     NewtonRates rates;
     std::shared_ptr<const Cliques> touching;  ///< contact groups included in the pattern; null: none

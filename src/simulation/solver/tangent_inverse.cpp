@@ -114,9 +114,9 @@ public:
     void take(std::span<const double> values, const Eigen::VectorXd& positions) override {
         levels_.take(values, linalg::view(positions));
     }
-    [[nodiscard]] bool move_towards(std::span<const double> values, double share) override {
-        return levels_.move_towards(values, share);
-    }
+    void move_towards(std::span<const double> values, double share) override { levels_.move_towards(values, share); }
+    [[nodiscard]] bool prepare(linalg::Reuse reuse) override { return levels_.prepare(reuse); }
+    [[nodiscard]] bool is_turned() const override { return levels_.is_turned(); }
 
     [[nodiscard]] Outcome solve(Eigen::MatrixXd& columns, double error) override {
         const int count = static_cast<int>(columns.cols());
@@ -134,10 +134,11 @@ public:
             linalg::view(multipliers), std::max(error, least_error), most_iterations_));
     }
 
-    [[nodiscard]] Memory memory() const override { return {}; }
-    void restore(const Memory&) override {}
-    void recall(std::span<const double> values, const Eigen::VectorXd& positions, const Memory&) override {
+    [[nodiscard]] Memory memory() const override { return {.usual_gain = levels_.usual_gain()}; }
+    void restore(const Memory& memory) override { levels_.set_usual_gain(memory.usual_gain); }
+    void recall(std::span<const double> values, const Eigen::VectorXd& positions, const Memory& memory) override {
         (void)set(values, positions, Effort::usual);
+        restore(memory);
     }
 
     /// Setting a new matrix is nearly free.

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "base/linalg/analysis.hpp"
+#include "base/linalg/coarse_level.hpp"
 #include "base/linalg/nested_space.hpp"
 #include "base/linalg/sparse.hpp"
 
@@ -22,16 +23,18 @@ public:
     /// Sets a matrix, of which `values` must be valid until the next call unless keeps_matrix(), and the positions of
     /// its nodes (3 nodes). False if it is found not to be positive definite.
     [[nodiscard]] virtual bool set(std::span<const double> values, const Eigen::VectorXd& positions, Effort effort) = 0;
-    /// True: set() copies the matrix, and one may be given in two parts, so that memory for one suffices: take() copies
-    /// the first; move_towards() adds `share` of the difference from it to `values`, then does as set().
+    /// True: set() copies the matrix, and may be replaced by its steps: those of linalg::TwoLevel.
     [[nodiscard]] virtual bool keeps_matrix() const { return false; }
     virtual void take(std::span<const double> values, const Eigen::VectorXd& positions) {
         (void)values, (void)positions;
     }
-    [[nodiscard]] virtual bool move_towards(std::span<const double> values, double share) {
-        (void)values, (void)share;
+    virtual void move_towards(std::span<const double> values, double share) { (void)values, (void)share; }
+    [[nodiscard]] virtual bool prepare(linalg::Reuse reuse) {
+        (void)reuse;
         return false;
     }
+    /// True if solutions also depend on an earlier matrix: linalg::TwoLevel::is_turned().
+    [[nodiscard]] virtual bool is_turned() const { return false; }
     enum class Outcome { solved, indefinite, slow };
     /// columns (3 nodes, k) <- H^-1 columns, within `error` of each solution in the norm of H, but no tighter than
     /// 1e-3. Outcomes indefinite and slow: columns hold the last iterate, which is still a descent direction.
@@ -57,12 +60,13 @@ public:
         double known_error = 0;
         int trusted = 0;
         int refusals = 0;
+        double usual_gain = 1;  ///< on levels: linalg::TwoLevel::usual_gain()
         bool operator==(const Memory&) const = default;
     };
     [[nodiscard]] virtual Memory memory() const = 0;
     /// Restores it; the current factor must be the one that it belongs to.
     virtual void restore(const Memory& memory) = 0;
-    /// As set(), with a matrix that was set before and the memory saved after that.
+    /// As set(), with a matrix that was set before and the memory saved after that. Precondition: not keeps_matrix().
     virtual void recall(std::span<const double> values, const Eigen::VectorXd& positions, const Memory& memory) = 0;
     /// Cost of setting a matrix and solving, relative to a solve with an existing factor.
     [[nodiscard]] virtual double factorisation_cost() const = 0;

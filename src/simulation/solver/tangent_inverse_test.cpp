@@ -144,7 +144,8 @@ TEST_CASE("a matrix in two parts is solved as in one") {
     REQUIRE(levels->set(between, b.positions, TangentInverse::Effort::usual));
     REQUIRE(levels->solve(whole, 1e-3) == TangentInverse::Outcome::solved);
     levels->take(b.values, b.positions);
-    REQUIRE(levels->move_towards(other, share));
+    levels->move_towards(other, share);
+    REQUIRE(levels->prepare(linalg::Reuse::turned));
     REQUIRE(levels->solve(parts, 1e-3) == TangentInverse::Outcome::solved);
     CHECK((parts - whole).norm() < 1e-5 * whole.norm());
 }

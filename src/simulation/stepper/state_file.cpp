@@ -114,11 +114,12 @@ Json json_of(const NewtonRates& r) {
 }
 
 Json json_of(const TangentInverse::Memory& m) {
-    return {{"in_double", m.in_double},
-            {"untried", m.untried},
-            {"known_error", m.known_error},
-            {"trusted", m.trusted},
-            {"refusals", m.refusals}};
+    return {{"in_double", m.in_double}, {"untried", m.untried},   {"known_error", m.known_error},
+            {"trusted", m.trusted},     {"refusals", m.refusals}, {"usual_gain", m.usual_gain}};
+}
+
+Json json_of(const SolverMemory::Tangent& tangent) {
+    return {{"state", json_of(tangent.state)}, {"controls", json_of(tangent.controls)}};
 }
 
 Json json_of(const SolverMemory& memory) {
@@ -129,9 +130,11 @@ Json json_of(const SolverMemory& memory) {
     for (const auto& pair : memory.pairs) json["pairs"].push_back(json_of(*pair));
     if (memory.learnt) json["learnt"] = json_of(*memory.learnt);
     if (memory.followed) json["followed"] = packed(*memory.followed);
-    if (memory.tangent)
-        json["tangent"] =
-            Json{{"state", json_of(memory.tangent->state)}, {"controls", json_of(memory.tangent->controls)}};
+    if (memory.tangent) json["tangent"] = json_of(*memory.tangent);
+    if (memory.base.tangent) {
+        json["base"] = {{"share", memory.base.share}};
+        if (memory.base.tangent != memory.tangent) json["base"]["tangent"] = json_of(*memory.base.tangent);
+    }
     if (memory.touching) {
         json["touching"] = Json::array();
         for (const auto& clique : *memory.touching) json["touching"].push_back(packed(std::span<const int>(clique)));
@@ -380,8 +383,17 @@ private:
         m.known_error = in.number("known_error");
         m.trusted = in.integer("trusted", 0, most);
         m.refusals = in.integer("refusals", 0, most);
+        if (in.has("usual_gain")) m.usual_gain = in.number("usual_gain");
         take(in);
         return m;
+    }
+
+    std::shared_ptr<const SolverMemory::Tangent> tangent(const Json& json) {
+        Reader in(json);
+        State at = state(in.at("state"));
+        Controls there = controls(in.at("controls"));
+        take(in);
+        return std::make_shared<const SolverMemory::Tangent>(SolverMemory::Tangent{std::move(at), std::move(there)});
     }
 
     std::shared_ptr<const SolverMemory::Cliques> touching(Reader& in) {
@@ -407,13 +419,13 @@ private:
         if (in.has("followed"))
             memory->followed = std::make_shared<const Eigen::VectorXd>(in.vector("followed", sizes_.coordinates));
         if (in.has("touching")) memory->touching = touching(in);
-        if (in.has("tangent")) {
-            Reader tangent(in.at("tangent"));
-            State at = state(tangent.at("state"));
-            Controls there = controls(tangent.at("controls"));
-            memory->tangent =
-                std::make_shared<const SolverMemory::Tangent>(SolverMemory::Tangent{std::move(at), std::move(there)});
-            take(tangent);
+        if (in.has("tangent")) memory->tangent = tangent(in.at("tangent"));
+        if (in.has("base")) {
+            Reader base(in.at("base"));
+            memory->base.share = base.number("share");
+            memory->base.tangent = base.has("tangent") ? tangent(base.at("tangent")) : memory->tangent;
+            if (!(memory->base.share >= 0 && memory->base.share <= 1)) base.fail("share");
+            take(base);
         }
         if (memory->rates.usable_ && !memory->tangent) in.fail("a factor of nothing");
         take(in);
@@ -435,7 +447,11 @@ Status check_possible(const Stepper& stepper, const RobotState& robot) {
     };
     bool all = stepper.system().evaluate(robot.now.state, robot.controls).possible();
     for (const PastMoment& past : robot.past) all = all && possible(*past.state);
-    if (robot.memory && robot.memory->tangent) all = all && possible(robot.memory->tangent->state);
+    if (robot.memory) {
+        for (const auto& tangent : {robot.memory->tangent, robot.memory->base.tangent}) {
+            if (tangent) all = all && possible(tangent->state);
+        }
+    }
     return all ? Status{}
                : Status(input_error("damaged: a tetrahedron is turned inside out, or surfaces have passed "
                                     "through each other"));
