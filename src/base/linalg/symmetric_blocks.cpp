@@ -60,7 +60,7 @@ void SymmetricBlocks::find_halo(Piece& piece) {
         if (row_[k] >= piece.end) piece.halo.push_back(row_[k]);
     });
     std::ranges::sort(piece.halo);
-    piece.halo.erase(std::ranges::unique(piece.halo).begin(), piece.halo.end());
+    piece.halo.erase(std::unique(piece.halo.begin(), piece.halo.end()), piece.halo.end());
     for_pairs([&](int k) {
         const auto in_halo = std::ranges::lower_bound(piece.halo, row_[k]) - piece.halo.begin();
         place_[k] = row_[k] < piece.end ? row_[k] - piece.begin : piece.end - piece.begin + static_cast<int>(in_halo);

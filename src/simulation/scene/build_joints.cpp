@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -90,12 +89,16 @@ std::pair<Vec3, double> thinnest(const std::vector<int>& nodes, const std::vecto
     Vec3 mean;
     for (const int node : nodes) mean += points[static_cast<std::size_t>(node)] / static_cast<double>(nodes.size());
     const auto off_mean = [&](int node) { return points[static_cast<std::size_t>(node)] - mean; };
-    const auto longest = [](const auto& candidates) {
-        return *std::ranges::max_element(candidates, {}, [](const Vec3& v) { return norm(v); });
+    const auto longest = [&](const auto& vector_of) {
+        Vec3 found;
+        for (const int node : nodes) {
+            const Vec3 v = vector_of(node);
+            if (norm(v) > norm(found)) found = v;
+        }
+        return found;
     };
-    const Vec3 farthest = longest(std::views::transform(nodes, off_mean));
-    const Vec3 across =
-        longest(std::views::transform(nodes, [&](int node) { return cross(farthest, off_mean(node)); }));
+    const Vec3 farthest = longest(off_mean);
+    const Vec3 across = longest([&](int node) { return cross(farthest, off_mean(node)); });
     const double size = norm(farthest);
     const Vec3 normal = norm(across) > 0 ? across / norm(across) : Vec3{0, 0, 1};
     double thick = 0;

@@ -44,7 +44,7 @@ void ContactStep::add_carriers(std::span<const int> contact_nodes) {
 
 void ContactStep::number_nodes() {
     std::ranges::sort(nodes_);
-    nodes_.erase(std::ranges::unique(nodes_).begin(), nodes_.end());
+    nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
     const std::vector<int>& free_index = system_.model().free_index();
     place_.assign(free_index.size(), -1);
     for (std::size_t node = 0; node < place_.size(); ++node) {

@@ -604,7 +604,7 @@ std::vector<std::vector<int>> Equilibrium::contact_cliques(const State& state, c
         }
         if (!objects().empty()) {
             std::ranges::sort(clique);
-            clique.erase(std::ranges::unique(clique).begin(), clique.end());
+            clique.erase(std::unique(clique.begin(), clique.end()), clique.end());
         }
         cliques.push_back(std::move(clique));
     };
@@ -656,7 +656,7 @@ void Equilibrium::append_cliques_beside_tets(const std::vector<int>& index,
                     clique.push_back(index[static_cast<std::size_t>(node)]);
             }
             std::ranges::sort(clique);
-            clique.erase(std::ranges::unique(clique).begin(), clique.end());
+            clique.erase(std::unique(clique.begin(), clique.end()), clique.end());
             cliques.push_back(clique);
         }
     }
