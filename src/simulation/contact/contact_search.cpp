@@ -86,7 +86,7 @@ public:
         const Kind first = what == What::crossings ? Kind::edge_triangle : Kind::point_triangle;
         std::vector<std::pair<std::size_t, std::size_t>> meetings = contact.meetings(self);
         // The robot itself comes first.
-        std::ranges::rotate(meetings, meetings.end() - (self ? 1 : 0));
+        std::rotate(meetings.begin(), meetings.end() - (self ? 1 : 0), meetings.end());
         std::erase_if(meetings, [&](const auto& m) { return !are_near(m.first, m.second); });
         for (const auto& [a, b] : meetings) {
             add(first, a, b);
