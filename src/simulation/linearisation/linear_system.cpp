@@ -133,6 +133,8 @@ SystemSolver::SystemSolver(const LinearSystem& system, SystemSolver&& other) : S
     taken_over_ = other.way_;
     factor_ = std::move(other.factor_);
     levels_ = std::move(other.levels_);
+    from_forces_ = std::move(other.from_forces_);
+    accuracy_ = other.accuracy_;
 }
 
 /// Factorises K if it is positive definite; else K with its diagonal increased as far as necessary. False: that fails
@@ -176,39 +178,52 @@ bool SystemSolver::apply_body(Eigen::MatrixXd& columns) const {
 /// K^-1 of columns, to nearly all digits. False: the fast methods cannot achieve that.
 bool SystemSolver::solve_body(Eigen::MatrixXd& columns) const {
     if (way_ == Way::double_) return apply_body(columns);
-    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-        const Eigen::VectorXd b = columns.col(k);
-        const int rounds = levels_ ? level_rounds : most_rounds;
-        Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size()), residual = b;
-        for (int round = 0; round < rounds && residual.norm() > column_residual * b.norm(); ++round) {
-            Eigen::MatrixXd step = residual;
-            if (!apply_body(step)) return false;
-            x += step.col(0);
-            residual = b;
-            linalg::add_product(system_->layout->pattern, system_->symmetric, view(std::as_const(x)), -1,
-                                view(residual));
+    const Eigen::MatrixXd right = std::exchange(columns, Eigen::MatrixXd::Zero(columns.rows(), columns.cols()));
+    Eigen::MatrixXd residual = right;
+    const auto find_open = [&] {
+        std::vector<Eigen::Index> open;
+        for (Eigen::Index k = 0; k < right.cols(); ++k) {
+            if (!(residual.col(k).norm() <= column_residual * right.col(k).norm())) open.push_back(k);
         }
-        if (!levels_ && !(residual.norm() <= column_residual * b.norm())) return false;
-        columns.col(k) = x;
+        return open;
+    };
+    const int rounds = levels_ ? level_rounds : most_rounds;
+    std::vector<Eigen::Index> open = find_open();
+    for (int round = 0; round < rounds && !open.empty(); ++round, open = find_open()) {
+        Eigen::MatrixXd step = residual(Eigen::all, open);  // several columns cost little more than one
+        if (!apply_body(step)) return false;
+        columns(Eigen::all, open) += step;
+        for (const Eigen::Index k : open) {
+            const Eigen::VectorXd x = columns.col(k);
+            Eigen::VectorXd rest = right.col(k);
+            linalg::add_product(system_->layout->pattern, system_->symmetric, view(x), -1, view(rest));
+            residual.col(k) = rest;
+        }
     }
-    return true;
+    return levels_ || open.empty();
 }
 
 /// Since the preconditioner replaces K anyway, the columns of the Schur complement need no more accuracy than that,
 /// unless actuators are so nearly redundant that rounding hides it. False: only double precision can tell.
 bool SystemSolver::take_schur_complement() {
     const bool quick = way_ == Way::single_;
-    if (quick && take_schur_complement([&](Eigen::MatrixXd& columns) { return apply_body(columns); }, nearly_redundant))
+    if (quick && take_schur_complement([&](Eigen::MatrixXd& columns) { return apply_body(columns); }, Columns::rough,
+                                       nearly_redundant))
         return true;
-    return take_schur_complement([&](Eigen::MatrixXd& columns) { return solve_body(columns); }, redundant);
+    return take_schur_complement([&](Eigen::MatrixXd& columns) { return solve_body(columns); }, Columns::fine,
+                                 redundant);
 }
 
 /// K^-1 B and K^-1 C. A constraint that is the gradient of what its force acts on has the force's column; the
 /// constraint of a slack cable has none.
 template <class Solve>
-bool SystemSolver::solve_columns(const Solve& solve) {
-    from_forces_ = forces_;
-    if (!solve(from_forces_)) return false;
+bool SystemSolver::solve_columns(const Solve& solve, Columns accuracy) {
+    if (accuracy_ != accuracy) {
+        accuracy_ = Columns::none;
+        from_forces_ = forces_;
+        if (!solve(from_forces_)) return false;
+        accuracy_ = accuracy;
+    }
     from_constraints_ = from_forces_;
     bool known = true;
     for (Eigen::Index k = 0; k < forces_.cols(); ++k) {
@@ -223,8 +238,8 @@ bool SystemSolver::solve_columns(const Solve& solve) {
 }
 
 template <class Solve>
-bool SystemSolver::take_schur_complement(const Solve& solve, double threshold) {
-    if (!solve_columns(solve)) return false;
+bool SystemSolver::take_schur_complement(const Solve& solve, Columns accuracy, double threshold) {
+    if (!solve_columns(solve, accuracy)) return false;
     Eigen::MatrixXd S = -constraints_.transpose() * from_forces_;
     S.diagonal() += compliance_;
     schur_inverse_ = schur_null_ = Eigen::MatrixXd(S.rows(), 0);
@@ -253,7 +268,10 @@ void SystemSolver::begin() {
 
 bool SystemSolver::begin_quickly(Way way) {
     way_ = way;
-    if (std::exchange(taken_over_, Way::none) != way && !make_quickly(way)) return false;
+    if (std::exchange(taken_over_, Way::none) != way) {
+        accuracy_ = Columns::none;
+        if (!make_quickly(way)) return false;
+    }
     exact_ = true;
     // Conjugate gradients detect by themselves that they do not converge.
     return take_schur_complement() && (levels_ || is_content() || is_far_from_singular());
@@ -273,6 +291,7 @@ bool SystemSolver::make_quickly(Way way) {
 
 void SystemSolver::begin_surely() {
     way_ = Way::double_;
+    accuracy_ = Columns::none;
     const bool begun = factorise();
     factor_->release_work_space();
     if (begun) (void)take_schur_complement();

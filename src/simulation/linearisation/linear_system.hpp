@@ -82,8 +82,10 @@ private:
     void begin();
     [[nodiscard]] bool begin_quickly(Way way);
     [[nodiscard]] bool make_quickly(Way way);
+    /// How accurate K^-1 B is.
+    enum class Columns { none, rough, fine };
     template <class Solve>
-    [[nodiscard]] bool solve_columns(const Solve& solve);
+    [[nodiscard]] bool solve_columns(const Solve& solve, Columns accuracy);
     void begin_surely();
     [[nodiscard]] linalg::Cholesky& factor(linalg::Precision precision);
     [[nodiscard]] bool factorise();
@@ -91,7 +93,7 @@ private:
     [[nodiscard]] bool apply_body(Eigen::MatrixXd& columns) const;
     [[nodiscard]] bool take_schur_complement();
     template <class Solve>
-    [[nodiscard]] bool take_schur_complement(const Solve& solve, double threshold);
+    [[nodiscard]] bool take_schur_complement(const Solve& solve, Columns accuracy, double threshold);
     [[nodiscard]] bool is_far_from_singular() const;
     [[nodiscard]] bool is_content() const;
     [[nodiscard]] double level_tolerance() const;
@@ -117,7 +119,8 @@ private:
     Eigen::VectorXd compliance_;                ///< D, scaled
     std::unique_ptr<linalg::Cholesky> factor_;  ///< of K, or of K with its diagonal increased
     std::unique_ptr<linalg::TwoLevel> levels_;  ///< of K
-    Eigen::MatrixXd from_forces_;               ///< K^-1 B
+    Eigen::MatrixXd from_forces_;               ///< K^-1 B,
+    Columns accuracy_ = Columns::none;          ///< and how accurate that is
     Eigen::MatrixXd from_constraints_;          ///< K^-1 C
     Eigen::MatrixXd schur_inverse_;             ///< of D - C^T K^-1 B, or the pseudo-inverse
     Eigen::MatrixXd schur_null_;                ///< columns: combinations of multipliers without effect
