@@ -98,7 +98,7 @@ private:
         S.diagonal() += solved_.compliances(controls_.drives, state_.multiplier, system_.part().ambient_pressure_Pa);
         const Eigen::VectorXd now = solved_.scaled(state_.multiplier);
         const Eigen::VectorXd violation = evaluation_.constraint_violation(solved_.actuators()) + products.col(count);
-        const Eigen::VectorXd change = solved_.change(S, violation, now);
+        const Eigen::VectorXd change = solved_.change(solved_.list(), S, violation, now);
         direction.dx -= motions * change;
         solved_.add(change, direction.multiplier);
         for (Eigen::Index k = 0; k < count; ++k)

@@ -1,11 +1,17 @@
 #include "simulation/solver/solved_actuators.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "simulation/solver/drives.hpp"
 #include "simulation/solver/held_multipliers.hpp"
 
 namespace pliant::sim {
+namespace {
+
+constexpr double rounding = 1e-13;  // of a length, relative to that at rest
+
+}  // namespace
 
 SolvedActuators::SolvedActuators(const std::vector<Drive>& drives, const std::vector<bool>& only_pulls,
                                  const std::vector<double>& rest_measures) {
@@ -37,9 +43,24 @@ Eigen::VectorXd SolvedActuators::compliances(const std::vector<Drive>& drives, c
     return compliance;
 }
 
-Eigen::VectorXd SolvedActuators::change(const Eigen::MatrixXd& S, const Eigen::VectorXd& violation,
+SolvedActuators::List SolvedActuators::list() const {
+    List all(all_.size());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+}
+
+Eigen::VectorXd SolvedActuators::change(const List& some, const Eigen::MatrixXd& S, const Eigen::VectorXd& violation,
                                         const Eigen::VectorXd& scaled_now) const {
-    return multipliers_that_hold(S, violation + S * scaled_now, only_pull_) - scaled_now;
+    std::vector<bool> only_pull;
+    for (const Eigen::Index k : some) only_pull.push_back(only_pull_[static_cast<std::size_t>(k)]);
+    return multipliers_that_hold(S, violation + S * scaled_now, only_pull) - scaled_now;
+}
+
+bool SolvedActuators::is_too_long_beside(const List& some, const Eigen::VectorXd& violation) const {
+    for (Eigen::Index k = 0; k < count(); ++k) {
+        if (violation[k] > rounding && !std::ranges::binary_search(some, k)) return true;
+    }
+    return false;
 }
 
 std::vector<bool> SolvedActuators::taut(const Eigen::VectorXd& scaled_now, const Eigen::VectorXd& violation) const {
@@ -53,7 +74,6 @@ std::vector<bool> SolvedActuators::taut(const Eigen::VectorXd& scaled_now, const
 
 bool SolvedActuators::settle(std::vector<bool>& taut, const Eigen::VectorXd& scaled,
                              const Eigen::VectorXd& violation) const {
-    constexpr double rounding = 1e-13;  // of a length, relative to that at rest
     bool settled = true;
     for (std::size_t k = 0; k < all_.size(); ++k) {
         const auto at = static_cast<Eigen::Index>(k);

@@ -32,13 +32,18 @@ public:
     /// (solved) compliance of sealed gas in the same scale, in addition to that of the body.
     [[nodiscard]] Eigen::VectorXd compliances(const std::vector<Drive>& drives, const Eigen::VectorXd& multiplier,
                                               double ambient_pressure_Pa) const;
-    /// (solved) change of the scaled multipliers that removes the violation of the constraints. `S`: A^T H^-1 A with
+    /// Some of them, in ascending order.
+    using List = std::vector<Eigen::Index>;
+    [[nodiscard]] List list() const;
+    /// (some) change of the scaled multipliers that removes the violation of the constraints. `S`: A^T H^-1 A with
     /// the compliances on its diagonal; `violation`: what is left after the unconstrained step.
-    [[nodiscard]] Eigen::VectorXd change(const Eigen::MatrixXd& S, const Eigen::VectorXd& violation,
+    [[nodiscard]] Eigen::VectorXd change(const List& some, const Eigen::MatrixXd& S, const Eigen::VectorXd& violation,
                                          const Eigen::VectorXd& scaled_now) const;
     /// (solved) the constraints that are expected to hold as equations: all except cables that are slack and not longer
     /// than prescribed.
     [[nodiscard]] std::vector<bool> taut(const Eigen::VectorXd& scaled_now, const Eigen::VectorXd& violation) const;
+    /// True if a cable that is none of `some` is longer than prescribed.
+    [[nodiscard]] bool is_too_long_beside(const List& some, const Eigen::VectorXd& violation) const;
     /// Corrects them by what a solution with them leads to: cables that would push go slack, slack ones that would be
     /// too long become taut. True if there were none.
     [[nodiscard]] bool settle(std::vector<bool>& taut, const Eigen::VectorXd& scaled,

@@ -127,36 +127,56 @@ private:
                                    system_.model().description().ambient_pressure_Pa);
     }
 
-    /// One solution for the gradient and one for each solved actuator; then the multipliers that combine them.
+    /// Without the cables that are slack, unless one of them would become too long.
     [[nodiscard]] Move solve_by_columns(const Terms& terms) {
-        const Eigen::MatrixXd A = by_gaps_ ? gradients_of(&Actuator::add_measure_gradient) : terms.forces;
-        Eigen::MatrixXd columns(terms.gradient.size(), 1 + A.cols());
+        if (by_gaps_) return solve_by_columns(terms, gradients_of(&Actuator::add_measure_gradient), solved_.list());
+        const Eigen::VectorXd violation = evaluation_.constraint_violation(solved_.actuators());
+        const std::vector<bool> taut = solved_.taut(terms.multipliers, violation);
+        SolvedActuators::List acting = solved_.list();
+        std::erase_if(acting, [&](Eigen::Index k) { return !taut[static_cast<std::size_t>(k)]; });
+        const Move move = solve_by_columns(terms, terms.forces, acting);
+        if (!solved_.is_too_long_beside(acting, violation + terms.forces.transpose() * move.dx)) return move;
+        return solve_by_columns(terms, terms.forces, solved_.list());
+    }
+
+    /// One solution for the gradient and one for each acting actuator; then the multipliers that combine them. `A`:
+    /// gradients of the measures.
+    [[nodiscard]] Move solve_by_columns(const Terms& terms, const Eigen::MatrixXd& A,
+                                        const SolvedActuators::List& acting) {
+        const auto count = static_cast<Eigen::Index>(acting.size());
+        Eigen::MatrixXd columns(terms.gradient.size(), 1 + count);
         columns.col(0) = terms.gradient;
-        columns.rightCols(A.cols()) = terms.forces;
+        columns.rightCols(count) = terms.forces(Eigen::all, acting);
         curvature_.solve(columns);
-        return combine({columns.col(0), columns.rightCols(A.cols())}, A, terms.multipliers);
+        return combine({columns.col(0), columns.rightCols(count), acting}, A, terms.multipliers);
     }
 
     struct Solutions {
-        Eigen::VectorXd gradient;  ///< H^-1 gradient
-        Eigen::MatrixXd forces;    ///< (3 free, solved) H^-1 times the forces of the constraints
+        Eigen::VectorXd gradient;      ///< H^-1 gradient
+        Eigen::MatrixXd forces;        ///< (3 free, acting) H^-1 times the forces of constraints
+        SolvedActuators::List acting;  ///< whose they are
     };
     /// `A`: gradients of the measures; `now`: scaled multipliers.
     [[nodiscard]] Move combine(const Solutions& solutions, const Eigen::MatrixXd& A, const Eigen::VectorXd& now) const {
         Move move{-solutions.gradient, Eigen::VectorXd::Zero(solved_.count())};
-        if (solved_.empty()) return move;
+        const SolvedActuators::List& acting = solutions.acting;
+        if (acting.empty()) return move;
         // Violation after the unconstrained step; then the correction of the current multipliers.
+        const Eigen::MatrixXd acting_A = A(Eigen::all, acting);
         const Eigen::VectorXd violation =
-            evaluation_.constraint_violation(solved_.actuators()) - A.transpose() * solutions.gradient;
-        move.change = solved_.change(yielding_to(A, solutions.forces), violation, now);
-        move.dx -= solutions.forces * move.change;
+            evaluation_.constraint_violation(solved_.actuators())(acting) - acting_A.transpose() * solutions.gradient;
+        const Eigen::MatrixXd S = yielding_to(acting_A, solutions);
+        const Eigen::VectorXd change = solved_.change(acting, S, violation, now(acting));
+        move.change(acting) = change;
+        move.dx -= solutions.forces * change;
         return move;
     }
 
-    /// S: how the measures yield to the multipliers, with the compliance of sealed gas.
-    [[nodiscard]] Eigen::MatrixXd yielding_to(const Eigen::MatrixXd& A, const Eigen::MatrixXd& solutions) const {
-        Eigen::MatrixXd S = A.transpose() * solutions;
-        S.diagonal() += compliances();
+    /// S: how the measures of acting actuators, with gradients `A`, yield to their multipliers, with the compliance of
+    /// sealed gas.
+    [[nodiscard]] Eigen::MatrixXd yielding_to(const Eigen::MatrixXd& A, const Solutions& solutions) const {
+        Eigen::MatrixXd S = A.transpose() * solutions.forces;
+        S.diagonal() += compliances()(solutions.acting);
         return S;
     }
 
@@ -234,7 +254,7 @@ private:
         columns.rightCols(solved) = terms.forces;
         reduced.factor->solve({columns.data(), static_cast<std::size_t>(columns.size())},
                               static_cast<int>(columns.cols()));
-        reduced.solutions = {columns.col(0), columns.rightCols(solved)};
+        reduced.solutions = {columns.col(0), columns.rightCols(solved), solved_.list()};
         const Move without = combine(reduced.solutions, terms.forces, terms.multipliers);
 
         const std::vector<int> rows = contact.rows();
@@ -265,7 +285,7 @@ private:
             if (multipliers[k] > 0 || !solved_.all()[static_cast<std::size_t>(k)].only_pulls) held.push_back(k);
         }
         if (held.empty()) return;
-        const Eigen::MatrixXd S = yielding_to(forces, solutions.forces)(held, held);
+        const Eigen::MatrixXd S = yielding_to(forces, solutions)(held, held);
         const Eigen::MatrixXd yielding = solutions.forces(rows, held);  // to the multipliers
         // Not by the inverse of S: cables may be parallel.
         const Eigen::MatrixXd prevented = yielding * (linalg::pseudo_inverse(S) * yielding.transpose());
