@@ -30,3 +30,21 @@ TEST_CASE("a cable that would push goes slack, a slack one that would be too lon
     CHECK(solved.settle(taut, Three(0, 1, -1), Three(-1e-3, 0, 0)));
     CHECK(taut == std::vector{false, true, true});
 }
+
+TEST_CASE("slack cables need no solution as long as none becomes too long") {
+    const SolvedActuators solved = two_cables_and_a_chamber();
+    using Three = Eigen::Vector3d;
+    CHECK(solved.list() == SolvedActuators::List{0, 1, 2});
+    const SolvedActuators::List acting{0, 2};
+    CHECK_FALSE(solved.is_too_long_beside(acting, Three(1e-3, -1e-3, 1e-3)));
+    CHECK(solved.is_too_long_beside(acting, Three(0, 1e-3, 0)));
+
+    // The second cable is slack: what the others change is what they change in the whole system.
+    Eigen::Matrix3d S;
+    S << 4, 1, 0.5, 1, 3, -0.2, 0.5, -0.2, 2;
+    const Three violation(2e-3, -1e-2, 1e-3), now(1e-3, 0, -2e-3);
+    const Eigen::VectorXd whole = solved.change(solved.list(), S, violation, now);
+    CHECK(whole[1] == 0);
+    const Eigen::VectorXd part = solved.change(acting, S(acting, acting), violation(acting), now(acting));
+    CHECK((part - whole(acting)).norm() < 1e-12 * whole.norm());
+}
