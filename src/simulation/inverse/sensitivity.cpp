@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "base/linalg/vectors.hpp"
 #include "simulation/solver/body_rotation.hpp"
@@ -35,6 +36,48 @@ void Sensitivity::use(RowGradients rows) {
     direct_.clear();
     transposed_.clear();
     changes_.clear();
+    begun_ = false;
+}
+
+/// Solves for all inputs or all residuals, where they are few.
+void Sensitivity::solve_few() {
+    if (std::exchange(begun_, true)) return;
+    const Eigen::Index inputs = rows_.by_inputs.cols(), rows = rows_.by_inputs.rows();
+    if (inputs <= std::min(rows, most_at_once))
+        solve_for_inputs();
+    else if (rows <= most_at_once)
+        solve_for_rows();
+}
+
+void Sensitivity::solve_for_inputs() {
+    const Eigen::Index count = rows_.by_inputs.cols();
+    solutions_ += static_cast<int>(count);
+    Result<std::vector<Change>> changes = at_.responses(by_);
+    if (!changes) {
+        status_ = tl::unexpected(changes.error());
+        return;
+    }
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const Eigen::VectorXd unit = Eigen::VectorXd::Unit(count, i);
+        changes_.push_back(std::move((*changes)[static_cast<std::size_t>(i)]));
+        direct_.push_back({unit, product_of(unit, changes_.back())});
+    }
+}
+
+void Sensitivity::solve_for_rows() {
+    const Eigen::Index count = rows_.by_inputs.rows();
+    std::vector<Quantity> quantities;
+    for (Eigen::Index r = 0; r < count; ++r) quantities.push_back(quantity(Eigen::VectorXd::Unit(count, r)));
+    solutions_ += static_cast<int>(count);
+    const Result<std::vector<Adjoint>> adjoints = at_.adjoints(quantities);
+    if (!adjoints) {
+        status_ = tl::unexpected(adjoints.error());
+        return;
+    }
+    for (Eigen::Index r = 0; r < count; ++r) {
+        const Eigen::VectorXd unit = Eigen::VectorXd::Unit(count, r);
+        transposed_.push_back({unit, product_of(unit, (*adjoints)[static_cast<std::size_t>(r)])});
+    }
 }
 
 /// Product with v; `solve` is only called for the part outside the known directions.
@@ -56,13 +99,21 @@ Eigen::VectorXd Sensitivity::product(std::vector<Known>& known, const Eigen::Vec
 }
 
 Eigen::VectorXd Sensitivity::multiply(const Eigen::VectorXd& inputs) {
-    Eigen::VectorXd result = product(direct_, inputs, rows_.by_inputs.rows(),
-                                     [&](const Eigen::VectorXd& direction) { return solved_product(direction); });
+    solve_few();
+    const Eigen::Index rows = rows_.by_inputs.rows();
+    Eigen::VectorXd result(rows);
+    if (knows_rows() && !knows_inputs()) {
+        for (Eigen::Index r = 0; r < rows; ++r)
+            result[r] = transposed_[static_cast<std::size_t>(r)].product.dot(inputs);
+    } else {
+        result =
+            product(direct_, inputs, rows, [&](const Eigen::VectorXd& direction) { return solved_product(direction); });
+    }
     for (const Learnt& more : learnt_) result += more.rows * more.inputs.dot(inputs);
     return result;
 }
 
-Eigen::VectorXd Sensitivity::solved_product(const Eigen::VectorXd& direction) {
+Derivative Sensitivity::derivative(const Eigen::VectorXd& direction) const {
     Derivative by = by_.front();
     by.equations *= direction[0];
     by.direct.positions *= direction[0];
@@ -74,8 +125,12 @@ Eigen::VectorXd Sensitivity::solved_product(const Eigen::VectorXd& direction) {
         by.direct.positions += direction[i] * one.direct.positions;
         by.direct.multipliers += direction[i] * one.direct.multipliers;
     }
+    return by;
+}
+
+Eigen::VectorXd Sensitivity::solved_product(const Eigen::VectorXd& direction) {
     ++solutions_;
-    Result<Change> change = at_.response(by);
+    Result<Change> change = at_.response(derivative(direction));
     if (!change) {
         status_ = tl::unexpected(change.error());
         const Eigen::VectorXd& x = at_.state().x;
@@ -83,11 +138,17 @@ Eigen::VectorXd Sensitivity::solved_product(const Eigen::VectorXd& direction) {
         return Eigen::VectorXd::Zero(rows_.by_inputs.rows());
     }
     changes_.push_back(*std::move(change));
-    return rows_.by_inputs * direction + rows_.by_positions * changes_.back().positions +
-           rows_.by_multipliers * changes_.back().multipliers;
+    return product_of(direction, changes_.back());
 }
 
-State Sensitivity::expected(const Stepper& stepper, const State& now, const Eigen::VectorXd& inputs) const {
+Eigen::VectorXd Sensitivity::product_of(const Eigen::VectorXd& direction, const Change& change) const {
+    return rows_.by_inputs * direction + rows_.by_positions * change.positions +
+           rows_.by_multipliers * change.multipliers;
+}
+
+State Sensitivity::expected(const Stepper& stepper, const State& now, const Eigen::VectorXd& inputs) {
+    (void)product(direct_, inputs, rows_.by_inputs.rows(),
+                  [&](const Eigen::VectorXd& direction) { return solved_product(direction); });
     const Equilibrium& system = stepper.system();
     State next = now;
     Eigen::VectorXd motion = Eigen::VectorXd::Zero(now.x.size());
@@ -113,24 +174,37 @@ State Sensitivity::expected(const Stepper& stepper, const State& now, const Eige
     return next;
 }
 
+Quantity Sensitivity::quantity(const Eigen::VectorXd& rows) const {
+    return {rows_.by_positions.transpose() * rows, rows_.by_multipliers.transpose() * rows};
+}
+
 std::optional<Adjoint> Sensitivity::adjoint(const Eigen::VectorXd& rows) {
-    const Quantity sum{rows_.by_positions.transpose() * rows, rows_.by_multipliers.transpose() * rows};
     ++solutions_;
-    Result<Adjoint> adjoint = at_.adjoint(sum);
+    Result<Adjoint> adjoint = at_.adjoint(quantity(rows));
     if (adjoint) return std::move(*adjoint);
     status_ = tl::unexpected(adjoint.error());
     return std::nullopt;
 }
 
+Eigen::VectorXd Sensitivity::product_of(const Eigen::VectorXd& rows, const Adjoint& adjoint) const {
+    Eigen::VectorXd by_inputs = rows_.by_inputs.transpose() * rows;
+    for (Eigen::Index i = 0; i < by_inputs.size(); ++i)
+        by_inputs[i] += adjoint.derivative(by_[static_cast<std::size_t>(i)]);
+    return by_inputs;
+}
+
 Eigen::VectorXd Sensitivity::multiply_transposed(const Eigen::VectorXd& rows) {
+    solve_few();
     const Eigen::Index size = rows_.by_inputs.cols();
-    Eigen::VectorXd result = product(transposed_, rows, size, [&](const Eigen::VectorXd& direction) {
-        Eigen::VectorXd by_inputs = rows_.by_inputs.transpose() * direction;
-        const std::optional<Adjoint> solved = adjoint(direction);
-        if (!solved) return Eigen::VectorXd(Eigen::VectorXd::Zero(size));
-        for (Eigen::Index i = 0; i < size; ++i) by_inputs[i] += solved->derivative(by_[static_cast<std::size_t>(i)]);
-        return by_inputs;
-    });
+    Eigen::VectorXd result(size);
+    if (knows_inputs() && !knows_rows()) {
+        for (Eigen::Index i = 0; i < size; ++i) result[i] = direct_[static_cast<std::size_t>(i)].product.dot(rows);
+    } else {
+        result = product(transposed_, rows, size, [&](const Eigen::VectorXd& direction) {
+            const std::optional<Adjoint> solved = adjoint(direction);
+            return solved ? product_of(direction, *solved) : Eigen::VectorXd(Eigen::VectorXd::Zero(size));
+        });
+    }
     for (const Learnt& more : learnt_) result += more.inputs * more.rows.dot(rows);
     return result;
 }

@@ -1,6 +1,7 @@
-// Derivatives of residuals with respect to the inputs at one state, as products only: a product takes one solve with
-// the linearised equations, a product with the transpose one transposed solve, and the matrix of residuals by inputs is
-// never formed. Products are stored, so that combinations of earlier directions need no further solve.
+// Derivatives of residuals with respect to the inputs at one state, as products. Of few inputs or few residuals all are
+// solved for at once, which costs little more than one solve. Otherwise a product takes one solve with the linearised
+// equations, a product with the transpose one transposed solve, and the matrix of residuals by inputs is never formed;
+// products are stored, so that combinations of earlier directions need no further solve.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,17 +37,31 @@ public:
     /// `miss`: difference between the observed change and the product with `inputs`. Corrects the product by the
     /// smallest update that removes it (Broyden 1965).
     void learn(const Eigen::VectorXd& inputs, const Eigen::VectorXd& miss);
-    /// Predicted state of a nearby robot after a change of its inputs: along the directions that multiply() has solved
-    /// for since create().
-    [[nodiscard]] State expected(const Stepper& stepper, const State& now, const Eigen::VectorXd& inputs) const;
+    /// Predicted state of a nearby robot after a change of its inputs.
+    [[nodiscard]] State expected(const Stepper& stepper, const State& now, const Eigen::VectorXd& inputs);
     /// Number of solves with the linearised equations.
     [[nodiscard]] int solutions() const { return solutions_; }
 
 private:
     explicit Sensitivity(Linearisation at) : at_(std::move(at)) {}
+    /// Number of inputs, or of residuals, up to which all are solved for at once.
+    static constexpr Eigen::Index most_at_once = 6;
+    [[nodiscard]] Quantity quantity(const Eigen::VectorXd& rows) const;
     [[nodiscard]] std::optional<Adjoint> adjoint(const Eigen::VectorXd& rows);
+    void solve_few();
+    void solve_for_inputs();
+    void solve_for_rows();
+    [[nodiscard]] bool knows_inputs() const {
+        return static_cast<Eigen::Index>(direct_.size()) == rows_.by_inputs.cols();
+    }
+    [[nodiscard]] bool knows_rows() const {
+        return static_cast<Eigen::Index>(transposed_.size()) == rows_.by_inputs.rows();
+    }
 
+    [[nodiscard]] Derivative derivative(const Eigen::VectorXd& direction) const;
     [[nodiscard]] Eigen::VectorXd solved_product(const Eigen::VectorXd& direction);
+    [[nodiscard]] Eigen::VectorXd product_of(const Eigen::VectorXd& direction, const Change& change) const;
+    [[nodiscard]] Eigen::VectorXd product_of(const Eigen::VectorXd& rows, const Adjoint& adjoint) const;
 
     struct Learnt {
         Eigen::VectorXd rows, inputs;  ///< a rank-one update: adds rows (inputs . v)
@@ -61,6 +76,7 @@ private:
     Linearisation at_;
     RowGradients rows_;
     std::vector<Derivative> by_;
+    bool begun_ = false;  ///< solve_few() was called
     std::vector<Known> direct_, transposed_;
     std::vector<Change> changes_;  ///< of the state, along each of direct_
     std::vector<Learnt> learnt_;

@@ -385,19 +385,22 @@ Eigen::VectorXd SystemSolver::multiply(const Eigen::VectorXd& v, Side side) cons
     return scaled;
 }
 
-Eigen::VectorXd SystemSolver::precondition(const Eigen::VectorXd& v, Side side) const {
+Eigen::MatrixXd SystemSolver::precondition(const Eigen::MatrixXd& columns, Side side) const {
     const Eigen::Index n = forces_.rows(), m = forces_.cols();
     const bool direct = side == Side::direct;
-    if (whole_) return whole_->solve(v, side);
-    Eigen::MatrixXd motion = v.head(n);
+    Eigen::MatrixXd result(n + m, columns.cols());
+    if (whole_) {
+        for (Eigen::Index k = 0; k < columns.cols(); ++k) result.col(k) = whole_->solve(columns.col(k), side);
+        return result;
+    }
+    Eigen::MatrixXd motion = columns.topRows(n);
     (void)apply_body(motion);  // a failure shows in the residual
-    const Eigen::MatrixXd& rows = direct ? constraints_ : forces_;
-    const Eigen::VectorXd left = v.tail(m) - rows.transpose() * motion.col(0);
-    const Eigen::VectorXd multiplier =
-        direct ? Eigen::VectorXd(schur_inverse_ * left) : Eigen::VectorXd(schur_inverse_.transpose() * left);
-    motion.col(0) -= (direct ? from_forces_ : from_constraints_) * multiplier;
-    Eigen::VectorXd result(n + m);
-    result << motion.col(0), multiplier;
+    const Eigen::MatrixXd left = columns.bottomRows(m) - (direct ? constraints_ : forces_).transpose() * motion;
+    const Eigen::MatrixXd multiplier =
+        direct ? Eigen::MatrixXd(schur_inverse_ * left) : Eigen::MatrixXd(schur_inverse_.transpose() * left);
+    motion -= (direct ? from_forces_ : from_constraints_) * multiplier;
+    result.topRows(n) = motion;
+    result.bottomRows(m) = multiplier;
     return result;
 }
 
@@ -428,15 +431,17 @@ Eigen::VectorXd SystemSolver::correction(const Eigen::VectorXd& residual, double
     return left * precondition(step, side);
 }
 
-/// x in balanced units; empty on failure.
-std::optional<Eigen::VectorXd> SystemSolver::refine(const Eigen::VectorXd& b, Side side) const {
+/// x in balanced units; empty on failure. `first`: what precondition() gives for b; null: not known.
+std::optional<Eigen::VectorXd> SystemSolver::refine(const Eigen::VectorXd& b, Side side,
+                                                    const Eigen::VectorXd* first) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size()), residual = b;
     double left = b.norm();
     const double wanted = system_->wanted_residual * left, allowed = allowed_residual() * left;
     const double enough = levels_ && is_content() ? allowed : wanted;
     const int rounds = levels_ ? level_rounds : most_rounds;
     for (int round = 0; round < rounds && left > enough; ++round) {
-        const Eigen::VectorXd next = x + correction(residual, wanted, side);
+        const bool is_known = round == 0 && first != nullptr;
+        const Eigen::VectorXd next = is_known ? *first : Eigen::VectorXd(x + correction(residual, wanted, side));
         const Eigen::VectorXd rest = b - multiply(next, side);
         if (!(rest.norm() < left)) break;
         const bool slow = rest.norm() > 0.5 * left;
@@ -474,25 +479,54 @@ Error SystemSolver::redundancy() const {
     return {Cause::failed, names + " have the same effect but different targets, which cannot be met at once"};
 }
 
+/// In balanced units, without what rollers hold.
+Eigen::MatrixXd SystemSolver::balanced(const Eigen::MatrixXd& columns, Side side) const {
+    Eigen::MatrixXd scaled = columns;
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+        Eigen::VectorXd column = columns.col(k);
+        system_->leave_out_held(column);
+        column.tail(forces_.cols()).array() *= (side == Side::direct ? row_ : column_).array();
+        scaled.col(k) = column;
+    }
+    return scaled;
+}
+
 Result<Eigen::VectorXd> SystemSolver::solve(const Eigen::VectorXd& b, Side side) {
     if (Status status = prepare(); !status) return tl::unexpected(status.error());
-    const Eigen::Index m = forces_.cols();
-    const bool direct = side == Side::direct;
-    Eigen::VectorXd balanced = b;
-    system_->leave_out_held(balanced);
-    balanced.tail(m).array() *= (direct ? row_ : column_).array();
-    std::optional<Eigen::VectorXd> x = refine(balanced, side);
+    return solve_balanced(balanced(b, side), side, nullptr);
+}
+
+Result<Eigen::MatrixXd> SystemSolver::solve_all(const Eigen::MatrixXd& columns, Side side) {
+    if (Status status = prepare(); !status) return tl::unexpected(status.error());
+    const Eigen::MatrixXd right = balanced(columns, side);
+    Eigen::MatrixXd firsts, result(columns.rows(), columns.cols());
+    const Way begun = way_;
+    if (exact_ && system_->skew.empty() && columns.cols() > 1) firsts = precondition(right, side);
+    for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+        const bool is_known = firsts.size() > 0 && way_ == begun;
+        const Eigen::VectorXd first = is_known ? Eigen::VectorXd(firsts.col(k)) : Eigen::VectorXd();
+        auto x = solve_balanced(right.col(k), side, is_known ? &first : nullptr);
+        if (!x) return tl::unexpected(x.error());
+        result.col(k) = *x;
+    }
+    return result;
+}
+
+Result<Eigen::VectorXd> SystemSolver::solve_balanced(const Eigen::VectorXd& b, Side side,
+                                                     const Eigen::VectorXd* first) {
+    std::optional<Eigen::VectorXd> x = refine(b, side, first);
     if (!x && way_ != Way::double_) {
         levels_.reset();
         begin_surely();
-        return solve(b, side);
+        if (Status status = prepare(); !status) return tl::unexpected(status.error());
+        return solve_balanced(b, side, nullptr);
     }
     if (!x && schur_null_.cols() > 0) return tl::unexpected(redundancy());
     if (!x)
         return failure(
             "the tangent of this state is too near to a singular one to be solved with: it stands near a "
             "limit point or a bifurcation");
-    x->tail(m).array() *= (direct ? column_ : row_).array();
+    x->tail(forces_.cols()).array() *= (side == Side::direct ? column_ : row_).array();
     return std::move(*x);
 }
 

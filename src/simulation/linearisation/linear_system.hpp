@@ -74,6 +74,8 @@ public:
     /// multipliers. Errors: no solution, because redundant cables have conflicting targets; A is singular (a limit
     /// point, a bifurcation, a part that can move freely).
     [[nodiscard]] Result<Eigen::VectorXd> solve(const Eigen::VectorXd& b, Side side);
+    /// The same for each column, (size, k): several cost little more than one.
+    [[nodiscard]] Result<Eigen::MatrixXd> solve_all(const Eigen::MatrixXd& columns, Side side);
 
 private:
     /// How K is solved with, from fastest to most robust.
@@ -98,10 +100,14 @@ private:
     [[nodiscard]] bool is_content() const;
     [[nodiscard]] double level_tolerance() const;
     [[nodiscard]] double allowed_residual() const;
-    [[nodiscard]] std::optional<Eigen::VectorXd> refine(const Eigen::VectorXd& b, Side side) const;
+    [[nodiscard]] Eigen::MatrixXd balanced(const Eigen::MatrixXd& columns, Side side) const;
+    [[nodiscard]] Result<Eigen::VectorXd> solve_balanced(const Eigen::VectorXd& b, Side side,
+                                                         const Eigen::VectorXd* first);
+    [[nodiscard]] std::optional<Eigen::VectorXd> refine(const Eigen::VectorXd& b, Side side,
+                                                        const Eigen::VectorXd* first = nullptr) const;
     [[nodiscard]] Eigen::VectorXd correction(const Eigen::VectorXd& residual, double wanted, Side side) const;
     [[nodiscard]] Eigen::VectorXd multiply(const Eigen::VectorXd& v, Side side) const;
-    [[nodiscard]] Eigen::VectorXd precondition(const Eigen::VectorXd& v, Side side) const;
+    [[nodiscard]] Eigen::MatrixXd precondition(const Eigen::MatrixXd& columns, Side side) const;
     [[nodiscard]] double rounding_of(const Eigen::VectorXd& x, Side side) const;
     [[nodiscard]] bool is_singular() const;
     void take_whole_factor();

@@ -325,13 +325,28 @@ void Linearisation::add_stiffness_beside_tets(const Eigen::VectorXd& v, Eigen::V
     add_skew_product(layout.pattern, skew, v, -1, result);
 }
 
-Result<Change> Linearisation::response(const Derivative& by) {
-    const Result<Eigen::VectorXd> answer = solve(by.equations);
-    if (!answer) return tl::unexpected(answer.error());
-    Change change = change_of(-*answer);
+Change Linearisation::response_of(const Eigen::VectorXd& solved, const Derivative& by) const {
+    Change change = change_of(-solved);
     change.positions += by.direct.positions;
     change.multipliers += by.direct.multipliers;
     return change;
+}
+
+Result<Change> Linearisation::response(const Derivative& by) {
+    const Result<Eigen::VectorXd> answer = solve(by.equations);
+    if (!answer) return tl::unexpected(answer.error());
+    return response_of(*answer, by);
+}
+
+Result<std::vector<Change>> Linearisation::responses(const std::vector<Derivative>& by) {
+    Eigen::MatrixXd columns(size(), static_cast<Eigen::Index>(by.size()));
+    for (std::size_t k = 0; k < by.size(); ++k) columns.col(static_cast<Eigen::Index>(k)) = by[k].equations;
+    const Result<Eigen::MatrixXd> answer = solver().solve_all(columns, Side::direct);
+    if (!answer) return tl::unexpected(answer.error());
+    std::vector<Change> changes;
+    for (std::size_t k = 0; k < by.size(); ++k)
+        changes.push_back(response_of(answer->col(static_cast<Eigen::Index>(k)), by[k]));
+    return changes;
 }
 
 Quantity Linearisation::with_forces(const Quantity& quantity) {
@@ -364,6 +379,21 @@ Result<Adjoint> Linearisation::adjoint(const Quantity& asked) {
     Result<Eigen::VectorXd> weights = solve_transposed(unknowns_of({quantity.by_positions, quantity.by_multipliers}));
     if (!weights) return tl::unexpected(weights.error());
     return Adjoint{quantity, std::move(*weights)};
+}
+
+Result<std::vector<Adjoint>> Linearisation::adjoints(const std::vector<Quantity>& quantities) {
+    std::vector<Adjoint> adjoints;
+    Eigen::MatrixXd columns(size(), static_cast<Eigen::Index>(quantities.size()));
+    for (const Quantity& asked : quantities) {
+        adjoints.push_back({with_forces(asked), {}});
+        const Quantity& quantity = adjoints.back().quantity;
+        columns.col(static_cast<Eigen::Index>(adjoints.size() - 1)) =
+            unknowns_of({quantity.by_positions, quantity.by_multipliers});
+    }
+    const Result<Eigen::MatrixXd> weights = solver().solve_all(columns, Side::transposed);
+    if (!weights) return tl::unexpected(weights.error());
+    for (std::size_t k = 0; k < adjoints.size(); ++k) adjoints[k].weights = weights->col(static_cast<Eigen::Index>(k));
+    return adjoints;
 }
 
 }  // namespace pliant::sim

@@ -148,6 +148,9 @@ public:
     /// Derivative of the whole state with respect to p: the direct part, and -A^-1 dF/dp.
     [[nodiscard]] Result<Change> response(const Derivative& by);
     [[nodiscard]] Result<Adjoint> adjoint(const Quantity& quantity);
+    /// Several of them cost little more than one.
+    [[nodiscard]] Result<std::vector<Change>> responses(const std::vector<Derivative>& by);
+    [[nodiscard]] Result<std::vector<Adjoint>> adjoints(const std::vector<Quantity>& quantities);
     /// The same quantity, with the effect of positions and multipliers on the forces added to by_positions and
     /// by_multipliers; by_forces then only applies to other changes of the forces.
     [[nodiscard]] Quantity with_forces(const Quantity& quantity);
@@ -158,6 +161,7 @@ public:
 private:
     struct Whole;
     Linearisation() = default;
+    [[nodiscard]] Change response_of(const Eigen::VectorXd& solved, const Derivative& by) const;
     void find_unknowns();
     void assemble(const KnownPattern& known);
     void set_constraint(LinearSystem& A, std::size_t k) const;
