@@ -7,6 +7,7 @@
 
 #include "input.hpp"
 #include "printing/host/test_devices.hpp"
+#include "printing/operate/programs.hpp"
 #include "tower.hpp"
 
 namespace {
@@ -37,8 +38,6 @@ struct Bench {
         control.serve_until_idle();
     }
     ControlSetup setup() {
-        Programs programs;
-        programs.cancel = [](const machine::Interlock&) -> Result<std::string> { return "M107 P1\n"; };
         return {tower(),
                 [this]() -> Result<std::unique_ptr<Wire>> {
                     return std::make_unique<host::test::ScriptedWire>(clock, [](const std::string& line) {
@@ -49,7 +48,7 @@ struct Bench {
                 },
                 projector,
                 clock,
-                programs,
+                operate::programs_of(tower()),
                 {},
                 {},
                 {},
