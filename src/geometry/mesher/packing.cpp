@@ -32,7 +32,8 @@ void pack_surface(Packer& out, const std::shared_ptr<const TriangleTree>& surfac
 std::shared_ptr<const TriangleTree> unpack_surface(Unpacker& in) {
     TriMesh surface;
     unpack(in, surface);
-    return surface.triangles.empty() ? nullptr : std::make_shared<const TriangleTree>(std::move(surface));
+    if (!in.good() || surface.triangles.empty()) return nullptr;  // a tree needs points that exist
+    return std::make_shared<const TriangleTree>(std::move(surface));
 }
 
 void pack_faces(Packer& out, const FacetedSurface& faces) {

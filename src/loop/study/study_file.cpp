@@ -32,8 +32,8 @@ bool mentions(const std::vector<std::string>& words, const std::string& what) {
 std::vector<std::string> read_command(Reader& root, const StudyContext& context) {
     std::vector<std::string> words = root.texts("command");
     if (words.empty()) {
-        if (root.has("command"))
-            root.problem("command", "is empty; write its words, as in [\"simulate\", \"finger.toml\"]");
+        root.problem("command", fmt::format("is {}; write its words, as in [\"simulate\", \"finger.toml\"]",
+                                            root.has("command") ? "empty" : "missing"));
         return words;
     }
     if (std::find(context.commands.begin(), context.commands.end(), words[0]) == context.commands.end()) {

@@ -122,6 +122,7 @@ TEST_CASE("a table of rows: its columns are keys of the robot file, or keys of t
 
 TEST_CASE("a mistake in a study file gives one line: where, and what would be right") {
     const std::string rest = "plan = \"grid\"\n" + modulus + tension;
+    CHECK(mistake(rest) == "s.toml:1: command: is missing; write its words, as in [\"simulate\", \"finger.toml\"]");
     CHECK(mistake("comand = [\"simulate\"]\n" + head + rest) ==
           "s.toml:1: comand: unknown key; did you mean \"command\"?");
     CHECK(mistake("command = [\"simualte\"]\n" + rest) ==

@@ -153,6 +153,7 @@ Result<std::string> vat_program(const Interlock& state, const Printer& printer, 
     if (here == 0 || printer.store() == Store::table) {
         if (slot != 0) load_vat(*s, slot);
     } else {
+        if (printer.store() == Store::tower) meet_vat(*s, here);  // it may have been homed since the vat was taken
         if (printer.has_brush()) s->move(Axis::platform, printer.push_um(state.part_height_um()));
         if (slot == 0)
             store_vat(*s, here);

@@ -46,14 +46,28 @@ void put_from_tray(Sequence& s, const Interlock& state) {
     if (vat) ride(s, put_trip(p, p.vats[static_cast<std::size_t>(*vat)].slot));
 }
 
-/// A vat on the hooks goes back into the slot that it came from: the tower has not moved since. A carriage without a
-/// vat only comes out.
+/// The slot into which the vat on the hooks goes: the one that the tower is level with or, if that is none or not
+/// empty, as after homing the tower, its own, which the tower brings.
+int slot_for_vat(Sequence& s, const Interlock& state, int vat) {
+    const Printer& p = s.printer();
+    const machine::Position& at = state.position();
+    const int here = slot_before_carriage(state, p);
+    const bool taken_in =
+        here > 0 && (at[Axis::carriage] == p.carriage.tower_um || at[Axis::tower] == p.level_um(here));
+    if (taken_in && !state.vat_in_slot(here)) return here;
+    const int own = p.vats[static_cast<std::size_t>(vat)].slot;
+    meet_vat(s, own);
+    return own;
+}
+
+/// A vat on the hooks goes into the tower or back to the wall; a carriage without one only comes out.
 void empty_carriage(Sequence& s, const Interlock& state) {
     const Printer& p = s.printer();
     const bool wall = p.store() == machine::Store::wall;
     if (wall) ready_retriever(s, state);
-    const int slot = wall ? 1 : slot_before_carriage(state, p);
-    if (state.hooked_vat()) s.move(Axis::carriage, p.carriage.tower_um);
+    const auto hooked = state.hooked_vat();
+    const int slot = wall ? 1 : hooked ? slot_for_vat(s, state, *hooked) : slot_before_carriage(state, p);
+    if (hooked) s.move(Axis::carriage, p.carriage.tower_um);
     const bool in_tower = s.position()[Axis::carriage] == p.carriage.tower_um;
     if (in_tower) s.magnet(false);
     if (in_tower && slot > 0) s.move(Axis::tower, p.level_um(slot) - p.hooks.travel_um, p.hooks.speed_mm_s);

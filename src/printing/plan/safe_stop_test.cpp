@@ -9,6 +9,7 @@
 #include "printing/machine/gcode.hpp"
 #include "printing/plan/check.hpp"
 #include "printing/plan/plan.hpp"
+#include "printing/plan/recover.hpp"
 #include "printing/plan/test_jobs.hpp"
 
 using namespace pliant;
@@ -37,6 +38,21 @@ struct Program {
     }
     [[nodiscard]] int lines() const { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
 };
+
+/// Continues from a state: tries the moves and outputs of a program on it.
+void run_on(machine::Interlock& state, const machine::Printer& p, const std::string& text) {
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t stop = text.find('\n', begin);
+        const std::string line(machine::strip_comment(text.substr(begin, stop - begin)));
+        begin = stop + 1;
+        if (line.empty()) continue;
+        const auto command = machine::parse_command(line).value();
+        REQUIRE(state.output(command));
+        if (!command.is('G', 1)) continue;
+        const Status moved = state.move(machine::move_target(p, command, state.position()).value());
+        REQUIRE_MESSAGE(moved, (moved ? "" : moved.error().message));
+    }
+}
 
 }  // namespace
 
@@ -91,7 +107,7 @@ TEST_CASE("property: from any state that manual control allows, the machine can 
                 const bool at_wall = p.store() == machine::Store::wall && random() % 2 == 0;
                 const int level_um = p.has_carriage() ? (at_wall ? p.row_um(slot) : p.level_um(slot)) : 0;
                 const int low_um = level_um - (at_wall ? p.wall.lift_off_um : p.hooks.travel_um);
-                switch (random() % 8) {
+                switch (random() % 9) {
                     case 0:
                         to[machine::Axis::platform] = z[random() % 3];
                         break;
@@ -113,6 +129,9 @@ TEST_CASE("property: from any state that manual control allows, the machine can 
                     case 6:
                         if (p.hooks.magnet.present()) (void)state.magnet(random() % 2 == 0);
                         break;
+                    case 7:
+                        if (p.has_carriage()) (void)state.home(machine::Axis::tower);
+                        break;
                     default:
                         (void)state.pump(random() % 2 == 0);
                 }
@@ -120,19 +139,8 @@ TEST_CASE("property: from any state that manual control allows, the machine can 
             }
             const std::string end = cancel_program(state, p);
             CAPTURE(end);
-            // The program continues from here: its moves are tried on a copy of the state.
             machine::Interlock copy = state;
-            for (std::size_t begin = 0; begin < end.size();) {
-                const std::size_t stop = end.find('\n', begin);
-                const std::string line(machine::strip_comment(end.substr(begin, stop - begin)));
-                begin = stop + 1;
-                if (line.empty()) continue;
-                const auto command = machine::parse_command(line).value();
-                REQUIRE(copy.output(command));
-                if (!command.is('G', 1)) continue;
-                const Status moved = copy.move(machine::move_target(p, command, copy.position()).value());
-                REQUIRE_MESSAGE(moved, (moved ? "" : moved.error().message));
-            }
+            run_on(copy, p, end);
             if (!p.has_carriage()) continue;
             // A manual operation may have put a vat into another slot.
             std::size_t stored = 0;
@@ -140,4 +148,24 @@ TEST_CASE("property: from any state that manual control allows, the machine can 
             CHECK(stored == p.vats.size());
         }
     }
+}
+
+TEST_CASE("a tower that was homed while its vat was out takes that vat back") {
+    int towers = 0;
+    for (const machine::Printer& p : plan::test::machines()) {
+        if (p.store() != machine::Store::tower) continue;
+        machine::Interlock out(p);
+        for (const machine::Axis axis : machine::homing_order(p)) REQUIRE(out.home(axis));
+        const int slot = p.vats.back().slot;
+        run_on(out, p, vat_program(out, p, slot).value());
+        REQUIRE(out.hooked_vat());
+        if (!out.home(machine::Axis::tower)) continue;
+        ++towers;
+        machine::Interlock cancelled = out, put_away = out;
+        run_on(cancelled, p, cancel_program(out, p));
+        CHECK(cancelled.vat_in_slot(slot));
+        run_on(put_away, p, vat_program(out, p, 0).value());
+        CHECK(put_away.vat_in_slot(slot));
+    }
+    CHECK(towers > 0);
 }
