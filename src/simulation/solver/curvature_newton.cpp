@@ -392,7 +392,7 @@ private:
         tangent_ = matrix.tangent;
         positions_ = system_->free_positions(tangent_->state.x);
         has_tangent_ = has_projection_ = false;
-        (void)set_levels(matrix.share, reuse);
+        if (!set_levels(matrix.share, reuse)) usable_ = false;  // of a state that was tampered with
     }
 
     void recall_tangent(const TangentInverse::Memory& memory) {
@@ -402,7 +402,7 @@ private:
             assemble(true, projected_);
             blend();
         }
-        inverse_->recall(share_ > 0 ? blended_.span() : values_.span(), positions_, memory);
+        inverse_->recall(share_ > 0 ? blended_.span() : values_.span(), memory);
     }
 
     /// Adds its share of the projection to the tangent.

@@ -59,7 +59,7 @@ public:
 
     [[nodiscard]] Memory memory() const override { return {!is_single(), untried_, known_error_, trusted_, refusals_}; }
 
-    void recall(std::span<const double> values, const Eigen::VectorXd&, const Memory& memory) override {
+    void recall(std::span<const double> values, const Memory& memory) override {
         factor_.use(memory.in_double ? linalg::Precision::double_ : linalg::Precision::single_);
         (void)factorise(values);
         restore(memory);
@@ -136,10 +136,6 @@ public:
 
     [[nodiscard]] Memory memory() const override { return {.usual_gain = levels_.usual_gain()}; }
     void restore(const Memory& memory) override { levels_.set_usual_gain(memory.usual_gain); }
-    void recall(std::span<const double> values, const Eigen::VectorXd& positions, const Memory& memory) override {
-        (void)set(values, positions, Effort::usual);
-        restore(memory);
-    }
 
     /// Setting a new matrix is nearly free.
     [[nodiscard]] double factorisation_cost() const override { return 0; }

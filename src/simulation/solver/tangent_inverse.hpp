@@ -67,7 +67,7 @@ public:
     /// Restores it; the current factor must be the one that it belongs to.
     virtual void restore(const Memory& memory) = 0;
     /// As set(), with a matrix that was set before and the memory saved after that. Precondition: not keeps_matrix().
-    virtual void recall(std::span<const double> values, const Eigen::VectorXd& positions, const Memory& memory) = 0;
+    virtual void recall(std::span<const double> values, const Memory& memory) { (void)values, (void)memory; }
     /// Cost of setting a matrix and solving, relative to a solve with an existing factor.
     [[nodiscard]] virtual double factorisation_cost() const = 0;
 };
