@@ -17,7 +17,7 @@ public:
     [[nodiscard]] bool set(std::span<const double> values, std::span<const double>, Reuse) override {
         if (factor_.precision() == Precision::double_) factor_.use(Precision::single_);
         bool found = factor_.factorise(values);
-        if (!found && factor_.precision() == Precision::single_) {
+        if (!found) {
             factor_.use(Precision::double_);
             found = factor_.factorise(values);
         }

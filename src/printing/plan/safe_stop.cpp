@@ -52,9 +52,9 @@ int slot_for_vat(Sequence& s, const Interlock& state, int vat) {
     const Printer& p = s.printer();
     const machine::Position& at = state.position();
     const int here = slot_before_carriage(state, p);
-    const bool taken_in =
+    const bool is_ready =
         here > 0 && (at[Axis::carriage] == p.carriage.tower_um || at[Axis::tower] == p.level_um(here));
-    if (taken_in && !state.vat_in_slot(here)) return here;
+    if (is_ready && !state.vat_in_slot(here)) return here;
     const int own = p.vats[static_cast<std::size_t>(vat)].slot;
     meet_vat(s, own);
     return own;

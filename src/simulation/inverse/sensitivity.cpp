@@ -98,6 +98,11 @@ Eigen::VectorXd Sensitivity::product(std::vector<Known>& known, const Eigen::Vec
     return result + left * known.back().product;
 }
 
+Eigen::VectorXd Sensitivity::direct_product(const Eigen::VectorXd& inputs) {
+    return product(direct_, inputs, rows_.by_inputs.rows(),
+                   [&](const Eigen::VectorXd& direction) { return solved_product(direction); });
+}
+
 Eigen::VectorXd Sensitivity::multiply(const Eigen::VectorXd& inputs) {
     solve_few();
     const Eigen::Index rows = rows_.by_inputs.rows();
@@ -106,8 +111,7 @@ Eigen::VectorXd Sensitivity::multiply(const Eigen::VectorXd& inputs) {
         for (Eigen::Index r = 0; r < rows; ++r)
             result[r] = transposed_[static_cast<std::size_t>(r)].product.dot(inputs);
     } else {
-        result =
-            product(direct_, inputs, rows, [&](const Eigen::VectorXd& direction) { return solved_product(direction); });
+        result = direct_product(inputs);
     }
     for (const Learnt& more : learnt_) result += more.rows * more.inputs.dot(inputs);
     return result;
@@ -147,8 +151,7 @@ Eigen::VectorXd Sensitivity::product_of(const Eigen::VectorXd& direction, const 
 }
 
 State Sensitivity::expected(const Stepper& stepper, const State& now, const Eigen::VectorXd& inputs) {
-    (void)product(direct_, inputs, rows_.by_inputs.rows(),
-                  [&](const Eigen::VectorXd& direction) { return solved_product(direction); });
+    (void)direct_product(inputs);  // the direction is known from here on
     const Equilibrium& system = stepper.system();
     State next = now;
     Eigen::VectorXd motion = Eigen::VectorXd::Zero(now.x.size());

@@ -59,6 +59,7 @@ private:
     }
 
     [[nodiscard]] Derivative derivative(const Eigen::VectorXd& direction) const;
+    [[nodiscard]] Eigen::VectorXd direct_product(const Eigen::VectorXd& inputs);
     [[nodiscard]] Eigen::VectorXd solved_product(const Eigen::VectorXd& direction);
     [[nodiscard]] Eigen::VectorXd product_of(const Eigen::VectorXd& direction, const Change& change) const;
     [[nodiscard]] Eigen::VectorXd product_of(const Eigen::VectorXd& rows, const Adjoint& adjoint) const;
