@@ -57,10 +57,14 @@ double InputSpace::drive_factor(Eigen::Index i) const {
     return system.drive(in.actuator, in.high).value - system.drive(in.actuator, in.low).value;
 }
 
+bool InputSpace::can_slacken(const RobotState& robot, Eigen::Index i) const {
+    const std::size_t a = input(i).actuator;
+    return robot.inputs.drives[a].kind == Drive::Kind::measure && stepper_->system().actuators()[a].only_pulls();
+}
+
 bool InputSpace::is_slack(const RobotState& robot, Eigen::Index i) const {
     const std::size_t a = input(i).actuator;
-    return robot.inputs.drives[a].kind == Drive::Kind::measure && stepper_->system().actuators()[a].only_pulls() &&
-           !(robot.now.state.multiplier[static_cast<Eigen::Index>(a)] > 0);
+    return can_slacken(robot, i) && !(robot.now.state.multiplier[static_cast<Eigen::Index>(a)] > 0);
 }
 
 void InputSpace::take_up(RobotState& robot, Eigen::VectorXd& shares) const {

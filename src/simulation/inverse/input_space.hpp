@@ -29,6 +29,8 @@ public:
     /// Inputs of the whole robot: everything that is not steered follows the program.
     [[nodiscard]] Inputs inputs(const Eigen::VectorXd& shares, double time) const;
 
+    /// True for a cable that is driven by length.
+    [[nodiscard]] bool can_slacken(const RobotState& robot, Eigen::Index i) const;
     /// True for a cable that is driven by length and slack.
     [[nodiscard]] bool is_slack(const RobotState& robot, Eigen::Index i) const;
     /// True if a larger entry means a longer cable, or more air.

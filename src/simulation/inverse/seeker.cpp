@@ -14,6 +14,7 @@ constexpr double good = 0.75, poor = 0.25, none = 1e-4;  // ratios of actual to 
 constexpr double most_bent = 3;                          // times the length of the step at which the curvature was
                                                          // measured
 constexpr double quick = 0.15;      // remaining cost after a step with a linearisation that may be reused
+constexpr int slack_rounds = 3;     // per step: taking cables for slack may let others push
 constexpr int most_moves = 60;      // for one waypoint
 constexpr double price_room = 0.1;  // of the cost at one tolerance
 constexpr double widened = 30;      // tolerances while the penalty is being lowered
@@ -151,6 +152,10 @@ bool Seeker::treats_as_it_is(const Point& point) const {
     return true;
 }
 
+void Seeker::use_rows(const Search& search) {
+    sensitivity_->use(rows_.gradients(sensitivity_->at(), search.waypoint, search.price));
+}
+
 /// Linearises at `now`. The length of a slack cable has no effect until it is taut: cables that help by pulling are
 /// treated as taut.
 bool Seeker::linearise(Search& search) {
@@ -172,10 +177,7 @@ bool Seeker::linearise(Search& search) {
     auto made = Sensitivity::create(*stepper_, space_, search.now.robot);
     if (!made) return false;
     sensitivity_.emplace(std::move(*made));
-    const auto use_rows = [&] {
-        sensitivity_->use(rows_.gradients(sensitivity_->at(), search.waypoint, search.price));
-    };
-    use_rows();
+    use_rows(search);
     price_factor_ = search.price.factor;
     if (!slack_cables.empty()) {
         const Eigen::VectorXd by_tension = sensitivity_->by_tensions(search.residuals, slack_cables);
@@ -187,7 +189,7 @@ bool Seeker::linearise(Search& search) {
         }
         if (!helpful.empty()) {
             sensitivity_->tighten(space_, helpful);
-            use_rows();
+            use_rows(search);
         }
     }
     pulls_.assign(count, true);
@@ -225,8 +227,8 @@ Seeker::Trial Seeker::attempt(const Search& search, const Eigen::VectorXd& step,
     return trial;
 }
 
-/// The best step within the bounds and the trust region; inputs not treated as pulling stay fixed.
-BoundedStep Seeker::best_step(const Search& search) {
+/// The best step from residuals within the bounds and the trust region; inputs not treated as pulling stay fixed.
+BoundedStep Seeker::bounded(const Search& search, const Eigen::VectorXd& residuals) {
     Eigen::VectorXd lower = search.bounds->lower - search.now.inputs, upper = search.bounds->upper - search.now.inputs;
     for (Eigen::Index i = 0; i < space_.size(); ++i) {
         const bool pulls = pulls_[static_cast<std::size_t>(i)];
@@ -236,22 +238,74 @@ BoundedStep Seeker::best_step(const Search& search) {
         if (space_.is_slack(search.now.robot, i)) (space_.drives_longer(i) ? upper : lower)[i] = 0;
     }
     constexpr double accuracy = 1e-4;
-    const auto least = [&](const Eigen::VectorXd& residuals) {
-        return bounded_step(
-            residuals, [&](const Eigen::VectorXd& v) { return sensitivity_->multiply(v); },
-            [&](const Eigen::VectorXd& w) { return sensitivity_->multiply_transposed(w); }, lower, upper, accuracy,
-            search.is_priced() ? 0 : 0.1 * aim);
-    };
-    const BoundedStep straight = least(search.residuals);
-    if (has_memory_ || search.is_priced() || search.trials > 0 || !bend_) return straight;
-    const double share = bend_->step.dot(straight.step) / bend_->step.squaredNorm();
-    if (!(std::fabs(share) < most_bent)) return straight;
-    // Nonlinear part of the residuals, as observed on the step to this waypoint.
-    const Eigen::VectorXd beside = search.residuals + share * share * bend_->miss;
-    BoundedStep bent = least(beside);
-    bent.decrease = search.cost - 0.5 * (beside + bent.change).squaredNorm();
+    BoundedStep step = bounded_step(
+        residuals, [&](const Eigen::VectorXd& v) { return sensitivity_->multiply(v); },
+        [&](const Eigen::VectorXd& w) { return sensitivity_->multiply_transposed(w); }, lower, upper, accuracy,
+        search.is_priced() ? 0 : 0.1 * aim);
+    step.decrease = search.cost - 0.5 * (residuals + step.change).squaredNorm();
+    return step;
+}
+
+/// Cables that are treated as taut and would push after the step.
+std::vector<std::size_t> Seeker::pushing(const Search& search, const Eigen::VectorXd& step) {
+    std::vector<std::size_t> cables;
+    const Eigen::VectorXd expected = sensitivity_->expected_multipliers(search.now.robot.now.state, step);
+    for (Eigen::Index i = 0; i < space_.size(); ++i) {
+        const std::size_t a = space_.input(i).actuator;
+        if (!pulls_[static_cast<std::size_t>(i)] || !space_.can_slacken(search.now.robot, i)) continue;
+        if (expected[static_cast<Eigen::Index>(a)] < 0) cables.push_back(static_cast<std::size_t>(i));
+    }
+    return cables;
+}
+
+/// A step that takes the tension of cables below zero is computed again with these cables slack.
+BoundedStep Seeker::best_step(const Search& search) {
+    slackened_.clear();
+    Eigen::VectorXd released = sensitivity_->release({}, search.now.robot.now.state);
+    BoundedStep best = bent(search, released);
+    const Eigen::VectorXd gradient = best.gradient;
+    for (int round = 0; round < slack_rounds; ++round) {
+        const std::vector<std::size_t> more = pushing(search, best.step);
+        if (more.empty()) break;
+        for (const std::size_t i : more) {
+            pulls_[i] = false;
+            slackened_.push_back(space_.input(static_cast<Eigen::Index>(i)).actuator);
+        }
+        sensitivity_->slacken(space_, slackened_);
+        use_rows(search);
+        released = sensitivity_->release(slackened_, search.now.robot.now.state);
+        best = bent(search, released);
+    }
+    best.change += released;
+    best.gradient = gradient;
+    return best;
+}
+
+/// The best step with the residuals' nonlinear part as it was observed on the step to this waypoint, unless that makes
+/// little sense here. `beside`: a change of the residuals besides that of the step.
+BoundedStep Seeker::bent(const Search& search, const Eigen::VectorXd& beside) {
+    const Eigen::VectorXd residuals = search.residuals + beside;
+    const BoundedStep straight = bounded(search, residuals);
+    const double share = share_of_bend(search, straight.step);
+    if (share == 0) return straight;
+    BoundedStep bent = bounded(search, residuals + share * share * bend_->miss);
     bent.gradient = straight.gradient;
     return bent.decrease > good * straight.decrease ? bent : straight;
+}
+
+/// A step's length along the one that the bend was observed on; 0 where that says nothing about it.
+double Seeker::share_of_bend(const Search& search, const Eigen::VectorXd& step) const {
+    if (has_memory_ || search.is_priced() || search.trials > 0 || !bend_) return 0;
+    const double share = bend_->step.dot(step) / bend_->step.squaredNorm();
+    return std::fabs(share) < most_bent ? share : 0;
+}
+
+/// True if the inputs are these, other than those of cables that are treated as slack.
+bool Seeker::is_at(const Point& point, const Eigen::VectorXd& inputs) const {
+    for (Eigen::Index i = 0; i < inputs.size(); ++i) {
+        if (pulls_[static_cast<std::size_t>(i)] && !(std::fabs(point.inputs[i] - inputs[i]) < 1e-9)) return false;
+    }
+    return true;
 }
 
 /// Accepts the trial if it is better, and adapts the trust region. True: the sensitivity can be used for another step.
@@ -265,13 +319,14 @@ bool Seeker::judge(Search& search, const BoundedStep& step, Trial trial) {
     else if (ratio > good && length > 0.9 * radius_)
         radius_ = std::min(2 * radius_, largest_radius);
     search.no_state = trial.arrived ? "" : trial.reason;
-    if (!(ratio > none)) return search.fresh;
-    const bool as_asked = trial.arrived && trial.point->inputs.isApprox(search.now.inputs + step.step, 1e-9);
+    // Cables that were taken for slack at the end of a long step need not be so after a short one.
+    if (!(ratio > none)) return search.fresh && slackened_.empty();
+    const bool as_asked = trial.arrived && is_at(*trial.point, search.now.inputs + step.step);
     if (as_asked) {
         const Eigen::VectorXd miss = residuals - search.residuals - step.change;
         // The slope at the end of a parabola deviates by twice as much as the chord.
         sensitivity_->learn(step.step, 2 * miss);
-        if (search.trials == 1 && !search.is_priced()) bend_ = Bend{step.step, miss};
+        if (search.trials == 0 && !search.is_priced()) bend_ = Bend{step.step, miss};
     }
     const bool was_quick = cost <= quick * search.cost;
     search.now = std::move(*trial.point);
@@ -300,13 +355,13 @@ void Seeker::minimise(Search& search, const Progress& progress) {
             continue;
         }
         ++moves;
-        ++search.trials;
         Trial trial = attempt(search, step.step, progress);
         if (progress.cancelled() && !trial.arrived) {
             search.cancelled = true;
             return;
         }
         usable = judge(search, step, std::move(trial));
+        ++search.trials;
     }
 }
 

@@ -88,7 +88,13 @@ private:
     [[nodiscard]] bool linearise(Search& search);
     [[nodiscard]] bool treats_as_it_is(const Point& point) const;
     [[nodiscard]] Trial attempt(const Search& search, const Eigen::VectorXd& step, const Progress& progress);
+    void use_rows(const Search& search);
+    [[nodiscard]] BoundedStep bounded(const Search& search, const Eigen::VectorXd& residuals);
+    [[nodiscard]] BoundedStep bent(const Search& search, const Eigen::VectorXd& beside);
+    [[nodiscard]] double share_of_bend(const Search& search, const Eigen::VectorXd& step) const;
+    [[nodiscard]] std::vector<std::size_t> pushing(const Search& search, const Eigen::VectorXd& step);
     [[nodiscard]] BoundedStep best_step(const Search& search);
+    [[nodiscard]] bool is_at(const Point& point, const Eigen::VectorXd& inputs) const;
     [[nodiscard]] bool judge(Search& search, const BoundedStep& step, Trial trial);
     [[nodiscard]] std::vector<Limit> limits(const Search& search) const;
     [[nodiscard]] double cost_of(const Search& search, const Point& point, Eigen::VectorXd& residuals) const;
@@ -100,8 +106,9 @@ private:
     bool has_memory_;  ///< with friction the path matters
     std::optional<Sensitivity> sensitivity_;
     std::vector<bool> pulls_;  ///< (inputs) which cables the sensitivity treats as taut; true for all other inputs
-    double price_factor_ = 0;  ///< penalty factor in the sensitivity's rows
-    bool is_proven_ = false;   ///< one step led to the last waypoint, so the sensitivity may be reused for the next one
+    std::vector<std::size_t> slackened_;  ///< actuators that the current step takes for slack at its end
+    double price_factor_ = 0;             ///< penalty factor in the sensitivity's rows
+    bool is_proven_ = false;  ///< one step led to the last waypoint, so the sensitivity may be reused for the next one
     struct Bend {
         Eigen::VectorXd step;  ///< (inputs)
         Eigen::VectorXd miss;  ///< (rows) deviation of the solved residuals from the linear prediction

@@ -30,6 +30,47 @@ void Sensitivity::tighten(const InputSpace& space, const std::vector<std::size_t
     by_ = space.derivatives(at_);
 }
 
+void Sensitivity::slacken(const InputSpace& space, const std::vector<std::size_t>& cables) {
+    at_.slacken(cables);
+    by_ = space.derivatives(at_);
+}
+
+Eigen::VectorXd Sensitivity::release(const std::vector<std::size_t>& cables, const State& now) {
+    released_.reset();
+    if (cables.empty()) return Eigen::VectorXd::Zero(rows_.by_inputs.rows());
+    Change sum = no_change();
+    const std::vector<Change> by_tension = responses_to_tensions(cables);
+    for (std::size_t k = 0; k < by_tension.size(); ++k) {
+        const double tension = now.multiplier[static_cast<Eigen::Index>(cables[k])];
+        sum.positions -= tension * by_tension[k].positions;
+        sum.multipliers -= tension * by_tension[k].multipliers;
+    }
+    released_ = std::move(sum);
+    return rows_of(*released_);
+}
+
+/// Of the state to each tension of slack cables, as if it were prescribed; empty on an error.
+std::vector<Change> Sensitivity::responses_to_tensions(const std::vector<std::size_t>& cables) {
+    std::vector<Derivative> by;
+    for (const std::size_t a : cables) {
+        Change one = no_change();
+        one.multipliers[static_cast<Eigen::Index>(a)] = 1;
+        by.push_back({-at_.unknowns_of(one), no_change()});
+    }
+    Result<std::vector<Change>> changes = at_.responses(by);
+    if (changes) return std::move(*changes);
+    status_ = tl::unexpected(changes.error());
+    return {};
+}
+
+Change Sensitivity::no_change() const {
+    return {Eigen::VectorXd::Zero(at_.state().x.size()), Eigen::VectorXd::Zero(at_.state().multiplier.size())};
+}
+
+Eigen::VectorXd Sensitivity::rows_of(const Change& change) const {
+    return rows_.by_positions * change.positions + rows_.by_multipliers * change.multipliers;
+}
+
 void Sensitivity::use(RowGradients rows) {
     rows_ = std::move(rows);
     learnt_.clear();
@@ -43,15 +84,22 @@ void Sensitivity::use(RowGradients rows) {
 void Sensitivity::solve_few() {
     if (std::exchange(begun_, true)) return;
     const Eigen::Index inputs = rows_.by_inputs.cols(), rows = rows_.by_inputs.rows();
-    if (inputs <= std::min(rows, most_at_once))
+    if (inputs <= std::min(rows, most_at_once) || drive_constraints())
         solve_for_inputs();
     else if (rows <= most_at_once)
         solve_for_rows();
 }
 
+/// True if no input acts on nodes directly: the responses are then combinations of those to the multipliers, which are
+/// known.
+bool Sensitivity::drive_constraints() const {
+    const Eigen::Index motions = at_.size() - static_cast<Eigen::Index>(at_.solved().size());
+    return std::ranges::all_of(by_, [&](const Derivative& by) { return by.equations.head(motions).isZero(0); });
+}
+
 void Sensitivity::solve_for_inputs() {
     const Eigen::Index count = rows_.by_inputs.cols();
-    solutions_ += static_cast<int>(count);
+    if (!drive_constraints()) solutions_ += static_cast<int>(count);
     Result<std::vector<Change>> changes = at_.responses(by_);
     if (!changes) {
         status_ = tl::unexpected(changes.error());
@@ -146,21 +194,30 @@ Eigen::VectorXd Sensitivity::solved_product(const Eigen::VectorXd& direction) {
 }
 
 Eigen::VectorXd Sensitivity::product_of(const Eigen::VectorXd& direction, const Change& change) const {
-    return rows_.by_inputs * direction + rows_.by_positions * change.positions +
-           rows_.by_multipliers * change.multipliers;
+    return rows_.by_inputs * direction + rows_of(change);
+}
+
+/// Of the state, with these inputs and as cables let go.
+Change Sensitivity::change_along(const Eigen::VectorXd& inputs) {
+    (void)direct_product(inputs);  // the direction is known from here on
+    Change sum = released_ ? *released_ : no_change();
+    for (std::size_t k = 0; k < direct_.size(); ++k) {
+        const double share = direct_[k].direction.dot(inputs);
+        sum.positions += share * changes_[k].positions;
+        sum.multipliers += share * changes_[k].multipliers;
+    }
+    return sum;
+}
+
+Eigen::VectorXd Sensitivity::expected_multipliers(const State& now, const Eigen::VectorXd& inputs) {
+    return now.multiplier + change_along(inputs).multipliers;
 }
 
 State Sensitivity::expected(const Stepper& stepper, const State& now, const Eigen::VectorXd& inputs) {
-    (void)direct_product(inputs);  // the direction is known from here on
     const Equilibrium& system = stepper.system();
-    State next = now;
-    Eigen::VectorXd motion = Eigen::VectorXd::Zero(now.x.size());
-    for (std::size_t k = 0; k < direct_.size(); ++k) {
-        const double share = direct_[k].direction.dot(inputs);
-        motion += share * changes_[k].positions;
-        next.multiplier += share * changes_[k].multipliers;
-    }
-    Eigen::MatrixXd turned = system.restrict_to_free(motion);
+    const Change change = change_along(inputs);
+    State next{now.x, now.multiplier + change.multipliers};
+    Eigen::MatrixXd turned = system.restrict_to_free(change.positions);
     if (now.x != at_.state().x) {
         BodyRotation rotation(system, stepper.laplacian());
         rotation.begin(at_.state().x);
@@ -214,15 +271,9 @@ Eigen::VectorXd Sensitivity::multiply_transposed(const Eigen::VectorXd& rows) {
 
 Eigen::VectorXd Sensitivity::by_tensions(const Eigen::VectorXd& rows, const std::vector<std::size_t>& cables) {
     Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(cables.size()));
-    const std::optional<Adjoint> solved = adjoint(rows);
-    if (!solved) return result;
-    const Eigen::VectorXd weights = at_.change_of(solved->weights).positions;
-    for (std::size_t k = 0; k < cables.size(); ++k) {
-        Eigen::VectorXd force = Eigen::VectorXd::Zero(weights.size());
-        at_.system().actuators()[cables[k]].add_gradient(linalg::view(at_.state().x), 1, linalg::view(force),
-                                                         at_.controls().shares[cables[k]]);
-        result[static_cast<Eigen::Index>(k)] = -weights.dot(force);
-    }
+    const std::vector<Change> by_tension = responses_to_tensions(cables);
+    for (std::size_t k = 0; k < by_tension.size(); ++k)
+        result[static_cast<Eigen::Index>(k)] = rows.dot(rows_of(by_tension[k]));
     return result;
 }
 

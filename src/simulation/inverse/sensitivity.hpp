@@ -21,6 +21,11 @@ public:
                                                     const RobotState& robot);
     /// Treats these cables as taut although they are slack: as if they had just become taut. use() must follow.
     void tighten(const InputSpace& space, const std::vector<std::size_t>& cables);
+    /// Treats these cables as slack although they are taut. use() must follow.
+    void slacken(const InputSpace& space, const std::vector<std::size_t>& cables);
+    /// (rows) the change of the residuals as slackened cables lose the tensions that they have in `now`. Until the next
+    /// call, predictions contain it too.
+    [[nodiscard]] Eigen::VectorXd release(const std::vector<std::size_t>& cables, const State& now);
 
     /// Sets the rows of residuals of a waypoint; the linearisation is kept, Broyden updates are discarded.
     void use(RowGradients rows);
@@ -37,9 +42,11 @@ public:
     /// `miss`: difference between the observed change and the product with `inputs`. Corrects the product by the
     /// smallest update that removes it (Broyden 1965).
     void learn(const Eigen::VectorXd& inputs, const Eigen::VectorXd& miss);
-    /// Predicted state of a nearby robot after a change of its inputs.
+    /// (actuators) predicted for a nearby robot after a change of its inputs: negative for a cable that would push.
+    [[nodiscard]] Eigen::VectorXd expected_multipliers(const State& now, const Eigen::VectorXd& inputs);
+    /// Its predicted state, in which no cable pushes.
     [[nodiscard]] State expected(const Stepper& stepper, const State& now, const Eigen::VectorXd& inputs);
-    /// Number of solves with the linearised equations.
+    /// Number of solves with the linearised equations; combinations of what is known are none.
     [[nodiscard]] int solutions() const { return solutions_; }
 
 private:
@@ -48,6 +55,10 @@ private:
     static constexpr Eigen::Index most_at_once = 6;
     [[nodiscard]] Quantity quantity(const Eigen::VectorXd& rows) const;
     [[nodiscard]] std::optional<Adjoint> adjoint(const Eigen::VectorXd& rows);
+    [[nodiscard]] Change no_change() const;
+    [[nodiscard]] Eigen::VectorXd rows_of(const Change& change) const;
+    [[nodiscard]] std::vector<Change> responses_to_tensions(const std::vector<std::size_t>& cables);
+    [[nodiscard]] bool drive_constraints() const;
     void solve_few();
     void solve_for_inputs();
     void solve_for_rows();
@@ -60,6 +71,7 @@ private:
 
     [[nodiscard]] Derivative derivative(const Eigen::VectorXd& direction) const;
     [[nodiscard]] Eigen::VectorXd direct_product(const Eigen::VectorXd& inputs);
+    [[nodiscard]] Change change_along(const Eigen::VectorXd& inputs);
     [[nodiscard]] Eigen::VectorXd solved_product(const Eigen::VectorXd& direction);
     [[nodiscard]] Eigen::VectorXd product_of(const Eigen::VectorXd& direction, const Change& change) const;
     [[nodiscard]] Eigen::VectorXd product_of(const Eigen::VectorXd& rows, const Adjoint& adjoint) const;
@@ -79,7 +91,8 @@ private:
     std::vector<Derivative> by_;
     bool begun_ = false;  ///< solve_few() was called
     std::vector<Known> direct_, transposed_;
-    std::vector<Change> changes_;  ///< of the state, along each of direct_
+    std::vector<Change> changes_;     ///< of the state, along each of direct_
+    std::optional<Change> released_;  ///< of the state, as cables let go
     std::vector<Learnt> learnt_;
     Status status_;
     int solutions_ = 0;

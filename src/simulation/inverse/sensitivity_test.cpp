@@ -18,14 +18,21 @@ using namespace pliant::sim::inverse::testing;
 
 namespace {
 
+using Kind = CableTarget::Kind;
+
 /// A bar with three cables, of which two pull; or with more of them, which are slack.
 struct Pulled {
-    explicit Pulled(int cables = 3) : model(made(with(cables))), shares(Eigen::VectorXd::Ones(cables)) {
+    explicit Pulled(int cables = 3, Kind kind = Kind::length_ratio)
+        : model(made(with(cables, kind))),
+          task(task_for(model, std::vector<std::pair<double, double>>(
+                                   static_cast<std::size_t>(cables),
+                                   kind == Kind::length_ratio ? std::pair(0.75, 1.0) : std::pair(0.0, 10.0)))),
+          shares(Eigen::VectorXd::Constant(cables, kind == Kind::length_ratio ? 1 : 0)) {
         shares[0] = 0.6;
         shares[2] = 0.5;
         task.goals = {at_point({0.055, 0.005, 0.02})};
         robot = at(shares, nullptr, nullptr);
-        REQUIRE(space.is_slack(robot, 1));
+        REQUIRE(space.is_slack(robot, 1) == (kind == Kind::length_ratio));
     }
 
     [[nodiscard]] RobotState at(const Eigen::VectorXd& wanted, const State* expected, int* iterations) {
@@ -43,17 +50,16 @@ struct Pulled {
         return std::move(*made);
     }
 
-    [[nodiscard]] static Description with(int cables) {
-        Description d = bar(std::min(cables, 4));
+    [[nodiscard]] static Description with(int cables, Kind kind) {
+        Description d = bar(std::min(cables, 4), 1, kind);
         for (int k = 4; k < cables; ++k)
             d.cables.push_back(cable_at(d.mesh, fmt::format("cable {}", k), 0.003 + 0.001 * (k - 4), 0.006,
-                                        {CableTarget::Kind::length_ratio, 1}));
+                                        {kind, kind == Kind::length_ratio ? 1.0 : 0.0}));
         return d;
     }
 
     Model model;
-    InverseTask task =
-        task_for(model, std::vector<std::pair<double, double>>(model.description().cables.size(), {0.75, 1}));
+    InverseTask task;
     Stepper stepper{model, tight};
     InputSpace space{stepper, task};
     GoalRows rows{stepper, task, space};
@@ -64,7 +70,7 @@ struct Pulled {
 }  // namespace
 
 TEST_CASE("few inputs, or few residuals, are solved for at once, and are the same as one by one") {
-    Pulled bar;
+    Pulled bar(3, Kind::tension_N);
     const Eigen::Vector3d a(1, 0.2, 0), b(0.1, 0, -1);
     Sensitivity by_inputs = bar.sensitivity(), by_rows = bar.sensitivity();
     RowGradients two = bar.rows.gradients(by_rows.at(), 0, {});
@@ -94,8 +100,26 @@ TEST_CASE("few inputs, or few residuals, are solved for at once, and are the sam
     CHECK((whole - sum).norm() < 1e-3 * sum.norm());
 }
 
-TEST_CASE("of many inputs and residuals, combinations of solved directions need no further solution") {
+TEST_CASE("lengths only act through the multipliers, whose responses are known without a further solution") {
     Pulled bar(7);
+    Sensitivity at = bar.sensitivity();
+    const Eigen::VectorXd step = Eigen::VectorXd::LinSpaced(7, -1, 0.2);
+    const Eigen::VectorXd rows = at.multiply(step);
+    CHECK(at.solutions() == 0);
+    const std::vector<Derivative> derivatives = bar.space.derivatives(at.at());
+    Derivative sum = derivatives[0];
+    for (Eigen::VectorXd* part : {&sum.equations, &sum.direct.positions, &sum.direct.multipliers}) part->setZero();
+    for (Eigen::Index i = 0; i < 7; ++i) sum.equations += step[i] * derivatives[static_cast<std::size_t>(i)].equations;
+    const RowGradients gradients = bar.rows.gradients(at.at(), 0, {});
+    Linearisation exact = *Linearisation::create(bar.stepper.system(), bar.robot.now.state, bar.robot.controls);
+    const Result<Change> change = exact.response(sum);
+    REQUIRE(change);
+    const Eigen::VectorXd one = gradients.by_positions * change->positions;
+    CHECK((rows - one).norm() < 1e-4 * one.norm());
+}
+
+TEST_CASE("of many inputs and residuals, combinations of solved directions need no further solution") {
+    Pulled bar(7, Kind::tension_N);
     Sensitivity known = bar.sensitivity(), fresh = bar.sensitivity();
     RowGradients many = bar.rows.gradients(known.at(), 0, {});
     const Eigen::SparseMatrix<double, Eigen::RowMajor> three = many.by_positions;
@@ -149,6 +173,33 @@ TEST_CASE("the predicted state's error is quadratic in the step, and the step fr
     };
     const double whole = off(0.08), half = off(0.04);
     CHECK(half < 0.3 * whole);
+}
+
+TEST_CASE("a step that lets a cable go slack is predicted with the cable slack") {
+    Pulled bar;
+    bar.shares[2] = 0.6;
+    bar.robot = bar.at(bar.shares, nullptr, nullptr);
+    Eigen::Vector3d step(0, 0, 0);
+    step[2] = 0.9 * (1 - bar.shares[2]);  // the third cable is paid out, the first one still pulls
+    const RobotState end = bar.at(bar.shares + step, nullptr, nullptr);
+    REQUIRE(bar.space.is_slack(end, 2));
+    const State& now = bar.robot.now.state;
+    Sensitivity at = bar.sensitivity();
+    CHECK(at.expected_multipliers(now, step)[2] < 0);
+    const double held = (at.expected(bar.stepper, now, step).x - end.x()).norm();
+    at.slacken(bar.space, {2});
+    at.use(bar.rows.gradients(at.at(), 0, {}));
+    const Eigen::VectorXd change = at.release({2}, now);
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(3);
+    const State expected = at.expected(bar.stepper, now, none);
+    CHECK(expected.multiplier[2] == near(0, {.absolute = 1e-9}));
+    CHECK((expected.x - end.x()).norm() < 0.2 * held);
+    CHECK((expected.x - end.x()).norm() < 0.2 * (end.x() - now.x).norm());
+    const Eigen::VectorXd found =
+        bar.rows.values(end, bar.shares + step, 0, {}) - bar.rows.values(bar.robot, bar.shares, 0, {});
+    CHECK((change - found).norm() < 0.2 * found.norm());
+    CHECK(at.release({}, now).isZero(0));
+    CHECK(at.expected(bar.stepper, now, none).x == now.x);
 }
 
 TEST_CASE("a predicted state far from equilibrium has no effect") {

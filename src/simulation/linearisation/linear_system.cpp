@@ -26,7 +26,8 @@ constexpr int most_rounds = 8, most_products = 200;
 constexpr double round_tolerance = 1e-4, round_residual = 1e-3;
 constexpr double least_tolerance = 1e-6, tolerance_beside_residual = 10, residual_beside_tolerance = 1000;
 constexpr int level_rounds = 2, level_limit = 200;
-constexpr double column_residual = 1e-11;  // of the columns of the Schur complement
+constexpr double column_residual = 1e-11;      // of the columns of the Schur complement
+constexpr double columns_beside_wanted = 0.1;  // likewise, where responses are combinations of them
 constexpr double off_at_most = 0.1;        // relative error of a fast factor's answer for the vector that it amplifies
                                            // most
 constexpr double singular = 1e-14;         // smallest over largest singular value, in balanced units
@@ -175,30 +176,33 @@ bool SystemSolver::apply_body(Eigen::MatrixXd& columns) const {
     return true;
 }
 
-/// K^-1 of columns, to nearly all digits. False: the fast methods cannot achieve that.
-bool SystemSolver::solve_body(Eigen::MatrixXd& columns) const {
-    if (way_ == Way::double_) return apply_body(columns);
-    const Eigen::MatrixXd right = std::exchange(columns, Eigen::MatrixXd::Zero(columns.rows(), columns.cols()));
+/// K^-1 of the right-hand sides, to residuals of `wanted` times theirs; begins at `columns`. False: the fast methods
+/// cannot achieve that.
+bool SystemSolver::solve_body(const Eigen::MatrixXd& right, double wanted, Eigen::MatrixXd& columns) const {
     Eigen::MatrixXd residual = right;
+    const auto take_residual = [&](Eigen::Index k) {
+        const Eigen::VectorXd x = columns.col(k);
+        Eigen::VectorXd rest = right.col(k);
+        linalg::add_product(system_->layout->pattern, system_->symmetric, view(x), -1, view(rest));
+        residual.col(k) = rest;
+    };
     const auto find_open = [&] {
         std::vector<Eigen::Index> open;
         for (Eigen::Index k = 0; k < right.cols(); ++k) {
-            if (!(residual.col(k).norm() <= column_residual * right.col(k).norm())) open.push_back(k);
+            if (!(residual.col(k).norm() <= wanted * right.col(k).norm())) open.push_back(k);
         }
         return open;
     };
+    if (!columns.isZero(0)) {
+        for (Eigen::Index k = 0; k < right.cols(); ++k) take_residual(k);
+    }
     const int rounds = levels_ ? level_rounds : most_rounds;
     std::vector<Eigen::Index> open = find_open();
     for (int round = 0; round < rounds && !open.empty(); ++round, open = find_open()) {
         Eigen::MatrixXd step = residual(Eigen::all, open);  // several columns cost little more than one
         if (!apply_body(step)) return false;
         columns(Eigen::all, open) += step;
-        for (const Eigen::Index k : open) {
-            const Eigen::VectorXd x = columns.col(k);
-            Eigen::VectorXd rest = right.col(k);
-            linalg::add_product(system_->layout->pattern, system_->symmetric, view(x), -1, view(rest));
-            residual.col(k) = rest;
-        }
+        for (const Eigen::Index k : open) take_residual(k);
     }
     return levels_ || open.empty();
 }
@@ -206,22 +210,34 @@ bool SystemSolver::solve_body(Eigen::MatrixXd& columns) const {
 /// Since the preconditioner replaces K anyway, the columns of the Schur complement need no more accuracy than that,
 /// unless actuators are so nearly redundant that rounding hides it. False: only double precision can tell.
 bool SystemSolver::take_schur_complement() {
-    const bool quick = way_ == Way::single_;
-    if (quick && take_schur_complement([&](Eigen::MatrixXd& columns) { return apply_body(columns); }, Columns::rough,
-                                       nearly_redundant))
-        return true;
-    return take_schur_complement([&](Eigen::MatrixXd& columns) { return solve_body(columns); }, Columns::fine,
-                                 redundant);
+    if (way_ == Way::single_ && take_schur_complement(Columns::rough, nearly_redundant)) return true;
+    return take_schur_complement(Columns::fine, redundant);
+}
+
+/// For responses to changes of the constraints alone, which are combinations of these columns.
+void SystemSolver::improve_columns() {
+    if (way_ == Way::single_ && accuracy_ < Columns::wanted)
+        (void)take_schur_complement(Columns::wanted, nearly_redundant);
 }
 
 /// K^-1 B and K^-1 C. A constraint that is the gradient of what its force acts on has the force's column; the
 /// constraint of a slack cable has none.
-template <class Solve>
-bool SystemSolver::solve_columns(const Solve& solve, Columns accuracy) {
-    if (accuracy_ != accuracy) {
-        accuracy_ = Columns::none;
-        from_forces_ = forces_;
-        if (!solve(from_forces_)) return false;
+bool SystemSolver::solve_columns(Columns accuracy) {
+    const auto solve = [&](const Eigen::MatrixXd& right, Eigen::MatrixXd& columns) {
+        if (way_ == Way::double_ || accuracy == Columns::rough) {
+            columns = right;
+            return apply_body(columns);
+        }
+        const double wanted =
+            accuracy == Columns::fine ? column_residual : columns_beside_wanted * system_->wanted_residual;
+        return solve_body(right, wanted, columns);
+    };
+    if (accuracy_ < accuracy) {
+        if (accuracy_ == Columns::none) from_forces_ = Eigen::MatrixXd::Zero(forces_.rows(), forces_.cols());
+        if (!solve(forces_, from_forces_)) {
+            accuracy_ = Columns::none;
+            return false;
+        }
         accuracy_ = accuracy;
     }
     from_constraints_ = from_forces_;
@@ -233,13 +249,12 @@ bool SystemSolver::solve_columns(const Solve& solve, Columns accuracy) {
             known = known && system_->constraints.col(k) == system_->forces.col(k);
     }
     if (known) return true;
-    from_constraints_ = constraints_;
-    return solve(from_constraints_);
+    from_constraints_ = Eigen::MatrixXd::Zero(forces_.rows(), forces_.cols());
+    return solve(constraints_, from_constraints_);
 }
 
-template <class Solve>
-bool SystemSolver::take_schur_complement(const Solve& solve, Columns accuracy, double threshold) {
-    if (!solve_columns(solve, accuracy)) return false;
+bool SystemSolver::take_schur_complement(Columns accuracy, double threshold) {
+    if (!solve_columns(accuracy)) return false;
     Eigen::MatrixXd S = -constraints_.transpose() * from_forces_;
     S.diagonal() += compliance_;
     schur_inverse_ = schur_null_ = Eigen::MatrixXd(S.rows(), 0);
@@ -394,7 +409,7 @@ Eigen::MatrixXd SystemSolver::precondition(const Eigen::MatrixXd& columns, Side 
         return result;
     }
     Eigen::MatrixXd motion = columns.topRows(n);
-    (void)apply_body(motion);  // a failure shows in the residual
+    if (!motion.isZero(0)) (void)apply_body(motion);  // a failure shows in the residual
     const Eigen::MatrixXd left = columns.bottomRows(m) - (direct ? constraints_ : forces_).transpose() * motion;
     const Eigen::MatrixXd multiplier =
         direct ? Eigen::MatrixXd(schur_inverse_ * left) : Eigen::MatrixXd(schur_inverse_.transpose() * left);
@@ -499,6 +514,7 @@ Result<Eigen::VectorXd> SystemSolver::solve(const Eigen::VectorXd& b, Side side)
 Result<Eigen::MatrixXd> SystemSolver::solve_all(const Eigen::MatrixXd& columns, Side side) {
     if (Status status = prepare(); !status) return tl::unexpected(status.error());
     const Eigen::MatrixXd right = balanced(columns, side);
+    if (right.topRows(forces_.rows()).isZero(0)) improve_columns();
     Eigen::MatrixXd firsts, result(columns.rows(), columns.cols());
     const Way begun = way_;
     if (exact_ && system_->skew.empty() && columns.cols() > 1) firsts = precondition(right, side);

@@ -63,8 +63,7 @@ class SystemSolver {
 public:
     /// `system` must outlive it.
     explicit SystemSolver(const LinearSystem& system);
-    /// For a system that has the K and B of another one's: takes over what that one has made of them. The solutions are
-    /// those of a new solver, to the bit.
+    /// For a system that has the K and B of another one's: takes over what that one has made of them.
     SystemSolver(const LinearSystem& system, SystemSolver&& other);
     ~SystemSolver();
 
@@ -74,7 +73,8 @@ public:
     /// multipliers. Errors: no solution, because redundant cables have conflicting targets; A is singular (a limit
     /// point, a bifurcation, a part that can move freely).
     [[nodiscard]] Result<Eigen::VectorXd> solve(const Eigen::VectorXd& b, Side side);
-    /// The same for each column, (size, k): several cost little more than one.
+    /// The same for each column, (size, k): several cost little more than one. If only the constraints' rows differ
+    /// from zero, and K is factorised, they cost little more than the products that check them.
     [[nodiscard]] Result<Eigen::MatrixXd> solve_all(const Eigen::MatrixXd& columns, Side side);
 
 private:
@@ -84,18 +84,17 @@ private:
     void begin();
     [[nodiscard]] bool begin_quickly(Way way);
     [[nodiscard]] bool make_quickly(Way way);
-    /// How accurate K^-1 B is.
-    enum class Columns { none, rough, fine };
-    template <class Solve>
-    [[nodiscard]] bool solve_columns(const Solve& solve, Columns accuracy);
+    /// How accurate K^-1 B is: as the preconditioner, as solutions are wanted, or to nearly all digits.
+    enum class Columns { none, rough, wanted, fine };
+    [[nodiscard]] bool solve_columns(Columns accuracy);
+    void improve_columns();
     void begin_surely();
     [[nodiscard]] linalg::Cholesky& factor(linalg::Precision precision);
     [[nodiscard]] bool factorise();
-    [[nodiscard]] bool solve_body(Eigen::MatrixXd& columns) const;
+    [[nodiscard]] bool solve_body(const Eigen::MatrixXd& right, double wanted, Eigen::MatrixXd& columns) const;
     [[nodiscard]] bool apply_body(Eigen::MatrixXd& columns) const;
     [[nodiscard]] bool take_schur_complement();
-    template <class Solve>
-    [[nodiscard]] bool take_schur_complement(const Solve& solve, Columns accuracy, double threshold);
+    [[nodiscard]] bool take_schur_complement(Columns accuracy, double threshold);
     [[nodiscard]] bool is_far_from_singular() const;
     [[nodiscard]] bool is_content() const;
     [[nodiscard]] double level_tolerance() const;

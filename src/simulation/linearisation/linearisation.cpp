@@ -162,6 +162,7 @@ void Linearisation::assemble(const KnownPattern& known) {
 void Linearisation::set_constraint(LinearSystem& A, std::size_t k) const {
     const std::size_t a = solved_[k];
     const auto at = static_cast<Eigen::Index>(k);
+    A.constraints.col(at).setZero();
     A.compliance[at] = slack_[a] ? 1 : 0;
     if (slack_[a]) return;
     Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
@@ -182,9 +183,25 @@ void Linearisation::tighten(const std::vector<std::size_t>& cables) {
         state_.multiplier[static_cast<Eigen::Index>(a)] = std::numeric_limits<double>::min();
         set_constraint(*tight, k);
     }
+    set_constraints(std::move(tight));
+}
+
+void Linearisation::slacken(const std::vector<std::size_t>& cables) {
+    auto loose = std::make_shared<LinearSystem>(*matrix_);
+    for (std::size_t k = 0; k < solved_.size(); ++k) {
+        const std::size_t a = solved_[k];
+        if (!system_->actuators()[a].only_pulls() || std::ranges::find(cables, a) == cables.end()) continue;
+        slack_[a] = true;
+        set_constraint(*loose, k);
+    }
+    set_constraints(std::move(loose));
+}
+
+/// Takes a matrix that differs only in its constraints.
+void Linearisation::set_constraints(std::shared_ptr<LinearSystem> changed) {
     // A copy of this linearisation still needs a solver that it shares.
-    solver_ = solver_.use_count() == 1 ? std::make_shared<SystemSolver>(*tight, std::move(*solver_)) : nullptr;
-    matrix_ = std::move(tight);
+    solver_ = solver_.use_count() == 1 ? std::make_shared<SystemSolver>(*changed, std::move(*solver_)) : nullptr;
+    matrix_ = std::move(changed);
     whole_ = nullptr;
 }
 

@@ -110,8 +110,10 @@ public:
     /// True for a cable that is driven by length and slack.
     [[nodiscard]] bool is_slack(std::size_t actuator) const;
     /// Treats slack cables as taut, as if they had just become so. Far cheaper than a new linearisation of that state,
-    /// and the same to the bit.
+    /// and as accurate.
     void tighten(const std::vector<std::size_t>& cables);
+    /// Treats taut cables as slack, with the stiffness that their tensions add to K. As cheap.
+    void slacken(const std::vector<std::size_t>& cables);
 
     /// F at another state and other controls, with the same slack cables; NaN if that state is impossible.
     [[nodiscard]] Eigen::VectorXd equations(const State& state, const Controls& controls) const {
@@ -165,6 +167,7 @@ private:
     void find_unknowns();
     void assemble(const KnownPattern& known);
     void set_constraint(LinearSystem& A, std::size_t k) const;
+    void set_constraints(std::shared_ptr<LinearSystem> changed);
     [[nodiscard]] const Whole& whole();
     /// True if K is the tet stiffness plus parts with known nodes.
     [[nodiscard]] bool is_tets_and_more() const;

@@ -114,6 +114,44 @@ TEST_CASE("a linearisation whose slack cables are tightened has the same bits as
     }
 }
 
+TEST_CASE("a taut cable that is taken for slack keeps its tension's stiffness, and nothing holds its length") {
+    Description d = plain();
+    d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};
+    d.cables.push_back(cable_through(d.mesh,
+                                     {{0.2 * edge, 0.3 * edge, 0.1 * edge}, {2.8 * edge, 0.4 * edge, 0.1 * edge}},
+                                     {CableTarget::Kind::length_ratio, 0.95}));
+    const Case c(std::move(d));
+    State state = c.system.rest();
+    state.multiplier << 0.5, 0.3;
+    auto made = Linearisation::create(c.system, state, c.system.controls(1));
+    REQUIRE(made);
+    Linearisation& at = *made;
+    const Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(at.size(), -1, 2);
+    const Eigen::VectorXd taut = at.multiply(v);
+    at.slacken({0});
+    CHECK(at.is_slack(0));
+    CHECK_FALSE(at.is_slack(1));
+    const Eigen::VectorXd loose = at.multiply(v);
+    const Eigen::Index first = at.size() - 2;
+    CHECK(loose.head(first) == taut.head(first));
+    CHECK(loose[first] == v[first]);
+    CHECK(loose[first + 1] == taut[first + 1]);
+    for (const bool before : {false, true}) {  // with a solver of its own, and with that of the taut one
+        Linearisation other = *Linearisation::create(c.system, state, c.system.controls(1));
+        if (before) REQUIRE(other.solve(v));
+        other.slacken({0});
+        const auto solved = other.solve(v);
+        REQUIRE(solved);
+        CHECK((other.multiply(*solved) - v).norm() < 1e-10 * v.norm());
+        // A change of the tension alone, as the cable lets go.
+        const Eigen::VectorXd tension = Eigen::VectorXd::Unit(at.size(), first);
+        const auto released = other.solve(tension);
+        REQUIRE(released);
+        CHECK((*released)[first] == near(1, {.relative = 1e-12}));
+        CHECK((other.multiply(*released) - tension).norm() < 1e-10);
+    }
+}
+
 TEST_CASE("the derivative by the length of a cable with friction is by its true length") {
     Description d = plain();
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.9})};

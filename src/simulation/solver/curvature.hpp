@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -46,6 +47,20 @@ public:
                                        Errors errors) = 0;
     /// columns (3 free, k) <- H^-1 columns.
     virtual void solve(Eigen::MatrixXd& columns) = 0;
+    /// How the body yields to the forces B (3 free, k) of constraints, where H was made.
+    struct Yielding {
+        Eigen::MatrixXd motions;     ///< (3 free, k) H^-1 B
+        Eigen::MatrixXd compliance;  ///< (k, k) B^T H^-1 B
+    };
+    using Forces = std::function<Eigen::MatrixXd(const Eigen::VectorXd& x)>;
+    /// The same for all states at which this H is used, since it only serves to find the multipliers: then `forces` are
+    /// those at the state at which H was made. Called after solve(). Null: solve for the forces at each state.
+    [[nodiscard]] virtual const Yielding* yielding_to(const Forces& forces) {
+        (void)forces;
+        return nullptr;
+    }
+    /// A motion (3 free) at the state at which H was made, as one of the present state.
+    [[nodiscard]] virtual Eigen::VectorXd push_forward(const Eigen::VectorXd& motion) const { return motion; }
     /// Motion and multipliers with H motion + normals multipliers = force and normals^T motion = wanted, for all
     /// constraints at once: one system instead of one each. Empty: only solve() can do it.
     struct Constrained {

@@ -144,6 +144,25 @@ public:
         for (Eigen::Index k = 0; k < columns.cols(); ++k) columns.col(k) = solve_with_skew(columns.col(k));
     }
 
+    [[nodiscard]] const Yielding* yielding_to(const Forces& forces) override {
+        if (!usable_ || system_->has_skew()) return nullptr;
+        const YieldingOf of{tangent_, share_, inverse_->memory().in_double};
+        if (of == yielding_of_) return &yielding_;
+        yielding_of_ = {};
+        const Eigen::MatrixXd B = forces(tangent_->state.x);
+        yielding_.motions = B;
+        if (!inverse_->solve_plainly(yielding_.motions, largest_solution_error)) return nullptr;
+        yielding_.compliance = B.transpose() * yielding_.motions;
+        yielding_of_ = of;
+        return &yielding_;
+    }
+
+    [[nodiscard]] Eigen::VectorXd push_forward(const Eigen::VectorXd& motion) const override {
+        Eigen::MatrixXd column = motion;
+        rotation_.push_forward_motions(column);
+        return column;
+    }
+
     [[nodiscard]] std::optional<Constrained> solve_constrained(const Eigen::VectorXd& force,
                                                                const Eigen::MatrixXd& normals,
                                                                const Eigen::VectorXd& wanted) override {
@@ -441,6 +460,13 @@ private:
     double enough_ = 0;                       ///< error of the next solution
     bool straight_ = false;                   ///< the next step needs no rotation
     Eigen::VectorXd positions_;               ///< of the free nodes, where the tangent was made
+    Yielding yielding_;
+    struct YieldingOf {
+        std::shared_ptr<const SolverMemory::Tangent> tangent;
+        double share = 0;
+        bool in_double = false;
+        bool operator==(const YieldingOf&) const = default;
+    } yielding_of_;                           ///< the factor that it was computed with
     BodyRotation rotation_;                   ///< since the factor was made
     FactorWithoutContact without_contact_;    ///< for the nodes that touch
     StepMemory memory_{most_steps};           ///< of the steps since then, rotated back to the state of the factor

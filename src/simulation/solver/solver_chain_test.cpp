@@ -124,6 +124,33 @@ TEST_CASE("if all solvers fail all reasons are given, and each has used its own 
     CHECK(outcome.reason.find("; with local-global: no convergence in 100 iterations") != std::string::npos);
 }
 
+TEST_CASE("several cables: Newton, which keeps the body's responses to them, ends where quasi-Newton does") {
+    Description d = pulled_bar(0.92);
+    for (const double across : {0.0, 1.0}) {
+        Cable cable{across == 0 ? "left" : "right", {}, {CableTarget::Kind::length_ratio, across == 0 ? 0.96 : 1.0}};
+        for (int k = 0; k <= 4; ++k)
+            cable.points.push_back(reference::mean_of(reference::nodes_where(d.mesh, [&](Vec3 p) {
+                return norm(p - Vec3{k * bar_side, across * bar_side, bar_side / 2}) < 1e-9;
+            })));
+        d.cables.push_back(std::move(cable));
+    }
+    d.loads.clear();
+    const Trajectory newton = solve(d, {.steps = 6, .tolerance = 1e-8, .solver = Solver::newton});
+    const Trajectory other = solve(d, {.steps = 6, .tolerance = 1e-8, .solver = Solver::quasi_newton});
+    REQUIRE_MESSAGE(newton.converged, newton.message);
+    REQUIRE_MESSAGE(other.converged, other.message);
+    REQUIRE(newton.steps.back().cables[0].tension_N > 0.1);
+    CHECK(newton.steps.back().cables[2].tension_N == 0);  // slack
+    for (std::size_t k = 0; k < newton.steps.size(); ++k) {
+        CAPTURE(k);
+        for (std::size_t c = 0; c < 3; ++c) {
+            CHECK(newton.steps[k].cables[c].tension_N ==
+                  near(other.steps[k].cables[c].tension_N, {.relative = 1e-5, .absolute = 1e-6}));
+            CHECK(newton.steps[k].cables[c].length_m == near(other.steps[k].cables[c].length_m, {.relative = 1e-7}));
+        }
+    }
+}
+
 TEST_CASE("a solver chosen by name is used alone") {
     const Trajectory result =
         solve(pulled_bar(0.7), {.steps = 1, .tolerance = 1e-6, .solver = Solver::newton, .iteration_limit = 4});

@@ -76,12 +76,15 @@ private:
                                            std::span<const double>) const;
     /// Of the actuators with unknown multipliers, on free nodes: (3 free, solved), divided by the measure at rest.
     [[nodiscard]] Eigen::MatrixXd gradients_of(AddGradient add_gradient) const {
+        return gradients_of(add_gradient, state_.x);
+    }
+    [[nodiscard]] Eigen::MatrixXd gradients_of(AddGradient add_gradient, const Eigen::VectorXd& x) const {
         Eigen::MatrixXd gradients(3 * system_.model().free_count(), solved_.count());
         for (Eigen::Index k = 0; k < solved_.count(); ++k) {
             Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
             const Actuator& one = actuator(solved_.actuators()[static_cast<std::size_t>(k)]);
-            (one.*add_gradient)(view(state_.x), 1 / one.rest_measure(),
-                                {full.data(), static_cast<std::size_t>(full.size())}, {});
+            (one.*add_gradient)(view(x), 1 / one.rest_measure(), {full.data(), static_cast<std::size_t>(full.size())},
+                                {});
             gradients.col(k) = system_.restrict_to_free(full);
         }
         return gradients;
@@ -134,9 +137,35 @@ private:
         const std::vector<bool> taut = solved_.taut(terms.multipliers, violation);
         SolvedActuators::List acting = solved_.list();
         std::erase_if(acting, [&](Eigen::Index k) { return !taut[static_cast<std::size_t>(k)]; });
-        const Move move = solve_by_columns(terms, terms.forces, acting);
-        if (!solved_.is_too_long_beside(acting, violation + terms.forces.transpose() * move.dx)) return move;
-        return solve_by_columns(terms, terms.forces, solved_.list());
+        const auto with = [&](auto&& solve) {
+            const Move move = solve(acting);
+            if (!solved_.is_too_long_beside(acting, violation + terms.forces.transpose() * move.dx)) return move;
+            return solve(solved_.list());
+        };
+        const auto by_each = [&](const auto& some) { return solve_by_columns(terms, terms.forces, some); };
+        if (solved_.count() < several) return with(by_each);
+        Eigen::MatrixXd gradient = terms.gradient;
+        curvature_.solve(gradient);
+        const Curvature::Yielding* yielding =
+            curvature_.yielding_to([&](const Eigen::VectorXd& x) { return gradients_of(&Actuator::add_gradient, x); });
+        if (yielding == nullptr) return with(by_each);
+        return with([&](const auto& some) { return solve_with(*yielding, terms, gradient, some); });
+    }
+
+    /// With the same responses to the constraints' forces in many steps: so one solution is enough, however many
+    /// constraints there are. `gradient`: H^-1 times it.
+    [[nodiscard]] Move solve_with(const Curvature::Yielding& yielding, const Terms& terms,
+                                  const Eigen::VectorXd& gradient, const SolvedActuators::List& acting) const {
+        Move move{-gradient, Eigen::VectorXd::Zero(solved_.count())};
+        if (acting.empty()) return move;
+        const Eigen::VectorXd violation = evaluation_.constraint_violation(solved_.actuators())(acting) -
+                                          terms.forces(Eigen::all, acting).transpose() * gradient;
+        Eigen::MatrixXd S = yielding.compliance(acting, acting);
+        S.diagonal() += compliances()(acting);
+        const Eigen::VectorXd change = solved_.change(acting, S, violation, terms.multipliers(acting));
+        move.change(acting) = change;
+        move.dx -= curvature_.push_forward(yielding.motions(Eigen::all, acting) * change);
+        return move;
     }
 
     /// One solution for the gradient and one for each acting actuator; then the multipliers that combine them. `A`:
@@ -367,6 +396,8 @@ private:
         return force;
     }
 
+    /// Number of constraints from which on solving for the forces of each takes longer than a step less accurate.
+    static constexpr Eigen::Index several = 2;
     /// Coordinates of the nodes that touch. With more of them the dense problem takes as much time as the steps that
     /// are saved.
     static constexpr Eigen::Index most_contact = 240;

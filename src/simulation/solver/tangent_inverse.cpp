@@ -57,6 +57,12 @@ public:
         return Outcome::solved;
     }
 
+    [[nodiscard]] bool solve_plainly(Eigen::MatrixXd& columns, double error) const override {
+        if (is_single() && !(known_error_ <= error)) return false;
+        factor_.solve(view(columns), static_cast<int>(columns.cols()));
+        return true;
+    }
+
     [[nodiscard]] Memory memory() const override { return {!is_single(), untried_, known_error_, trusted_, refusals_}; }
 
     void recall(std::span<const double> values, const Memory& memory) override {

@@ -39,6 +39,12 @@ public:
     /// columns (3 nodes, k) <- H^-1 columns, within `error` of each solution in the norm of H, but no tighter than
     /// 1e-3. Outcomes indefinite and slow: columns hold the last iterate, which is still a descent direction.
     [[nodiscard]] virtual Outcome solve(Eigen::MatrixXd& columns, double error) = 0;
+    /// As solve(), after which it is called, in a way that does not depend on how often it was solved before. False:
+    /// that may be off by more than `error`, or is not offered.
+    [[nodiscard]] virtual bool solve_plainly(Eigen::MatrixXd& columns, double error) const {
+        (void)columns, (void)error;
+        return false;
+    }
     /// Linear constraints on a solution: normals^T x = wanted. `normals` are (3 nodes, k).
     struct Constraints {
         const Eigen::MatrixXd& normals;
