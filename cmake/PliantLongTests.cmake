@@ -1,16 +1,26 @@
-# The tests that take over some 20 s on two cores: they get the label `long`.
+# The tests that take over some 20 s on two cores: they get the label `long` and are begun first.
 set(PLIANT_LONG_TESTS
   simulation/run/random_programs
   simulation/peers/peer/calculix
+  simulation/linearisation/random_robots
+  simulation/gradient/random_gradients
+  simulation/scene/reference/real_mesh
+  geometry/mesher/mesher
+  geometry/mesher/mesh_worker
   studio/page
+  studio/simulate_page
   studio/print_page
+  studio/make_page
   studio/true_page
   studio/visual_page
+  studies/slurm
   print/kill
   examples/cable_gripper/make
-  examples/printed_as_drawn
+  examples/gripper_picks_up
   examples/gripper_holds_a_ball
-  simulation/scene/reference/real_mesh
+  examples/printed_as_drawn
+  document/docs/reference/commands
+  document/docs/thesis
   document/docs/tutorial
   document/examples/printed/README
 )

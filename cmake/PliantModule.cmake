@@ -25,6 +25,8 @@ function(pliant_label test kind)
   set(labels ${kind})
   if(test IN_LIST PLIANT_LONG_TESTS)
     list(APPEND labels long)
+    # Begun first, also in a clone in which CTest does not know yet how long they take.
+    set_tests_properties(${test} PROPERTIES COST 100)
   endif()
   set_tests_properties(${test} PROPERTIES LABELS "${labels}")
 endfunction()
