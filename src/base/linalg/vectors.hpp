@@ -18,12 +18,18 @@ namespace pliant::linalg {
     return Eigen::Map<const Eigen::Vector3d>(points.data() + 3 * static_cast<std::size_t>(point));
 }
 
-/// All numbers of a vector, without a copy: the vector must outlive the view.
+/// All numbers of a vector, or of a matrix column by column, without a copy: it must outlive the view.
 [[nodiscard]] inline std::span<const double> view(const Eigen::VectorXd& v) {
     return {v.data(), static_cast<std::size_t>(v.size())};
 }
 [[nodiscard]] inline std::span<double> view(Eigen::VectorXd& v) {
     return {v.data(), static_cast<std::size_t>(v.size())};
+}
+[[nodiscard]] inline std::span<const double> view(const Eigen::MatrixXd& m) {
+    return {m.data(), static_cast<std::size_t>(m.size())};
+}
+[[nodiscard]] inline std::span<double> view(Eigen::MatrixXd& m) {
+    return {m.data(), static_cast<std::size_t>(m.size())};
 }
 
 /// The points of an array (3n).

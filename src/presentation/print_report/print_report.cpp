@@ -188,8 +188,8 @@ std::string materials(const Printed& p) {
             "<tr><td>{}{}</td><td>{}</td><td>{}</td><td>{:g} s</td><td>{:g} "
             "s</td><td>{:.3f} ml</td><td>{:.3f} ml</td></tr>\n",
             swatch(colours[k]), html_escaped(material.name), html_escaped(material.resin),
-            vat < 0 ? "–" : fmt::format("{}", p.printer.vats[static_cast<std::size_t>(vat)].slot), material.exposure_s,
-            material.bottom_exposure_s, resin[k].printed_ml, resin[k].all_ml);
+            vat < 0 ? "–" : fmt::format("{}", p.printer.slot_of(vat)), material.exposure_s, material.bottom_exposure_s,
+            resin[k].printed_ml, resin[k].all_ml);
     }
     return out + fmt::format(
                      "</tbody></table></div>\n<p class=\"faint\">As drawn. The plan counts {:.2f} ml more that "

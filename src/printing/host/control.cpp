@@ -622,7 +622,7 @@ void Control::State_::show_machine() {
         s.position = at.position();
         for (const Axis axis : machine::all_axes) s.homed[static_cast<std::size_t>(axis)] = at.homed(axis);
         const auto vat = at.hooked_vat();
-        s.slot = vat ? setup.printer.vats[static_cast<std::size_t>(*vat)].slot : 0;
+        s.slot = vat ? setup.printer.slot_of(*vat) : 0;
         s.pump = at.pump_runs();
     });
     show_switches();

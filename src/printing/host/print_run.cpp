@@ -463,7 +463,7 @@ void PrintRun::show_progress() {
         s.seconds_done = now_s - begin_s_;
         s.position = state.position();
         for (const Axis axis : machine::all_axes) s.homed[static_cast<std::size_t>(axis)] = state.homed(axis);
-        s.slot = vat ? printer_.vats[static_cast<std::size_t>(*vat)].slot : 0;
+        s.slot = vat ? printer_.slot_of(*vat) : 0;
         s.pump = state.pump_runs();
         s.lines_sent = run_.machine.link().lines_sent();
         s.resends = run_.machine.link().resends();

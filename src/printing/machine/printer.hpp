@@ -362,7 +362,9 @@ struct Printer {
     /// Carriage positions at which the part is over the cleaning vat's drain: from `drain_begin_um` to `tower_um`.
     [[nodiscard]] int drain_begin_um() const { return carriage.tower_um - carriage.back_off_um - cleaning.stroke_x_um; }
     [[nodiscard]] const Resin* find_resin(std::string_view resin) const;  ///< nullptr if not in the file
-    [[nodiscard]] const Vat* vat_of_slot(int slot) const;                 ///< nullptr if the slot has none
+    /// Precondition: there is such a vat.
+    [[nodiscard]] int slot_of(int vat) const { return vats[static_cast<std::size_t>(vat)].slot; }
+    [[nodiscard]] const Vat* vat_of_slot(int slot) const;  ///< nullptr if the slot has none
     /// Cleaning time between two vats (indices), and the planner's penalty for the pair.
     [[nodiscard]] double cleaning_s(int from_vat, int to_vat) const;
     [[nodiscard]] double penalty_s(int from_vat, int to_vat) const;

@@ -49,7 +49,7 @@ void loosen(Sequence& s, int z_um) {
 /// The parts of a print, in order. `Steps` executes them or computes their duration.
 template <class Steps>
 void walk(const Plan& plan, const job::Manifest& job, const Printer& p, Steps& steps) {
-    const auto slot = [&](int vat) { return p.vats[static_cast<std::size_t>(vat)].slot; };
+    const auto slot = [&](int vat) { return p.slot_of(vat); };
     std::optional<int> loaded;
     int part_um = 0;
     for (int i = 0; i < plan.layers; ++i) {
@@ -93,7 +93,7 @@ struct Writing {
     }
     void print(int index, int vat) const {
         const job::Layer& layer = job.layers[static_cast<std::size_t>(index)];
-        const int slot = s.printer().vats[static_cast<std::size_t>(vat)].slot;
+        const int slot = s.printer().slot_of(vat);
         const double begin_s = s.seconds().total;
         s.comment(fmt::format("layer {} slot {}", index, slot));
         approach(s, layer.z_um);

@@ -15,10 +15,6 @@ using machine::Interlock;
 using machine::Printer;
 using machine::Store;
 
-int slot_of(const Printer& p, int vat) {
-    return p.vats[static_cast<std::size_t>(vat)].slot;
-}
-
 /// After a restart of the controller all outputs are off; a vat before the magnet must be held again.
 void wake(Sequence& s, const Interlock& state) {
     for (const std::string& line : machine::preamble(s.printer())) s.command(line);
@@ -72,18 +68,17 @@ void bring_right_vat(Sequence& s, const Interrupted& from, std::optional<int> wa
     const Printer& p = s.printer();
     std::optional<int> hooked;
     if (p.has_carriage()) hooked = from.state.hooked_vat();
-    if (const auto tray = from.state.tray_vat(); tray && !from.state.fork_out())
-        ride(s, put_trip(p, slot_of(p, *tray)));
+    if (const auto tray = from.state.tray_vat(); tray && !from.state.fork_out()) ride(s, put_trip(p, p.slot_of(*tray)));
     const bool stained = from.last_lit_vat >= 0 && from.last_lit_vat != wanted.value_or(-1);
     if (hooked) {
-        meet_vat(s, slot_of(p, *hooked));
+        meet_vat(s, p.slot_of(*hooked));
         if (hooked != wanted) s.move(Axis::platform, p.push_um(part_um));
-        if (!wanted) return store_vat(s, slot_of(p, *hooked));
-        if (*hooked != *wanted) swap_vat(s, slot_of(p, *hooked), slot_of(p, *wanted));
+        if (!wanted) return store_vat(s, p.slot_of(*hooked));
+        if (*hooked != *wanted) swap_vat(s, p.slot_of(*hooked), p.slot_of(*wanted));
         return;
     }
     if (stained) clean_part(s, wanted ? p.cleaning_s(from.last_lit_vat, *wanted) : p.cleaning.spray_s);
-    if (wanted) load_vat(s, slot_of(p, *wanted));
+    if (wanted) load_vat(s, p.slot_of(*wanted));
 }
 
 /// A sequence in the machine's present state, with the platform clear of everything.
@@ -148,7 +143,7 @@ Result<std::string> vat_program(const Interlock& state, const Printer& printer, 
     Result<Sequence> s = by_hand(state, printer);
     if (!s) return tl::unexpected(s.error());
     const auto hooked = state.hooked_vat();
-    const int here = hooked ? slot_of(printer, *hooked) : 0;
+    const int here = hooked ? printer.slot_of(*hooked) : 0;
     if (here == slot) return s->text();
     if (here == 0 || printer.store() == Store::table) {
         if (slot != 0) load_vat(*s, slot);

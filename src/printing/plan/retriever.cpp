@@ -50,7 +50,7 @@ void clear_retriever(Sequence& s, const machine::Interlock& state) {
     if (p.store() != machine::Store::wall) return;
     s.dwell(p.wall.fork_s);  // the fork may still be moving
     if (!state.fork_out()) {
-        if (const auto vat = state.tray_vat()) ride(s, put_trip(p, p.vats[static_cast<std::size_t>(*vat)].slot));
+        if (const auto vat = state.tray_vat()) ride(s, put_trip(p, p.slot_of(*vat)));
         return;
     }
     const machine::Position at = s.position();

@@ -43,7 +43,7 @@ void put_from_tray(Sequence& s, const Interlock& state) {
     const Printer& p = s.printer();
     const bool near = state.position()[Axis::carriage] > p.carriage.tower_um - p.carriage.back_off_um;
     const auto vat = state.hooked_vat() ? state.hooked_vat() : near ? state.tray_vat() : std::nullopt;
-    if (vat) ride(s, put_trip(p, p.vats[static_cast<std::size_t>(*vat)].slot));
+    if (vat) ride(s, put_trip(p, p.slot_of(*vat)));
 }
 
 /// The slot into which the vat on the hooks goes: the one that the tower is level with or, if that is none or not
@@ -55,7 +55,7 @@ int slot_for_vat(Sequence& s, const Interlock& state, int vat) {
     const bool is_ready =
         here > 0 && (at[Axis::carriage] == p.carriage.tower_um || at[Axis::tower] == p.level_um(here));
     if (is_ready && !state.vat_in_slot(here)) return here;
-    const int own = p.vats[static_cast<std::size_t>(vat)].slot;
+    const int own = p.slot_of(vat);
     meet_vat(s, own);
     return own;
 }

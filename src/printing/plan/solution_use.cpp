@@ -69,7 +69,7 @@ public:
     }
 
 private:
-    [[nodiscard]] int slot(int vat) const { return printer_.vats[static_cast<std::size_t>(vat)].slot; }
+    [[nodiscard]] int slot(int vat) const { return printer_.slot_of(vat); }
 
     const Printer& printer_;
     std::map<std::pair<int, int>, double> known_;

@@ -63,7 +63,7 @@ std::string_view device_name(Device device) {
 }
 
 SwapTimeline longest_swap(const Plan& plan, const machine::Printer& printer) {
-    const auto slot = [&](int vat) { return printer.vats[static_cast<std::size_t>(vat)].slot; };
+    const auto slot = [&](int vat) { return printer.slot_of(vat); };
     const auto all = changes(plan);
     std::map<std::pair<int, int>, double> seconds;
     for (const auto& change : all) {

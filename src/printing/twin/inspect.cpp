@@ -24,7 +24,7 @@ void judge_contamination(Report& report, Twin& twin, const job::Manifest& job, b
             std::find_if(job.layers.begin(), job.layers.end(), [&](auto& l) { return l.z_um == c.top_um; });
         note_first(report, job, static_cast<int>(layer - job.layers.begin()), -1,
                    fmt::format("{:.2f} % foreign resin in the vat of slot {} (cleaning)", 100 * c.foreign,
-                               twin.printer().vats[static_cast<std::size_t>(c.vat)].slot));
+                               twin.printer().slot_of(c.vat)));
     }
     report.contamination = twin.contamination();
 }

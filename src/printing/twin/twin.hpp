@@ -173,7 +173,7 @@ private:
     void say_soft_endstops();
     void say_switches();
     [[nodiscard]] bool is_pressed(const machine::LimitSwitch& limit) const;
-    [[nodiscard]] int slot_of(int vat) const { return printer_.vats[static_cast<std::size_t>(vat)].slot; }
+    [[nodiscard]] int slot_of(int vat) const { return printer_.slot_of(vat); }
     void spray_until(double at_s);
     void switch_pump(bool on, double at_s);
     void switch_latch(const machine::Command& command, double at_s);

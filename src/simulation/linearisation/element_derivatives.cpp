@@ -153,7 +153,7 @@ void add_rest_product(const Elements& elements, const Masses& masses, const Eige
         }
     }
     if (masses.acceleration.size() == 0) return;
-    elements.apply_mass(mass_rate, view(masses.acceleration), {forces.data(), static_cast<std::size_t>(forces.size())});
+    elements.apply_mass(mass_rate, view(masses.acceleration), view(forces));
 }
 
 void add_rest_weights(const Elements& elements, const Masses& masses, const Eigen::VectorXd& x,

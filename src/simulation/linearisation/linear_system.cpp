@@ -169,10 +169,11 @@ linalg::Cholesky& SystemSolver::factor(linalg::Precision precision) {
 /// Columns (3 free, k) <- K^-1 columns, with the accuracy of the preconditioner; with two levels to level_tolerance()
 /// in the norm of K. False: not achieved.
 bool SystemSolver::apply_body(Eigen::MatrixXd& columns) const {
-    const auto all = std::span<double>(columns.data(), static_cast<std::size_t>(columns.size()));
     const auto count = static_cast<int>(columns.cols());
-    if (levels_) return levels_->solve(all, count, level_tolerance(), level_limit) == linalg::TwoLevel::Outcome::solved;
-    factor_->solve(all, count);
+    if (levels_)
+        return levels_->solve(view(columns), count, level_tolerance(), level_limit) ==
+               linalg::TwoLevel::Outcome::solved;
+    factor_->solve(view(columns), count);
     return true;
 }
 

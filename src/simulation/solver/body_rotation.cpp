@@ -49,8 +49,7 @@ void BodyRotation::apply(Elements::Direction direction, Eigen::Ref<Eigen::Matrix
         motion.setZero();
         forces.setZero();
         system_->add_free(columns.col(k), 1, motion);
-        system_->model().elements().add_rotated(rotations_, direction, view(motion),
-                                                {forces.data(), static_cast<std::size_t>(forces.size())});
+        system_->model().elements().add_rotated(rotations_, direction, view(motion), view(forces));
         laplacian_->add_hold(motion, forces);
         columns.col(k) = system_->restrict_to_free(forces);
     }

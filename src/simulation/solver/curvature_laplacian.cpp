@@ -228,8 +228,7 @@ void FactoredLaplacian::solve(Eigen::Ref<Eigen::MatrixXd> columns) const {
 
 Eigen::VectorXd FactoredLaplacian::follow(const Equilibrium& system, const Eigen::VectorXd& support_motion) const {
     Eigen::VectorXd coupling = Eigen::VectorXd::Zero(support_motion.size());
-    state_->model->elements().apply_laplacian({support_motion.data(), static_cast<std::size_t>(support_motion.size())},
-                                              {coupling.data(), static_cast<std::size_t>(coupling.size())});
+    state_->model->elements().apply_laplacian(linalg::view(support_motion), linalg::view(coupling));
     Eigen::VectorXd motion = -system.restrict_to_free(coupling);
     if (!system.rollers().empty()) return follow_on_rollers(system, motion);
     solve(motion);
@@ -243,8 +242,7 @@ Eigen::VectorXd FactoredLaplacian::follow_on_rollers(const Equilibrium& system, 
     const auto multiply = [&](const Eigen::VectorXd& v) {
         Eigen::VectorXd motion = Eigen::VectorXd::Zero(3 * state_->model->node_count()), force = motion;
         system.add_free(v, 1, motion);
-        state_->model->elements().apply_laplacian({motion.data(), static_cast<std::size_t>(motion.size())},
-                                                  {force.data(), static_cast<std::size_t>(force.size())});
+        state_->model->elements().apply_laplacian(linalg::view(motion), linalg::view(force));
         return system.restrict_to_free(force);
     };
     const auto precondition = [&](const Eigen::VectorXd& force) {
@@ -273,7 +271,7 @@ Eigen::VectorXd FactoredLaplacian::follow_on_rollers(const Equilibrium& system, 
 Eigen::VectorXd FactoredLaplacian::rotate(const Equilibrium& system, const RotatingStep& rotating) const {
     Eigen::VectorXd end = Eigen::Map<const Eigen::VectorXd>(rotating.end, 3 * state_->model->node_count());
     Eigen::VectorXd turned = Eigen::VectorXd::Zero(end.size());
-    state_->model->elements().add_rotation_term(rotating, {turned.data(), static_cast<std::size_t>(turned.size())});
+    state_->model->elements().add_rotation_term(rotating, linalg::view(turned));
     Eigen::VectorXd correction = system.restrict_to_free(turned);
     solve(correction);
     system.add_free(correction, 1, end);

@@ -6,6 +6,7 @@
 #include "base/core/aligned_array.hpp"
 #include "base/core/parallel.hpp"
 #include "base/linalg/gmres.hpp"
+#include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/solver/body_rotation.hpp"
 #include "simulation/solver/corner_nesting.hpp"
@@ -332,8 +333,7 @@ private:
             const Eigen::VectorXd w = precondition(v);
             if (share_ == 0 || cautious_) return v + system_->apply_skew(tangent_->state, w);
             Eigen::VectorXd product = system_->apply_skew(tangent_->state, w);
-            linalg::add_product(layout_->pattern, values_.span(), {w.data(), static_cast<std::size_t>(w.size())}, 1,
-                                {product.data(), static_cast<std::size_t>(product.size())});
+            linalg::add_product(layout_->pattern, values_.span(), linalg::view(w), 1, linalg::view(product));
             return product;
         };
         return precondition(linalg::gmres(multiply, b, skew_tolerance, skew_limit));

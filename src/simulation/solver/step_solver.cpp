@@ -83,8 +83,7 @@ private:
         for (Eigen::Index k = 0; k < solved_.count(); ++k) {
             Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
             const Actuator& one = actuator(solved_.actuators()[static_cast<std::size_t>(k)]);
-            (one.*add_gradient)(view(x), 1 / one.rest_measure(), {full.data(), static_cast<std::size_t>(full.size())},
-                                {});
+            (one.*add_gradient)(view(x), 1 / one.rest_measure(), view(full), {});
             gradients.col(k) = system_.restrict_to_free(full);
         }
         return gradients;
@@ -158,11 +157,8 @@ private:
                                   const Eigen::VectorXd& gradient, const SolvedActuators::List& acting) const {
         Move move{-gradient, Eigen::VectorXd::Zero(solved_.count())};
         if (acting.empty()) return move;
-        const Eigen::VectorXd violation = evaluation_.constraint_violation(solved_.actuators())(acting) -
-                                          terms.forces(Eigen::all, acting).transpose() * gradient;
-        Eigen::MatrixXd S = yielding.compliance(acting, acting);
-        S.diagonal() += compliances()(acting);
-        const Eigen::VectorXd change = solved_.change(acting, S, violation, terms.multipliers(acting));
+        const Eigen::VectorXd change = change_after(gradient, acting, terms.forces(Eigen::all, acting),
+                                                    yielding.compliance(acting, acting), terms.multipliers);
         move.change(acting) = change;
         move.dx -= curvature_.push_forward(yielding.motions(Eigen::all, acting) * change);
         return move;
@@ -190,22 +186,27 @@ private:
         Move move{-solutions.gradient, Eigen::VectorXd::Zero(solved_.count())};
         const SolvedActuators::List& acting = solutions.acting;
         if (acting.empty()) return move;
-        // Violation after the unconstrained step; then the correction of the current multipliers.
         const Eigen::MatrixXd acting_A = A(Eigen::all, acting);
-        const Eigen::VectorXd violation =
-            evaluation_.constraint_violation(solved_.actuators())(acting) - acting_A.transpose() * solutions.gradient;
-        const Eigen::MatrixXd S = yielding_to(acting_A, solutions);
-        const Eigen::VectorXd change = solved_.change(acting, S, violation, now(acting));
+        const Eigen::VectorXd change =
+            change_after(solutions.gradient, acting, acting_A, acting_A.transpose() * solutions.forces, now);
         move.change(acting) = change;
         move.dx -= solutions.forces * change;
         return move;
     }
 
-    /// S: how the measures of acting actuators, with gradients `A`, yield to their multipliers, with the compliance of
-    /// sealed gas.
-    [[nodiscard]] Eigen::MatrixXd yielding_to(const Eigen::MatrixXd& A, const Solutions& solutions) const {
-        Eigen::MatrixXd S = A.transpose() * solutions.forces;
-        S.diagonal() += compliances()(solutions.acting);
+    /// (acting) change of the scaled multipliers `now` after a step of -`gradient`. `A`: (3 free, acting) gradients of
+    /// the measures; `S`: how these yield to the multipliers.
+    [[nodiscard]] Eigen::VectorXd change_after(const Eigen::VectorXd& gradient, const SolvedActuators::List& acting,
+                                               const Eigen::MatrixXd& A, const Eigen::MatrixXd& S,
+                                               const Eigen::VectorXd& now) const {
+        const Eigen::VectorXd violation =
+            evaluation_.constraint_violation(solved_.actuators())(acting) - A.transpose() * gradient;
+        return solved_.change(acting, with_gas(S, acting), violation, now(acting));
+    }
+
+    /// With the compliance of sealed gas.
+    [[nodiscard]] Eigen::MatrixXd with_gas(Eigen::MatrixXd S, const SolvedActuators::List& acting) const {
+        S.diagonal() += compliances()(acting);
         return S;
     }
 
@@ -281,8 +282,7 @@ private:
         Eigen::MatrixXd columns(reduced.others.size(), 1 + solved);
         columns.col(0) = reduced.others;
         columns.rightCols(solved) = terms.forces;
-        reduced.factor->solve({columns.data(), static_cast<std::size_t>(columns.size())},
-                              static_cast<int>(columns.cols()));
+        reduced.factor->solve(view(columns), static_cast<int>(columns.cols()));
         reduced.solutions = {columns.col(0), columns.rightCols(solved), solved_.list()};
         const Move without = combine(reduced.solutions, terms.forces, terms.multipliers);
 
@@ -290,7 +290,7 @@ private:
         reduced.without_m = without.dx(rows);
         Eigen::MatrixXd& compliance = reduced.compliance;
         compliance.resize(contact.size(), contact.size());
-        reduced.factor->inverse_part(rows, {compliance.data(), static_cast<std::size_t>(compliance.size())});
+        reduced.factor->inverse_part(rows, view(compliance));
         hold(rows, reduced.solutions, terms.forces, terms.multipliers + without.change, compliance);
         return reduced;
     }
@@ -314,7 +314,7 @@ private:
             if (multipliers[k] > 0 || !solved_.all()[static_cast<std::size_t>(k)].only_pulls) held.push_back(k);
         }
         if (held.empty()) return;
-        const Eigen::MatrixXd S = yielding_to(forces, solutions)(held, held);
+        const Eigen::MatrixXd S = with_gas(forces.transpose() * solutions.forces, solutions.acting)(held, held);
         const Eigen::MatrixXd yielding = solutions.forces(rows, held);  // to the multipliers
         // Not by the inverse of S: cables may be parallel.
         const Eigen::MatrixXd prevented = yielding * (linalg::pseudo_inverse(S) * yielding.transpose());
@@ -389,8 +389,7 @@ private:
     [[nodiscard]] Eigen::VectorXd force_at(const Eigen::VectorXd& multiplier) const {
         Eigen::VectorXd force = evaluation_.out_of_balance;
         for (const Eigen::Index a : solved_.actuators()) {
-            actuator(a).add_gradient(view(state_.x), multiplier[a] - state_.multiplier[a],
-                                     {force.data(), static_cast<std::size_t>(force.size())},
+            actuator(a).add_gradient(view(state_.x), multiplier[a] - state_.multiplier[a], view(force),
                                      controls_.shares[static_cast<std::size_t>(a)]);
         }
         return force;

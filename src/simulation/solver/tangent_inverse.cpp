@@ -11,12 +11,10 @@
 namespace pliant::sim {
 namespace {
 
+using linalg::view;
+
 /// The smallest error of a solve: it determines the convergence rate for the last digits of a state.
 constexpr double least_error = 1e-3;
-
-std::span<double> view(Eigen::MatrixXd& columns) {
-    return {columns.data(), static_cast<std::size_t>(columns.size())};
-}
 
 /// A Newton step needs few digits, so the factor is in single precision until that proves insufficient.
 class DirectInverse final : public TangentInverse {
@@ -114,11 +112,11 @@ public:
         : levels_(std::move(levels)), most_iterations_(most_iterations) {}
 
     [[nodiscard]] bool set(std::span<const double> values, const Eigen::VectorXd& positions, Effort) override {
-        return levels_.set(values, linalg::view(positions));
+        return levels_.set(values, view(positions));
     }
     [[nodiscard]] bool keeps_matrix() const override { return true; }
     void take(std::span<const double> values, const Eigen::VectorXd& positions) override {
-        levels_.take(values, linalg::view(positions));
+        levels_.take(values, view(positions));
     }
     void move_towards(std::span<const double> values, double share) override { levels_.move_towards(values, share); }
     [[nodiscard]] bool prepare(linalg::Reuse reuse) override { return levels_.prepare(reuse); }
@@ -133,11 +131,8 @@ public:
     [[nodiscard]] Outcome solve_constrained(Eigen::VectorXd& column, const Constraints& constraints,
                                             Eigen::VectorXd& multipliers, double error) override {
         multipliers.resize(constraints.wanted.size());
-        return outcome_of(levels_.solve_constrained(
-            linalg::view(column),
-            {{constraints.normals.data(), static_cast<std::size_t>(constraints.normals.size())},
-             linalg::view(constraints.wanted)},
-            linalg::view(multipliers), std::max(error, least_error), most_iterations_));
+        return outcome_of(levels_.solve_constrained(view(column), {view(constraints.normals), view(constraints.wanted)},
+                                                    view(multipliers), std::max(error, least_error), most_iterations_));
     }
 
     [[nodiscard]] Memory memory() const override { return {.usual_gain = levels_.usual_gain()}; }

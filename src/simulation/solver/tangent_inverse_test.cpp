@@ -97,8 +97,7 @@ TEST_CASE("the corners of quadratic tets as second level give the factor's solut
         Eigen::MatrixXd nested = columns;
         linalg::TwoLevel levels(b.layout.pattern, *nest_in_corners(b.model), most_factored);
         REQUIRE(levels.set(b.values, linalg::view(b.positions)));
-        REQUIRE(levels.solve({nested.data(), static_cast<std::size_t>(nested.size())}, 3, 1e-3, most) ==
-                linalg::TwoLevel::Outcome::solved);
+        REQUIRE(levels.solve(linalg::view(nested), 3, 1e-3, most) == linalg::TwoLevel::Outcome::solved);
         CHECK(levels.iterations() <= most);
         for (const Eigen::Index k : {0, 1, 2}) {
             const double energy = direct.col(k).dot(columns.col(k));
