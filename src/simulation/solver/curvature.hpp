@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "base/linalg/cholesky.hpp"
 #include "simulation/elements/element_kernels.hpp"
@@ -52,9 +53,13 @@ public:
         Eigen::MatrixXd motions;     ///< (3 free, k) H^-1 B
         Eigen::MatrixXd compliance;  ///< (k, k) B^T H^-1 B
     };
-    using Forces = std::function<Eigen::MatrixXd(const Eigen::VectorXd& x)>;
-    /// The same for all states at which this H is used, since it only serves to find the multipliers: then `forces` are
-    /// those at the state at which H was made. Called after solve(). Null: solve for the forces at each state.
+    /// Of some actuators, on the free nodes: (3 free, actuators) at the positions `x` (3n).
+    struct Forces {
+        const std::vector<Eigen::Index>& actuators;
+        std::function<Eigen::MatrixXd(const Eigen::VectorXd& x)> at;
+    };
+    /// The same for all states at which this H is used, since it only serves to find the multipliers: then the forces
+    /// are those at the state at which H was made. Called after solve(). Null: solve for the forces at each state.
     [[nodiscard]] virtual const Yielding* yielding_to(const Forces& forces) {
         (void)forces;
         return nullptr;

@@ -147,10 +147,10 @@ public:
 
     [[nodiscard]] const Yielding* yielding_to(const Forces& forces) override {
         if (!usable_ || system_->has_skew()) return nullptr;
-        const YieldingOf of{tangent_, share_, inverse_->memory().in_double};
+        const YieldingOf of{tangent_, share_, inverse_->memory().in_double, forces.actuators};
         if (of == yielding_of_) return &yielding_;
         yielding_of_ = {};
-        const Eigen::MatrixXd B = forces(tangent_->state.x);
+        const Eigen::MatrixXd B = forces.at(tangent_->state.x);
         yielding_.motions = B;
         if (!inverse_->solve_plainly(yielding_.motions, largest_solution_error)) return nullptr;
         yielding_.compliance = B.transpose() * yielding_.motions;
@@ -465,8 +465,9 @@ private:
         std::shared_ptr<const SolverMemory::Tangent> tangent;
         double share = 0;
         bool in_double = false;
+        std::vector<Eigen::Index> actuators{};
         bool operator==(const YieldingOf&) const = default;
-    } yielding_of_;                           ///< the factor that it was computed with
+    } yielding_of_;                           ///< the factor and the actuators that it was computed with
     BodyRotation rotation_;                   ///< since the factor was made
     FactorWithoutContact without_contact_;    ///< for the nodes that touch
     StepMemory memory_{most_steps};           ///< of the steps since then, rotated back to the state of the factor

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/core/near.hpp"
+#include "base/linalg/vectors.hpp"
 #include "simulation/actuators/attach.hpp"
 #include "simulation/run/test_bar.hpp"
 #include "simulation/run/test_problems.hpp"
@@ -38,6 +39,20 @@ Description pulled_bar(double length_ratio) {
     Description d = pushed_bar();
     d.supports.pop_back();
     d.cables = {testing::flexor(d.mesh, {CableTarget::Kind::length_ratio, length_ratio})};
+    return d;
+}
+
+/// The same with two more cables, of which one stays slack.
+Description pulled_from_three_sides() {
+    Description d = pulled_bar(0.92);
+    for (const double across : {0.0, 1.0}) {
+        Cable cable{across == 0 ? "left" : "right", {}, {CableTarget::Kind::length_ratio, across == 0 ? 0.96 : 1.0}};
+        for (int k = 0; k <= 4; ++k)
+            cable.points.push_back(reference::mean_of(reference::nodes_where(d.mesh, [&](Vec3 p) {
+                return norm(p - Vec3{k * bar_side, across * bar_side, bar_side / 2}) < 1e-9;
+            })));
+        d.cables.push_back(std::move(cable));
+    }
     return d;
 }
 
@@ -125,16 +140,7 @@ TEST_CASE("if all solvers fail all reasons are given, and each has used its own 
 }
 
 TEST_CASE("several cables: Newton, which keeps the body's responses to them, ends where quasi-Newton does") {
-    Description d = pulled_bar(0.92);
-    for (const double across : {0.0, 1.0}) {
-        Cable cable{across == 0 ? "left" : "right", {}, {CableTarget::Kind::length_ratio, across == 0 ? 0.96 : 1.0}};
-        for (int k = 0; k <= 4; ++k)
-            cable.points.push_back(reference::mean_of(reference::nodes_where(d.mesh, [&](Vec3 p) {
-                return norm(p - Vec3{k * bar_side, across * bar_side, bar_side / 2}) < 1e-9;
-            })));
-        d.cables.push_back(std::move(cable));
-    }
-    d.loads.clear();
+    const Description d = pulled_from_three_sides();
     const Trajectory newton = solve(d, {.steps = 6, .tolerance = 1e-8, .solver = Solver::newton});
     const Trajectory other = solve(d, {.steps = 6, .tolerance = 1e-8, .solver = Solver::quasi_newton});
     REQUIRE_MESSAGE(newton.converged, newton.message);
@@ -149,6 +155,46 @@ TEST_CASE("several cables: Newton, which keeps the body's responses to them, end
             CHECK(newton.steps[k].cables[c].length_m == near(other.steps[k].cables[c].length_m, {.relative = 1e-7}));
         }
     }
+}
+
+TEST_CASE("the body's responses to constraints are kept for one factor and one set of actuators") {
+    const auto model = Model::create(pulled_from_three_sides());
+    REQUIRE(model);
+    const Equilibrium system(*model);
+    const FactoredLaplacian laplacian(system);
+    const auto newton = make_newton(system, laplacian);
+    const State state = system.rest();
+    const Controls controls = system.controls(0.2);
+    REQUIRE(newton->refresh(state, controls, TangentChoice::quickest, {}));
+    Eigen::MatrixXd gradient = Eigen::MatrixXd::Constant(3 * model->free_count(), 1, 1e-3);
+    newton->solve(gradient);
+    int asked = 0;
+    const auto yielding_to = [&](const std::vector<Eigen::Index>& actuators) {
+        const auto forces = [&](const Eigen::VectorXd& x) {
+            ++asked;
+            Eigen::MatrixXd columns(3 * model->free_count(), static_cast<Eigen::Index>(actuators.size()));
+            for (std::size_t k = 0; k < actuators.size(); ++k) {
+                Eigen::VectorXd force = Eigen::VectorXd::Zero(x.size());
+                system.actuators()[static_cast<std::size_t>(actuators[k])].add_gradient(linalg::view(x), 1,
+                                                                                        linalg::view(force));
+                columns.col(static_cast<Eigen::Index>(k)) = system.restrict_to_free(force);
+            }
+            return columns;
+        };
+        const Curvature::Yielding* yielding = newton->yielding_to({actuators, forces});
+        REQUIRE(yielding != nullptr);
+        Eigen::MatrixXd expected = forces(state.x);
+        --asked;
+        newton->solve(expected);
+        CHECK((yielding->motions - expected).norm() < 1e-3 * expected.norm());
+        CHECK(yielding->compliance.cols() == static_cast<Eigen::Index>(actuators.size()));
+    };
+    yielding_to({0, 1});
+    yielding_to({0, 1});
+    CHECK(asked == 1);
+    yielding_to({0, 2});
+    yielding_to({0, 1, 2});
+    CHECK(asked == 3);
 }
 
 TEST_CASE("a solver chosen by name is used alone") {

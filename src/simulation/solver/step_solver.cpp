@@ -145,8 +145,8 @@ private:
         if (solved_.count() < several) return with(by_each);
         Eigen::MatrixXd gradient = terms.gradient;
         curvature_.solve(gradient);
-        const Curvature::Yielding* yielding =
-            curvature_.yielding_to([&](const Eigen::VectorXd& x) { return gradients_of(&Actuator::add_gradient, x); });
+        const Curvature::Yielding* yielding = curvature_.yielding_to(
+            {solved_.actuators(), [&](const Eigen::VectorXd& x) { return gradients_of(&Actuator::add_gradient, x); }});
         if (yielding == nullptr) return with(by_each);
         return with([&](const auto& some) { return solve_with(*yielding, terms, gradient, some); });
     }
