@@ -49,23 +49,22 @@ void loosen(Sequence& s, int z_um) {
 /// The parts of a print, in order. `Steps` executes them or computes their duration.
 template <class Steps>
 void walk(const Plan& plan, const job::Manifest& job, const Printer& p, Steps& steps) {
-    const auto slot = [&](int vat) { return p.slot_of(vat); };
     std::optional<int> loaded;
     int part_um = 0;
     for (int i = 0; i < plan.layers; ++i) {
         const int z_um = job.layers[static_cast<std::size_t>(i)].z_um;
         for (const int vat : plan.order[static_cast<std::size_t>(i)]) {
             if (!loaded)
-                steps.load(slot(vat));
+                steps.load(p.slot_of(vat));
             else if (*loaded != vat)
-                steps.swap(slot(*loaded), slot(vat), part_um);
+                steps.swap(p.slot_of(*loaded), p.slot_of(vat), part_um);
             loaded = vat;
             part_um = z_um;
             steps.print(i, vat);
         }
         steps.layer_done();
     }
-    if (loaded) steps.store(slot(*loaded), part_um);
+    if (loaded) steps.store(p.slot_of(*loaded), part_um);
 }
 
 /// Whether image k of a layer is printed from `vat`, and its exposure.

@@ -60,17 +60,15 @@ public:
         double& known = known_[{from, to}];
         if (known > 0) return known;
         const double asked_s = to < 0 ? printer_.cleaning.spray_s : printer_.cleaning_s(from, to);
-        Sequence s = standing_at(printer_, slot(from));
+        Sequence s = standing_at(printer_, printer_.slot_of(from));
         if (to < 0)
-            store_vat(s, slot(from));
+            store_vat(s, printer_.slot_of(from));
         else
-            swap_vat(s, slot(from), slot(to));
+            swap_vat(s, printer_.slot_of(from), printer_.slot_of(to));
         return known = std::max(asked_s, s.seconds().clean);
     }
 
 private:
-    [[nodiscard]] int slot(int vat) const { return printer_.slot_of(vat); }
-
     const Printer& printer_;
     std::map<std::pair<int, int>, double> known_;
 };

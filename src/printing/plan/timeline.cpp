@@ -63,18 +63,18 @@ std::string_view device_name(Device device) {
 }
 
 SwapTimeline longest_swap(const Plan& plan, const machine::Printer& printer) {
-    const auto slot = [&](int vat) { return printer.slot_of(vat); };
     const auto all = changes(plan);
     std::map<std::pair<int, int>, double> seconds;
     for (const auto& change : all) {
         double& took = seconds[change];
-        if (took == 0) took = swap_seconds(printer, slot(change.first), slot(change.second)).total;
+        if (took == 0)
+            took = swap_seconds(printer, printer.slot_of(change.first), printer.slot_of(change.second)).total;
     }
     constexpr double same = 1e-9;  // tolerance for sums of seconds in different orders
     const auto found =
         std::max_element(all.begin(), all.end(), [&](auto& a, auto& b) { return seconds[a] + same < seconds[b]; });
     if (found == all.end()) return {};
-    return swap_timeline(printer, slot(found->first), slot(found->second));
+    return swap_timeline(printer, printer.slot_of(found->first), printer.slot_of(found->second));
 }
 
 SwapTimeline swap_timeline(const machine::Printer& printer, int from_slot, int to_slot) {
