@@ -14,6 +14,8 @@ find_package(hwy REQUIRED)
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE ON)
 find_package(CGAL REQUIRED)
 pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
+add_library(pliant_cairo_headers INTERFACE) # the library itself is loaded when the first picture is drawn
+target_include_directories(pliant_cairo_headers SYSTEM INTERFACE ${cairo_INCLUDE_DIRS})
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(muparser REQUIRED IMPORTED_TARGET muparser)
 pkg_check_modules(sdl2 REQUIRED IMPORTED_TARGET sdl2)

@@ -88,7 +88,8 @@ std::vector<std::string> departures(const InverseResult::Data& found, const sim:
     return lines;
 }
 
-/// Writes the program, runs it from its file, and writes all results. Returns the warnings of departures().
+/// Writes the program, runs it from its file, and writes all results. Returns the warnings of departures(), and one if
+/// nothing could be drawn.
 std::vector<std::string> fill(const InverseResult::Data& found, const fs::path& folder, const fs::path& final_folder,
                               Progress& progress) {
     const int steps_each = steps_per_waypoint(found);
@@ -105,7 +106,9 @@ std::vector<std::string> fill(const InverseResult::Data& found, const fs::path& 
     if (written.drawing_stopped) library::check(cancelled());
     library::check(write_file(folder / "inverse.json", report::inverse_json(found.report())));
     library::check(write_file(folder / "waypoints.csv", report::waypoints_csv(found.report())));
-    return departures(found, run, steps_each);
+    std::vector<std::string> warnings = departures(found, run, steps_each);
+    if (!written.warning.empty()) warnings.push_back(written.warning);
+    return warnings;
 }
 
 }  // namespace

@@ -189,6 +189,7 @@ bool ProgramResult::write(const std::filesystem::path& folder, const ResultsOpti
         if (!written) return tl::unexpected(written.error());
         data_->report->timing = written->timing;
         stopped = written->drawing_stopped;
+        if (!written->warning.empty()) data_->trajectory.warnings.push_back(written->warning);
         return {};
     });
     writing.rethrow();

@@ -30,7 +30,8 @@ struct Font {
 /// proportions. Colours are sRGB.
 class Canvas {
 public:
-    Canvas(int width_px, int height_px, const Colour& background);
+    /// An error if Cairo is not installed.
+    [[nodiscard]] static Result<Canvas> create(int width_px, int height_px, const Colour& background);
     Canvas(Canvas&&) noexcept;
     Canvas& operator=(Canvas&&) noexcept;
     ~Canvas();
@@ -56,6 +57,7 @@ public:
 
 private:
     struct State;
+    Canvas();
     std::unique_ptr<State> state_;
     double width_ = 0;
 };

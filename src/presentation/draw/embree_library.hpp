@@ -1,21 +1,17 @@
-// Embree, loaded when the first picture is drawn: it is large, most runs do not need it, and loading it takes longer
-// than everything else before main.
+// Embree, loaded when the first picture is drawn.
 #pragma once
 
 #include <embree3/rtcore.h>
 
-#include <memory>
+#include "presentation/draw/loaded_library.hpp"
 
 namespace pliant::report {
 
-/// The functions in use, by their names in Embree; either all are present, or none. Once loaded the library stays in
-/// the process, so that further objects cost nothing.
+/// The functions in use, by their names in Embree.
 class EmbreeLibrary {
 public:
     EmbreeLibrary();
-    EmbreeLibrary(const EmbreeLibrary&) = delete;
-    EmbreeLibrary& operator=(const EmbreeLibrary&) = delete;
-    [[nodiscard]] bool is_there() const { return handle_ != nullptr; }
+    [[nodiscard]] bool is_there() const { return library_.is_there(); }
     /// File name of the library.
     [[nodiscard]] static const char* name();
 
@@ -35,12 +31,7 @@ public:
     decltype(&rtcOccluded8) occluded_8 = nullptr;
 
 private:
-    template <class Function>
-    void find(const char* name, Function& function);
-    struct Close {
-        void operator()(void* library) const;
-    };
-    std::unique_ptr<void, Close> handle_;
+    LoadedLibrary library_;
 };
 
 }  // namespace pliant::report

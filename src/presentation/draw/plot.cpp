@@ -121,7 +121,9 @@ std::vector<double> ticks(double low, double high) {
 }
 
 Result<std::string> plot_png(const Plot& plot) {
-    Canvas canvas(1200, 800, white);
+    auto made = Canvas::create(1200, 800, white);
+    if (!made) return tl::unexpected(made.error());
+    Canvas& canvas = *made;
     const Axis x = axis_for(plot, plot.log_x, &Point2::x, left, right);
     const Axis y = axis_for(plot, plot.log_y, &Point2::y, bottom, top);
     draw_grid(canvas, x, y);

@@ -188,7 +188,9 @@ Result<std::string> block_picture(const CuredBlock& block, const job::Manifest& 
     const int columns = differs ? 3 : 2;
     const int wide = block_width_px / columns, high = block_height_px - block_title_px;
     const Camera camera = camera_for(points, static_cast<double>(wide) / high);
-    Canvas canvas(block_width_px, block_height_px, paper);
+    auto made = Canvas::create(block_width_px, block_height_px, paper);
+    if (!made) return tl::unexpected(made.error());
+    Canvas& canvas = *made;
     const double unit = 1000.0 / block_height_px;  // the canvas is 1000 units high
     const auto title = [&](int column, const std::string& text, const Colour* swatch) {
         const double x = (column * wide + 40) * unit;

@@ -192,7 +192,9 @@ void draw_sheet(Canvas& canvas, const Views& views, const job::Manifest& m) {
 Result<std::string> layers_picture(const job::Archive& archive) {
     const auto views = look(archive, sheet_columns * sheet_rows);
     if (!views) return tl::unexpected(views.error());
-    Canvas canvas(job_width_px, job_height_px, paper);
+    auto made = Canvas::create(job_width_px, job_height_px, paper);
+    if (!made) return tl::unexpected(made.error());
+    Canvas& canvas = *made;
     draw_sheet(canvas, *views, archive.manifest());
     return canvas.png();
 }
@@ -201,7 +203,9 @@ Result<std::string> job_picture(const job::Archive& archive) {
     const auto views = look(archive, shown_layers);
     if (!views) return tl::unexpected(views.error());
     const job::Manifest& m = archive.manifest();
-    Canvas canvas(job_width_px, job_height_px, paper);
+    auto made = Canvas::create(job_width_px, job_height_px, paper);
+    if (!made) return tl::unexpected(made.error());
+    Canvas& canvas = *made;
     canvas.text({60, 62}, m.name, {.size = 34, .colour = ink, .bold = true});
     double x = 60;
     for (std::size_t i = 0; i < m.materials.size(); ++i) {

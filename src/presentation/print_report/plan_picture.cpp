@@ -137,7 +137,9 @@ std::vector<LayerRun> layer_runs(const plan::Plan& plan, int vat) {
 }
 
 Result<std::string> plan_picture(const plan::Plan& plan, const plan::SwapTimeline& swap) {
-    Canvas canvas(1600, 1000, paper);
+    auto made = Canvas::create(1600, 1000, paper);
+    if (!made) return tl::unexpected(made.error());
+    Canvas& canvas = *made;
     draw_heading(canvas, plan);
     draw_time(canvas, plan.seconds);
     draw_swap(canvas, swap);

@@ -114,7 +114,9 @@ void draw_scale(Canvas& canvas) {
 Result<std::string> wash_picture(std::string_view title, const wash::PartCells& part,
                                  const std::vector<wash::Face>& faces, const wash::Cleanness& cleanness) {
     if (faces.empty()) return input_error("{}: nothing is printed, so there is nothing to clean", title);
-    Canvas canvas(wash_width_px, wash_height_px, paper);
+    auto made = Canvas::create(wash_width_px, wash_height_px, paper);
+    if (!made) return tl::unexpected(made.error());
+    Canvas& canvas = *made;
     for (const bool from_platform : {false, true}) {
         const int wide = wash_width_px / 2, high = wash_height_px - wash_title_px;
         const Result<Image> image = view_of(skin_of(part, faces, cleanness.left, from_platform), wide, high);

@@ -76,7 +76,9 @@ std::string regions_text(const mesh::MeshReport& report) {
 }  // namespace
 
 Result<std::string> mesh_picture_png(std::string_view title, const mesh::MeshReport& report) {
-    Canvas canvas(1600, 900, paper);
+    auto made = Canvas::create(1600, 900, paper);
+    if (!made) return tl::unexpected(made.error());
+    Canvas& canvas = *made;
     const double half = (canvas.width() - 4 * 70) / 2;
     canvas.text({70, 74}, title, {36, dark_ink, Align::left, true});
     const std::string jacobian =

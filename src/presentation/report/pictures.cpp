@@ -204,8 +204,8 @@ Scene Painter::scene_of(std::size_t step) const {
 Result<Canvas> Painter::drawn(const Scene& scene, const Camera& camera) const {
     const auto image = render(scene, camera, size_.width_px, size_.height_px, progress_);
     if (!image) return tl::unexpected(image.error());
-    Canvas canvas(size_.width_px, size_.height_px, scene.backdrop_top);
-    canvas.image(*image, 0, 0);
+    auto canvas = Canvas::create(size_.width_px, size_.height_px, scene.backdrop_top);
+    if (canvas) canvas->image(*image, 0, 0);
     return canvas;
 }
 
@@ -257,7 +257,9 @@ Result<Picture> Painter::stages() {
     const StageLayout layout =
         lay_out_stages(view_, points_, s_.result.steps.size(), size_.width_px, size_.height_px - heading_px);
     const double unit_px = size_.height_px / 1000.0;
-    Canvas canvas(size_.width_px, size_.height_px, stage_backdrop);
+    auto made = Canvas::create(size_.width_px, size_.height_px, stage_backdrop);
+    if (!made) return tl::unexpected(made.error());
+    Canvas& canvas = *made;
     for (std::size_t i = 0; i < layout.steps.size(); ++i) {
         Scene scene = scene_of(layout.steps[i]);
         scene.backdrop_top = scene.backdrop_bottom = stage_backdrop;

@@ -1,5 +1,6 @@
 #include "presentation/report/results.hpp"
 
+#include <optional>
 #include <system_error>
 
 #include "base/core/files.hpp"
@@ -24,26 +25,39 @@ Status write_data(const fs::path& folder, const Simulation& s, const Surface& su
     return write_file(folder / "robot.glb", robot_glb(s, surface));
 }
 
-Status write_pictures(const fs::path& folder, const std::vector<Picture>& pictures) {
-    if (pictures.empty()) return {};
+struct Drawn {
+    std::vector<Picture> pictures;
+    std::string film;            ///< GIF; empty if it was not asked for
+    std::optional<Error> error;  ///< why the rest is missing
+};
+
+/// A long run must not be lost because it cannot be drawn: what fails or is cancelled is left out.
+Drawn draw(const Simulation& s, const Surface& surface, PictureChoice choice, Progress& progress) {
+    auto pictures = draw_pictures(s, surface, choice, progress);
+    if (!pictures) return {{}, {}, pictures.error()};
+    Drawn drawn{std::move(*pictures), {}, {}};
+    if (!choice.film) return drawn;
+    choice.size = usual_film_size;
+    Result<std::string> film = draw_film(s, surface, choice, progress);
+    if (film)
+        drawn.film = std::move(*film);
+    else
+        drawn.error = film.error();
+    return drawn;
+}
+
+Status write_pictures(const fs::path& folder, const Drawn& drawn) {
+    if (!drawn.film.empty()) {
+        if (Status status = write_file(folder / "film.gif", drawn.film); !status) return status;
+    }
+    if (drawn.pictures.empty()) return {};
     std::error_code code;
     fs::create_directories(folder / "pictures", code);
     if (code) return failure("{}: cannot be made: {}", (folder / "pictures").string(), code.message());
-    for (const Picture& picture : pictures) {
+    for (const Picture& picture : drawn.pictures) {
         if (Status status = write_file(folder / "pictures" / picture.file, picture.png); !status) return status;
     }
     return {};
-}
-
-/// False: cancelled while drawing; no film was written.
-Result<bool> write_film(const fs::path& folder, const Simulation& s, const Surface& surface, PictureChoice choice,
-                        Progress& drawing) {
-    choice.size = usual_film_size;
-    const Result<std::string> gif = draw_film(s, surface, choice, drawing);
-    if (!gif && gif.error().cause == Cause::cancelled) return false;
-    if (!gif) return tl::unexpected(gif.error());
-    const Status status = write_file(folder / "film.gif", *gif);
-    return status ? Result<bool>(true) : tl::unexpected(status.error());
 }
 
 }  // namespace
@@ -57,24 +71,17 @@ Result<Written> write_results(const fs::path& folder, const Simulation& simulati
     if (Status status = write_data(folder, s, surface, writing); !status) return tl::unexpected(status.error());
     s.timing.files_s = watch.read_s();
 
-    auto pictures = draw_pictures(s, surface, choice, drawing);
-    bool stopped = !pictures && pictures.error().cause == Cause::cancelled;
-    if (stopped) pictures = std::vector<Picture>();
-    if (!pictures) return tl::unexpected(pictures.error());
-    if (Status status = write_pictures(folder, *pictures); !status) return tl::unexpected(status.error());
-    if (choice.film && !stopped) {
-        const Result<bool> filmed = write_film(folder, s, surface, choice, drawing);
-        if (!filmed) return tl::unexpected(filmed.error());
-        stopped = !*filmed;
-    }
-    if (!pictures->empty()) s.timing.pictures_s = watch.read_s();
+    const Drawn drawn = draw(s, surface, choice, drawing);
+    if (Status status = write_pictures(folder, drawn); !status) return tl::unexpected(status.error());
+    if (!drawn.pictures.empty()) s.timing.pictures_s = watch.read_s();
 
     // Last, because both contain the time of the rest.
-    Status status = write_file(folder / "report.html", report_html(s, *pictures));
+    Status status = write_file(folder / "report.html", report_html(s, drawn.pictures));
     if (status) status = write_file(folder / "summary.json", summary_json(s));
     if (status && writing.cancelled()) status = cancelled();
     if (!status) return tl::unexpected(status.error());
-    return Written{s.timing, stopped};
+    const bool stopped = drawn.error && drawn.error->cause == Cause::cancelled;
+    return Written{s.timing, stopped, drawn.error && !stopped ? drawn.error->message : std::string()};
 }
 
 }  // namespace pliant::report

@@ -99,7 +99,9 @@ Result<std::string> draw_robot(const std::string& text, const std::filesystem::p
     const report::Camera camera = report::fitted(side, seen, aspect, style.margins);
     const Result<report::Image> image = report::render(scene, camera, style.width_px, style.height_px, hurry);
     if (!image) return tl::unexpected(image.error());
-    report::Canvas canvas(style.width_px, style.height_px, scene.backdrop_top);
+    auto made = report::Canvas::create(style.width_px, style.height_px, scene.backdrop_top);
+    if (!made) return tl::unexpected(made.error());
+    report::Canvas& canvas = *made;
     canvas.image(*image, 0, 0);
     return canvas.png();
 }
