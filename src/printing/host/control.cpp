@@ -25,7 +25,8 @@ namespace {
 using machine::Axis;
 
 constexpr double idle_listen_s = 0.05;
-constexpr int connects_to_halted = 3;  // a halted controller stays silent
+constexpr int connects_to_halted = 3;       // a halted controller stays silent
+constexpr double slowest_feed_mm_s = 0.01;  // of moves by hand; G-code has a tenth of a mm/min
 constexpr const char* after_emergency_stop =
     "emergency stop: the board is halted; reset it (its button, or its power off and on) before anything else";
 
@@ -80,6 +81,13 @@ std::string job_digest(std::string_view bytes) {
     return digest.text();
 }
 
+/// A request that waits for the working thread.
+struct Control::Task {
+    std::function<void()> run;
+    bool for_machine = true;  ///< dropped after a failure or an emergency stop, unlike the loading of a job
+    long stops = 0;           ///< number of emergency stops when it was requested
+};
+
 /// The private state. The last members are used by the working thread only.
 struct Control::State_ {
     explicit State_(ControlSetup s) : setup(std::move(s)), desk(setup.clock) {}
@@ -88,7 +96,7 @@ struct Control::State_ {
     Desk desk;
     std::mutex mutex;  ///< protects tasks, quitting, and `wire` while it is replaced
     std::condition_variable woken;
-    std::deque<std::function<void()>> tasks;
+    std::deque<Task> tasks;
     bool quitting = false;
     bool hears_m112 = true;  ///< acts on M112 at once, even when busy: EMERGENCY_PARSER
     std::shared_ptr<Wire> wire;
@@ -109,13 +117,14 @@ struct Control::State_ {
     std::vector<double> times;
 
     [[nodiscard]] Status ask_for(std::optional<State> next, const std::function<Status(const Snapshot&)>& allowed,
-                                 std::function<void()> task);
+                                 std::function<void()> task, bool for_machine = true);
     [[nodiscard]] bool stop_move();
     [[nodiscard]] Status run_one_move(const std::string& program);
     [[nodiscard]] Status by_hand(std::function<Result<std::string>(const machine::Interlock&)> program,
                                  bool one_move = false);
     bool run_next_task();
 
+    [[nodiscard]] Status open_wire();
     [[nodiscard]] Status open();
     [[nodiscard]] Status new_session(Journal* journal, const JournalFacts& facts, const Standing& standing);
     void close();
@@ -137,19 +146,22 @@ struct Control::State_ {
 // Requests.
 
 /// Checks the state and changes it to the next one atomically, so that only one of two concurrent requests succeeds.
-/// Without `next` the state is unchanged.
+/// Without `next` the state is unchanged. Until an emergency stop has been dealt with, nothing is allowed.
 Status Control::State_::ask_for(std::optional<State> next, const std::function<Status(const Snapshot&)>& allowed,
-                                std::function<void()> task) {
+                                std::function<void()> task, bool for_machine) {
+    const long stops = desk.stops();
+    const bool stopping = for_machine && desk.stopped();
     Status status;
     desk.update([&](Snapshot& s) {
-        status = allowed(s);
+        status = stopping && s.state != State::offline && s.state != State::halted ? failure(after_emergency_stop)
+                                                                                   : allowed(s);
         if (status && next) s.state = *next;
     });
     if (!status) return status;
     if (next) desk.event("state", std::string(state_text(*next)));
     {
         const std::scoped_lock lock(mutex);
-        tasks.push_back(std::move(task));
+        tasks.push_back({std::move(task), for_machine, stops});
     }
     woken.notify_all();
     return {};
@@ -220,7 +232,8 @@ Status Control::load(PrintJob job) {
             });
             state_->desk.event("log", "job " + state_->job->name);
             state_->look_at_journal();
-        });
+        },
+        false);
 }
 
 Status Control::start(const StartOptions& options) {
@@ -345,6 +358,7 @@ Status Control::State_::by_hand(std::function<Result<std::string>(const machine:
             return only_when_idle(s);
         },
         [this, one_move, program = std::move(program)] {
+            if (!machine) return;  // the link has failed since the request
             const auto text = program(machine->state());
             untouched_line.reset();
             Status status =
@@ -360,6 +374,8 @@ Status Control::State_::by_hand(std::function<Result<std::string>(const machine:
 }
 
 Status Control::move_to(Axis axis, int um, double feed_mm_s) {
+    if (!(feed_mm_s == 0 || feed_mm_s >= slowest_feed_mm_s))
+        return input_error("a speed of {:g} mm/s: the slowest is {:g} mm/s", feed_mm_s, slowest_feed_mm_s);
     if (state_->stop_move()) return failure("the move under way is stopped instead; home the axes before the next one");
     const auto program = [this, axis, um, feed_mm_s](const machine::Interlock& at) -> Result<std::string> {
         machine::Position to = at.position();
@@ -414,6 +430,7 @@ Status Control::expose_test(job::Image image, double seconds) {
                            printer.projector.width_px, printer.projector.height_px);
     return state_->ask_for(State::working, only_when_idle, [this, image = std::move(image), seconds] {
         State_& s = *state_;
+        if (!s.machine) return;  // the link has failed since the request
         if (Status status = s.preflight(); !status) {
             s.desk.event("error", status.error().message);
             return s.desk.state(State::idle, status.error().message);
@@ -446,14 +463,7 @@ Status Control::reset_controller() {
         [this] {
             State_& s = *state_;
             Status status;
-            if (!s.wire) {
-                const std::scoped_lock lock(s.mutex);
-                auto opened = s.setup.open_wire();
-                if (opened)
-                    s.wire = std::move(*opened);
-                else
-                    status = tl::unexpected(opened.error());
-            }
+            if (!s.wire) status = s.open_wire();
             if (status) status = s.wire->reset();
             s.close();
             if (!status) return s.fail(status.error());
@@ -478,14 +488,17 @@ std::vector<Event> Control::events_since(long number) const {
 // The working thread.
 
 bool Control::State_::run_next_task() {
-    std::function<void()> task;
+    Task task;
     {
         const std::scoped_lock lock(mutex);
         if (tasks.empty()) return false;
         task = std::move(tasks.front());
         tasks.pop_front();
     }
-    task();
+    if (task.for_machine && task.stops != desk.stops())
+        fail({Cause::failed, after_emergency_stop});
+    else
+        task.run();
     return true;
 }
 
@@ -518,12 +531,22 @@ void Control::serve() {
 }
 
 void Control::quit() {
-    state_->desk.wish([](Wishes& w) { w.suspend = true; });
     {
         const std::scoped_lock lock(state_->mutex);
         state_->quitting = true;
     }
+    // In this order: a print that begins resets the wishes first, and looks at `quitting` then.
+    state_->desk.wish([](Wishes& w) { w.suspend = true; });
     state_->woken.notify_all();
+}
+
+/// Opening may take seconds; an emergency stop must not wait for it.
+Status Control::State_::open_wire() {
+    auto opened = setup.open_wire();
+    if (!opened) return tl::unexpected(opened.error());
+    const std::scoped_lock lock(mutex);
+    wire = std::move(*opened);
+    return {};
 }
 
 Status Control::State_::open() {
@@ -541,12 +564,7 @@ Status Control::State_::open() {
         fresh->link().expect_no_start();
         machine = std::move(fresh);
     } else {
-        auto opened = setup.open_wire();
-        if (!opened) return tl::unexpected(opened.error());
-        {
-            const std::scoped_lock lock(mutex);
-            wire = std::move(*opened);
-        }
+        if (Status status = open_wire(); !status) return status;
         machine = std::make_unique<Machine>(*wire, setup.clock, setup.printer, options);
     }
     machine->link().set_watch([this] { return desk.watch(); });
@@ -586,6 +604,10 @@ void Control::State_::fail(const Error& error) {
     desk.event("error", message);
     may_be_halted = may_be_halted || desk.stopped() || (machine && machine->link().has_halted());
     close();
+    {
+        const std::scoped_lock lock(mutex);
+        std::erase_if(tasks, [](const Task& task) { return task.for_machine; });
+    }
     desk.update([](Snapshot& s) {
         s.failed = true;
         s.lit = false;

@@ -1,16 +1,16 @@
 // Control of a print: what a person, a page or a program may request of a machine, and what they can query.
 //
 //     Control control(setup);                       // devices, machine, programs
-//     std::thread worker([&] { control.serve(); }); // all talk to the devices happens here
+//     std::thread worker([&] { control.serve(); }); // all device input and output happens here
 //     control.connect();
 //     control.load(job);
 //     control.start({});
 //     control.snapshot().seconds_left; control.events_since(n);
 //     control.quit(); worker.join();
 //
-// Every function is thread-safe. A request returns at once and says only whether the present state allows it; its
-// progress shows in the snapshot and in the events. The library starts no thread: the owner provides one that runs
-// serve().
+// Every function but serve() and serve_until_idle() may be called from any thread. A request returns at once and says
+// only whether the present state allows it; its progress shows in the snapshot and in the events. The library starts no
+// thread: the owner provides one that runs serve().
 #pragma once
 
 #include <functional>
@@ -71,7 +71,8 @@ public:
     // Manual control, while no print is running.
 
     /// Moves to an absolute position; refused if the interlocks forbid it. During such a move or a jog(), another call
-    /// stops that move at once (M410) and is itself refused: the axes must then be homed.
+    /// stops that move at once (M410) and is itself refused: the axes must then be homed. `feed_mm_s`: 0 for the axis'
+    /// own speed, which is also the fastest. Errors: a feed below 0.01 mm/s.
     [[nodiscard]] Status move_to(machine::Axis axis, int um, double feed_mm_s);
     /// Moves by `um` from the current position.
     [[nodiscard]] Status jog(machine::Axis axis, int um, double feed_mm_s);
@@ -80,7 +81,7 @@ public:
     /// Brings the vat of `slot`; 0: puts the present vat away.
     [[nodiscard]] Status bring_vat(int slot);
     [[nodiscard]] Status clean(double seconds);
-    /// Runs the pump over the drain, to fill its lines.
+    /// The same as clean(), to fill the pump's lines.
     [[nodiscard]] Status prime(double seconds);
     /// Exposes in the present position, homed or not and without a vat: for checking focus and dimensions. (A virtual
     /// printer reports a fault before homing or without a vat.)
@@ -97,6 +98,7 @@ public:
     [[nodiscard]] std::vector<Event> events_since(long number) const;
 
 private:
+    struct Task;
     struct State_;
     std::unique_ptr<State_> state_;
 };

@@ -32,7 +32,8 @@ struct Bench {
     CountingClock clock;
     RememberingProjector projector;
     std::function<std::string(const std::string&)> answer;
-    bool opened = false;
+    std::function<Status()> at_read;  ///< as that of the wire
+    int opened = 0;                   ///< number of times
     std::vector<Given> lights;
     std::vector<std::string> written;  ///< survives the wire
     Control control{setup()};
@@ -42,11 +43,13 @@ struct Bench {
     ControlSetup setup() {
         ControlSetup s{one_axis(),
                        [this]() -> Result<std::unique_ptr<Wire>> {
-                           opened = true;
-                           return std::make_unique<ScriptedWire>(clock, [this](const std::string& line) {
+                           ++opened;
+                           auto wire = std::make_unique<ScriptedWire>(clock, [this](const std::string& line) {
                                written.push_back(line);
                                return answer(line);
                            });
+                           wire->at_read = [this] { return at_read ? at_read() : Status{}; };
+                           return wire;
                        },
                        projector,
                        clock,
@@ -138,4 +141,62 @@ TEST_CASE("after a controller restart nothing more is sent") {
     CHECK_FALSE(b.print(job_text));
     CHECK(b.index_of("M410") == -1);
     CHECK_FALSE(b.projector.lit);
+}
+
+TEST_CASE("a request from before an emergency stop is not carried out, and the next one waits for the stop") {
+    Bench b(&good_answer);
+    PrintJob job;
+    job.gcode = job_text;
+    job.images = image_of;
+    job.materials = {"soft", "firm"};
+    job.layers = 1;
+    REQUIRE(b.control.load(std::move(job)));
+    REQUIRE(b.control.connect());
+    b.control.serve_until_idle();
+    REQUIRE(b.control.state() == State::idle);
+    REQUIRE(b.control.start({}));
+    b.control.emergency_stop();
+    CHECK_FALSE(b.control.home({}));
+    b.control.serve_until_idle();
+    CHECK(b.control.state() == State::halted);
+    CHECK(b.control.snapshot().message.starts_with("emergency stop: the board is halted"));
+    CHECK(b.index_of("G28") == -1);
+    CHECK(b.projector.shown.empty());
+    CHECK(b.opened == 1);
+
+    REQUIRE(b.control.connect());
+    b.control.serve_until_idle();
+    CHECK(b.control.state() == State::idle);
+    CHECK(b.opened == 2);
+}
+
+TEST_CASE("before a connection, too, an emergency stop ends what was requested") {
+    Bench b(&good_answer);
+    REQUIRE(b.control.connect());
+    b.control.emergency_stop();
+    b.control.serve_until_idle();
+    CHECK(b.control.state() == State::halted);
+    CHECK(b.opened == 0);
+}
+
+TEST_CASE("a manual command that arrives while the link fails is dropped") {
+    Bench b(&good_answer);
+    REQUIRE(b.control.connect());
+    b.control.serve_until_idle();
+    REQUIRE(b.control.state() == State::idle);
+    b.at_read = [&b] {
+        CHECK(b.control.home({}));
+        b.control.quit();
+        return failure("the device is gone");
+    };
+    b.control.serve();
+    CHECK(b.control.state() == State::halted);
+    CHECK(b.index_of("G28") == -1);
+}
+
+TEST_CASE("a move by hand has a speed that G-code can express") {
+    Bench b(&good_answer);
+    CHECK(b.control.jog(machine::Axis::platform, 1000, 1e-6).error().message ==
+          "a speed of 1e-06 mm/s: the slowest is 0.01 mm/s");
+    CHECK_FALSE(b.control.jog(machine::Axis::platform, 1000, -1));
 }

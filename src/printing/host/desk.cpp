@@ -60,6 +60,11 @@ Wishes Desk::wishes() const {
     return wishes_;
 }
 
+bool Desk::take_resume() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(wishes_.resume, false);
+}
+
 void Desk::change_exposure(int material, double seconds) {
     const std::scoped_lock lock(mutex_);
     changes_.push_back({material, seconds, 0});
@@ -73,6 +78,12 @@ void Desk::skip_layer(int layer) {
 void Desk::stop_everything() {
     const std::scoped_lock lock(mutex_);
     stop_ = true;
+    ++stops_;
+}
+
+long Desk::stops() const {
+    const std::scoped_lock lock(mutex_);
+    return stops_;
 }
 
 void Desk::clear_stop() {

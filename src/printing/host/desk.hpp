@@ -46,7 +46,11 @@ public:
     [[nodiscard]] Status watch() const;
     [[nodiscard]] bool stopped() const;
     void clear_stop();
+    /// Number of emergency stops so far.
+    [[nodiscard]] long stops() const;
     [[nodiscard]] Wishes wishes() const;
+    /// Whether resume() was requested since the last call.
+    [[nodiscard]] bool take_resume();
     /// The changes requested since the last call.
     [[nodiscard]] std::vector<ChangeFact> take_changes();
     [[nodiscard]] std::vector<int> take_skips();
@@ -61,6 +65,7 @@ private:
     std::vector<ChangeFact> changes_;
     std::vector<int> skips_;
     bool stop_ = false;
+    long stops_ = 0;
 };
 
 }  // namespace pliant::host

@@ -366,11 +366,10 @@ Status PrintRun::wait_for_resume() {
     for (;;) {
         if (Status status = run_.desk.watch(); !status) return status;
         if (wants_to_end()) return wish_to_end();
-        if (run_.desk.wishes().resume && !door_is_open()) break;
-        run_.desk.wish([](Wishes& w) { w.resume = false; });  // ignored while the door is open
+        const bool resume = run_.desk.take_resume();  // ignored while the door is open
+        if (resume && !door_is_open()) break;
         if (Status status = listen_at_door(pause_look_s); !status) return status;
     }
-    run_.desk.wish([](Wishes& w) { w.resume = false; });
     waits_ = false;
     reached_s_ = done_s_;
     reached_at_s_ = clock_.now();

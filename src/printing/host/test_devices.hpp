@@ -51,6 +51,7 @@ public:
         return {};
     }
     Result<std::string> read(double timeout_s) override {
+        if (Status status = at_read ? at_read() : Status{}; !status) return tl::unexpected(status.error());
         if (!pending_.empty()) return std::exchange(pending_, {});
         const bool talks = !talk.empty() && timeout_s >= 1;
         clock_.now_s += talks ? 1 : timeout_s;
@@ -58,8 +59,9 @@ public:
     }
 
     std::vector<std::string> written;
-    std::string forgets;  ///< a line that contains this is dropped once, whatever its answer
-    std::string talk;     ///< sent every second, unasked
+    std::string forgets;              ///< a line that contains this is dropped once, whatever its answer
+    std::string talk;                 ///< sent every second, unasked
+    std::function<Status()> at_read;  ///< called before each read; an error is that of the wire
 
 private:
     std::string answer_to(const std::string& line) {
