@@ -8,6 +8,7 @@
 #include "base/core/config.hpp"
 #include "base/core/files.hpp"
 #include "base/core/text.hpp"
+#include "base/core/toml_nesting.hpp"
 
 namespace pliant::config {
 namespace {
@@ -56,18 +57,6 @@ Result<Value> convert(const toml::node& node, int depth) {
         return input_error_at("", line_of(node), "dates and times have no meaning here");
     }
     return value;
-}
-
-bool nested_too_deep(std::string_view text) {
-    // toml++ parses recursively, so nesting is limited by counting brackets first.
-    int depth = 0;
-    int deepest = 0;
-    for (const char c : text) {
-        if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
-        if (c == ']' || c == '}') depth = std::max(0, depth - 1);
-        if (c == '\n' && depth <= 2) depth = 0;  // headers close on their line
-    }
-    return deepest > 4 * max_depth;
 }
 
 Value* find_child(Value& parent, std::string_view part) {
@@ -168,7 +157,7 @@ private:
 Result<Document> parse(std::string_view text, const std::filesystem::path& file) {
     if (text.size() > max_text_bytes)
         return input_error("{}: larger than 16 MB, which is not a robot or printer file", file.string());
-    if (nested_too_deep(text)) return input_error("{}: brackets nested too deep", file.string());
+    if (nested_too_deep(text)) return input_error("{}: keys or brackets are nested too deep", file.string());
     try {
         const toml::table table = toml::parse(text, file.string());
         Result<Value> root = convert(table, 0);
@@ -195,6 +184,8 @@ Status set(Document& document, std::string_view assignment) {
         return input_error("--set {}: write KEY=VALUE, as in program.steps=10", assignment);
     }
     const std::string_view key = assignment.substr(0, equals);
+    if (std::ranges::count(key, '.') > max_depth)
+        return input_error("--set {}...: the key has too many parts", key.substr(0, 40));
     const std::string text(assignment.substr(equals + 1));
     Result<Document> parsed = parse("value = " + text, "--set");
     Value value;

@@ -4,13 +4,16 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "base/core/letters.hpp"
+#include "base/core/toml_nesting.hpp"
 
 namespace pliant::config {
 namespace {
 
 Result<toml::table> parsed(std::string_view text) {
+    if (nested_too_deep(text)) return input_error("keys or brackets are nested too deep");
     try {
         return toml::parse(text);
     } catch (const toml::parse_error& error) {
@@ -66,15 +69,30 @@ std::string insert_line(std::string_view text, std::size_t after, std::string_vi
     return out;
 }
 
-/// Inserts before the bracket that closes a list or an inline table.
-std::string insert_before_end(std::string_view text, const toml::node& node, bool empty, const std::string& more) {
+/// The end of the last value in a list or an inline table; nothing if it has none.
+std::optional<toml::source_position> end_of_values(const toml::node& node) {
+    std::optional<toml::source_position> end;
+    const auto look = [&](const toml::node& value) {
+        // A table that a dotted key has made has no end of its own.
+        const bool dotted = value.is_table() && !value.as_table()->is_inline();
+        const auto its = dotted ? end_of_values(value) : value.source().end;
+        if (its && (!end || *its > *end)) end = its;
+    };
+    if (const auto* table = node.as_table())
+        for (const auto& [key, value] : *table) look(value);
+    else if (const auto* list = node.as_array())
+        for (const toml::node& item : *list) look(item);
+    return end;
+}
+
+/// Inserts after the last value of a list or an inline table, where neither a comment nor a trailing comma is in the
+/// way.
+std::string insert_at_end(std::string_view text, const toml::node& node, const std::string& more) {
     std::string out(text);
-    std::size_t close = offset_of(text, node.source().end);
-    while (close > 0 && out[close] != ']' && out[close] != '}') --close;
-    std::size_t at = close;
-    while (at > 0 && (out[at - 1] == ' ' || out[at - 1] == '\n' || out[at - 1] == '\t')) --at;
-    const bool comma = at > 0 && out[at - 1] == ',';
-    out.insert(at, (empty ? " " : comma ? " " : ", ") + more);
+    if (const auto end = end_of_values(node))
+        out.insert(offset_of(text, *end), ", " + more);
+    else
+        out.insert(offset_of(text, node.source().begin) + 1, " " + more);
     return out;
 }
 
@@ -161,7 +179,7 @@ Result<std::string> with_value(std::string_view text, std::string_view path, std
             return checked(with_new_table(text, parts, value));
         }
         const std::string line = fmt::format("{} = {}", key_text(parts[k]), value);
-        if (table->is_inline()) return checked(insert_before_end(text, *table, table->empty(), line));
+        if (table->is_inline()) return checked(insert_at_end(text, *table, line));
         // The top level has no header that tells where it begins.
         const std::size_t after = at == &*root && table->source().begin.line <= 1 ? 0 : table->source().begin.line;
         return checked(insert_line(text, std::max(after, at == &*root ? std::size_t{0} : last_own_line(*table)), line));
@@ -194,7 +212,7 @@ Result<std::string> with_entry(std::string_view text, std::string_view list, con
     const toml::table* first = all->empty() ? nullptr : all->get(0)->as_table();
     const bool headed = first != nullptr && !first->is_inline();
     if (headed) return checked(insert_line(text, last_line(*all), lines));
-    return checked(insert_before_end(text, *all, all->empty(), "{ " + inlined + " }"));
+    return checked(insert_at_end(text, *all, "{ " + inlined + " }"));
 }
 
 }  // namespace pliant::config

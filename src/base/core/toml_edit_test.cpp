@@ -71,6 +71,8 @@ TEST_CASE("a missing value is added to its table, and the table if missing") {
     CHECK(with_value(robot, "cable.flexor.friction", "0.1").value() ==
           replaced(robot, "length_ratio = 0.8 }\n", "length_ratio = 0.8 }\nfriction = 0.1\n"));
     CHECK(with_value(robot, "mesh.size", "\"2 mm\"").value() == std::string(robot) + "\n[mesh]\nsize = \"2 mm\"\n");
+    CHECK(with_value("t = { b.c = [1] }  # {}\n", "t.d", "2").value() == "t = { b.c = [1], d = 2 }  # {}\n");
+    CHECK(with_value("t = {}\n", "t.d", "2").value() == "t = { d = 2}\n");
     const std::string first = with_value("a = 1", "b", "2").value();
     CHECK(with_value(first, "b", "3").value() == replaced(first, "b = 2", "b = 3"));
 }
@@ -84,6 +86,12 @@ TEST_CASE("a new entry is added after the last of its list, in the list's style"
           std::string(robot) + "\n[[marker]]\nname = \"tip\"\npoint = [1, 2, 3]\n");
     CHECK(with_entry("m = [{ name = \"a\" }]  # one\n", "m", entry).value() ==
           "m = [{ name = \"a\" }, { name = \"tip\", point = [1, 2, 3] }]  # one\n");
+    CHECK(with_entry("m = [\n  { name = \"a\" } # the [first]\n]\n", "m", entry).value() ==
+          "m = [\n  { name = \"a\" }, { name = \"tip\", point = [1, 2, 3] } # the [first]\n]\n");
+    CHECK(with_entry("m = [\n  { name = \"größe\" }, # one\n  # two\n]\n", "m", entry).value() ==
+          "m = [\n  { name = \"größe\" }, { name = \"tip\", point = [1, 2, 3] }, # one\n  # two\n]\n");
+    CHECK(with_entry("m = [ # none, yet ]\n]\n", "m", entry).value() ==
+          "m = [ { name = \"tip\", point = [1, 2, 3] } # none, yet ]\n]\n");
     CHECK(with_entry("m = []\n", "m", entry).value() == "m = [ { name = \"tip\", point = [1, 2, 3] }]\n");
 }
 
