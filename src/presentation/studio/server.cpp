@@ -165,11 +165,15 @@ struct Server::State {
     }
 
     /// Moves the token from the address into a cookie, so that it does not stay in the history.
-    static int settle_token(mg_connection* wire, const std::string& token) {
+    /// An address with another token, as in an old bookmark, does not replace a valid cookie.
+    [[nodiscard]] int settle_token(mg_connection* wire, const std::string& token) const {
         Response response{302, "text/plain"};
         response.location = "/";
+        const bool is_ours = !rules.token.empty() && token == rules.token;
         write(wire, response,
-              fmt::format("Set-Cookie: {}={}; HttpOnly; SameSite=Strict; Path=/\r\n", cookie_name, token));
+              is_ours
+                  ? fmt::format("Set-Cookie: {}={}; HttpOnly; SameSite=Strict; Path=/\r\n", cookie_name, rules.token)
+                  : std::string());
         return 302;
     }
 

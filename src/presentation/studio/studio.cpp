@@ -150,7 +150,9 @@ Status Studio::save(const std::string& name) {
     if (!path) return tl::unexpected(path.error());
     if (path->extension() != ".toml") return input_error("\"{}\": a robot file ends with .toml", name);
     std::error_code ignored;
-    if (*path != document_.file && std::filesystem::exists(*path, ignored))
+    // An example or a new robot has a place in the folder, where another file may be.
+    const bool is_its_own = !document_.name.empty() && *path == document_.file;
+    if (!is_its_own && std::filesystem::exists(*path, ignored))
         return input_error("\"{}\" exists; choose another name", name);
     if (Status status = write_file(*path, document_.text); !status) return status;
     document_.name = path->lexically_relative(folder_.path()).generic_string();

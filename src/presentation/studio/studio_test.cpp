@@ -153,6 +153,26 @@ TEST_CASE("a robot is opened, bent, edited, undone and saved") {
         CHECK_MESSAGE(ask(studio, "GET", std::string("/api/export/") + name).status == 200, name);
 }
 
+TEST_CASE("a new robot is never saved over a file that was not opened") {
+    const Project project;
+    const auto owner = built(project);
+    Studio& studio = *owner;
+    const auto page = joined(studio, "first_page");
+    REQUIRE(write_file(project.base / "project" / "robot.toml", "# mine\n"));
+    REQUIRE(write_file(project.base / "project" / "cable_gripper.toml", "# mine\n"));
+    const auto save_as = [&](const std::string& name) {
+        return ask(studio, "POST", "/api/robot/save", R"({"name":")" + name + R"("})", "first_page");
+    };
+    REQUIRE(ask(studio, "POST", "/api/robot/new", project_bar, "first_page").status == 200);
+    CHECK(save_as("robot.toml").status == 422);
+    studio.open_example("cable_gripper");
+    CHECK(holds(save_as("cable_gripper.toml").body, "exists; choose another name"));
+    CHECK(file_text(project.base / "project" / "robot.toml") == "# mine\n");
+    CHECK(file_text(project.base / "project" / "cable_gripper.toml") == "# mine\n");
+    CHECK(save_as("gripper.toml").status == 200);
+    CHECK(save_as("gripper.toml").status == 200);
+}
+
 TEST_CASE("a changed robot goes to the state that was wanted before; another robot starts from rest") {
     const Project project;
     const auto owner = built(project);
