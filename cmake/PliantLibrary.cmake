@@ -86,6 +86,9 @@ pliant_publish(pliant_shared)
 target_link_libraries(pliant_shared PRIVATE ${foreign})
 target_link_options(pliant_shared PRIVATE LINKER:--exclude-libs,ALL LINKER:--no-undefined
                     LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/exports.map)
+if(PLIANT_SANITIZE) # --no-undefined needs the sanitizer's own library
+  target_link_options(pliant_shared PRIVATE -fsanitize=${PLIANT_SANITIZE})
+endif()
 set_property(TARGET pliant_shared APPEND PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exports.map)
 set_target_properties(pliant_shared PROPERTIES VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
                                                EXPORT_NAME pliant)
