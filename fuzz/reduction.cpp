@@ -3,6 +3,7 @@
 #include "simulation/reduced/error_estimate.hpp"
 #include "simulation/reduced/reduced_solver.hpp"
 #include "simulation/reduced/reduction_file.hpp"
+#include "simulation/stepper/cbor_numbers.hpp"
 #include "small_robot.hpp"
 
 using namespace pliant;
@@ -10,7 +11,8 @@ using namespace pliant::sim;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static pliant::fuzz::SmallRobot small;
-    auto reduction = reduced::reduction_from_bytes(small.model, as_text(data, size), "block");
+    auto reduction =
+        reduced::reduction_from_bytes(small.model, cbor::sealed(std::string(as_text(data, size))), "block");
     if (!reduction) return 0;
     (void)reduced::reduction_bytes(*reduction, "block");
     const auto model = reduced::ReducedModel::create(small.model, std::move(*reduction));

@@ -7,9 +7,13 @@
 #include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "base/core/text.hpp"
@@ -85,6 +89,17 @@ void add_commands(CLI::App& app, int& status) {
         add(app, status);
 }
 
+int refuse_output(const std::string& reason) {
+    fmt::print(stderr, "standard output: cannot be written: {}\n", reason);
+    return pliant::app::exit_failed;
+}
+
+/// A status of success only if all that was printed has been written.
+int flushed(int status) {
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+    return refuse_output(errno != 0 ? std::strerror(errno) : "unknown error");
+}
+
 constexpr const char* about = "Pliant simulates multi-material soft robots and prints them on multi-vat DLP printers.";
 
 }  // namespace
@@ -134,5 +149,9 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
     const std::vector<std::string> words(argv + 1, argv + argc);
     if (!words.empty() && words.front() == pliant::app::study_rows_word) return pliant::app::serve_study_rows(words);
-    return pliant::app::run_program(words);
+    try {
+        return flushed(pliant::app::run_program(words));
+    } catch (const std::system_error& error) {  // of fmt::print, when standard output cannot be written
+        return refuse_output(error.code().message());
+    }
 }

@@ -41,18 +41,20 @@ Result<Value> convert(const toml::node& node, int depth) {
         }
         value.data = std::move(items);
     } else if (const auto* table = node.as_table()) {
-        Table entries;
+        std::vector<std::pair<toml::source_position, Entry>> entries;
         for (const auto& [key, item] : *table) {
             Result<Value> converted = convert(item, depth + 1);
             if (!converted) return converted;
+            const bool is_group = item.is_table() || item.is_array();
             // A scalar gets the line of its key, where a person would look.
-            if (!item.is_table() && !item.is_array()) converted->line = static_cast<int>(key.source().begin.line);
-            entries.emplace_back(std::string(key.str()), std::move(*converted));
+            if (!is_group) converted->line = static_cast<int>(key.source().begin.line);
+            entries.emplace_back(key.source().begin, Entry(std::string(key.str()), std::move(*converted)));
         }
         // toml++ sorts by name; messages and `[parameters]` need the order of the file.
-        std::stable_sort(entries.begin(), entries.end(),
-                         [](const Entry& a, const Entry& b) { return a.second.line < b.second.line; });
-        value.data = std::move(entries);
+        std::ranges::stable_sort(entries, {}, [](const auto& e) { return std::pair(e.first.line, e.first.column); });
+        Table ordered;
+        for (auto& [place, entry] : entries) ordered.push_back(std::move(entry));
+        value.data = std::move(ordered);
     } else {
         return input_error_at("", line_of(node), "dates and times have no meaning here");
     }

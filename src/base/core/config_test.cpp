@@ -132,6 +132,15 @@ TEST_CASE("parameters may be used in formulas") {
     CHECK(resolve_parameters(bad).error().message.find("test.toml:2:") == 0);
 }
 
+TEST_CASE("parameters on one line are defined in the order in which they are written") {
+    Document document =
+        document_of("parameters = { width = 10, half = \"= width / 2\", a = \"= half / 5\" }\nx = \"= a\"\n");
+    REQUIRE(resolve_parameters(document));
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    CHECK(root.number("x") == 1);
+}
+
 TEST_CASE("a missing table is one error, not one per key, and long lists of errors are cut") {
     const Document document =
         document_of("a = 1\nb = 1\nc = 1\nd = 1\ne = 1\nf = 1\ng = 1\nh = 1\ni = 1\nj = 1\nk = 1\nl = 1\nm = 1\n");

@@ -26,26 +26,49 @@ Result<std::string> read_file(const fs::path& path, std::uintmax_t limit_bytes) 
     return bytes;
 }
 
-Status write_file(const fs::path& path, std::string_view bytes) {
-    const fs::path aside = path.string() + ".partial";
-    std::error_code code;
-    {
-        std::ofstream out(aside, std::ios::binary | std::ios::trunc);
-        out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        out.flush();
-        if (!out) {
-            const std::string reason = std::strerror(errno);
-            fs::remove(aside, code);
-            return failure("{}: cannot be written: {}", path.string(), reason);
-        }
-    }
-    fs::rename(aside, path, code);
-    if (code) {
-        const std::string reason = code.message();
-        fs::remove(aside, code);
-        return failure("{}: cannot be written: {}", path.string(), reason);
-    }
+namespace {
+
+bool is_special(const fs::path& path, fs::file_type type) {
+    const auto absolute = path.lexically_normal().string();
+    return (type != fs::file_type::not_found && type != fs::file_type::regular && type != fs::file_type::directory) ||
+           absolute.starts_with("/dev/") || absolute.starts_with("/proc/");
+}
+
+/// `shown`: name for the error.
+Status write_through(const fs::path& path, std::string_view bytes, const fs::path& shown) {
+    std::ofstream out(path, std::ios::binary | std::ios::trunc);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    out.flush();
+    if (!out) return failure("{}: cannot be written: {}", shown.string(), std::strerror(errno));
     return {};
+}
+
+}  // namespace
+
+Result<fs::path> replaceable_file(const fs::path& path) {
+    std::error_code code;
+    const fs::file_type type = fs::status(path, code).type();
+    if (type == fs::file_type::directory) return input_error("{}: is a folder, a file is needed", path.string());
+    if (is_special(path, type)) return input_error("{}: is not a regular file, and is not replaced", path.string());
+    if (type == fs::file_type::not_found || !fs::is_symlink(fs::symlink_status(path, code))) return path;
+    fs::path target = fs::canonical(path, code);
+    if (code) return failure("{}: {}", path.string(), code.message());
+    return target;
+}
+
+Status write_file(const fs::path& path, std::string_view bytes) {
+    std::error_code code;
+    if (is_special(path, fs::status(path, code).type())) return write_through(path, bytes, path);
+    const Result<fs::path> target = replaceable_file(path);
+    if (!target) return tl::unexpected(target.error());
+    const fs::path aside = target->string() + ".partial";
+    Status status = write_through(aside, bytes, path);
+    if (status) {
+        fs::rename(aside, *target, code);
+        if (code) status = failure("{}: cannot be written: {}", path.string(), code.message());
+    }
+    if (!status) fs::remove(aside, code);
+    return status;
 }
 
 bool may_replace_folder(const fs::path& folder, std::string_view marker) {
@@ -53,6 +76,30 @@ bool may_replace_folder(const fs::path& folder, std::string_view marker) {
     if (!fs::exists(folder, code)) return true;
     return fs::is_directory(folder, code) && (fs::is_empty(folder, code) || fs::exists(folder / marker, code));
 }
+
+namespace {
+
+/// The old folder is deleted last, and put back if the new one cannot take its place.
+Status put_in_place(const fs::path& fresh, const fs::path& target) {
+    const fs::path old = target.string() + ".old";
+    std::error_code code, ignored;
+    const bool replaces = fs::exists(target, ignored);
+    if (replaces) {
+        fs::remove_all(old, ignored);
+        fs::rename(target, old, code);
+    }
+    if (!code) {
+        fs::rename(fresh, target, code);
+        if (code && replaces) fs::rename(old, target, ignored);
+    }
+    if (code)
+        return failure("{}: cannot be replaced: {}; the new results are in {}", target.string(), code.message(),
+                       fresh.string());
+    fs::remove_all(old, ignored);
+    return {};
+}
+
+}  // namespace
 
 Status write_folder(const fs::path& folder, std::string_view marker,
                     const std::function<Status(const fs::path&)>& fill) {
@@ -71,10 +118,7 @@ Status write_folder(const fs::path& folder, std::string_view marker,
         fs::remove_all(aside, code);
         return filled;
     }
-    fs::remove_all(target, code);
-    fs::rename(aside, target, code);
-    if (code) return failure("{}: cannot be written: {}", folder.string(), code.message());
-    return {};
+    return put_in_place(aside, target);
 }
 
 }  // namespace pliant

@@ -15,7 +15,12 @@ namespace pliant {
 [[nodiscard]] Result<std::string> read_file(const std::filesystem::path& path,
                                             std::uintmax_t limit_bytes = std::uintmax_t{4} << 30);
 
-/// Writes `PATH.partial`, then renames it to PATH.
+/// The file that is replaced when `path` is written: where its symbolic links lead, or `path` itself if nothing is
+/// there. Errors: a folder, a device or a pipe, which a rename would destroy.
+[[nodiscard]] Result<std::filesystem::path> replaceable_file(const std::filesystem::path& path);
+
+/// Writes `PATH.partial`, then renames it to the file that is replaced. Devices, pipes and what /dev and /proc name are
+/// written to directly.
 [[nodiscard]] Status write_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// True if `folder` does not exist, is empty, or contains a file named `marker`, so that no foreign folder is ever

@@ -1,10 +1,16 @@
 #include "base/core/files.hpp"
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/mount.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/core/test_folder.hpp"
+#include "base/core/test_text.hpp"
 
 using namespace pliant;
+using test::holds;
 namespace fs = std::filesystem;
 
 TEST_CASE("a file is written whole and read back") {
@@ -20,6 +26,51 @@ TEST_CASE("a file is written whole and read back") {
     CHECK_FALSE(write_file(scratch / "no" / "folder", bytes));
 }
 
+TEST_CASE("a symbolic link keeps pointing to the file that is written; devices and pipes are not replaced") {
+    const test::Folder scratch("files");
+    REQUIRE(write_file(scratch / "real.txt", "old"));
+    fs::create_symlink("real.txt", scratch / "link.txt");
+    REQUIRE(write_file(scratch / "link.txt", "new"));
+    CHECK(fs::is_symlink(scratch / "link.txt"));
+    CHECK(*read_file(scratch / "real.txt") == "new");
+    CHECK(*replaceable_file(scratch / "link.txt") == fs::canonical(scratch / "real.txt"));
+    CHECK(*replaceable_file(scratch / "new.txt") == scratch / "new.txt");
+
+    const fs::path pipe = scratch / "pipe";
+    REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    CHECK(holds(replaceable_file(pipe).error().message, "is not a regular file"));
+    const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+    REQUIRE(reader >= 0);
+    CHECK(write_file(pipe, "said"));
+    char heard[8] = {};
+    CHECK(::read(reader, heard, sizeof heard) == 4);
+    ::close(reader);
+    CHECK(std::string(heard) == "said");
+    CHECK(fs::is_fifo(pipe));
+
+    CHECK(holds(replaceable_file("/dev/null").error().message, "is not a regular file"));
+    CHECK(holds(replaceable_file(scratch.path()).error().message, "is a folder"));
+    fs::create_symlink("/dev/full", scratch / "full");
+    CHECK_FALSE(write_file(scratch / "full", "too much"));
+    CHECK(fs::is_symlink(scratch / "full"));
+}
+
+TEST_CASE("a folder that cannot be replaced keeps its old results, and the new ones are named") {
+    if (::geteuid() != 0) return;  // only root can bind a mount
+    const test::Folder scratch("files");
+    const fs::path folder = scratch / "out";
+    fs::create_directories(folder);
+    REQUIRE(write_file(folder / "summary.json", "old"));
+    if (::mount(folder.c_str(), folder.c_str(), nullptr, MS_BIND, nullptr) != 0) return;
+    const auto fill = [](const fs::path& aside) { return write_file(aside / "summary.json", "new"); };
+    const Status status = write_folder(folder, "summary.json", fill);
+    ::umount(folder.c_str());
+    REQUIRE_FALSE(status);
+    CHECK(holds(status.error().message, "the new results are in " + folder.string() + ".partial"));
+    CHECK(*read_file(folder / "summary.json") == "old");
+    CHECK(*read_file(folder.string() + ".partial/summary.json") == "new");
+}
+
 TEST_CASE("a folder is written whole or not at all, and folders with other files are not changed") {
     const test::Folder scratch("files");
     const fs::path folder = scratch / "out";
@@ -30,6 +81,7 @@ TEST_CASE("a folder is written whole or not at all, and folders with other files
     CHECK_FALSE(write_folder(folder, "summary.json", [](const fs::path&) -> Status { return failure("no"); }));
     CHECK(fs::exists(folder / "summary.json"));
     CHECK_FALSE(fs::exists(folder.string() + ".partial"));
+    CHECK_FALSE(fs::exists(folder.string() + ".old"));
 
     const fs::path foreign = scratch / "foreign";
     fs::create_directories(foreign);

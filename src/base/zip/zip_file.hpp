@@ -14,10 +14,11 @@ namespace pliant {
 /// Writes entries as they come; memory holds one record per entry. Zip64 if there are many.
 class ZipWriter {
 public:
+    /// Writes `PATH.partial`, which close() renames. Errors: as of replaceable_file() in base/core/files.hpp, the disk.
     [[nodiscard]] static Result<ZipWriter> create(const std::filesystem::path& path);
     ZipWriter(ZipWriter&&) noexcept;
     ZipWriter& operator=(ZipWriter&&) noexcept;
-    ~ZipWriter();  ///< without close() the file is removed
+    ~ZipWriter();  ///< without close() nothing is left behind
 
     enum class Method { store, deflate };
     /// Every entry gets the same date, so that equal calls give equal bytes. Errors: a duplicate name or one of more

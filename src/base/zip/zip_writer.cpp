@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "base/core/files.hpp"
 #include "base/zip/zip_file.hpp"
 
 namespace pliant {
@@ -92,7 +93,7 @@ struct FreeCompressor {
 }  // namespace
 
 struct ZipWriter::State {
-    std::filesystem::path path;
+    std::filesystem::path path, target, aside;
     std::unique_ptr<std::FILE, Close> file;
     std::unique_ptr<libdeflate_compressor, FreeCompressor> compressor;
     std::vector<Entry> entries{};
@@ -100,14 +101,18 @@ struct ZipWriter::State {
     std::uint64_t offset = 0;
     bool closed = false;
 
-    State(std::filesystem::path where, std::FILE* opened)
-        : path(std::move(where)), file(opened), compressor(libdeflate_alloc_compressor(deflate_level)) {}
+    State(std::filesystem::path name, std::filesystem::path replaced, std::filesystem::path partial, std::FILE* opened)
+        : path(std::move(name)),
+          target(std::move(replaced)),
+          aside(std::move(partial)),
+          file(opened),
+          compressor(libdeflate_alloc_compressor(deflate_level)) {}
     State(const State&) = delete;
     State& operator=(const State&) = delete;
     ~State() {
         file.reset();
         std::error_code ignored;
-        if (!closed) std::filesystem::remove(path, ignored);
+        if (!closed) std::filesystem::remove(aside, ignored);
     }
 
     [[nodiscard]] Status fail() const {
@@ -133,9 +138,12 @@ ZipWriter& ZipWriter::operator=(ZipWriter&&) noexcept = default;
 ZipWriter::~ZipWriter() = default;
 
 Result<ZipWriter> ZipWriter::create(const std::filesystem::path& path) {
-    std::FILE* file = std::fopen(path.c_str(), "wb");
+    const Result<std::filesystem::path> target = replaceable_file(path);
+    if (!target) return tl::unexpected(target.error());
+    const std::filesystem::path aside = target->string() + ".partial";
+    std::FILE* file = std::fopen(aside.c_str(), "wb");
     if (file == nullptr) return failure("{}: cannot be written: {}", path.string(), std::strerror(errno));
-    return ZipWriter(std::make_unique<State>(path, file));
+    return ZipWriter(std::make_unique<State>(path, *target, aside, file));
 }
 
 Status ZipWriter::add(const std::string& name, std::string_view bytes, Method method) {
@@ -160,6 +168,9 @@ Status ZipWriter::close() {
     }
     if (auto status = s.put(directory_end(s.entries.size(), s.offset - begin, begin)); !status) return status;
     if (std::fclose(s.file.release()) != 0) return s.fail();
+    std::error_code code;
+    std::filesystem::rename(s.aside, s.target, code);
+    if (code) return failure("{}: cannot be written: {}", s.path.string(), code.message());
     s.closed = true;
     return {};
 }

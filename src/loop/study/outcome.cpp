@@ -128,8 +128,7 @@ std::string key_array(const Plan& plan, std::size_t k) {
 }
 
 Status write_npz(const Plan& plan, const fs::path& path, const Collected& rows) {
-    const fs::path aside = path.string() + ".partial";
-    auto zip = ZipWriter::create(aside);
+    auto zip = ZipWriter::create(path);
     if (!zip) return tl::unexpected(zip.error());
     Status status;
     const auto add = [&](const std::string& name, const std::string& bytes) {
@@ -146,12 +145,7 @@ Status write_npz(const Plan& plan, const fs::path& path, const Collected& rows) 
     }
     add("done", npy_truths(done));
     add("reason", npy_texts(reasons));
-    if (status) status = zip->close();
-    if (!status) return status;
-    std::error_code error;
-    fs::rename(aside, path, error);
-    if (error) return failure("{}: cannot be written: {}", path.string(), error.message());
-    return {};
+    return status ? zip->close() : status;
 }
 
 }  // namespace

@@ -94,16 +94,8 @@ Status fill_stack(const Archive& archive, int material, Format format, ZipWriter
 }
 
 Status write_stack(const Archive& archive, int material, Format format, const fs::path& path) {
-    const fs::path aside = path.string() + ".partial";
-    std::error_code code, ignored;
-    auto zip = ZipWriter::create(aside);
-    Status status = zip ? fill_stack(archive, material, format, *zip) : tl::unexpected(zip.error());
-    if (status) {
-        fs::rename(aside, path, code);
-        if (code) status = failure("{}: cannot be written: {}", path.string(), code.message());
-    }
-    if (!status) fs::remove(aside, ignored);
-    return status;
+    auto zip = ZipWriter::create(path);
+    return zip ? fill_stack(archive, material, format, *zip) : tl::unexpected(zip.error());
 }
 
 Status write_vats(const Archive& archive, const fs::path& folder) {

@@ -11,7 +11,7 @@ namespace pliant::job {
 namespace fs = std::filesystem;
 
 struct Writer::State {
-    fs::path path, aside;
+    fs::path path;
     ZipWriter zip;
     std::map<std::string, std::pair<int, int>> image_sizes;  ///< of the images added so far
     std::map<std::string, std::string> sha256;               ///< of all entries added so far
@@ -62,10 +62,9 @@ Result<Writer> Writer::create(const fs::path& path) {
     if (!fs::is_directory(folder, code))
         return input_error("{}: there is no folder {}", path.string(), folder.string());
     if (fs::is_directory(path, code)) return input_error("{}: is a folder, a file is needed", path.string());
-    const fs::path aside = path.string() + ".partial";
-    auto zip = ZipWriter::create(aside);
+    auto zip = ZipWriter::create(path);
     if (!zip) return tl::unexpected(zip.error());
-    return Writer(std::make_unique<State>(State{path, aside, std::move(*zip), {}, {}, false}));
+    return Writer(std::make_unique<State>(State{path, std::move(*zip), {}, {}, false}));
 }
 
 Status Writer::add_image(const std::string& file, const Image& image) {
@@ -92,18 +91,7 @@ Status Writer::finish(const Manifest& manifest) {
     Manifest sealed = manifest;
     sealed.sha256 = state_->sha256;
     if (auto status = add_file("manifest.json", to_json(sealed)); !status) return status;
-    state_->finished = true;
-    std::error_code code, ignored;
-    if (auto status = state_->zip.close(); !status) {
-        fs::remove(state_->aside, ignored);
-        return status;
-    }
-    fs::rename(state_->aside, state_->path, code);
-    if (code) {
-        fs::remove(state_->aside, ignored);
-        return failure("{}: cannot be written: {}", state_->path.string(), code.message());
-    }
-    return {};
+    return state_->zip.close();
 }
 
 }  // namespace pliant::job

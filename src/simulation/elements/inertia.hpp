@@ -109,7 +109,7 @@ public:
 
     /// (3n) each: derivative with respect to the history of `force_weights` (3n) times the gradient plus
     /// `velocity_weights` (3n) times the velocity, both at a given x. dt_before is not filled in. The stiffness used
-    /// for damping is held fixed.
+    /// for damping is held fixed: linearisation/damping_stiffness.hpp has its part.
     [[nodiscard]] History start_weights(const Eigen::VectorXd& force_weights,
                                         const Eigen::VectorXd& velocity_weights) const;
 

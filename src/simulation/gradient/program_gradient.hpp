@@ -41,9 +41,9 @@ struct GradientOptions {
 /// Runs a program as run() does, without its checks, and differentiates it backwards with the adjoint of each step. A
 /// quasi-static step depends on its own inputs alone, except for contact friction, whose slip starts from the end of
 /// the previous step; a step in time depends on positions and velocities of the last one or two steps. Lagged
-/// quantities are held fixed: the normal forces and tangents of friction, the tension shares of cables with friction,
-/// the stiffness used for damping. Errors: a measure of something that does not exist; a step that does not converge,
-/// or that has no derivative (see Linearisation::adjoint); cancelled.
+/// quantities are held fixed: the normal forces and tangents of friction, and the tension shares of cables with
+/// friction. Errors: a measure of something that does not exist; a step that does not converge, or that has no
+/// derivative (see Linearisation::adjoint); cancelled.
 [[nodiscard]] Result<ProgramGradient> program_gradient(const Model& model, const Program& program,
                                                        const Objective& objective, const GradientOptions& options,
                                                        Progress& progress);

@@ -105,6 +105,7 @@ double worst_error(const Description& d, const Program& program) {
         note(p.name, found.by.parameters[static_cast<Eigen::Index>(k)], size_of(p), [&](double change) {
             Program other = program;
             if (p.kind == Parameter::Kind::mass_damping) other.dynamics->damping.mass_per_s += change;
+            if (p.kind == Parameter::Kind::stiffness_damping) other.dynamics->damping.stiffness_s += change;
             return value_of_run(with_value(d, p, p.value + change), other, objective);
         });
     }
@@ -143,13 +144,16 @@ TEST_CASE("the gradient of a quasi-static program is the sum over its steps") {
 }
 
 TEST_CASE("the gradient of a program in dynamics") {
-    const Program program{.steps = 5,
-                          .duration = 0.02,
-                          .tolerance = 1e-11,
-                          .solver = Solver::newton,
-                          .dynamics = Dynamics{{20, 0}},
-                          .checks = false};
-    MESSAGE("in time: ", worst_error(bender(1, program.duration), program));
+    for (const Damping& damping : {Damping{20, 0}, Damping{20, 0.004}}) {
+        const Program program{.steps = 5,
+                              .duration = 0.02,
+                              .tolerance = 1e-11,
+                              .solver = Solver::newton,
+                              .dynamics = Dynamics{damping},
+                              .checks = false};
+        MESSAGE("in time, damped by stiffness ", damping.stiffness_s, " s: ",
+                worst_error(bender(1, program.duration), program));
+    }
 }
 
 namespace {

@@ -8,6 +8,7 @@
 #include "simulation/contact/contact.hpp"
 #include "simulation/gradient/friction_slips.hpp"
 #include "simulation/linearisation/contact_forces.hpp"
+#include "simulation/linearisation/damping_stiffness.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -29,9 +30,10 @@ void add_obstacles(const Linearisation& at, const Eigen::VectorXd& by_position, 
 }
 
 /// In a motion in time the velocity at the end of a step depends on its end position, and forces depend on its start.
-void carry_inertia(const Inertia& inertia, const Eigen::VectorXd& force_weights, Carried& carried) {
-    const History by = inertia.start_weights(force_weights, carried.v);
+void carry_inertia(const Linearisation& at, const Eigen::VectorXd& force_weights, Carried& carried) {
+    const History by = at.controls().inertia->start_weights(force_weights, carried.v);
     carried.x = carried.x_before + by.x;
+    if (const auto damped = damped_step(at)) carried.x += damping_start_weights(*damped, force_weights);
     carried.v = carried.v_before + by.v;
     carried.x_before = by.x_before;
     carried.v_before = by.v_before;
@@ -127,7 +129,7 @@ Result<Variation> go_back_over(Linearisation& at, const Slope& own, const By& by
     add_obstacles(at, carried.obstacles, result.inputs);
     const Eigen::VectorXd weights = at.force_weights(*adjoint);
     if (inertia)
-        carry_inertia(*inertia, weights.head(at.state().x.size()), carried);
+        carry_inertia(at, weights.head(at.state().x.size()), carried);
     else
         carry_nothing(carried);
     carry_joints(at, weights.head(at.state().x.size()), carried);

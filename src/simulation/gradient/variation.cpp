@@ -6,6 +6,7 @@
 #include "simulation/elements/elements.hpp"
 #include "simulation/gradient/guide_points.hpp"
 #include "simulation/linearisation/contact_forces.hpp"
+#include "simulation/linearisation/damping_stiffness.hpp"
 #include "simulation/linearisation/element_derivatives.hpp"
 #include "simulation/linearisation/rest_positions.hpp"
 
@@ -74,7 +75,10 @@ void add_parameters(Linearisation& at, std::span<const Parameter> all, const Eig
 void add_tets(const Linearisation& at, const TetDerivatives& change, Derivative& sum) {
     const Elements& elements = at.system().model().elements();
     Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
-    if (change.constants.size() > 0) add_law_force(elements, change.constants, at.state().x, force);
+    if (change.constants.size() > 0) {
+        add_law_force(elements, change.constants, at.state().x, force);
+        if (const auto damped = damped_step(at)) add_damping_law_force(*damped, change.constants, force);
+    }
     if (change.density.size() > 0)
         add_density_force(elements, masses_at(at.system().model().description(), at.controls(), at.state().x),
                           change.density, force);

@@ -8,6 +8,7 @@
 #include "simulation/gradient/variation.hpp"
 #include "simulation/identify/trial.hpp"
 #include "simulation/linearisation/contact_forces.hpp"
+#include "simulation/linearisation/damping_stiffness.hpp"
 #include "simulation/linearisation/parameters.hpp"
 #include "simulation/material/law_parameters.hpp"
 
@@ -149,6 +150,7 @@ private:
         if (at.controls().inertia) {
             VectorXd inertia = VectorXd::Zero(h.x.size());
             (void)from(at, unknown).evaluate(VectorXd::Zero(h.x.size()), inertia);
+            if (const auto damped = sim::damped_step(at)) sim::add_damping_start_product(*damped, h.x, inertia);
             force.head(h.x.size()) += inertia;
             add_joint_force(at, h.x, force);
         }

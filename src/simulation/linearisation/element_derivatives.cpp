@@ -26,15 +26,15 @@ void add_stress(const Elements& elements, std::size_t t, int q, const Matrix3& P
 
 }  // namespace
 
-void add_law_force(const Elements& elements, std::size_t material, const std::vector<double>& direction,
-                   const Eigen::VectorXd& x, Eigen::VectorXd& forces) {
+Eigen::MatrixXd constants_of_tets(const Elements& elements, std::size_t material,
+                                  const std::vector<double>& direction) {
     const auto constants = static_cast<Eigen::Index>(direction.size());
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(constants, static_cast<Eigen::Index>(elements.tet_count()));
     for (std::size_t t = 0; t < elements.tet_count(); ++t) {
         if (elements.material(t) == static_cast<int>(material))
             all.col(static_cast<Eigen::Index>(t)) = Eigen::Map<const Eigen::VectorXd>(direction.data(), constants);
     }
-    add_law_force(elements, all, x, forces);
+    return all;
 }
 
 void add_law_force(const Elements& elements, const Eigen::MatrixXd& direction, const Eigen::VectorXd& x,

@@ -11,11 +11,11 @@
 
 namespace pliant::sim {
 
-/// forces (3n) += derivative of the internal forces at positions x (3n) with the constants of a material along
-/// `direction`.
-void add_law_force(const Elements& elements, std::size_t material, const std::vector<double>& direction,
-                   const Eigen::VectorXd& x, Eigen::VectorXd& forces);
-/// The same with separate constants for each tet: a column of `direction` (constants, tets).
+/// (constants, tets) `direction` for the tets of a material, zero for the others.
+[[nodiscard]] Eigen::MatrixXd constants_of_tets(const Elements& elements, std::size_t material,
+                                                const std::vector<double>& direction);
+/// forces (3n) += derivative of the internal forces at positions x (3n) with the constants of each tet along a column
+/// of `direction` (constants, tets).
 void add_law_force(const Elements& elements, const Eigen::MatrixXd& direction, const Eigen::VectorXd& x,
                    Eigen::VectorXd& forces);
 /// (most constants, tets) product of that derivative with `weights` (3n), for each constant of each tet's own law; 0 if

@@ -9,6 +9,7 @@
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/linearisation/contact_forces.hpp"
+#include "simulation/linearisation/damping_stiffness.hpp"
 #include "simulation/linearisation/element_derivatives.hpp"
 #include "simulation/material/law_parameters.hpp"
 
@@ -113,7 +114,10 @@ Derivative by_law(const Linearisation& at, const Parameter& by) {
     const material::Law& law = d.materials[by.index].law;
     const std::vector<double> direction = material::parameters(law)[by.part].direction;
     Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
-    add_law_force(at.system().model().elements(), by.index, direction, at.state().x, force);
+    const Elements& elements = at.system().model().elements();
+    const Eigen::MatrixXd constants = constants_of_tets(elements, by.index, direction);
+    add_law_force(elements, constants, at.state().x, force);
+    if (const auto damped = damped_step(at)) add_damping_law_force(*damped, constants, force);
     add_stiff_force(at, stiffness_rate(d, by.index, direction), force);
     return by_force(at, force);
 }
@@ -361,8 +365,10 @@ TetDerivatives tet_derivatives(const Linearisation& at, const Adjoint& adjoint) 
     const Description& d = at.system().model().description();
     const Elements& elements = at.system().model().elements();
     const Eigen::VectorXd weights = at.force_weights(adjoint).head(at.state().x.size());
-    return {law_products(elements, d, at.state().x, weights),
-            density_products(elements, masses_at(d, at.controls(), at.state().x), weights)};
+    TetDerivatives by{law_products(elements, d, at.state().x, weights),
+                      density_products(elements, masses_at(d, at.controls(), at.state().x), weights)};
+    if (const auto damped = damped_step(at)) add_damping_law_products(*damped, weights, by.constants);
+    return by;
 }
 
 Eigen::VectorXd derivatives(Linearisation& at, const Adjoint& adjoint, std::span<const Parameter> by) {

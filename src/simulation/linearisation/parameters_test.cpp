@@ -167,16 +167,11 @@ TEST_CASE("derivatives by density and damping in dynamics") {
     Case c(std::move(d));
     const State before = disturbed(c.system, 0, 0, 4), rest = c.system.rest();
     const History history{before.x, before.x - rest.x, rest.x, before.x, 0};
-    const auto layout = std::make_shared<const TangentLayout>(c.system.lay_out_tangent({}, TangentNodes::all));
-    const auto stiffness = std::make_shared<StiffnessMatrix>();
-    stiffness->pattern = {layout, &layout->pattern};
-    stiffness->values.assign(layout->pattern.entries(), 0.0);
-    c.model.elements().add_tangent(linalg::view(before.x), layout->element_sums, stiffness->values, true);
+    // Damped by the stiffness that the robot with the changed number has there.
     const auto controls_of = [&](Equilibrium& system, const Damping& more) {
         Controls controls = system.controls(0.7);
-        const Damping damping{2 + more.mass_per_s, 3e-4 + more.stiffness_s};
-        controls.inertia = std::make_shared<const Inertia>(system.model().elements(), system.model().free_index(),
-                                                           history, 1e-3, damping, stiffness);
+        MotionInTime motion(system.model(), {2 + more.mass_per_s, 3e-4 + more.stiffness_s});
+        controls.inertia = motion.inertia(history, 1e-3);
         return controls;
     };
     std::set<Kind> seen;

@@ -9,6 +9,7 @@
 
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/elements.hpp"
+#include "simulation/linearisation/damping_stiffness.hpp"
 #include "simulation/linearisation/element_derivatives.hpp"
 #include "simulation/linearisation/met_segments.hpp"
 
@@ -144,6 +145,7 @@ Derivative derivative_by_rest(Linearisation& at, const Eigen::VectorXd& motion) 
     add_rest_product(system.model().elements(),
                      masses_at(at.system().model().description(), at.controls(), at.state().x), at.state().x, motion,
                      force);
+    if (const auto damped = damped_step(at)) add_damping_rest_product(*damped, motion, force);
     for (const Plate& plate : system.plates()) plate.add_rest_product(view(at.state().x), view(motion), view(force));
     if (!system.plates().empty()) force += volume_gradient(system.model().mesh()).dot(motion) / 3 * plate_forces(at);
     visit_objects(
@@ -179,6 +181,7 @@ Eigen::VectorXd rest_gradient(Linearisation& at, const Adjoint& adjoint) {
     add_rest_weights(system.model().elements(),
                      masses_at(at.system().model().description(), at.controls(), at.state().x), at.state().x, weights,
                      sum);
+    if (const auto damped = damped_step(at)) add_damping_rest_weights(*damped, weights, sum);
     for (const Plate& plate : system.plates()) plate.add_rest_weights(view(at.state().x), view(weights), view(sum));
     if (!system.plates().empty()) sum += weights.dot(plate_forces(at)) / 3 * volume_gradient(system.model().mesh());
     visit_objects(

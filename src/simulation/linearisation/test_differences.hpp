@@ -46,10 +46,9 @@ inline constexpr double tether_s = 0.5;
 inline std::shared_ptr<const Inertia> step_inertia(const Model& model, const History& history, double dt,
                                                    const Damping* damping) {
     const bool is_free = !model.free_pieces().empty() || !model.objects().empty();
-    if (damping == nullptr && !is_free) return nullptr;
-    return std::make_shared<const Inertia>(
-        model.elements(), model.free_index(), damping != nullptr ? history : MotionInTime::still(history.x),
-        damping != nullptr ? dt : tether_s, damping != nullptr ? *damping : Damping{}, nullptr);
+    if (damping != nullptr) return MotionInTime(model, *damping).inertia(history, dt);
+    if (!is_free) return nullptr;
+    return MotionInTime(model, {}).inertia(MotionInTime::still(history.x), tether_s);
 }
 
 /// The first steps of a program, of `dt` each, as long as they converge in a few iterations; with damping, in time.

@@ -113,8 +113,7 @@ inline Controls controls_with(const Linearisation& at, const Equilibrium& other,
     Damping damping = now.inertia->damping();
     if (p.kind == Kind::mass_damping) damping.mass_per_s += change;
     if (p.kind == Kind::stiffness_damping) damping.stiffness_s += change;
-    controls.inertia = std::make_shared<const Inertia>(other.model().elements(), other.model().free_index(),
-                                                       now.inertia->start(), now.inertia->dt(), damping, nullptr);
+    controls.inertia = MotionInTime(other.model(), damping).inertia(now.inertia->start(), now.inertia->dt());
     return controls;
 }
 

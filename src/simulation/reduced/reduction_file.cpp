@@ -110,12 +110,12 @@ std::string reduction_bytes(const Reduction& reduction, const std::string& origi
              {"touching", reduction.touching},
              {"samples", Json::array()}};
     for (const Sample& sample : reduction.samples) map["samples"].push_back(json_of(sample));
-    const std::vector<std::uint8_t> bytes = Json::to_cbor(map);
-    return {bytes.begin(), bytes.end()};
+    return cbor::sealed(map);
 }
 
 Result<Reduction> reduction_from_bytes(const Model& model, std::string_view bytes, const std::string& origin) {
-    const Json map = cbor::parsed(bytes);
+    const Result<std::string_view> content = cbor::unsealed(bytes);
+    const Json map = content ? cbor::parsed(*content) : Json();
     if (!map.is_object() || !map.contains("format") || map["format"] != format_name)
         return input_error("not a reduced model, or damaged");
     Reader in(map);

@@ -7,6 +7,7 @@
 
 #include "simulation/inverse/test_robots.hpp"
 #include "simulation/reduced/reduced_solver.hpp"
+#include "simulation/stepper/cbor_numbers.hpp"
 
 using namespace pliant;
 using namespace pliant::sim;
@@ -55,15 +56,25 @@ TEST_CASE("reduction file: other robots, other origins, other files") {
     CHECK(refusal(model(), "").find("not a reduced model") != std::string::npos);
 }
 
-TEST_CASE("reduction file: damage is refused, or harmless") {
+TEST_CASE("reduction file: a single bit that has changed is refused") {
+    std::mt19937 random(4);
+    for (int k = 0; k < 200; ++k) {
+        std::string damaged = bytes();
+        damaged[random() % damaged.size()] ^= static_cast<char>(1U << random() % 8);
+        CHECK(refusal(model(), damaged) == "not a reduced model, or damaged");
+    }
+    CHECK_FALSE(refusal(model(), bytes().substr(0, bytes().size() - 1)).empty());
+}
+
+TEST_CASE("reduction file: wrong content with a right checksum is refused, or harmless") {
     std::mt19937 random(3);
     for (int k = 0; k < 400; ++k) {
-        std::string damaged = bytes();
+        std::string damaged(cbor::unsealed(bytes()).value());
         if (k % 2 == 0) damaged.resize(random() % damaged.size());
         for (int flips = 0; flips < 3 && !damaged.empty(); ++flips)
             damaged[random() % std::min<std::size_t>(damaged.size(), k % 4 == 1 ? 200 : damaged.size())] ^=
                 static_cast<char>(1U << random() % 8);
-        const auto read = reduction_from_bytes(model(), damaged, "this one");
+        const auto read = reduction_from_bytes(model(), cbor::sealed(std::move(damaged)), "this one");
         if (!read) continue;  // in one line
         const auto reduced = ReducedModel::create(model(), *read);
         if (!reduced) continue;

@@ -194,7 +194,15 @@ TEST_CASE("a step from a copied state gives the same bits, whatever was solved i
         step(stepper, again, 0.4);
         CHECK(state_bytes(p.model, again) == state_bytes(p.model, robot));
         Stepper other(p.model, stepper_options(p.program));
-        auto stored = state_from_bytes(other, state_bytes(p.model, kept));
+        const std::string bytes = state_bytes(p.model, kept);
+        for (std::size_t at = 0; at < bytes.size(); at += bytes.size() / 40 + 1) {
+            std::string damaged = bytes;
+            damaged[at] ^= 4;
+            const auto refused = state_from_bytes(other, damaged);
+            REQUIRE_FALSE(refused);
+            CHECK(refused.error().message == "not a state that Pliant has written, or damaged");
+        }
+        auto stored = state_from_bytes(other, bytes);
         REQUIRE(stored);
         step(other, *stored, 0.4);
         CHECK(state_bytes(p.model, *stored) == state_bytes(p.model, robot));

@@ -50,7 +50,9 @@ public:
 
     [[nodiscard]] bool refresh(const State& state, const Controls& controls, TangentChoice choice,
                                Errors errors) override {
-        const bool reuse = choice == TangentChoice::quickest && usable_ && pays(errors.residual / errors.wanted);
+        // Where no residual is named, a direction is all that is wanted.
+        const double far = errors.wanted > 0 ? errors.residual / errors.wanted : 1;
+        const bool reuse = choice == TangentChoice::quickest && usable_ && pays(far);
         if (!reuse && choice == TangentChoice::exact && !reused_)
             return false;  // it is already the exact one of this
                            // state

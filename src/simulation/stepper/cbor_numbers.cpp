@@ -40,6 +40,42 @@ private:
 
 }  // namespace
 
+namespace {
+
+/// FNV-1a in words of eight bytes instead of single ones, for speed. Every change of a single word changes it.
+std::uint64_t checksum_of(std::string_view bytes) {
+    std::uint64_t sum = 14695981039346656037ULL;
+    for (std::size_t at = 0; at < bytes.size(); at += sizeof sum) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, bytes.data() + at, std::min(sizeof word, bytes.size() - at));
+        sum = (sum ^ word) * 1099511628211ULL;
+    }
+    return sum ^ bytes.size();
+}
+
+}  // namespace
+
+std::string sealed(const Json& value) {
+    std::string bytes;
+    Json::to_cbor(value, bytes);
+    return sealed(std::move(bytes));
+}
+
+std::string sealed(std::string cbor) {
+    const std::uint64_t sum = checksum_of(cbor);
+    cbor.append(reinterpret_cast<const char*>(&sum), sizeof sum);
+    return cbor;
+}
+
+Result<std::string_view> unsealed(std::string_view bytes) {
+    std::uint64_t sum = 0;
+    if (bytes.size() < sizeof sum) return input_error("damaged: it is too short");
+    const std::string_view content = bytes.substr(0, bytes.size() - sizeof sum);
+    std::memcpy(&sum, bytes.data() + content.size(), sizeof sum);
+    if (sum != checksum_of(content)) return input_error("damaged: its checksum is wrong");
+    return content;
+}
+
 Json parsed(std::string_view bytes) {
     Structure structure(bytes.size());
     if (!Json::sax_parse(bytes, &structure, Json::input_format_t::cbor)) return Json(Json::value_t::discarded);

@@ -34,6 +34,12 @@ template <class T>
 /// longer than all bytes, are invalid: the parser would run out of stack, or throw.
 [[nodiscard]] Json parsed(std::string_view bytes);
 
+/// The value in CBOR, followed by a checksum.
+[[nodiscard]] std::string sealed(const Json& value);
+[[nodiscard]] std::string sealed(std::string cbor);
+/// The bytes before the checksum. Error: it does not fit, because the file is damaged or incomplete.
+[[nodiscard]] Result<std::string_view> unsealed(std::string_view bytes);
+
 /// Reads values from a map; the first one that is missing or invalid is the error of the whole.
 class Reader {
 public:

@@ -457,12 +457,40 @@ Status check_possible(const Stepper& stepper, const RobotState& robot) {
                                     "through each other"));
 }
 
+void add(Digest& digest, const std::string& name, const std::vector<Attachment>& points) {
+    digest.add(name.data(), name.size() + 1);  // with its end, so that names do not run together
+    for (const Attachment& point : points) {
+        digest.add(point.nodes.data(), point.nodes.size() * sizeof(point.nodes[0]));
+        digest.add(point.weights.data(), point.weights.size() * sizeof(point.weights[0]));
+    }
+}
+
+/// Identifies what is attached to the mesh, by names and places. Constants, targets and loads do not count: with others
+/// a state is where the next step begins.
+std::string parts_digest(const Description& d) {
+    Digest digest;
+    for (const Support& support : d.supports) {
+        add(digest, support.name, {});
+        digest.add(support.nodes.data(), support.nodes.size() * sizeof(support.nodes[0]));
+    }
+    for (const Cable& cable : d.cables) add(digest, cable.name, cable.points);
+    for (const Chamber& chamber : d.chambers) add(digest, chamber.name, chamber.wall.points);
+    for (const PressureLoad& pressure : d.pressures) add(digest, pressure.name, pressure.wall.points);
+    for (const Spring& spring : d.springs) add(digest, spring.name, spring.points);
+    for (const Joint& joint : d.joints) {
+        add(digest, joint.name, {joint.first.begin(), joint.first.end()});
+        add(digest, joint.name, {joint.second.begin(), joint.second.end()});
+    }
+    return digest.text();
+}
+
 }  // namespace
 
 std::string state_bytes(const Model& model, const RobotState& robot) {
     Json json{{"format", format_name},
               {"version", state_version},
               {"mesh", mesh_digest(model.mesh())},
+              {"parts", parts_digest(model.description())},
               {"along", robot.now.along},
               {"state", json_of(robot.now.state)},
               {"inputs", json_of(robot.inputs)},
@@ -474,13 +502,12 @@ std::string state_bytes(const Model& model, const RobotState& robot) {
     if (robot.before) json["before"] = json_of(*robot.before);
     if (robot.history.x.size() > 0) json["history"] = json_of(robot.history);
     if (robot.memory) json["memory"] = json_of(*robot.memory);
-    std::string bytes;
-    Json::to_cbor(json, bytes);
-    return bytes;
+    return cbor::sealed(json);
 }
 
 Result<RobotState> state_from_bytes(const Stepper& stepper, std::string_view bytes) {
-    const Json json = cbor::parsed(bytes);
+    const Result<std::string_view> content = cbor::unsealed(bytes);
+    const Json json = content ? cbor::parsed(*content) : Json();
     const auto text = [&](const char* key) {
         return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
     };
@@ -491,6 +518,8 @@ Result<RobotState> state_from_bytes(const Stepper& stepper, std::string_view byt
         return input_error("a state of version {}; this Pliant reads version {}", version, state_version);
     if (text("mesh") != mesh_digest(stepper.model().mesh()))
         return input_error("a state of another robot, or of another mesh of it");
+    if (json.contains("parts") && text("parts") != parts_digest(stepper.model().description()))
+        return input_error("a state of another robot: its supports, cables, chambers, springs or joints are others");
     StateReader reader(stepper);
     RobotState robot = reader.robot(json);
     if (!reader.status()) return tl::unexpected(reader.status().error());

@@ -1,7 +1,8 @@
 // Serialises a robot's state; a restored state continues with the same bits.
 //
 // CBOR (RFC 8949): a map with "format" and "version", and every vector of numbers as a byte string of little-endian
-// doubles. A state can only be used with a model like the one it was written for: a digest of its mesh is checked.
+// doubles; then a checksum. A state can only be used with a model like the one it was written for: digests of its mesh
+// and of the names and places of supports, actuators, springs and joints are checked. Constants and loads may differ.
 #pragma once
 
 #include <string>
