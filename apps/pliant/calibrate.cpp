@@ -9,6 +9,7 @@
 #include "base/core/files.hpp"
 #include "base/core/units.hpp"
 #include "command.hpp"
+#include "output_option.hpp"
 #include "presentation/draw/plot.hpp"
 #include "simulation/calibrate/elongation.hpp"
 #include "simulation/calibrate/fit.hpp"
@@ -257,7 +258,7 @@ Status run_elongation(const ElongationCommand& command) {
 }
 
 void add_files(CLI::App& command, Files& files) {
-    command.add_option("-o,--output", files.folder, "folder for calibration.json, .csv and .png");
+    add_output_path(command, files.folder, "folder for calibration.json, .csv and .png");
     add_output_options(command, files.output, true);
 }
 

@@ -25,6 +25,7 @@
 #include "printing/operate/board.hpp"
 #include "printing/operate/proved_job.hpp"
 #include "printing/plan/safe_stop.hpp"
+#include "robot/description/unused.hpp"
 #include "simulation/scene/scene.hpp"
 
 namespace pliant::app {
@@ -53,6 +54,7 @@ Result<std::string> check_robot(const std::string& file, Progress& progress) {
     std::string text = fmt::format("robot \"{}\": {}, {}, {}, {}", robot.name, bodies(robot.bodies.size()),
                                    counted(robot.materials.size(), "material"), counted(robot.cables.size(), "cable"),
                                    counted(scene->model.mesh().tet_count(), "tet"));
+    for (const std::string& note : robot::unused_materials(robot)) text += "\n  note: " + note;
     for (const std::string& note : scene->mesh_notes) text += "\n  note: " + note;
     return text;
 }
@@ -102,14 +104,16 @@ Result<std::string> check_program(const std::string& file, const CheckOptions& o
     if (!printer) return tl::unexpected(printer.error());
     const Result<std::string> text = read_file(file, std::uintmax_t{1} << 30);
     if (!text) return tl::unexpected(text.error());
+    const auto count = std::count(text->begin(), text->end(), '\n') + (text->empty() || text->back() == '\n' ? 0 : 1);
+    if (options.cancel_after > count)
+        return input_error("--cancel-after {}: {} has {} lines", options.cancel_after, file, count);
     const int lines = options.cancel_after >= 0 ? options.cancel_after : std::numeric_limits<int>::max();
     const Result<machine::Interlock> end = plan::replay_gcode(*text, *printer, lines);
     if (!end) return input_error("{}: {}", file, end.error().message);
     if (options.cancel_after >= 0) {
         return fmt::format("to end safely after line {}:\n{}", lines, plan::cancel_program(*end, *printer));
     }
-    return fmt::format("G-code of {} lines keeps the limits of {}", std::count(text->begin(), text->end(), '\n'),
-                       printer->name);
+    return fmt::format("G-code of {} lines keeps the limits of {}", count, printer->name);
 }
 
 /// Compares a board's answers with the machine that it is to drive.

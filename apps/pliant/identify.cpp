@@ -14,6 +14,7 @@
 
 #include "command.hpp"
 #include "inputs.hpp"
+#include "output_option.hpp"
 #include "watched.hpp"
 
 namespace pliant::app {
@@ -79,8 +80,7 @@ void add_identify(CLI::App& app, int& status) {
     command->add_option("--set", options->assignments, "KEY=VALUE: change any key of the robot file")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
-    command->add_option("-o,--output", options->folder,
-                        "folder for identified.toml, summary.json, comparison.csv and plots");
+    add_output_path(*command, options->folder, "folder for identified.toml, summary.json, comparison.csv and plots");
     add_output_options(*command, options->output, true);
     command->footer(
         "Example: pliant identify finger.toml --measured video.csv --unknown material.soft.youngs_modulus -o found");

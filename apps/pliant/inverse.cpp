@@ -12,6 +12,7 @@
 #include "command.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
+#include "output_option.hpp"
 #include "watched.hpp"
 
 namespace pliant::app {
@@ -60,8 +61,8 @@ void add_inverse(CLI::App& app, int& status) {
         app.add_subcommand("inverse", "find the inputs of the actuators with which the robot meets its goals");
     command->add_option("robot", options->robot, "robot file (TOML) with [[goal]], and ranges of actuators")
         ->required();
-    command->add_option("-o,--output", options->folder,
-                        "folder for the resulting program and its results; without it only a summary is printed");
+    add_output_path(*command, options->folder,
+                    "folder for the resulting program and its results; without it only a summary is printed");
     command
         ->add_option("--starts", options->search.starts,
                      "starts spread over the ranges, tried where the path from rest does not reach the first waypoint")

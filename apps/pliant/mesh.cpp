@@ -14,6 +14,7 @@
 #include "geometry/open/describe_file.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
+#include "output_option.hpp"
 #include "presentation/report/mesh_picture.hpp"
 #include "robot/bodies/build.hpp"
 #include "simulation/peers/calculix_deck.hpp"
@@ -121,13 +122,15 @@ Status convert(const MeshOptions& options) {
 }
 
 Status describe(const MeshOptions& options, const std::string& file) {
+    const Result<double> factor = scale(options);
+    if (!factor) return tl::unexpected(factor.error());
     if (options.output.json || !options.picture_file.empty()) {
-        const Result<mesh::MeshReport> report = mesh::report_on_file(file);
+        const Result<mesh::MeshReport> report = mesh::report_on_file(file, *factor);
         if (!report) return tl::unexpected(report.error());
         print_report(options, file, *report);
         return draw(options, file, *report);
     }
-    const Result<std::string> text = mesh::describe_mesh_file(file);
+    const Result<std::string> text = mesh::describe_mesh_file(file, *factor);
     if (!text) return tl::unexpected(text.error());
     if (!options.output.quiet) fmt::print("{}: {}\n", file, *text);
     return {};
@@ -149,8 +152,7 @@ Status mesh_file(const MeshOptions& options) {
 void add_options(CLI::App& command, MeshOptions& options) {
     command.add_option("files", options.files, "a robot file with -o, or mesh files (.vtk, .msh, .stl, .off, ...)")
         ->required();
-    command.add_option("-o,--output", options.output_file,
-                       fmt::format("mesh file to write: {}", mesh::tet_writer_list));
+    add_output_path(command, options.output_file, fmt::format("mesh file to write: {}", mesh::tet_writer_list));
     command.add_option("--picture", options.picture_file, "picture of the quality of the tets: FILE.png");
     command.add_option("--from", options.from_unit, "unit of the mesh file that is read, with --to")->type_name("UNIT");
     command.add_option("--to", options.to_unit, "unit of the mesh file that is written")->type_name("UNIT");

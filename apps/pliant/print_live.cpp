@@ -20,6 +20,7 @@
 #include "printing/operate/layer_command.hpp"
 #include "printing/operate/port_station.hpp"
 #include "printing/operate/print_job.hpp"
+#include "printing/operate/resume_hint.hpp"
 #include "printing/plan/plan.hpp"
 #include "printing/rehearse/memory_file.hpp"
 #include "printing/twin/inspect.hpp"
@@ -176,8 +177,6 @@ Result<Ended> print_to_end(host::Control& control, const LiveOptions& options, o
     Ended ended{exit_failed, control.snapshot()};
     control.quit();
     worker.join();
-    if (ended.last.can_resume && !options.output.quiet && !options.port.empty())
-        fmt::print(stderr, "resume with: pliant print {} --port {} --resume\n", options.job, options.port);
     if (ended.last.finished) ended.status = exit_done;
     return ended;
 }
@@ -209,7 +208,7 @@ Result<int> judge(const LiveOptions& options, const operate::ReadyJob& ready, co
         return operate::image_of(*ready.archive, layer, material).map(twin::runs_of);
     };
     constexpr double wall_clock_s = 0.05;  // allowed delay on a busy computer
-    const twin::Judgement judgement{options.accepted, wall_clock_s * std::max(1.0, options.speed)};
+    const twin::Judgement judgement{options.accepted, wall_clock_s * std::max(1.0, options.speed), true};
     if (options.report.empty())
         return twin::inspect(twin, manifest, images, judgement).map([&](const twin::Report& report) {
             return verdict(options, report, ended.status);
@@ -229,6 +228,8 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     Result<std::optional<job::Image>> mask = operate::mask_of(*ready.archive, ready.printer.projector);
     if (!mask) return tl::unexpected(mask.error());
     wanted.mask = std::move(*mask);
+    if (Status status = twin::check_faults(options.faults, ready.printer); !status)
+        return tl::unexpected(status.error());
     wanted.faults = options.faults;
     LiveTwin machine(ready.printer, std::move(wanted), std::move(*pty), options.speed);
     // This printer is gone when the program ends, so its prints cannot be resumed.
@@ -251,15 +252,32 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     return judge(options, ready, *ended, machine.end());
 }
 
+/// Says how to resume, if the print can be: not where the same command has just been refused. `before`: the last record
+/// of the print that was to be resumed.
+void show_hint(const operate::PrintCall& call, const operate::ReadyJob& ready, std::optional<long> before) {
+    const auto now = operate::interrupted_at(ready.job.journal, ready.job.digest, ready.printer.name);
+    if (!now || (call.resumed && now == before)) return;
+    fmt::print(stderr, "resume with: {}\n", operate::resume_command(call));
+}
+
 Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready) {
-    auto station = operate::PortStation::open(
-        {options.port, options.projector, options.speed, options.clock_file, options.emergency_line}, ready);
+    if (options.resume) {
+        if (Status there = operate::expect_journal(ready.job.journal, options.job); !there)
+            return tl::unexpected(there.error());
+    }
+    const operate::PortOptions port{options.port, options.projector, options.speed, options.clock_file,
+                                    options.emergency_line};
+    const auto before = operate::interrupted_at(ready.job.journal, ready.job.digest, ready.printer.name);
+    auto station = operate::PortStation::open(port, ready);
     if (!station) return tl::unexpected(station.error());
     host::ControlSetup setup = (*station)->setup(ready.printer);
     setup.after_layer = layer_hook(options);
     host::Control control(std::move(setup));
     const Result<Ended> ended = print_to_end(control, options, ready);
     if (!ended) return tl::unexpected(ended.error());
+    if (!ended->last.finished && !options.output.quiet)
+        show_hint({options.job, port, options.journal, options.after_layer, options.report, options.resume}, ready,
+                  before);
     if (Status written = write_report(options, ready, ended->last, nullptr); !written)
         return tl::unexpected(written.error());
     return ended->status;

@@ -57,7 +57,7 @@ Result<int> print_virtual(const LiveOptions& options, const std::string& report_
     const Status printed = print.print(*progress);
     if (!printed && printed.error().cause == Cause::cancelled) return tl::unexpected(printed.error());
 
-    const twin::Judgement judgement{options.accepted};
+    const twin::Judgement judgement{.accepted = options.accepted, .faults_must_occur = true};
     if (Status written = write_records(options, *rehearsal, judgement); !written)
         return tl::unexpected(written.error());
     if (!printed) return tl::unexpected(printed.error());

@@ -26,7 +26,8 @@ struct ProjectOptions {
     std::vector<double> measured_mm;
     std::vector<int> size_px, points = {5, 3};
     int square_px = 1;
-    double seconds = 0, gamma = 1;
+    double seconds = 0;  ///< 0: not given, until Ctrl-C
+    double gamma = 1;
     bool list = false, release = false;
     Output output;
 };
@@ -204,10 +205,10 @@ Status save_pattern(const ProjectOptions& options, const Setting& setting) {
     return write_file(options.save, job::encode_png(*image));
 }
 
-Status run_project(const ProjectOptions& options) {
+Status run_project(const ProjectOptions& options, bool given_seconds) {
     if (options.list) return list_displays(options.output);
     if (options.release && options.pattern.empty() && options.image.empty()) return release(options);
-    if (!(options.seconds >= 0 && options.seconds <= 86400))
+    if (given_seconds && !(options.seconds > 0 && options.seconds <= 86400))
         return input_error("--seconds {:g}: must be above 0, at most a day", options.seconds);
     const Result<Setting> setting = read_setting(options);
     if (!setting) return tl::unexpected(setting.error());
@@ -230,24 +231,29 @@ void add_project(CLI::App& app, int& status) {
     command->add_option("projector", options->where, "number of a display (0), or a folder for the images");
     command->add_flag("--list", options->list, "list the displays");
     command->add_option("--printer", options->printer, "printer file; the display must have its resolution");
-    command->add_option("--size", options->size_px, "WIDTH HEIGHT in pixels, in place of a printer file")->expected(2);
+    command->add_option("--size", options->size_px, "WIDTH HEIGHT in pixels, in place of a printer file")
+        ->expected(2)
+        ->allow_extra_args(false);
     command->add_option("--pattern", options->pattern, "white, black, checkerboard, grid, border, ramp or points");
     command->add_option("--square", options->square_px, "pixels per square of the checkerboard; 1 if not given");
     command->add_option("--points", options->points, "COLUMNS ROWS of the pattern points; 5 3 if not given")
-        ->expected(2);
+        ->expected(2)
+        ->allow_extra_args(false);
     command->add_option("--image", options->image, "image file (.png) in the resolution of the display");
-    command->add_option("--seconds", options->seconds, "duration; until Ctrl-C if not given");
+    const CLI::Option* seconds =
+        command->add_option("--seconds", options->seconds, "duration; until Ctrl-C if not given");
     command->add_flag("--release", options->release, "release the display, which otherwise stays black");
     command
         ->add_option("--measured", options->measured_mm,
                      "X Y: measured width and height of the rectangle in pattern border, in mm")
-        ->expected(2);
+        ->expected(2)
+        ->allow_extra_args(false);
     command->add_option("--mask-from", options->readings, "table of light readings, to make a mask from");
     command->add_option("--gamma", options->gamma, "gamma of the projector, for the mask; 1 if not given");
     command->add_option("-o,--output", options->save, "write the pattern or the mask to a file (.png)");
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant project 1 --printer examples/printers/tower.toml --pattern grid");
-    on_call(*command, status, [options] { return run_project(*options); });
+    on_call(*command, status, [options, seconds] { return run_project(*options, seconds->count() > 0); });
 }
 
 }  // namespace pliant::app

@@ -11,6 +11,7 @@
 #include "base/core/counted.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
+#include "output_option.hpp"
 #include "pliant/reduced.hpp"
 #include "watched.hpp"
 
@@ -131,7 +132,7 @@ void add_reduce(CLI::App& app, int& status) {
     CLI::App* command =
         app.add_subcommand("reduce", "make a reduced-order model for control loops, and compare it with the robot");
     command->add_option("robot", options->robot, "robot file (TOML) with ranges of actuators")->required();
-    command->add_option("-o,--output", options->file, "file for the reduced model, .reduced");
+    add_output_path(*command, options->file, "file for the reduced model, .reduced");
     command
         ->add_option("--samples", options->reduction.samples,
                      "equilibria to learn from; 0: 24 for each actuator, 240 at most")

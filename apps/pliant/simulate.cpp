@@ -1,10 +1,10 @@
 // pliant simulate: runs the actuation program of a robot file and writes the result folder.
 #include <fmt/core.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -18,11 +18,15 @@
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "library/simulation/data.hpp"
+#include "output_option.hpp"
 #include "pliant/program.hpp"
+#include "presentation/report/readable.hpp"
 #include "watched.hpp"
 
 namespace pliant::app {
 namespace {
+
+using report::readable;
 
 struct SimulateOptions {
     std::string robot;
@@ -41,31 +45,42 @@ struct SimulateOptions {
     Output output;
 };
 
+/// Others may be rounding errors of it.
+double largest_force_N(const Observation& last) {
+    double largest = 0;
+    const auto add = [&](double force_N) { largest = std::max(largest, std::fabs(force_N)); };
+    for (const auto& cable : last.cables) add(cable.tension_N);
+    for (const auto& [name, force_N] : last.contacts) std::ranges::for_each(force_N, add);
+    for (const auto& [name, force_N] : last.supports) std::ranges::for_each(force_N, add);
+    return largest;
+}
+
 void print_summary(const Model& model, const ProgramResult& result) {
     const ProgramStep step = result.step(result.step_count() - 1);
     const Observation& last = step.observed;
+    const double rounding_N = std::max(1e-12, 1e-6 * largest_force_N(last));
     fmt::print("{}, {}, solver {}\n", counted(model.node_count(), "node"),
                counted(model.tet_count(), model.order() == 2 ? "quadratic tet" : "linear tet"), result.solver());
     fmt::print("{} in {:.2f} s, residual {:.1e}, smallest det F {:.3f}\n", counted(result.step_count() - 1, "step"),
                result.solve_s(), step.result.residual, last.min_J);
     for (const auto& c : last.cables)
-        fmt::print("cable {}: length ratio {:.4f}, {:.2f} mm, tension {:.3f} N\n", c.name, c.length_ratio,
-                   1e3 * c.length_m, c.tension_N);
+        fmt::print("cable {}: length ratio {:.4f}, {} mm, tension {} N\n", c.name, c.length_ratio,
+                   readable(1e3 * c.length_m, 2), readable(c.tension_N, 3));
     for (const auto& c : last.chambers)
-        fmt::print("chamber {}: volume ratio {:.4f}, {:.1f} mm^3, pressure {:.3f} kPa\n", c.name, c.volume_ratio,
-                   1e9 * c.volume_m3, 1e-3 * c.pressure_Pa);
+        fmt::print("chamber {}: volume ratio {:.4f}, {} mm^3, pressure {} kPa\n", c.name, c.volume_ratio,
+                   readable(1e9 * c.volume_m3, 1), readable(1e-3 * c.pressure_Pa, 3));
     for (const auto& s : last.springs)
-        fmt::print("spring {}: {:.2f} mm, force {:.4f} N\n", s.name, 1e3 * s.length_m, s.force_N);
+        fmt::print("spring {}: {} mm, force {} N\n", s.name, readable(1e3 * s.length_m, 2), readable(s.force_N, 4));
     for (const auto& [name, force_N] : last.contacts)
-        fmt::print("obstacle {}: presses on the robot with ({:.4f}) N\n", name, fmt::join(force_N, ", "));
+        fmt::print("obstacle {}: presses on the robot with ({}) N\n", name, readable(force_N, 4, rounding_N));
     if (last.self_contact_N > 0) {
-        fmt::print("self-contact: {:.4f} N total, nearest {:.4f} mm\n", last.self_contact_N,
-                   1e3 * last.smallest_distance_m);
+        fmt::print("self-contact: {} N total, nearest {} mm\n", readable(last.self_contact_N, 4),
+                   readable(1e3 * last.smallest_distance_m, 4));
     }
     for (const auto& [name, force_N] : last.supports)
-        fmt::print("support {}: force ({:.4f}) N\n", name, fmt::join(force_N, ", "));
+        fmt::print("support {}: force ({}) N\n", name, readable(force_N, 4, rounding_N));
     for (const auto& [name, p] : last.markers)
-        fmt::print("marker {}: ({:.3f}, {:.3f}, {:.3f}) mm\n", name, 1e3 * p[0], 1e3 * p[1], 1e3 * p[2]);
+        fmt::print("marker {}: ({}) mm\n", name, readable(std::array{1e3 * p[0], 1e3 * p[1], 1e3 * p[2]}, 3));
     for (const std::string& line : result.deviations()) fmt::print("{}\n", line);
 }
 
@@ -217,7 +232,7 @@ void add_simulate(CLI::App& app, int& status) {
     auto options = std::make_shared<SimulateOptions>();
     CLI::App* command = app.add_subcommand("simulate", "run the actuation program of a robot file");
     command->add_option("robot", options->robot, "robot file (TOML)")->required();
-    command->add_option("-o,--output", options->folder, "folder for the results; without it only a summary is printed");
+    add_output_path(*command, options->folder, "folder for the results; without it only a summary is printed");
     command->add_option("--steps", options->steps, "number of steps, in place of the file's")
         ->check(CLI::Range(1, 100000));
     auto* solver = command->add_option("--solver", options->solvers,

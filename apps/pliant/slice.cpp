@@ -184,10 +184,13 @@ void add_slice_options(CLI::App& command, SliceOptions& options) {
                        "warn of walls and tips narrower than this, as in \"0.3 mm\"");
     command.add_option("--copies", order.copies, "number of copies, side by side");
     command.add_option("--spacing", order.spacing, "distance between copies, as in \"2 mm\"")->capture_default_str();
-    command.add_option("--turn", order.turn, "X Y Z: rotation in degrees about each axis, in this order")->expected(3);
+    command.add_option("--turn", order.turn, "X Y Z: rotation in degrees about each axis, in this order")
+        ->expected(3)
+        ->allow_extra_args(false);
     command.add_option("--scale", order.scale, "scale factor of the part, 0.01 to 100")->capture_default_str();
     command.add_option("--at", order.at, "X Y: position of the part's centre, in mm from the centre of the platform")
-        ->expected(2);
+        ->expected(2)
+        ->allow_extra_args(false);
     command.add_flag("--no-anti-alias", order.no_anti_alias, "no anti-aliasing: each pixel is fully lit or dark");
     command.add_option("--threshold", order.threshold, "without anti-aliasing: minimum coverage of a lit pixel")
         ->capture_default_str();

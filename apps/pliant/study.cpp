@@ -25,6 +25,7 @@
 #include "loop/study/run.hpp"
 #include "loop/study/slurm.hpp"
 #include "loop/study/study_file.hpp"
+#include "output_option.hpp"
 #include "presentation/study_plots/response_plots.hpp"
 #include "program.hpp"
 #include "study_rows.hpp"
@@ -269,7 +270,7 @@ void add_study(CLI::App& app, int& status) {
     auto options = std::make_shared<StudyOptions>();
     CLI::App* command = app.add_subcommand("study", "run any command over a plan of experiments, here or on a cluster");
     command->add_option("study", options->study, "study file (TOML); with --chunk the folder of a study")->required();
-    command->add_option("-o,--output", options->folder, "folder for rows and results (STUDY_study)");
+    add_output_path(*command, options->folder, "folder for rows and results (STUDY_study)");
     command
         ->add_option("--on", options->on,
                      "where the rows run: on this machine, as tasks of Slurm, or as ranks of mpirun or srun")

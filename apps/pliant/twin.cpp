@@ -101,15 +101,17 @@ void print_end(twin::Twin& twin) {
                counted(twin.cured().layers().size(), "layer"));
     for (const std::string& violation : log.violations) fmt::print("  interlock: {}\n", violation);
     for (const std::string& mishap : log.mishaps) fmt::print("  fault: {}\n", mishap);
+    for (const std::string& fault : twin.missed_faults()) fmt::print("  the fault {} did not occur\n", fault);
     for (const std::string& fault : twin.cured().faults()) fmt::print("  light: {}\n", fault);
 }
 
 void print_end_json(twin::Twin& twin) {
     const twin::Log& log = twin.log();
-    const nlohmann::json json = {
-        {"seconds", twin.now()},        {"swaps", log.swaps},    {"exposures", log.exposures},
-        {"bad_lines", log.bad_lines},   {"resets", log.resets},  {"layers", twin.cured().layers().size()},
-        {"interlocks", log.violations}, {"faults", log.mishaps}, {"light", twin.cured().faults()}};
+    const nlohmann::json json = {{"seconds", twin.now()},          {"swaps", log.swaps},
+                                 {"exposures", log.exposures},     {"bad_lines", log.bad_lines},
+                                 {"resets", log.resets},           {"layers", twin.cured().layers().size()},
+                                 {"interlocks", log.violations},   {"faults", log.mishaps},
+                                 {"light", twin.cured().faults()}, {"missed_faults", twin.missed_faults()}};
     fmt::print("{}\n", json.dump(1));
 }
 
@@ -120,6 +122,7 @@ Status run_twin(const TwinOptions& options) {
     if (!printer) return tl::unexpected(printer.error());
     Result<twin::Options> wanted = twin_options(options);
     if (!wanted) return tl::unexpected(wanted.error());
+    if (Status status = twin::check_faults(wanted->faults, *printer); !status) return status;
     Result<std::optional<job::Image>> mask = operate::load_mask(printer->projector, options.printer);
     if (!mask) return tl::unexpected(mask.error());
     wanted->mask = std::move(*mask);

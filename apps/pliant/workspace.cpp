@@ -10,6 +10,7 @@
 
 #include "command.hpp"
 #include "inputs.hpp"
+#include "output_option.hpp"
 #include "watched.hpp"
 
 namespace pliant::app {
@@ -70,7 +71,7 @@ void add_workspace(CLI::App& app, int& status) {
     CLI::App* command =
         app.add_subcommand("workspace", "find where markers can get within the ranges of the actuators");
     command->add_option("robot", options->robot, "robot file (TOML) with ranges of actuators")->required();
-    command->add_option("-o,--output", options->folder, "folder for table, surfaces and picture");
+    add_output_path(*command, options->folder, "folder for table, surfaces and picture");
     command
         ->add_option("--side", options->search.side, "samples along each input of a sheet, over which two inputs vary")
         ->check(CLI::Range(2, 1000))

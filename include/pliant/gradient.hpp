@@ -49,7 +49,7 @@ struct TetGradient {
     std::vector<double> values;  ///< (tets); 0 if a tetrahedron has no such property
 };
 
-/// Value and gradient of an objective.
+/// Value and gradient of an objective. An objective that does not depend on its measures has a gradient of zeros.
 struct ProgramGradient {
     double value = 0;                         ///< the objective
     std::vector<std::vector<double>> values;  ///< (steps, measures) SI

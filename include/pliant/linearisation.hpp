@@ -65,7 +65,7 @@ struct Measure {
     };
     Of of = Of::marker;  ///< the measured quantity
     std::string name;    ///< what it is measured on, as in the robot file
-    Point direction{};   ///< need not be normalised
+    Point direction{};   ///< of a marker, reaction or contact force; not zero, need not be normalised
 };
 
 /// The equilibrium equations F(z) = 0, linearised at a state: elements, cables and chambers, follower pressure,
@@ -86,20 +86,22 @@ public:
     /// Number of unknowns.
     [[nodiscard]] std::size_t size() const;
     /// (unknowns) the product A v with the exact tangent A = dF/dz.
-    /// @throws Failure if v has the wrong size.
+    /// @throws Failure if v has the wrong size or a number that is not finite.
     [[nodiscard]] std::vector<double> multiply(std::span<const double> v) const;
     /// (unknowns) the product A^T w.
     [[nodiscard]] std::vector<double> multiply_transposed(std::span<const double> w) const;
     /// (unknowns) A^-1 b with a residual of 1e-12 of b; also at an unstable equilibrium. The first solve factorises A.
-    /// @throws Failure if A is singular, or redundant cables have conflicting targets.
+    /// @throws Failure if b has the wrong size or a number that is not finite, A is singular, or redundant cables have
+    /// conflicting targets.
     [[nodiscard]] std::vector<double> solve(std::span<const double> b);
     /// (unknowns) A^-T b, accurate as solve().
     [[nodiscard]] std::vector<double> solve_transposed(std::span<const double> b);
     /// Translates a vector of unknowns into a change of the state.
     [[nodiscard]] Change change(std::span<const double> unknowns) const;
 
-    /// The inputs: cable lengths and tensions, chamber volumes, pressures and gas amounts, and the progress of
-    /// supports, loads, gravity and obstacles along their program.
+    /// The inputs: a length or tension for each of Model::cables(), a volume, pressure or gas amount for each of
+    /// Model::chambers(), then pressure loads and the progress of supports, loads, gravity and obstacles along their
+    /// program.
     [[nodiscard]] const std::vector<Parameter>& inputs() const;
     /// The parameters of the robot and its surroundings: material constants, densities, springs, friction, loads,
     /// gravity, supports, contact. The constants of a material are Young's modulus and Poisson ratio, followed by those
@@ -129,14 +131,14 @@ public:
     /// Gradient of a quantity, by one transposed solve. For derivatives with respect to the rest shape and guide
     /// points, prescribed lengths and volumes keep their values in m and m^3; with the rest shape, everything attached
     /// to nodes moves along.
-    /// @throws Failure as for solve(), or if the size of the quantity does not match the model.
+    /// @throws Failure as for solve(), or if the quantity does not match the model in size or is not finite.
     [[nodiscard]] Gradient gradient(const Quantity& quantity, const StateGradientOptions& options = {});
     /// The coordinate of a marker along a direction; in m for a unit direction.
     /// @throws Failure if there is no such marker.
     [[nodiscard]] Quantity marker_coordinate(std::size_t marker, const Point& direction) const;
 
     /// The value of a measure at this state.
-    /// @throws Failure if the robot has nothing of that name.
+    /// @throws Failure if the robot has nothing of that name, or the measure needs a direction.
     [[nodiscard]] double value(const Measure& measure) const;
     /// Gradient of a measure, by one transposed solve. Unlike for a Quantity, the explicit dependence of the measure on
     /// a parameter is included. For derivatives with respect to the rest shape and guide points, lengths and volumes

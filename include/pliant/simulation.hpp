@@ -38,6 +38,9 @@ public:
     [[nodiscard]] double duration() const;
     /// Number of steps of the program.
     [[nodiscard]] int steps() const;
+    /// Text of a robot file for `folder` that describes this robot with its changes; files that it names are looked up
+    /// relative to that folder.
+    [[nodiscard]] std::string text(const std::filesystem::path& folder) const;
 
     /// @cond
     struct Data;
@@ -60,6 +63,12 @@ struct Mesh {
     std::vector<std::string> region_names = {"all"};  ///< names that `region` of a body refers to
 };
 
+/// Solver options. Options that are not set take the value in the robot file.
+struct StepOptions {
+    std::optional<double> tolerance{};     ///< largest residual of a converged step
+    std::optional<int> iteration_limit{};  ///< for each substep; 0: that of the solver
+};
+
 /// A meshed robot, ready to be simulated. Immutable.
 class PLIANT_API Model {
 public:
@@ -73,6 +82,12 @@ public:
     /// renumbered, in the order of rest_positions().
     /// @throws Failure if the robot's bodies are drawn rather than taken from a mesh, or `mesh` is not a valid mesh.
     Model(const Robot& robot, const Mesh& mesh);
+    /// The same with options that replace `program.tolerance` (1e-10 to 0.1) and `program.max_iterations` of the robot
+    /// in everything that is done with the model: steps, batches, programs, searches, gradients, reduced models.
+    /// @throws Failure if an option is not possible, or as above.
+    Model(const Robot& robot, const StepOptions& options, const Watch& watch = {});
+    /// The same with options, for a given mesh.
+    Model(const Robot& robot, const Mesh& mesh, const StepOptions& options);
 
     /// Number of nodes of the mesh.
     [[nodiscard]] std::size_t node_count() const;
@@ -260,12 +275,6 @@ struct Fields {
     std::vector<double> von_mises_Pa;       ///< von Mises stress, from the Cauchy stress
     std::vector<double> max_stretch;        ///< largest principal stretch
     std::vector<double> energy_density_Pa;  ///< J/m^3 of rest volume; 0 if the law has no energy
-};
-
-/// Solver options. Options that are not set take the value in the robot file.
-struct StepOptions {
-    std::optional<double> tolerance{};     ///< largest residual of a converged step
-    std::optional<int> iteration_limit{};  ///< for each substep
 };
 
 /// Advances a robot from one state to the next. Not thread-safe; any number of steppers may share a model.

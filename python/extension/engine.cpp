@@ -2,9 +2,8 @@
 
 namespace pliant::python {
 
-/// The first stepper is created at once, so that invalid options are reported immediately.
-Engine::Engine(const Model& model, const StepOptions& options) : model_(model), options_(options) {
-    idle_.push_back(std::make_unique<Stepper>(model_, options_));
+Engine::Engine(const Model& model) : model_(model) {
+    idle_.push_back(std::make_unique<Stepper>(model_));
 }
 
 std::unique_ptr<Stepper> Engine::take() {
@@ -16,7 +15,7 @@ std::unique_ptr<Stepper> Engine::take() {
             return stepper;
         }
     }
-    return std::make_unique<Stepper>(model_, options_);
+    return std::make_unique<Stepper>(model_);
 }
 
 void Engine::give(std::unique_ptr<Stepper> stepper) {

@@ -12,7 +12,7 @@ namespace pliant::python {
 
 class Engine {
 public:
-    Engine(const Model& model, const StepOptions& options);
+    explicit Engine(const Model& model);
 
     [[nodiscard]] const Model& model() const { return model_; }
     /// Calls `use` with a stepper that nothing else uses meanwhile. Releases the interpreter's lock.
@@ -35,7 +35,6 @@ private:
     void give(std::unique_ptr<Stepper> stepper);
 
     Model model_;
-    StepOptions options_;
     std::mutex mutex_;
     std::vector<std::unique_ptr<Stepper>> idle_;
 };

@@ -1,4 +1,6 @@
 // Converts a Failure of the library to the exception of pliant.errors for its kind.
+#include <string>
+
 #include "parts.hpp"
 
 namespace pliant::python {
@@ -16,10 +18,17 @@ const char* class_of(Failure::Kind kind) {
     return "Failure";
 }
 
+/// Paths may have bytes that are not UTF-8.
+py::object decoded(const std::string& bytes) {
+    return py::reinterpret_steal<py::object>(
+        PyUnicode_DecodeUTF8(bytes.data(), static_cast<py::ssize_t>(bytes.size()), "replace"));
+}
+
 void raise(const Failure& failure) {
     try {
         const py::object type = py::module_::import("pliant.errors").attr(class_of(failure.kind()));
-        const py::object error = type(failure.what(), failure.file(), failure.line(), failure.key());
+        const py::object error =
+            type(decoded(failure.what()), decoded(failure.file()), failure.line(), decoded(failure.key()));
         PyErr_SetObject(type.ptr(), error.ptr());
     } catch (py::error_already_set& error) {
         error.restore();

@@ -2,6 +2,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <optional>
+
 #include "arrays.hpp"
 #include "parts.hpp"
 #include "pliant/simulation.hpp"
@@ -11,11 +13,18 @@
 namespace pliant::python {
 namespace {
 
-Model meshed(const Robot& robot, py::object progress) {
+Model meshed(const Robot& robot, py::object progress, std::optional<double> tolerance,
+             std::optional<int> iteration_limit) {
     Watcher watcher(std::move(progress));
     const Watch watch = watcher.watch();
     const py::gil_scoped_release unlocked;
-    return Model(robot, watch);
+    return Model(robot, StepOptions{tolerance, iteration_limit}, watch);
+}
+
+Model on_mesh(const Robot& robot, const Mesh& mesh, std::optional<double> tolerance,
+              std::optional<int> iteration_limit) {
+    const py::gil_scoped_release unlocked;
+    return Model(robot, mesh, StepOptions{tolerance, iteration_limit});
 }
 
 Mesh mesh_of(const Numbers& points, const Indices& tets, const Indices& regions, std::vector<std::string> names) {
@@ -46,10 +55,11 @@ void add_robot(py::module_& module) {
         .def_static("parse", &Robot::parse, py::call_guard<py::gil_scoped_release>())
         .def_property_readonly("name", &Robot::name)
         .def_property_readonly("duration", &Robot::duration)
-        .def_property_readonly("steps", &Robot::steps);
+        .def_property_readonly("steps", &Robot::steps)
+        .def("text", &Robot::text);
     py::class_<Mesh>(module, "Mesh").def(py::init(&mesh_of));
     py::class_<Model>(module, "Model")
-        .def(py::init<const Robot&, const Mesh&>(), py::call_guard<py::gil_scoped_release>())
+        .def(py::init(&on_mesh))
         .def(py::init(&meshed))
         .def_property_readonly("node_count", &Model::node_count)
         .def_property_readonly("tet_count", &Model::tet_count)

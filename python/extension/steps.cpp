@@ -3,6 +3,8 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <optional>
+#include <sstream>
+#include <tuple>
 
 #include "arrays.hpp"
 #include "engine.hpp"
@@ -76,21 +78,53 @@ py::list cable_paths(Engine& engine, const State& state) {
     return all;
 }
 
+using StepTuple = std::tuple<bool, bool, std::string, int, int, double>;
+
+StepTuple tuple_of(const StepResult& r) {
+    return {r.arrived, r.loose, r.reason, r.iterations, r.pieces, r.residual};
+}
+StepResult step_result_of(const StepTuple& tuple) {
+    const auto& [arrived, loose, reason, iterations, pieces, residual] = tuple;
+    return {arrived, loose, reason, iterations, pieces, residual};
+}
+
+std::string repr_of(const StepResult& r) {
+    std::ostringstream text;
+    text.precision(2);
+    text << "<pliant.StepResult: " << (r.arrived ? "arrived" : "not arrived") << (r.loose ? ", loose" : "") << ", "
+         << r.iterations << " iterations, " << r.pieces << " pieces, residual " << r.residual;
+    if (!r.reason.empty()) text << ": " << r.reason;
+    return text.str() + ">";
+}
+
+void add_step_result(py::module_& module) {
+    py::class_<StepResult>(module, "StepResult", "Result of a step.")
+        .def_readonly("arrived", &StepResult::arrived,
+                      "True if the state has the requested inputs; otherwise it is as far as the solver got.")
+        .def_readonly("loose", &StepResult::loose,
+                      "True if the step was accepted at a looser tolerance, because friction did not settle.")
+        .def_readonly("reason", &StepResult::reason,
+                      "Why it did not arrive, or at which tolerance it was accepted; otherwise empty.")
+        .def_readonly("iterations", &StepResult::iterations, "Number of solver iterations.")
+        .def_readonly("pieces", &StepResult::pieces, "Number of substeps that the step was divided into.")
+        .def_readonly("residual", &StepResult::residual,
+                      "Norm of the out-of-balance force over the norm of the forces that balance; no unit.")
+        .def("__eq__",
+             [](const StepResult& a, const py::object& b) {
+                 return py::isinstance<StepResult>(b) && tuple_of(a) == tuple_of(b.cast<const StepResult&>());
+             })
+        .def("__repr__", &repr_of)
+        .def("__copy__", [](const StepResult& result) { return result; })
+        .def("__deepcopy__", [](const StepResult& result, const py::dict&) { return result; })
+        .def(py::pickle([](const StepResult& result) { return tuple_of(result); }, &step_result_of));
+}
+
 }  // namespace
 
 void add_steps(py::module_& module) {
-    py::class_<StepResult>(module, "StepResult")
-        .def_readonly("arrived", &StepResult::arrived)
-        .def_readonly("loose", &StepResult::loose)
-        .def_readonly("reason", &StepResult::reason)
-        .def_readonly("iterations", &StepResult::iterations)
-        .def_readonly("pieces", &StepResult::pieces)
-        .def_readonly("residual", &StepResult::residual);
+    add_step_result(module);
     py::class_<Engine>(module, "Engine")
-        .def(py::init([](const Model& model, std::optional<double> tolerance, std::optional<int> iteration_limit) {
-                 return std::make_unique<Engine>(model, StepOptions{tolerance, iteration_limit});
-             }),
-             py::call_guard<py::gil_scoped_release>())
+        .def(py::init<const Model&>(), py::call_guard<py::gil_scoped_release>())
         .def("rest", [](Engine& engine) { return engine.with([](Stepper& stepper) { return stepper.rest(); }); })
         .def("program",
              [](Engine& engine, double time) {

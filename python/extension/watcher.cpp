@@ -8,6 +8,12 @@ namespace {
 
 constexpr auto interval = std::chrono::milliseconds(50);
 
+/// False, or numpy's; anything else goes on.
+bool is_false(const py::object& answer) {
+    py::detail::make_caster<bool> truth;
+    return truth.load(answer, false) && !static_cast<bool>(truth);
+}
+
 }  // namespace
 
 /// Short work never calls the callable; it is told the beginning of longer work.
@@ -26,7 +32,7 @@ bool Watcher::ask(std::string_view stage, double share) {
     rethrow();
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (progress_.is_none()) return true;
-    return !progress_(std::string(stage), share).is(py::bool_(false));
+    return !is_false(progress_(std::string(stage), share));
 }
 
 }  // namespace pliant::python

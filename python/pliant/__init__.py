@@ -7,8 +7,8 @@
     model.step(state, {"flexor": {"shortening": "4 mm"}})
     print(state.observe().markers["tip"], state.observe().cables["flexor"].tension_N)
 
-Robot files keep their own units; everything here is in SI units: metres, newtons, pascals, seconds. What fails raises
-:class:`Failure`, or one of its kinds, with one sentence for people. A model may be used by any number of threads.
+Robot files keep their own units; everything here is in SI units: metres, newtons, pascals, seconds. Errors are
+:class:`Failure` or one of its subclasses, described in one sentence. A model may be used by any number of threads.
 """
 
 from __future__ import annotations
@@ -50,11 +50,11 @@ __all__ = [
 
 
 def quantity(text: str, unit: str) -> float:
-    """Value in SI units of a text as robot files have it: ``quantity("4 mm", "m")`` is 0.004.
+    """Converts a text with a unit, as in robot files, to SI units: ``quantity("4 mm", "m")`` is 0.004.
 
     Args:
         text: a number and its unit.
-        unit: what it must be: m, s, N, Pa, m^3, kg/m^3 or N/m.
+        unit: the required unit: m, s, N, Pa, m^3, kg/m^3 or N/m.
     """
     if not isinstance(text, str) or not isinstance(unit, str):
         raise TypeError('quantity takes two texts, as quantity("4 mm", "m")')
@@ -83,16 +83,22 @@ _FILE_OF = {name: file for file, names in _NAMES_OF.items() for name in names}
 _FILES = {*_NAMES_OF, "envs", "plotting", "torch"}
 
 
-def __getattr__(name: str) -> Any:
-    from importlib import import_module
+if TYPE_CHECKING:
+    from . import envs as envs
+    from . import plotting as plotting
+    from . import torch as torch
+else:  # a type checker would take every name for known
 
-    if name in _FILE_OF:
-        found = getattr(import_module("." + _FILE_OF[name], __name__), name)
-        globals()[name] = found
-        return found
-    if name in _FILES:
-        return import_module("." + name, __name__)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    def __getattr__(name: str) -> Any:
+        from importlib import import_module
+
+        if name in _FILE_OF:
+            found = getattr(import_module("." + _FILE_OF[name], __name__), name)
+            globals()[name] = found
+            return found
+        if name in _FILES:
+            return import_module("." + name, __name__)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:

@@ -1,4 +1,4 @@
-"""What is given to a function, as what it needs; else an error in one sentence."""
+"""Checks arguments of functions and converts them; errors are one sentence that names the argument."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 else:  # numpy.typing takes a tenth of the time to import all of this
     AnyArray = Array = IntArray = np.ndarray
 PathLike = Union[str, "os.PathLike[str]"]
-#: Called with what is being done and which share of it is done; False cancels the work.
+#: Called with the current stage and the completed share, 0 to 1; returning False cancels the work.
 Progress = Callable[[str, float], Any]
 
 T = TypeVar("T")
@@ -74,6 +74,25 @@ def numbers(value: Any, what: str, shape: tuple[int | None, ...]) -> Array:
     return np.ascontiguousarray(array, dtype=np.float64)
 
 
+def finite(value: Any, what: str, shape: tuple[int | None, ...]) -> Array:
+    """As :func:`numbers`, all of them finite."""
+    array = numbers(value, what, shape)
+    if not np.isfinite(array).all():
+        raise InputError(f"{what} has a number that is not finite")
+    return array
+
+
+def seed(value: Any, what: str = "seed") -> int:
+    """A whole number of any size that is not negative."""
+    try:
+        found = operator.index(value)
+    except TypeError:
+        found = -1
+    if found < 0:
+        raise InputError(f"{what} must be a whole number that is not negative, not {_shown(value)}")
+    return found
+
+
 def integers(value: Any, what: str) -> IntArray:
     """An array of whole numbers."""
     array = _array(value, what)
@@ -93,6 +112,16 @@ def path(value: Any, what: str) -> Path:
     raise InputError(f"{what} must be a path, not {_shown(value)}")
 
 
+def new_file(value: Any, what: str) -> Path:
+    """A path at which a file can be written: its folder is there, and it is no folder itself."""
+    found = path(value, what)
+    if os.path.isdir(found):
+        raise InputError(f"{found}: is a folder; write the name of a file", file=str(found))
+    if not os.path.isdir(found.absolute().parent):
+        raise InputError(f"{found}: there is no folder {found.parent}", file=str(found))
+    return found
+
+
 def one_of(value: Any, options: Iterable[str], what: str) -> str:
     """One of some words."""
     known = list(options)
@@ -101,14 +130,26 @@ def one_of(value: Any, options: Iterable[str], what: str) -> str:
     raise InputError(f"{what} is {', '.join(known[:-1])} or {known[-1]}, not {_shown(value)}")
 
 
+def text(value: Any, what: str) -> str:
+    """A text that can be written to a file: without halves of characters (lone surrogates)."""
+    if not isinstance(value, str):
+        raise InputError(f"{what} must be a text, not {_shown(value)}")
+    try:
+        value.encode("utf-8")
+    except UnicodeEncodeError as error:
+        half = ascii(value[error.start])
+        raise InputError(f"{what} has {half}, which is no character: it has no place in a text") from None
+    return value
+
+
 def texts(value: Any, what: str) -> list[str]:
     """A list of texts; one alone stands for a list of it."""
     if isinstance(value, str):
-        return [value]
+        return [text(value, what)]
     if isinstance(value, Iterable):
         found = list(value)
         if all(isinstance(v, str) for v in found):
-            return found
+            return [text(v, what) for v in found]
     raise InputError(f"{what} must be a list of texts, not {_shown(value)}")
 
 

@@ -28,12 +28,19 @@ class Robot:
     def duration(self) -> float: ...
     @property
     def steps(self) -> int: ...
+    def text(self, folder: Path) -> str: ...
 
 class Mesh:
     def __init__(self, points: _Floats, tets: _Ints, regions: _Ints, names: list[str]) -> None: ...
 
 class Model:
-    def __init__(self, robot: Robot, mesh_or_progress: Mesh | _Progress) -> None: ...
+    def __init__(
+        self,
+        robot: Robot,
+        mesh_or_progress: Mesh | _Progress,
+        tolerance: float | None,
+        iteration_limit: int | None,
+    ) -> None: ...
     @property
     def node_count(self) -> int: ...
     @property
@@ -64,29 +71,29 @@ class State:
     def equals(self, other: State) -> bool: ...
 
 class StepResult:
-    """What a step did."""
+    """Result of a step."""
 
     @property
     def arrived(self) -> bool:
-        """The state has the inputs that were asked for; otherwise it is as far as it got."""
+        """True if the state has the requested inputs; otherwise it is as far as the solver got."""
     @property
     def loose(self) -> bool:
-        """Accepted on looser terms than the tolerance, because friction did not settle."""
+        """True if the step was accepted at a looser tolerance, because friction did not settle."""
     @property
     def reason(self) -> str:
-        """Why it did not arrive, or on which terms; empty otherwise."""
+        """Why it did not arrive, or at which tolerance it was accepted; otherwise empty."""
     @property
     def iterations(self) -> int:
-        """Of the solver."""
+        """Number of solver iterations."""
     @property
     def pieces(self) -> int:
-        """That the step was cut into."""
+        """Number of substeps that the step was divided into."""
     @property
     def residual(self) -> float:
-        """Norm of the out-of-balance force over that of the forces that balance."""
+        """Norm of the out-of-balance force over the norm of the forces that balance; no unit."""
 
 class Engine:
-    def __init__(self, model: Model, tolerance: float | None, iteration_limit: int | None) -> None: ...
+    def __init__(self, model: Model) -> None: ...
     def rest(self) -> State: ...
     def program(self, time: float) -> _Inputs: ...
     def step(self, state: State, inputs: _Inputs, progress: _Progress) -> StepResult: ...

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from . import _check
 from .errors import InputError
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
@@ -18,6 +19,7 @@ _ESCAPES = {'"': '\\"', "\\": "\\\\", "\b": "\\b", "\t": "\\t", "\n": "\\n", "\f
 
 def text(value: str) -> str:
     """A basic string with its quotes."""
+    _check.text(value, f"the text {_check._shown(value)}")
     return '"' + "".join(_ESCAPES.get(c, c if c >= " " and c != "\x7f" else f"\\u{ord(c):04x}") for c in value) + '"'
 
 
@@ -58,7 +60,10 @@ def value(what: Any, where: str) -> str:
 
 def document(tables: Mapping[str, Any]) -> str:
     """A whole file, one line for each key of the top level. Keys whose value is None are left out."""
-    return "".join(f"{key(k)} = {value(v, k)}\n" for k, v in _members(tables, ""))
+    try:
+        return "".join(f"{key(k)} = {value(v, k)}\n" for k, v in _members(tables, ""))
+    except RecursionError:
+        raise InputError("a list or dict contains itself, or is nested too deeply") from None
 
 
 def _members(table: Mapping[Any, Any], where: str) -> Iterator[tuple[str, Any]]:

@@ -1,4 +1,4 @@
-"""Many robots, or many states of one, at once: one core for each."""
+"""Many robots, or many states of one robot, in parallel: one core for each."""
 
 from __future__ import annotations
 
@@ -10,16 +10,18 @@ import numpy as np
 from . import _check, _pliant
 from ._check import Progress
 from ._pliant import StepResult
+from ._values import NotPickled
 from .controls import Controls
 from .errors import InputError
 from .model import Model, State
 from .results import Observation, observation
 
 
-class Batch:
-    """Robots that take their steps side by side, on all cores and without the interpreter's lock.
+class Batch(NotPickled):
+    """Steps many robots in parallel, on all cores and without the interpreter's lock.
 
-    The bits are those of :meth:`Model.step` for one after the other, on any number of threads::
+    The results have the same bits as those of :meth:`Model.step` for one robot after the other, on any number of
+    threads::
 
         batch = pliant.Batch(model, 64)
         states = batch.rest()
@@ -27,14 +29,15 @@ class Batch:
 
     Args:
         models: a model for each robot, or one model for all.
-        count: how many robots, where one model is for all.
-        threads: 0: one for each core.
-        tolerance, iteration_limit: as of :class:`Model`.
+        count: number of robots, if one model is given for all.
+        threads: number of threads; 0: one for each core.
+        tolerance, iteration_limit: replace those of the models, as for :class:`Model`; None: those of the models.
     """
 
     __slots__ = ("models", "_batch")
+    _instead = "pickle its states, and make it again"
 
-    #: (robots)
+    #: (robots) the model of each
     models: tuple[Model, ...]
 
     def __init__(
@@ -64,11 +67,11 @@ class Batch:
 
     @property
     def threads(self) -> int:
-        """Threads that are used."""
+        """Number of threads used."""
         return self._batch.threads
 
     def rest(self) -> list[State]:
-        """(robots) undeformed states."""
+        """(robots) rest states."""
         return [model.rest() for model in self.models]
 
     def step(
@@ -79,18 +82,19 @@ class Batch:
         time: float | None = None,
         progress: Progress | None = None,
     ) -> list[StepResult]:
-        """A step of each robot, as :meth:`Model.step`.
+        """Steps each robot, as :meth:`Model.step`.
 
         Args:
             states: (robots) changed in place.
-            controls: (robots) of what :meth:`Model.inputs` takes, as an array (robots, cables + chambers); None: all
-                stay as they are.
-            time: of the program, for all; None: that of each.
+            controls: for each robot what :meth:`Model.inputs` takes; may be an array (robots, cables + chambers). None:
+                all keep their values.
+            time: program time for all; None: that of each state.
             progress: called with ("robots", share) some times a second; False cancels.
 
         Raises:
-            InputError: names the robot; all states are as before.
-            Cancelled: by `progress`; each state is as far as it got. After Ctrl-C KeyboardInterrupt, likewise.
+            InputError: the message names the robot; all states are unchanged.
+            Cancelled: by `progress`; each state is as far as its solver got. The same holds for KeyboardInterrupt after
+                Ctrl-C.
         """
         own = self._own(states)
         wanted: Sequence[Controls] = [None] * len(own) if controls is None else _listed(controls, len(own))
@@ -103,7 +107,7 @@ class Batch:
         return self._batch.step(own, tuples, _check.progress(progress))
 
     def observe(self, states: Sequence[State]) -> list[Observation]:
-        """(robots) what can be read off each state."""
+        """(robots) measurable quantities of each state."""
         return [observation(seen) for seen in self._batch.observe(self._own(states))]
 
     def _own(self, states: Sequence[State]) -> list[_pliant.State]:

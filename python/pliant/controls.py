@@ -1,4 +1,4 @@
-"""What drives a robot: how each cable and chamber is driven at one instant."""
+"""Inputs of a robot: how each cable and chamber is driven at one instant."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ class Drive(NamedTuple):
     """How one cable or chamber is driven.
 
     ========== ======================================================== ======
-    by         what is given                                            unit
+    by         prescribed quantity                                      unit
     ========== ======================================================== ======
-    length     of a cable: it may be shorter where it is slack          m
+    length     of a cable; a slack cable may be shorter                 m
     tension    of a cable                                               N
     volume     of a chamber                                             m^3
     pressure   of a chamber, above ambient                              Pa
@@ -30,21 +30,21 @@ class Drive(NamedTuple):
     value: float
 
 
-#: What :meth:`Model.step` and its like take: see :meth:`Model.inputs`.
+#: Controls as :meth:`Model.step` and others take them: see :meth:`Model.inputs`.
 Controls = Union["Inputs", Mapping[str, Any], Sequence[float], AnyArray, None]
 
 
 class Inputs(Mapping[str, Drive]):
-    """Everything that steers a robot at one instant: a drive for each cable and chamber, by name, and the time.
+    """All inputs of a robot at one instant: a drive for each cable and chamber, by name, and the time.
 
-    A value: it never changes, :meth:`Model.inputs` makes others.
+    Immutable; :meth:`Model.inputs` makes others.
     """
 
     __slots__ = ("names", "time", "_by", "_values")
 
     #: Cables, then chambers, in the order of the model.
     names: tuple[str, ...]
-    #: Of the program: drives supports, loads, gravity and obstacles.
+    #: Program time, which drives supports, loads, gravity and obstacles.
     time: float
 
     def __init__(self, names: tuple[str, ...], time: float, by: Sequence[str], values: Sequence[float]) -> None:
@@ -57,12 +57,12 @@ class Inputs(Mapping[str, Drive]):
 
     @property
     def values_SI(self) -> Array:
-        """(cables + chambers,) the numbers of the drives, in SI units."""
+        """(cables + chambers,) values of the drives, in SI units."""
         return np.array(self._values, dtype=np.float64)
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """(cables + chambers) what each number is, as of :class:`Drive`."""
+        """(cables + chambers) kind of each value, as in :class:`Drive`."""
         return tuple(self._by)
 
     def __getitem__(self, name: str) -> Drive:

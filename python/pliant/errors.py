@@ -1,4 +1,4 @@
-"""What goes wrong, in one sentence: where, what, and what would be right."""
+"""Errors, described in one sentence: where they occurred, what is wrong, and what would be right."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ from typing import Any
 
 
 class Failure(Exception):
-    """The work did not succeed. Its text is for people; the attributes are for programs."""
+    """An operation failed. The text is for people; the attributes are for programs."""
 
     #: "input", "failed" or "cancelled"
     kind: str = "failed"
-    #: The file that the error is in; "" if it is in none.
+    #: The file that the error is in; "" if none.
     file: str
-    #: Its line, from 1; 0 where that is not known.
+    #: The line in the file, from 1; 0 if unknown.
     line: int
-    #: The key there; "" where that is not known.
+    #: The key in the file; "" if unknown.
     key: str
 
     def __init__(self, message: str, file: str = "", line: int = 0, key: str = "") -> None:
@@ -34,6 +34,6 @@ class InputError(Failure, ValueError):
 
 
 class Cancelled(Failure):
-    """A progress callable asked for an end."""
+    """The work was cancelled by a progress callable."""
 
     kind = "cancelled"

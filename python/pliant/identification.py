@@ -1,4 +1,4 @@
-"""Numbers of a robot from measurements on it: those with which its program, simulated, comes nearest."""
+"""Identifies numbers of a robot from measurements: those with which its simulated program agrees best."""
 
 from __future__ import annotations
 
@@ -11,49 +11,50 @@ import numpy as np
 
 from . import _check, _pliant
 from ._check import Array, PathLike, Progress
+from ._values import NotPickled
 from .errors import InputError
 from .robot import Mesh, Robot
 
 
 class Estimate(NamedTuple):
-    """A number that was looked for."""
+    """Result for one unknown."""
 
-    #: as in the robot file
+    #: its key in the robot file
     key: str
-    #: SI; "" of a plain number
+    #: SI; "" if dimensionless
     unit: str
-    #: where the search began
+    #: value at the start of the search
     start: float
-    #: found
+    #: value that was found
     value: float
-    #: of the 95 % confidence interval, where the data give one
+    #: lower end of the 95 % confidence interval; None if the data do not determine one
     low: float | None
-    #: likewise
+    #: upper end, likewise
     high: float | None
-    #: a bound stops it
+    #: True if the value is at a bound
     at_bound: bool
-    #: False: nothing that was measured depends on it
+    #: False if no measured value depends on it
     matters: bool
 
 
 class Comparison(NamedTuple):
     """One measured value beside the simulated ones."""
 
-    #: of the table
+    #: line of the table
     line: int
-    #: of the program
+    #: program time
     time: float
-    #: column of the table
+    #: its column of the table
     quantity: str
-    #: of the values: that of the column
+    #: unit of the values: that of the column
     unit: str
-    #: kept out of the fit
+    #: True if it was left out of the fit, to judge it
     judged: bool
-    #: value
+    #: measured value
     measured: float
-    #: simulated with the numbers that the robot had
+    #: simulated with the numbers of the given robot
     before: float
-    #: simulated with those that were found
+    #: simulated with the numbers that were found
     after: float
 
 
@@ -62,18 +63,19 @@ class FitError(NamedTuple):
 
     #: as in :class:`Comparison`
     unit: str
-    #: how many values there are
+    #: number of values
     values: int
-    #: with the numbers that the robot had
+    #: with the numbers of the given robot
     before: float
-    #: with those that were found
+    #: with the numbers that were found
     after: float
 
 
-class Identification:
-    """What was found."""
+class Identification(NotPickled):
+    """Result of :func:`identify`."""
 
     __slots__ = ("_before", "_found")
+    _instead = "pickle its estimates and changes, or write its folder"
 
     def __init__(self, robot: Robot, found: _pliant.Identification) -> None:
         self._before = robot
@@ -81,57 +83,57 @@ class Identification:
 
     @property
     def converged(self) -> bool:
-        """False: the search ended after too many trials."""
+        """False if the search ended after too many trials."""
         return self._found.converged
 
     @property
     def estimates(self) -> list[Estimate]:
-        """In the order in which they were asked for."""
+        """Results for the unknowns, in the order of the request."""
         return [Estimate(*e) for e in self._found.estimates()]
 
     @property
     def correlation(self) -> Array:
-        """(estimates, estimates); not a number beside one that is at a bound or does not matter."""
+        """(estimates, estimates) correlation; NaN for an estimate that is at a bound or does not matter."""
         return np.array(self._found.correlation())
 
     @property
     def comparisons(self) -> list[Comparison]:
-        """In the order of the table."""
+        """Measured and simulated values, in the order of the table."""
         return [Comparison(*c) for c in self._found.comparisons()]
 
     @property
     def fitted(self) -> list[FitError]:
-        """By unit, of the values that were fitted."""
+        """Errors of the values that were fitted, by unit."""
         return [FitError(*e) for e in self._found.fitted()]
 
     @property
     def judged(self) -> list[FitError]:
-        """By unit, of those that were kept out of the fit."""
+        """Errors of the values that were left out of the fit, by unit."""
         return [FitError(*e) for e in self._found.judged()]
 
     @property
     def warnings(self) -> list[str]:
-        """Where the answer should not be trusted, a sentence each."""
+        """Reasons not to trust the result, one sentence each."""
         return self._found.warnings
 
     @property
     def trials(self) -> int:
-        """Programs that were solved."""
+        """Number of programs that were solved."""
         return self._found.trials
 
     @property
     def changes(self) -> list[str]:
-        """KEY=VALUE of everything that was found, as :meth:`Robot.load` takes it."""
+        """KEY=VALUE for each number that was found, as :meth:`Robot.load` takes it."""
         return self._found.changes()
 
     @property
     def robot(self) -> Robot:
-        """The robot with what was found."""
+        """The robot with the numbers that were found."""
         return self._before.changed(self.changes)
 
     @property
     def text(self) -> str:
-        """For people: tables of the numbers and of the errors."""
+        """Text for people: tables of the numbers and of the errors."""
         return self._found.text()
 
     @property
@@ -142,7 +144,8 @@ class Identification:
 
     def write(self, folder: PathLike) -> None:
         """Writes the folder that ``pliant identify -o`` writes, whole or not at all."""
-        self._found.write(_check.path(folder, "folder"))
+        with self._before._in_its_words():
+            self._found.write(_check.path(folder, "folder"))
 
 
 def identify(
@@ -154,15 +157,18 @@ def identify(
     mesh: Mesh | None = None,
     progress: Progress | None = None,
 ) -> Identification:
-    """Least squares over what was measured.
+    """Identifies numbers of a robot by least squares over measured values.
+
+    Programs are solved with ``program.tolerance`` and ``program.max_iterations`` of the robot:
+    ``robot.changed({"program.tolerance": 1e-6})`` changes them.
 
     Args:
-        robot: whose program was measured.
+        robot: the robot whose program was measured.
         unknowns: keys of the robot file, or "KEY=LOW..HIGH".
         measured: path of a table (CSV) with the columns of ``pliant identify``, or the text of one.
-        judge: rows that are kept out of the fit, to judge it on: "nothing" (or what the column `use` says),
+        judge: rows that are left out of the fit, to judge it: "nothing" (or as the column `use` says),
             "every_second" or "second_half".
-        mesh: of a robot that says ``mesh={"file": "memory:"}``.
+        mesh: mesh of a robot with ``mesh={"file": "memory:"}``.
         progress: called with (stage, share) some times a second; False cancels.
     """
     if isinstance(measured, str) and "\n" in measured:
@@ -171,15 +177,17 @@ def identify(
         path = _check.path(measured, "measured")
         csv, file = _read(path), str(path)
     _check.one_of(judge, ("nothing", "every_second", "second_half"), "judge")
-    found = _pliant.identify(
-        _check.instance(robot, Robot, "robot")._robot,
-        _check.texts(unknowns, "unknowns"),
-        csv,
-        file,
-        judge,
-        None if mesh is None else _check.instance(mesh, Mesh, "mesh")._mesh(),
-        _check.progress(progress),
-    )
+    owned = _check.instance(robot, Robot, "robot")
+    with owned._in_its_words():
+        found = _pliant.identify(
+            owned._robot,
+            _check.texts(unknowns, "unknowns"),
+            csv,
+            file,
+            judge,
+            None if mesh is None else _check.instance(mesh, Mesh, "mesh")._mesh(),
+            _check.progress(progress),
+        )
     return Identification(robot, found)
 
 
@@ -187,5 +195,5 @@ def _read(path: Path) -> str:
     try:
         return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        why = error.strerror if isinstance(error, OSError) else "is no text"
+        why = error.strerror if isinstance(error, OSError) else "is not a text in UTF-8"
         raise InputError(f"{path}: {why}", file=str(path)) from None

@@ -1,15 +1,16 @@
-"""What a state answers to small changes: of what drives the robot, of what it is made of, of its rest shape."""
+"""Derivatives of a state of equilibrium with respect to inputs, parameters and the rest shape."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 import numpy as np
 
 from . import _check, _pliant
-from ._check import Array
+from ._check import AnyArray, Array
+from ._values import NotPickled, Value, value_tuple
 from .errors import InputError
 
 if TYPE_CHECKING:
@@ -17,61 +18,64 @@ if TYPE_CHECKING:
 
 
 class Parameter(NamedTuple):
-    """A number that a state is a function of."""
+    """A number that the state depends on."""
 
-    #: for people: cable "left": length
+    #: for people, such as: cable "left": length
     name: str
-    #: SI; "" for a plain number
+    #: SI; "" if dimensionless
     unit: str
-    #: at the state
+    #: its value at the state
     value: float
 
 
 class GuidePoint(NamedTuple):
-    """A point that a cable or spring goes through."""
+    """A guide point of a cable or spring."""
 
-    #: for people: cable "left": point 2
+    #: for people, such as: cable "left": point 2
     name: str
-    #: (3,) at rest, m
+    #: (3,) rest position, m
     place: tuple[float, float, float]
 
 
+@value_tuple
 class Measure(NamedTuple):
-    """Something that can be measured on a robot: one number, in SI units.
+    """A scalar that can be measured on a robot, in SI units.
 
     ============= ================================================================ ====
-    of            what it is                                                       unit
+    of            measured quantity                                                unit
     ============= ================================================================ ====
     marker        its coordinate along `direction`                                 m
     tension       of a cable                                                       N
-    pressure      of a chamber or a load that presses                              Pa
+    pressure      of a chamber or a pressure load                                  Pa
     length        of a cable                                                       m
-    length_ratio  of a cable, over that at rest
+    length_ratio  length of a cable over its rest length
     volume        of a chamber                                                     m^3
-    volume_ratio  of a chamber, over that at rest
+    volume_ratio  volume of a chamber over its rest volume
     spring_length of a spring                                                      m
     spring_force  of a spring, positive where it pulls                             N
     reaction      force of a support on the robot along `direction`                N
-    contact_force force of an obstacle on the robot along `direction`, friction in N
-    self_contact  sum of the sizes of the robot's normal forces on itself; no name N
+    contact_force force of an obstacle on the robot along `direction`, with        N
+                  friction
+    self_contact  sum of the magnitudes of the robot's normal forces on itself;    N
+                  needs no name
     ============= ================================================================ ====
     """
 
     of: str
-    #: on which, as in the robot file
+    #: what it is measured on, as in the robot file
     name: str = ""
-    #: (3,) of any length
-    direction: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    #: (3,) of a marker, reaction or contact force; not zero, need not be normalised
+    direction: Union[Sequence[float], AnyArray] = (0.0, 0.0, 0.0)
 
     def _tuple(self) -> tuple[str, str, list[float]]:
         if not isinstance(self.of, str) or not isinstance(self.name, str):
             raise TypeError('a Measure is made of texts, as Measure("marker", "tip", (0, 0, 1))')
-        return self.of, self.name, _check.numbers(self.direction, "direction", (3,)).tolist()
+        return self.of, _check.text(self.name, "name"), _check.finite(self.direction, "direction", (3,)).tolist()
 
 
-@dataclass(frozen=True)
-class Change:
-    """A small change of a state, for each unit of what causes it."""
+@dataclass(frozen=True, eq=False)
+class Change(Value):
+    """First-order change of a state, per unit of its cause."""
 
     #: (nodes, 3) m
     positions: Array
@@ -81,34 +85,40 @@ class Change:
     pressures: Array
 
 
-@dataclass(frozen=True)
-class Gradient:
-    """What everything does to a number that depends on a state, for each SI unit."""
+@dataclass(frozen=True, eq=False)
+class Gradient(Value):
+    """Derivatives of a function of the state, per SI unit."""
 
-    #: (cables + chambers,) by the controls, in the kinds of the state
+    #: (cables + chambers,) with respect to the controls, of the kinds of the state: the first of `inputs`
     controls: Array
-    #: (inputs,) by :attr:`Linearisation.inputs`: controls, and shares of supports, loads, gravity and obstacles
+    #: (inputs,) with respect to :attr:`Linearisation.inputs`: controls, and progress of supports, loads, gravity and
+    #: obstacles
     inputs: Array
-    #: (parameters,) by :attr:`Linearisation.parameters`
+    #: (parameters,) with respect to :attr:`Linearisation.parameters`
     parameters: Array
-    #: (nodes, 3) by the rest shape; lengths and volumes that are driven stay as they are, in m and m^3
+    #: (nodes, 3) with respect to the rest positions of the nodes. Markers, guide points, springs and masses are
+    #: attached to the mesh and move along with it. Prescribed lengths and volumes keep their values in m and m^3,
+    #: except in :meth:`Linearisation.gradient_of`
     rest_positions: Array
-    #: (guide points, 3) by where each of :attr:`Linearisation.guide_points` is at rest, where wanted; else (0, 3)
+    #: (guide points, 3) with respect to the rest position of each of :attr:`Linearisation.guide_points`, if requested;
+    #: otherwise (0, 3)
     guide_points: Array
 
 
-class Linearisation:
-    """The equations of a state of equilibrium, F(z) = 0 in its unknowns z, linearised with everything that acts.
+class Linearisation(NotPickled):
+    """The equilibrium equations F(z) = 0, linearised at a state: elements, cables and chambers, follower pressure,
+    contact, friction as found at the state, inertia.
 
-    The unknowns are the positions of the nodes that nothing holds, three by three, then the multipliers that are not
-    given: tensions of cables and minus the pressures of chambers. The matrix is factorised at the first solution and
-    kept. Threads that share one wait for each other.
+    The unknowns z are the coordinates of the unconstrained nodes, three for each, followed by the multipliers that are
+    not prescribed: cable tensions and minus the chamber pressures. The first solve factorises the matrix, which is then
+    kept. Threads may share a Linearisation; one at a time uses it.
 
     Args:
-        state: one that a step left; a copy is kept.
+        state: a state returned by a step; a copy is kept.
     """
 
-    __slots__ = ("model", "_at", "_inputs", "_columns")
+    __slots__ = ("model", "_at", "_inputs")
+    _instead = "pickle its state, and linearise that again"
 
     def __init__(self, state: State) -> None:
         from .model import State as StateClass
@@ -117,72 +127,61 @@ class Linearisation:
         self.model = state.model
         self._at = _pliant.Linearisation(state._state)
         self._inputs = [Parameter(*p) for p in self._at.inputs()]
-        self._columns = self._actuator_columns()
-
-    def _actuator_columns(self) -> list[int]:
-        """Of each cable and chamber its input; -1: it has none, as thesis' elements."""
-        places = {p.name.rsplit(": ", 1)[0]: k for k, p in reversed(list(enumerate(self._inputs)))}
-        heads = [f'cable "{name}"' for name in self.model.cables] + [f'chamber "{n}"' for n in self.model.chambers]
-        return [places.get(head, -1) for head in heads]
 
     @property
     def size(self) -> int:
-        """Unknowns."""
+        """Number of unknowns."""
         return self._at.size
 
     def multiply(self, v: Any) -> Array:
-        """(unknowns,) A v with A = dF/dz. Exact."""
+        """(unknowns,) the product A v with the exact tangent A = dF/dz."""
         return self._at.multiply(self._vector(v, "v"))
 
     def multiply_transposed(self, w: Any) -> Array:
-        """(unknowns,) A^T w."""
+        """(unknowns,) the product A^T w."""
         return self._at.multiply_transposed(self._vector(w, "w"))
 
     def solve(self, b: Any) -> Array:
-        """(unknowns,) A^-1 b, to 1e-12 of b; also where the equilibrium is unstable."""
+        """(unknowns,) A^-1 b with a residual of 1e-12 of b; also at an unstable equilibrium."""
         return self._at.solve(self._vector(b, "b"))
 
     def solve_transposed(self, b: Any) -> Array:
-        """(unknowns,) A^-T b."""
+        """(unknowns,) A^-T b, as accurate as :meth:`solve`."""
         return self._at.solve_transposed(self._vector(b, "b"))
 
     def change(self, unknowns: Any) -> Change:
-        """What a vector of unknowns is, as a change of the state."""
+        """Translates a vector of unknowns into a change of the state."""
         return Change(*self._at.change(self._vector(unknowns, "unknowns")))
 
     @property
     def inputs(self) -> list[Parameter]:
-        """What drives the robot: controls, and how far supports, loads, gravity and obstacles are on their way."""
+        """The inputs: one for each cable, one for each chamber, then pressure loads and the progress of supports,
+        loads, gravity and obstacles along their program."""
         return list(self._inputs)
 
     @property
     def parameters(self) -> list[Parameter]:
-        """What the robot is made of and stands in: constants of materials, densities, springs, friction, loads..."""
+        """The parameters of the robot and its surroundings: material constants, densities, springs, friction,
+        loads..."""
         return [Parameter(*p) for p in self._at.parameters()]
 
     @property
     def guide_points(self) -> list[GuidePoint]:
-        """What cables go through, then springs. With guides at crossings those count, too."""
+        """The guide points of all cables, followed by those of all springs, including guide points at crossings."""
         return [GuidePoint(name, (x, y, z)) for name, (x, y, z) in self._at.guide_points()]
 
     def response(self, input: int | str) -> Change:
-        """What the whole state does for each unit of an input, by its name or index. One solution."""
+        """Derivative of the whole state with respect to one input, given by name or index. One linear solve."""
         return Change(*self._at.response_to_input(self._index(input, self._inputs, "input")))
 
     def response_to_parameter(self, parameter: int | str) -> Change:
-        """What the whole state does for each unit of a parameter, by its name or index. One solution."""
+        """Derivative of the whole state with respect to one parameter, given by name or index. One linear solve."""
         return Change(*self._at.response_to_parameter(self._index(parameter, self.parameters, "parameter")))
 
     def jacobian(self, markers: Iterable[str] | None = None) -> Array:
-        """(markers, 3, cables + chambers) how markers move with each control: m for each SI unit of its kind."""
+        """As :meth:`Model.jacobian`."""
         names = self.model.markers if markers is None else _check.texts(markers, "markers")
-        driven = [c for c in self._columns if c >= 0]
-        found = self._at.jacobian([self._marker(name) for name in names], driven)
-        if len(driven) == len(self._columns):
-            return found
-        full = np.zeros((len(names), 3, len(self._columns)))
-        full[:, :, [k for k, c in enumerate(self._columns) if c >= 0]] = found
-        return full
+        return self._at.jacobian([self._marker(name) for name in names], list(range(len(self.model.actuators))))
 
     def gradient(
         self,
@@ -193,15 +192,15 @@ class Linearisation:
         markers: Mapping[str, Any] | None = None,
         guide_points: bool = False,
     ) -> Gradient:
-        """As of :meth:`Model.grad`."""
+        """As :meth:`Model.grad`."""
         model = self.model
         by = np.zeros((model.node_count, 3))
         if positions is not None:
-            by += _check.numbers(positions, "positions", (model.node_count, 3))
+            by += _check.finite(positions, "positions", (model.node_count, 3))
         if markers is not None and not isinstance(markers, Mapping):
             raise TypeError('markers must be a mapping, as {"tip": [0, 0, 1]}')
         for name, weights in (markers or {}).items():
-            index, direction = self._marker(name), _check.numbers(weights, f"markers[{name!r}]", (3,))
+            index, direction = self._marker(name), _check.finite(weights, f"markers[{name!r}]", (3,))
             by += self._at.marker_coordinate(index, direction.tolist())
         found = self._at.gradient(
             by,
@@ -212,22 +211,21 @@ class Linearisation:
         return self._gradient(*found)
 
     def value(self, measure: Measure) -> float:
-        """The number at this state."""
+        """The value of a measure at this state."""
         return self._at.value(_check.instance(measure, Measure, "measure")._tuple())
 
     def gradient_of(self, measure: Measure, *, guide_points: bool = False) -> Gradient:
-        """Derivatives of what is measured. Unlike :meth:`gradient` it knows what the measure itself has of a parameter,
-        and with the rest shape and guide points lengths and volumes that are wanted as a share of what they are at rest
-        follow."""
+        """Gradient of a measure, by one transposed solve. Unlike in :meth:`gradient`, the explicit dependence of the
+        measure on a parameter is included; and for derivatives with respect to the rest shape and guide points, lengths
+        and volumes prescribed as ratios change with their rest values."""
         wanted = _check.instance(measure, Measure, "measure")._tuple()
         return self._gradient(*self._at.gradient_of(wanted, bool(guide_points)))
 
     def _gradient(self, inputs: Array, parameters: Array, rest: Array, guides: Array) -> Gradient:
-        controls = np.array([inputs[c] if c >= 0 else 0.0 for c in self._columns], dtype=np.float64)
-        return Gradient(controls, inputs, parameters, rest, guides)
+        return Gradient(inputs[: len(self.model.actuators)].copy(), inputs, parameters, rest, guides)
 
     def _vector(self, v: Any, what: str) -> Array:
-        return _check.numbers(v, what, (self.size,))
+        return _check.finite(v, what, (self.size,))
 
     def _marker(self, name: str) -> int:
         if isinstance(name, str) and name in self.model.markers:
@@ -249,4 +247,4 @@ class Linearisation:
 
 
 def _vector_or_none(value: Any, what: str, size: int) -> Array:
-    return np.empty(0) if value is None else _check.numbers(value, what, (size,))
+    return np.empty(0) if value is None else _check.finite(value, what, (size,))

@@ -21,18 +21,21 @@ if TYPE_CHECKING:
 
 
 class State:
-    """Everything about a robot that changes: positions, velocities, multipliers, contact, friction and what the solver
-    remembers.
+    """Everything about a robot that changes: positions, velocities, multipliers, contact, friction and the memory of
+    the solver.
 
     States come from :meth:`Model.rest` and :meth:`Model.solve`; :meth:`Model.step` changes one in place, and
     :meth:`copy` keeps it. Two states are equal if all their bits are. A step from equal states gives equal states, on
     any number of threads and whatever was solved in between, also from one that was saved, pickled or copied.
+
+    An unpickled state has a model of its own, which is made again from the robot: ``model.state_from(state.bytes())``
+    is the same state for a model at hand.
     """
 
     __slots__ = ("model", "_state")
     __hash__ = None  # type: ignore[assignment]
 
-    #: Whose state it is.
+    #: The model that this is a state of.
     model: Model
 
     def __init__(self, model: Model, state: _pliant.State) -> None:
@@ -41,54 +44,60 @@ class State:
 
     @property
     def positions(self) -> Array:
-        """(nodes, 3) m. Shares the state's memory and cannot be written; stays what it is when the state is stepped."""
+        """(nodes, 3) node positions, m. Shares the state's memory and cannot be written; does not change when the state
+        is stepped."""
         return self._state.positions()
 
     @property
     def velocities(self) -> Array:
-        """(nodes, 3) m/s; all 0 for a robot at rest at every instant."""
+        """(nodes, 3) node velocities, m/s; all zero in a quasi-static simulation."""
         return self._state.velocities()
 
     @property
     def displacements(self) -> Array:
-        """(nodes, 3) m, from the rest position."""
+        """(nodes, 3) displacements from the rest positions, m."""
         moved: Array = self.positions - self.model.rest_positions
         return moved
 
     @property
     def inputs(self) -> Inputs:
-        """That it is in equilibrium with."""
+        """Inputs at which the state is in equilibrium."""
         return self.model._inputs_of(self._state.inputs())
 
     @property
     def time(self) -> float:
-        """Of the program, s for a motion in time."""
+        """Program time; in seconds for a motion in time."""
         return self._state.inputs()[0]
 
     def observe(self) -> Observation:
-        """Everything that can be read off it, by the names of the robot file."""
+        """All measurable quantities, by the names of the robot file."""
         return self.model.observe(self)
 
     def markers(self) -> Array:
-        """(markers, 3) m, in the order of :attr:`Model.markers`."""
+        """(markers, 3) marker positions, m, in the order of :attr:`Model.markers`."""
         found = self.observe().markers
         return np.array([found[name] for name in self.model.markers]).reshape(-1, 3)
 
     def fields(self) -> Fields:
-        """Strains and stresses, a number for each tetrahedron."""
+        """Strains and stresses, one value for each tetrahedron."""
         return self.model.fields(self)
 
     def copy(self) -> State:
-        """One that is independent of it; shares memory until one of them is stepped."""
+        """An independent copy. It is cheap: memory is shared until one of the two is stepped."""
         return State(self.model, _pliant.State(self._state))
 
     def bytes(self) -> bytes:
-        """All of it, to be kept; of use to the same model."""
+        """The whole state in binary form, for storage: :meth:`Model.state_from` of the same robot and mesh reads it."""
         return self._state.bytes()
 
     def save(self, file: PathLike) -> None:
-        """Writes :meth:`bytes` to a file, whole or not at all; :meth:`Model.load_state` reads it."""
-        self._state.save(_check.path(file, "file"))
+        """Writes :meth:`bytes` to a file, whole or not at all; :meth:`Model.load_state` reads it.
+
+        Raises:
+            InputError: the path is a folder, or is in a folder that does not exist.
+            Failure: the file cannot be written.
+        """
+        self._state.save(_check.new_file(file, "file"))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, State):
@@ -113,33 +122,36 @@ def _state_again(model: Model, data: bytes) -> State:
 
 
 class Model:
-    """A robot that is meshed and ready to be simulated. Never changes; any number of threads may use it at once.
+    """A meshed robot, ready to be simulated. Immutable; any number of threads may use it at once.
 
     Args:
-        robot: what is simulated.
+        robot: the robot that is simulated.
         mesh: for a robot that says ``mesh={"file": "memory:"}``; otherwise the bodies are meshed, which takes seconds,
             or the file that the robot names is read.
-        tolerance: largest residual of a step, in place of the robot's ``program.tolerance``.
-        iteration_limit: of the solver, for one piece of a step; 0: the solver's own.
+        tolerance: largest residual of a converged step, 1e-10 to 0.1, in place of the robot's ``program.tolerance``: in
+            everything that is done with the model.
+        iteration_limit: solver iterations for each substep, in place of the robot's ``program.max_iterations``,
+            likewise; 0: the limit of the solver.
         progress: called with (stage, share) while bodies are meshed; False cancels.
 
     Raises:
-        Failure: of the geometry, the mesh, or what does not fit it.
+        Failure: the geometry or the mesh is invalid, or something in the robot does not fit the mesh.
     """
 
     __slots__ = (
         "robot", "mesh", "cables", "chambers", "markers", "_model", "_engine", "_actuators", "_rest", "_options",
     )  # fmt: skip
 
-    #: What it is made of.
+    _model: _pliant.Model
+    #: The robot.
     robot: Robot
-    #: What was given as its mesh.
+    #: The mesh that was given, or None.
     mesh: Mesh | None
-    #: Names, in the order of inputs.
+    #: Names of the cables, in the order of inputs.
     cables: tuple[str, ...]
-    #: Names; in inputs they follow the cables.
+    #: Names of the chambers; in inputs they follow the cables.
     chambers: tuple[str, ...]
-    #: Names, in the order of the robot file.
+    #: Names of the markers, in the order of the robot file.
     markers: tuple[str, ...]
 
     def __init__(
@@ -158,39 +170,43 @@ class Model:
             None if iteration_limit is None else _check.integer(iteration_limit, "iteration_limit"),
         )
         given = _check.progress(progress) if self.mesh is None else self.mesh._mesh()
-        self._model = _pliant.Model(self.robot._robot, given)
-        self._engine = _pliant.Engine(self._model, *self._options)
+        with self.robot._in_its_words():
+            self._model = _pliant.Model(self.robot._robot, given, *self._options)
+        self._engine = _pliant.Engine(self._model)
         self.cables = tuple(self._model.cables)
         self.chambers = tuple(self._model.chambers)
         self.markers = tuple(self._model.markers)
         self._actuators = self.cables + self.chambers
         self._rest: dict[str, Rest] | None = None
 
-    # ---- what it is made of
+    # ---- mesh and names
 
     @property
     def node_count(self) -> int:
-        """Nodes of the mesh."""
+        """Number of nodes of the mesh."""
         return self._model.node_count
 
     @property
     def tet_count(self) -> int:
-        """Tetrahedra of the mesh."""
+        """Number of tetrahedra of the mesh."""
         return self._model.tet_count
 
     @property
     def order(self) -> int:
-        """1: tetrahedra of 4 nodes; 2: of 10."""
+        """Order of the elements: 1 for 4 nodes per tetrahedron, 2 for 10."""
         return self._model.order
 
     @property
     def rest_positions(self) -> Array:
-        """(nodes, 3) m. Shares the model's memory and cannot be written."""
+        """(nodes, 3) rest positions, m. Shares the model's memory and cannot be written.
+
+        Nodes of a :class:`Mesh` may have other numbers here: points that no tetrahedron uses are dropped.
+        """
         return self._model.rest_positions()
 
     @property
     def tets(self) -> IntArray:
-        """(tets, 4 or 10) nodes, corners first. Shares the model's memory and cannot be written."""
+        """(tets, 4 or 10) node indices, corners first. Shares the model's memory and cannot be written."""
         return self._model.tets()
 
     @property
@@ -200,58 +216,58 @@ class Model:
 
     @property
     def region_names(self) -> list[str]:
-        """Names of the bodies."""
+        """Names of the bodies, one for each region."""
         return self._model.region_names
 
     def surface(self) -> IntArray:
-        """(triangles, 3) nodes of the surface, counter-clockwise seen from outside; corners only."""
+        """(triangles, 3) corner nodes of the surface, counter-clockwise seen from outside."""
         return self._model.surface()
 
     @property
     def actuators(self) -> tuple[str, ...]:
-        """Names of cables and chambers: the order of a vector of controls."""
+        """Names of the cables, then of the chambers: the order of an array of controls."""
         return self._actuators
 
     def warnings(self) -> list[str]:
-        """What is odd about the robot before anything moves, a sentence each."""
+        """Warnings about the robot as described, before any step; one sentence each."""
         return self._model.warnings()
 
     # ---- states
 
     def rest(self) -> State:
-        """Undeformed and, for a motion in time, still."""
+        """The rest state: undeformed and, for a motion in time, with zero velocity."""
         return State(self, self._engine.rest())
 
     def state_from(self, data: bytes) -> State:
-        """The state whose :meth:`State.bytes` these are."""
+        """Restores a state from :meth:`State.bytes`, of this model or another one of the same robot and mesh."""
         if not isinstance(data, (bytes, bytearray, memoryview)):
             raise TypeError(f"data must be bytes, not {type(data).__name__}")
         return State(self, self._engine.state_from(bytes(data)))
 
     def load_state(self, file: PathLike) -> State:
-        """The state that :meth:`State.save` wrote to this file."""
+        """Restores a state from a file written by :meth:`State.save`."""
         return State(self, self._engine.load(_check.path(file, "file")))
 
     # ---- inputs
 
     def program(self, time: float) -> Inputs:
-        """What the robot's program asks for at `time`."""
+        """The inputs that the robot's program prescribes at `time`."""
         return self._inputs_of(self._engine.program(_check.number(time, "time")))
 
     def inputs(self, controls: Controls, state: State | None = None, *, time: float | None = None) -> Inputs:
-        """Inputs from what a user would write.
+        """Complete inputs from controls as users write them.
 
         Args:
             controls:
                 a mapping from names to targets, in the words of the robot file:
                 ``{"flexor": {"shortening": "4 mm"}, "air": {"pressure": "20 kPa"}}``, with `length`, `length_ratio`,
                 `shortening`, `tension` of cables and `volume`, `volume_ratio`, `volume_change`, `pressure`, `gas` of
-                chambers; text with a unit, or a number in SI units. What is not named stays as it is.
-                Or (cables + chambers,) numbers in SI units, in the kinds of the state: lengths, unless something else
-                was asked for. Or :class:`Inputs`. Or None: all stays as it is.
-            state: what "as it is" means; None: at rest.
-            time: of the program, which drives supports, loads, gravity and obstacles; None: that of the inputs or of
-                the state.
+                chambers; text with a unit, or a number in SI units. Actuators that are not named keep their value.
+                Or (cables + chambers,) numbers in SI units, of the kinds of the state: lengths, unless another kind was
+                set before. Or :class:`Inputs`. Or None: all keep their values.
+            state: the state whose values are kept; None: the rest state.
+            time: program time, which drives supports, loads, gravity and obstacles; None: that of the inputs or of the
+                state.
         """
         known = (self.rest() if state is None else self._own(state))._state.inputs()
         if isinstance(controls, Inputs):
@@ -273,23 +289,24 @@ class Model:
         time: float | None = None,
         progress: Progress | None = None,
     ) -> StepResult:
-        """Goes from `state` to the controls, on a straight way in as many pieces as it takes, and leaves the new state
-        there.
+        """Solves for equilibrium at the controls and stores the new state in `state`.
 
-        A motion in time (``program.time_step``) takes until `time`, which must be later than that of the state.
+        The inputs are ramped linearly from those of the state, in as many substeps as needed. A motion in time
+        (``program.time_step``) is integrated up to `time`, which must be later than the time of the state.
 
         Args:
-            state: changed in place; :meth:`State.copy` keeps what was.
+            state: changed in place; :meth:`State.copy` keeps the state before.
             controls, time: as of :meth:`inputs`.
             progress: called with (stage, share) some times a second; False cancels.
 
         Returns:
-            What the step did. One that finds no equilibrium is no error: `arrived` is False, `reason` says why, and the
-            state is as far as it got.
+            The result of the step. A step that finds no equilibrium is not an error: `arrived` is False, `reason` says
+            why, and the state is as far as the solver got.
 
         Raises:
             InputError: the state belongs to another model, or a number is not possible.
-            Cancelled: by `progress`; the state is as far as it got. After Ctrl-C KeyboardInterrupt, likewise.
+            Cancelled: by `progress`; the state is as far as the solver got. The same holds for KeyboardInterrupt after
+                Ctrl-C.
         """
         own = self._own(state)._state
         if progress is not None:
@@ -307,7 +324,7 @@ class Model:
         time: float | None = None,
         progress: Progress | None = None,
     ) -> State:
-        """The state that a step from `state` (None: rest) to the controls leads to; `state` stays as it is.
+        """A new state: that of a step from `state` (None: rest) to the controls; `state` does not change.
 
         Raises:
             Failure: no equilibrium was found; the text says why.
@@ -318,39 +335,41 @@ class Model:
             raise Failure(result.reason or "no equilibrium was found")
         return found
 
-    # ---- what can be read off a state
+    # ---- measurable quantities
 
     def observe(self, state: State) -> Observation:
-        """Everything that can be read off a state, by the names of the robot file."""
+        """All measurable quantities of a state, by the names of the robot file."""
         return observation(self._engine.observe(self._own(state)._state))
 
     def fields(self, state: State) -> Fields:
-        """Strains and stresses, a number for each tetrahedron."""
+        """Strains and stresses, one value for each tetrahedron."""
         return Fields(**self._engine.fields(self._own(state)._state))
 
     def contact_forces(self, state: State) -> Array:
-        """(nodes, 3) N, pressure and friction of everything that touches a node; zero where nothing does."""
+        """(nodes, 3) contact force on each node, normal force and friction, N; zero for nodes without contact."""
         return self._engine.contact_forces(self._own(state)._state)
 
     def cable_paths(self, state: State) -> dict[str, Array]:
-        """By name, (points, 3) m: the path of each cable."""
+        """Path of each cable by its name: (points, 3) m."""
         return dict(zip(self.cables, self._engine.cable_paths(self._own(state)._state)))
 
     # ---- derivatives
 
     def linearise(self, state: State) -> Linearisation:
-        """What a state of equilibrium answers to small changes; exact derivatives."""
+        """First-order response of an equilibrium to small changes; exact derivatives."""
         from .linearisation import Linearisation
 
         return Linearisation(self._own(state))
 
     def jacobian(self, state: State, markers: Iterable[str] | None = None) -> Array:
-        """(markers, 3, cables + chambers) how markers move with each control: m for each SI unit of its kind.
+        """(markers, 3, cables + chambers) derivatives of the marker positions with respect to each control, in m per SI
+        unit of the control.
 
-        One solution for each control, all with one factorisation.
+        One linear solve for each control, all with one factorisation. The length of a slack cable has no effect: at
+        rest the derivative is zero. Start from a slightly pulled cable, at 0.98 of its length for example.
 
         Args:
-            state: one that a step left.
+            state: a state returned by a step.
             markers: names; None: all.
         """
         return self.linearise(state).jacobian(markers)
@@ -365,14 +384,17 @@ class Model:
         markers: Mapping[str, Any] | None = None,
         guide_points: bool = False,
     ) -> Gradient:
-        """Exact derivatives, by one transposed solution, of a number that depends on the state.
+        """Exact derivatives of a function of the state, by one transposed solve.
 
-        The number is given by its own derivatives: by positions (nodes, 3), by tensions (cables,), by pressures
-        (chambers,), by the positions of markers, ``{"tip": [0, 0, 1]}``; what is left out is zero.
-        With `guide_points` it is also differentiated by where cables and springs are guided.
+        The function is given by its own derivatives with respect to positions (nodes, 3), tensions (cables,), pressures
+        (chambers,) and the positions of markers, ``{"tip": [0, 0, 1]}``; those left out are zero. With `guide_points`
+        it is also differentiated with respect to the guide points of cables and springs.
+
+        Lagged quantities are held constant: see :func:`pliant.gradient`. The derivative with respect to the length of a
+        slack cable is zero: see :meth:`jacobian`.
 
         Returns:
-            Its derivatives by controls, inputs, parameters (materials, loads, friction...) and rest positions.
+            Derivatives with respect to controls, inputs, parameters (materials, loads, friction...) and rest positions.
         """
         return self.linearise(state).gradient(
             positions=positions, tensions=tensions, pressures=pressures, markers=markers, guide_points=guide_points
@@ -392,22 +414,22 @@ class Model:
     ) -> ProgramResult:
         """Runs the robot's program from rest to its end: what ``pliant simulate`` does, to the last bit.
 
-        A program that gets stuck, or is cancelled by `progress`, is no error: the result says so and has the steps
-        until then.
+        A program that stops early, or is cancelled by `progress`, is not an error: the result says so and has the steps
+        up to then.
 
         Args:
-            on_step: called with each :class:`ProgramStep` as it comes, the rest state first.
-            measured: CSV of measured markers, to be compared with the simulated ones.
-            checkpoint: folder in which the run is kept as it goes.
-            checkpoint_every: steps from one checkpoint to the next.
-            resume: goes on from the checkpoint.
+            on_step: called with each :class:`ProgramStep` as soon as it is solved, the rest state first.
+            measured: CSV of measured marker positions, for comparison with the simulated ones.
+            checkpoint: folder in which the run is saved as it proceeds, so that it can be resumed.
+            checkpoint_every: steps between checkpoints; 0 with `resume`: as in the checkpoint.
+            resume: resumes from the checkpoint.
             progress: called with (stage, share) some times a second; False cancels.
         """
         from .program import run
 
         return run(self, on_step, measured, checkpoint, checkpoint_every, resume, progress)
 
-    # ---- its own
+    # ---- internal
 
     def _own(self, state: State) -> State:
         if not isinstance(state, State):
@@ -417,7 +439,7 @@ class Model:
         return state
 
     def _changed(self, known: tuple[float, Any, Any], controls: Any) -> Inputs:
-        """What is known, with the targets of a mapping or the numbers of a vector in its place."""
+        """The known inputs, replaced where a mapping or an array of numbers says so."""
         if not isinstance(controls, Mapping):
             values = _check.numbers(controls, "controls", (len(self._actuators),))
             return self._inputs_of((known[0], known[1], values.tolist()))

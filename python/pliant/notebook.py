@@ -36,7 +36,7 @@ canvas { position: absolute; inset: 0; width: 100%; height: 100%; outline-offset
 
 
 class Viewer:
-    """A page with the studio's viewer: notebooks show it, :meth:`write` keeps it. It loads nothing."""
+    """A page with the studio's viewer: notebooks show it, :meth:`write` saves it. It needs no network."""
 
     def __init__(self, page: str, height_px: int) -> None:
         self._page = page
@@ -44,12 +44,12 @@ class Viewer:
 
     @property
     def page(self) -> str:
-        """HTML, all in one."""
+        """The whole page as HTML."""
         return self._page
 
     def write(self, file: PathLike) -> None:
-        """Writes the page."""
-        path = _check.path(file, "file")
+        """Writes the page to a file."""
+        path = _check.new_file(file, "file")
         try:
             path.write_text(self._page, encoding="utf-8")
         except OSError as error:
@@ -77,11 +77,11 @@ def show(what: Shown, *, field: str = "material", height_px: int = 420) -> Viewe
 
     Args:
         what: a model (at rest), a state, several states of one model, or the result of a program.
-        field: what it is coloured by at first: "material", "displacement", "von_mises", "stretch", "J" or "energy".
-        height_px: of the frame in the notebook.
+        field: initial colours: "material", "displacement", "von_mises", "stretch", "J" or "energy".
+        height_px: height of the frame in the notebook.
 
     Returns:
-        What a notebook shows as the value of a cell. ``show(state).write("robot.html")`` keeps the page.
+        A viewer, which a notebook shows as the value of a cell. ``show(state).write("robot.html")`` saves the page.
     """
     _check.one_of(field, _FIELDS, "field")
     model, frames = _frames(what)

@@ -1,4 +1,4 @@
-"""How a number that is measured over a whole program changes with everything that it depends on."""
+"""Gradients of a whole program with respect to everything that it depends on."""
 
 from __future__ import annotations
 
@@ -10,61 +10,66 @@ import numpy as np
 
 from . import _check, _pliant
 from ._check import Array, Progress
+from ._values import Value, value_tuple
 from .errors import InputError
 from .linearisation import GuidePoint, Measure, Parameter
 from .model import Model
 
-#: Called with (step, values): the step from 1 and (measures,) numbers; gives a number and (measures,) its slopes.
+#: Called with (step, values): the step, from 1, and (measures,) values; returns the cost and its (measures,) slopes.
 Judge = Callable[[int, Array], tuple[float, Union[Array, Sequence[float]]]]
 
 
+@value_tuple
 class TetGradient(NamedTuple):
-    """By a number that each tetrahedron has, as if each had a material of its own."""
+    """Derivative with respect to a property of each tetrahedron, as if each had its own material."""
 
     #: youngs_modulus, c10, density...
     name: str
-    #: SI; "" of a plain number
+    #: SI; "" if dimensionless
     unit: str
-    #: (tets,); 0 where a tetrahedron has no such number
+    #: (tets,); 0 if a tetrahedron has no such property
     values: Array
 
 
+@value_tuple
 class Instant(NamedTuple):
-    """Where an equilibrium was found on the way."""
+    """An equilibrium that was solved for: the end of a step, or a state in between if a step was halved."""
 
-    #: of the program, from 1
+    #: step of the program, from 1
     step: int
-    #: of the program
+    #: program time
     time: float
-    #: (inputs,); empty: nothing depends on them
+    #: (inputs,); empty: the objective does not depend on them
     by_inputs: Array
 
 
-@dataclass(frozen=True)
-class ProgramGradient:
-    """The derivative of what a program is judged by."""
+@dataclass(frozen=True, eq=False)
+class ProgramGradient(Value):
+    """Value and gradient of an objective."""
 
-    #: of the objective: the sum over steps
+    #: the objective: the sum over the steps
     value: float
     #: (steps, measures) SI
     values: Array
-    #: what the robot is made of and stands in
+    #: of the robot and its surroundings
     parameters: list[Parameter]
     #: (parameters,)
     by_parameters: Array
-    #: (nodes, 3), where wanted; else (0, 3)
+    #: (nodes, 3) with respect to the rest positions of the nodes, if requested; otherwise (0, 3). Markers, guide
+    #: points, springs and masses move along with the mesh; lengths and volumes prescribed as ratios change with their
+    #: rest values
     by_rest_positions: Array
-    #: of cables, then of springs; where wanted
+    #: of cables, then of springs; if requested
     guide_points: list[GuidePoint]
-    #: (guide_points, 3) by where each is at rest
+    #: (guide_points, 3) with respect to the rest position of each
     by_guide_points: Array
-    #: where wanted
+    #: if requested
     by_tets: list[TetGradient]
     #: (numbers,) in the units of the robot file
     by_numbers: Array
-    #: what drives the robot; values are those at rest
+    #: inputs of the robot; their values are those at rest
     inputs: list[Parameter]
-    #: in the order of time
+    #: in chronological order
     instants: list[Instant]
 
 
@@ -80,31 +85,42 @@ def gradient(
     kept: int = 8,
     progress: Progress | None = None,
 ) -> ProgramGradient:
-    """Runs the robot's program and goes back over it with the adjoint of each step; also of a motion in time.
+    """Runs the robot's program and differentiates it backwards, with the adjoint of each step; also for a motion in
+    time.
 
-    The objective is the sum over the steps, from 1, of what `judge` says of the measured numbers::
+    The objective is the sum over the steps, from 1, of the cost that `judge` gives for the measured values::
 
         tip = pliant.Measure("marker", "tip", (0, 0, 1))
         found = pliant.gradient(model, [tip], lambda step, values: (values[0] ** 2, 2 * values))
 
+    Slopes of zero give a gradient of zeros.
+
+    Lagged quantities are held constant: the normal forces and tangents of contact friction, the tension shares of
+    cables with friction, the stiffness that damping is proportional to, and contact and joint stiffness that are
+    derived from a material's modulus. The gradient is exact for the problem with these quantities held constant, and
+    may differ there from finite differences of the whole program.
+
     Args:
-        model: of a robot with a program.
-        measures: what `judge` is told.
-        judge: called once or more for a step, in any order; must say the same each time.
-        rest_positions: also by the rest positions of the nodes.
-        guide_points: also by where cables and springs are guided; gap elements that a cable acts through stay.
-        tets: also by what each tetrahedron is made of.
-        numbers: names of [parameters] of the robot file that are numbers, not formulas of others: also by those. What
-            follows from one counts: the shape, whose mesh moves along, places, constants, targets. For programs at rest
-            without friction.
-        kept: states that are kept on the way where steps depend on those before; others are solved again.
+        model: a model of a robot with a program.
+        measures: the values passed to `judge`.
+        judge: called at least once per step, in any order; must be deterministic.
+        rest_positions: also differentiate with respect to the rest positions of the nodes.
+        guide_points: also with respect to the guide points of cables and springs; gap elements that a cable acts
+            through are unchanged.
+        tets: also with respect to the material of each tetrahedron.
+        numbers: names of [parameters] of the robot file that are numbers, not formulas of others: also with respect to
+            these. Everything that follows from one is included: the shape, whose mesh moves along, positions,
+            constants, targets. Only for quasi-static programs without friction.
+        kept: number of states kept if steps depend on earlier ones; the others are solved again.
         progress: called with (stage, share) some times a second; False cancels.
 
     Raises:
-        Failure: of a measure of something that is not there; where a step does not converge or has no derivative.
+        Failure: a measure or number does not exist, or a step does not converge or has no derivative.
     """
     owned = _check.instance(model, Model, "model")
     listed = [_check.instance(m, Measure, "each of measures") for m in measures]
+    if not listed:
+        raise InputError('measures is empty; name what is measured, as Measure("tension", "flexor")')
     names = _check.texts(numbers, "numbers")
     if not callable(judge):
         raise TypeError(f"judge must be callable, as judge(step, values), not {type(judge).__name__}")
@@ -113,20 +129,21 @@ def gradient(
         said = judge(step, values)
         if not isinstance(said, tuple) or len(said) != 2:
             raise InputError("judge must give a number and its slopes, as (value, slopes)")
-        slopes = _check.numbers(said[1], "the slopes of judge", (len(listed),))
+        slopes = _check.finite(said[1], "the slopes of judge", (len(listed),))
         return _check.number(said[0], "the value of judge"), slopes.tolist()
 
-    found: dict[str, Any] = _pliant.program_gradient(
-        owned._model,
-        [m._tuple() for m in listed],
-        judged,
-        bool(rest_positions),
-        bool(guide_points),
-        bool(tets),
-        names,
-        _check.integer(kept, "kept"),
-        _check.progress(progress),
-    )
+    with owned.robot._in_its_words():
+        found: dict[str, Any] = _pliant.program_gradient(
+            owned._model,
+            [m._tuple() for m in listed],
+            judged,
+            bool(rest_positions),
+            bool(guide_points),
+            bool(tets),
+            names,
+            _check.integer(kept, "kept"),
+            _check.progress(progress),
+        )
     found["values"] = np.array(found["values"]).reshape(-1, len(listed))
     found["parameters"] = [Parameter(*p) for p in found["parameters"]]
     found["guide_points"] = [GuidePoint(name, (x, y, z)) for name, (x, y, z) in found["guide_points"]]

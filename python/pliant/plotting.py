@@ -15,7 +15,7 @@ from .model import Model, State
 if TYPE_CHECKING:
     from .program import ProgramResult
 
-#: Fields that a robot can be coloured by, and how they are labelled.
+#: Fields that a robot can be coloured by: label, unit and factor to that unit.
 FIELDS = {
     "displacement": ("displacement", "mm", 1e3),
     "von_mises": ("von Mises stress", "kPa", 1e-3),
@@ -36,7 +36,7 @@ def plot(
         what: a model or a state.
         field: None: colours of the bodies; "displacement", "von_mises", "stretch", "J" or "energy".
         ax: axes with ``projection="3d"``; None: new ones.
-        edges: draws those of the mesh.
+        edges: draw the edges of the mesh.
         view: elevation and azimuth in degrees.
 
     Returns:
@@ -70,7 +70,7 @@ def plot(
 
 
 def plot_program(result: ProgramResult, *, axes: Any = None) -> Any:
-    """Heights of markers, tensions and pressures over the time of a program.
+    """Plots the motion of markers, and tensions and pressures, over the time of a program.
 
     Returns:
         Two axes, one above the other.
@@ -81,7 +81,7 @@ def plot_program(result: ProgramResult, *, axes: Any = None) -> Any:
     times = result.times
     for name, way in result.markers.items():
         upper.plot(times, 1e3 * np.linalg.norm(way - way[0], axis=1), label=name)
-    upper.set_ylabel("way of markers (mm)")
+    upper.set_ylabel("motion of markers (mm)")
     seen = [step.observed for step in result]
     for name in result.model.cables:
         lower.plot(times, [s.cables[name].tension_N for s in seen], label=f"{name} (N)")
@@ -120,7 +120,7 @@ def _state(what: Any) -> State:
 
 
 def field_values(state: State, field: str) -> Array:
-    """(tets,) of one of FIELDS, in the unit of its label."""
+    """(tets,) values of one of FIELDS, in the unit of its label."""
     _check.one_of(field, FIELDS, "field")
     scale = FIELDS[field][2]
     if field == "displacement":

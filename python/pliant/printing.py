@@ -1,9 +1,12 @@
-"""Printing in several resins: from bodies to a job file, its plan, its proof, and a print on the virtual printer."""
+"""Multi-resin printing: from bodies to a job file, its plan, its check, and a print on the virtual printer."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, NamedTuple, Union
 
 import numpy as np
@@ -11,69 +14,71 @@ import numpy.typing as npt
 
 from . import _check, _pliant
 from ._check import Array, PathLike, Progress
-from .robot import Changes, _changes
+from ._values import Value
+from .errors import InputError
+from .robot import Changes, Robot, _changes
 
 
 class Vat(NamedTuple):
-    """A vat that a job uses."""
+    """A vat used by a job."""
 
-    #: where it stands, from 1
+    #: its place in the tower, from 1
     slot: int
-    #: what it must hold
+    #: the resin it must hold
     resin: str
-    #: that the job uses
+    #: resin used by the job, ml
     resin_ml: float
-    #: the printer file names another resin for it, or none
+    #: True if the printer file names another resin for it, or none
     refill: bool
 
 
 @dataclass(frozen=True)
 class PrintPlan:
-    """What a job takes on its printer."""
+    """What a job needs on its printer."""
 
-    #: of the part
+    #: number of layers of the part
     layers: int
-    #: changes of vat
+    #: number of vat swaps
     swaps: int
-    #: in all
+    #: total printing time, s
     seconds: float
-    #: of them, for changes of vat
+    #: part of it for vat swaps, s
     swap_s: float
-    #: for cleaning
+    #: part of it for cleaning, s
     clean_s: float
-    #: for light
+    #: part of it for exposure, s
     expose_s: float
-    #: for all other motion
+    #: part of it for all other motion, s
     move_s: float
-    #: cleaning solution used up
+    #: cleaning solution used, ml
     solution_ml: float
     #: in the order of the printer file
     vats: list[Vat]
-    #: a sentence each
+    #: one sentence each
     warnings: list[str]
 
 
-@dataclass(frozen=True)
-class CuredBlock:
-    """What has cured, voxel by voxel: pixels of the projector across, cured layers up."""
+@dataclass(frozen=True, eq=False)
+class CuredBlock(Value):
+    """The cured part as voxels: one projector pixel wide, one cured layer high."""
 
-    #: (layers, y, x) 0: nothing, k: the k-th of `resins`. Cannot be written.
+    #: (layers, y, x) 0: nothing cured, k: cured in the k-th of `resins`. Cannot be written.
     resin: npt.NDArray[np.uint8]
-    #: (layers, y, x) of the voxel that is solid, 255: all of it. Cannot be written.
+    #: (layers, y, x) share of the voxel that is solid, 255: all of it. Cannot be written.
     share: npt.NDArray[np.uint8]
-    #: that have cured; index + 1 in `resin`
+    #: names of the resins that have cured; index + 1 in `resin`
     resins: list[str]
-    #: (3,) the lowest x, y and z of the block on the platform, mm
+    #: (3,) lowest x, y and z of the block on the platform, mm
     corner_mm: Array
-    #: length of a voxel along x and y
+    #: length of a voxel along x and y, mm
     pixel_mm: float
-    #: (layers,) where a layer begins, mm
+    #: (layers,) lower end of each layer, mm
     bottoms_mm: Array
-    #: (layers,) where it ends, mm
+    #: (layers,) upper end of each layer, mm
     tops_mm: Array
 
     def volumes_mm3(self) -> dict[str, float]:
-        """By resin."""
+        """Cured volume of each resin by its name, mm^3."""
         heights = (self.tops_mm - self.bottoms_mm) * self.pixel_mm**2 / 255
         return {
             name: float(sum(h * s[r == k].sum(dtype=np.int64) for h, s, r in zip(heights, self.share, self.resin)))
@@ -83,90 +88,111 @@ class CuredBlock:
 
 @dataclass(frozen=True)
 class VirtualPrint:
-    """What a print on the virtual printer came to."""
+    """Result of a print on the virtual printer."""
 
-    #: the part is as the job asks, and nothing happened that must not
+    #: True if the part matches the job and no fault occurred
     passed: bool
-    #: why it did not pass, a sentence each
+    #: why it did not pass, one sentence each
     reasons: list[str]
-    #: of the machine's clock
+    #: printing time on the clock of the machine, s
     seconds: float
-    #: that cured
+    #: number of cured layers
     layers: int
-    #: by material: volume that cured in its own resin
+    #: volume that cured in the resin of each material, by material, mm^3
     cured_mm3: dict[str, float]
-    #: of the print, as the host writes it
+    #: journal of the print, as the host writes it
     journal: str
-    #: what has cured, where it was asked for
+    #: the cured part, if requested
     block: CuredBlock | None
 
 
 def slice(
-    inputs: Union[PathLike, Iterable[PathLike]],
+    inputs: Union[Robot, PathLike, Iterable[PathLike]],
     job: PathLike,
     *,
     printer: PathLike,
     changes: Changes = None,
     resins: Mapping[str, str] | None = None,
-    layer: str = "",
+    layer: str | None = None,
     copies: int = 1,
     any_vat: bool = False,
-    support: str = "",
+    support: str | None = None,
     progress: Progress | None = None,
 ) -> PrintPlan:
     """Slices, plans and writes the job file, whole or not at all: what ``pliant slice`` does.
 
     Args:
-        inputs: a robot file; or any of FILE.3mf, FILE.vtk (regions are materials) and MATERIAL=FILE of a surface.
-        job: the file that is written (.zip).
+        inputs: a robot file or a :class:`Robot`; or any of FILE.3mf, FILE.vtk (regions are materials) and MATERIAL=FILE
+            of a surface.
+        job: path of the job file that is written (.zip).
         printer: printer file (TOML).
-        changes: of the robot file, {"parameters.notches": 5}.
-        resins: by material, what it is printed in.
-        layer: height of a layer with its unit, as "50 um"; "": the printer's.
-        copies: side by side.
-        any_vat: a resin that no vat holds is filled into a free one.
-        support: material of supports; "": none.
+        changes: changes of the robot file, as {"parameters.notches": 5}.
+        resins: the resin of each material, by material.
+        layer: height of a layer with its unit, as "50 um"; None: that of the printer.
+        copies: number of copies, placed side by side.
+        any_vat: fill a resin that no vat holds into a free vat.
+        support: material of supports; None: no supports.
         progress: called with (stage, share) some times a second; False cancels.
     """
-    files = [inputs] if isinstance(inputs, str) or hasattr(inputs, "__fspath__") else list(inputs)
-    plan = _pliant.slice(
-        [str(_check.path(file, "inputs")) for file in files],
-        _check.path(printer, "printer"),
-        _check.path(job, "job"),
-        _changes(changes),
-        [f"{material}={resin}" for material, resin in (resins or {}).items()],
-        str(layer),
-        _check.integer(copies, "copies"),
-        bool(any_vat),
-        str(support),
-        _check.progress(progress),
-    )
+    with _files_of(inputs) as files:
+        plan = _pliant.slice(
+            files,
+            _check.path(printer, "printer"),
+            _check.path(job, "job"),
+            _changes(changes),
+            _resin_words(resins),
+            "" if layer is None else _check.text(layer, "layer"),
+            _check.integer(copies, "copies"),
+            bool(any_vat),
+            "" if support is None else _check.text(support, "support"),
+            _check.progress(progress),
+        )
     return _plan(plan)
 
 
+def _resin_words(resins: Any) -> list[str]:
+    if resins is not None and not isinstance(resins, Mapping):
+        raise InputError('resins must be a dict, as {"soft": "elastic 50A"}')
+    return [f"{material}={resin}" for material, resin in (resins or {}).items()]
+
+
+@contextmanager
+def _files_of(inputs: Any) -> Iterator[list[str]]:
+    """The files to be sliced; a robot is written to one that lasts as long as the work."""
+    if not isinstance(inputs, Robot):
+        several = isinstance(inputs, Iterable) and not isinstance(inputs, (str, bytes))
+        yield [str(_check.path(file, "inputs")) for file in (inputs if several else [inputs])]
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "robot.toml"
+        file.write_text(inputs._robot.text(Path(folder)), encoding="utf-8")
+        with inputs._in_its_words(file):
+            yield [str(file)]
+
+
 def plan(job: PathLike) -> PrintPlan:
-    """Plans a job again, for its own printer."""
+    """Recomputes the plan of a job for the printer stored in it."""
     return _plan(_pliant.plan(_check.path(job, "job")))
 
 
 def check(job: PathLike) -> list[str]:
-    """Proves a job as everything that prints does: every image against its fingerprint, the G-code against the machine.
+    """Verifies a job as is done before every print: each image against its checksum, the G-code against the machine.
 
     Returns:
-        Warnings, of what could not be proved.
+        Warnings about what could not be verified.
 
     Raises:
-        Failure: names file, entry or line, and layer.
+        Failure: with the file, the entry or line, and the layer.
     """
     return _pliant.check(_check.path(job, "job"))
 
 
 def print_virtually(job: PathLike, *, block: bool = False, progress: Progress | None = None) -> VirtualPrint:
-    """Prints a job on the virtual printer, by the engine that prints on machines; takes seconds.
+    """Prints a job on the virtual printer, with the same code that prints on machines; takes seconds.
 
     Args:
         job: the file that :func:`slice` wrote.
-        block: also gives what has cured as arrays: two bytes for each voxel.
+        block: also return the cured part as arrays: two bytes for each voxel.
         progress: called with (stage, share) some times a second; False cancels.
     """
     found = _pliant.print_virtually(_check.path(job, "job"), bool(block), _check.progress(progress))

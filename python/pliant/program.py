@@ -1,4 +1,4 @@
-"""The program of a robot, from rest to its end, and what came of it."""
+"""Runs the program of a robot from rest to its end."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 from . import _check, _pliant
 from ._check import Array, PathLike, Progress
 from ._pliant import StepResult
+from ._values import NotPickled, Value
 from .errors import InputError
 from .results import Observation, observation
 
@@ -19,17 +20,17 @@ if TYPE_CHECKING:
     from .model import Model
 
 
-@dataclass(frozen=True)
-class ProgramStep:
+@dataclass(frozen=True, eq=False)
+class ProgramStep(Value):
     """A step of a program."""
 
-    #: 0: at rest
+    #: 0: the rest state
     index: int
-    #: of the program
+    #: program time
     time: float
-    #: how it was reached
+    #: result of the solver
     result: StepResult
-    #: what it is like
+    #: measurable quantities of the state
     observed: Observation
     #: (nodes, 3) m
     positions: Array
@@ -38,10 +39,11 @@ class ProgramStep:
 OnStep = Callable[[ProgramStep], Any]
 
 
-class ProgramResult:
-    """What came of a program: a sequence of :class:`ProgramStep`, the rest state first."""
+class ProgramResult(NotPickled):
+    """Result of a program: a sequence of :class:`ProgramStep`, the rest state first."""
 
     __slots__ = ("model", "_result")
+    _instead = "pickle its steps, as list(result), or write its folder"
 
     def __init__(self, model: Model, result: _pliant.ProgramResult) -> None:
         self.model = model
@@ -49,22 +51,22 @@ class ProgramResult:
 
     @property
     def converged(self) -> bool:
-        """It ran to its end."""
+        """True if the program ran to its end."""
         return self._result.converged
 
     @property
     def message(self) -> str:
-        """Where and why it stopped, if it did."""
+        """Where and why the program stopped early; otherwise empty."""
         return self._result.message
 
     @property
     def warnings(self) -> list[str]:
-        """Where the answer should not be trusted, a sentence each."""
+        """Reasons not to trust the result, one sentence each."""
         return self._result.warnings
 
     @property
     def solver(self) -> str:
-        """The solver that was asked for or chosen."""
+        """Name of the solver that was requested or chosen."""
         return self._result.solver
 
     @property
@@ -85,17 +87,17 @@ class ProgramResult:
 
     @property
     def times(self) -> Array:
-        """(steps,) of the program."""
+        """(steps,) program time of each step."""
         return np.array([self._result.step(k)[1] for k in range(len(self))])
 
     @property
     def markers(self) -> dict[str, Array]:
-        """By name, (steps, 3) m: the way of each marker."""
+        """Path of each marker by its name: (steps, 3) m."""
         seen = [self._result.step(k)[3]["markers"] for k in range(len(self))]
         return {name: np.array([s[name] for s in seen]) for name in self.model.markers}
 
     def deviations(self) -> list[str]:
-        """A line for each marker that was measured: how far the measured points lie from the simulated way."""
+        """One line per measured marker: the distance of the measured points from the simulated path."""
         return self._result.deviations()
 
     def write(
@@ -115,7 +117,7 @@ class ProgramResult:
             pictures: "none", "few" or "all".
             picture_size_px: width and height.
             film: also film.gif, the motion as an animated GIF.
-            view: (3,) direction from the robot to the eye; None: from where its motion shows best.
+            view: (3,) direction from the robot to the camera; None: where the motion shows best.
             progress: called with (stage, share) some times a second; False cancels.
         """
         _check.one_of(pictures, ("none", "few", "all"), "pictures")
@@ -160,15 +162,16 @@ def run(
     if on_step is not None and not callable(on_step):
         raise TypeError(f"on_step must be callable, not {type(on_step).__name__}")
     heard = None if on_step is None else lambda step: on_step(_step(step))
-    result = _pliant.run(
-        model._model,
-        heard,
-        "" if measured is None else _check.path(measured, "measured"),
-        "" if checkpoint is None else _check.path(checkpoint, "checkpoint"),
-        _check.integer(checkpoint_every, "checkpoint_every"),
-        bool(resume),
-        _check.progress(progress),
-    )
+    with model.robot._in_its_words():
+        result = _pliant.run(
+            model._model,
+            heard,
+            "" if measured is None else _check.path(measured, "measured"),
+            "" if checkpoint is None else _check.path(checkpoint, "checkpoint"),
+            _check.integer(checkpoint_every, "checkpoint_every"),
+            bool(resume),
+            _check.progress(progress),
+        )
     return ProgramResult(model, result)
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import tempfile
+from pathlib import Path
+from typing import Any, NamedTuple
 
 from . import _check, _pliant
 from ._check import Array, PathLike, Progress
+from ._values import value_tuple
 from .controls import Controls, Inputs
 from .errors import Failure, InputError
 from .model import Model, State
@@ -15,9 +18,9 @@ from .steering import SteeredInput
 class ReducedStep(NamedTuple):
     """Result of a step of a reduced model."""
 
-    #: the state is the equilibrium at the controls; otherwise it is unchanged
+    #: True if the state is the equilibrium at the controls; otherwise it is unchanged
     found: bool
-    #: of Newton's method
+    #: number of iterations of Newton's method
     iterations: int
 
 
@@ -34,14 +37,15 @@ class ReducedError(NamedTuple):
     pressures: dict[str, float]
 
 
+@value_tuple
 class ReducedCheck(NamedTuple):
     """A reduced model beside the whole robot, at inputs that it was not made from."""
 
     #: (inputs,) SI, in the order of :attr:`ReducedModel.inputs`
     inputs: Array
-    #: both have an equilibrium; otherwise what follows is not known
+    #: True if both have an equilibrium; otherwise the following values are unknown
     found: bool
-    #: the whole robot touches itself there, which the reduced model does not know
+    #: True if the whole robot touches itself there; the reduced model has no contact
     touching: bool
     #: m, largest motion of a node of the whole robot, from rest
     motion: float
@@ -64,7 +68,7 @@ class ReducedState:
 
     __slots__ = ("reduced", "_state")
 
-    #: Whose state it is.
+    #: The reduced model that this is a state of.
     reduced: ReducedModel
 
     def __init__(self, reduced: ReducedModel, state: _pliant.ReducedState) -> None:
@@ -73,12 +77,12 @@ class ReducedState:
 
     @property
     def inputs(self) -> Inputs:
-        """At which it is in equilibrium."""
+        """Inputs at which the state is in equilibrium."""
         return self.reduced.model._inputs_of(self._state.inputs())
 
     @property
     def amplitudes(self) -> Array:
-        """(modes,) m, how much of each mode."""
+        """(modes,) amplitude of each mode, m."""
         return self._state.amplitudes()
 
     @property
@@ -89,22 +93,31 @@ class ReducedState:
 
     @property
     def tensions(self) -> Array:
-        """(cables,) N."""
+        """(cables,) tensions, N."""
         return self._state.tensions()
 
     @property
     def pressures(self) -> Array:
-        """(chambers,) Pa above ambient."""
+        """(chambers,) pressures above ambient, Pa."""
         return self._state.pressures()
 
     @property
     def positions(self) -> Array:
-        """(nodes, 3) m, of all nodes of the whole robot."""
+        """(nodes, 3) positions of all nodes of the whole robot, m."""
         return self._state.positions()
 
     def copy(self) -> ReducedState:
-        """One that is independent of it."""
+        """An independent copy."""
         return ReducedState(self.reduced, self._state)
+
+    def __copy__(self) -> ReducedState:
+        return self.copy()
+
+    def __deepcopy__(self, memo: Any) -> ReducedState:
+        return self.copy()
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a ReducedState cannot be pickled; pickle its inputs, or the state that exact() gives")
 
     def __repr__(self) -> str:
         return f"<pliant.ReducedState of {self.reduced.model.robot.name!r}>"
@@ -124,17 +137,18 @@ class ReducedModel:
 
     @classmethod
     def load(cls, model: Model, file: PathLike) -> ReducedModel:
-        """Reads what :meth:`save`, or ``pliant reduce -o``, wrote.
+        """Reads a file written by :meth:`save` or ``pliant reduce -o``.
 
         Raises:
-            InputError: the file is damaged, or was made for another robot or with other settings.
+            InputError: the file is damaged, or was made for another robot or with other settings, such as another
+                tolerance of the model.
         """
         owned = _check.instance(model, Model, "model")
         return cls(owned, _pliant.load_reduced(owned._model, _check.path(file, "file")))
 
     def save(self, file: PathLike) -> None:
-        """Writes it to a file, whole or not at all."""
-        self._engine.save(_check.path(file, "file"))
+        """Writes the reduced model to a file, whole or not at all."""
+        self._engine.save(_check.new_file(file, "file"))
 
     @property
     def inputs(self) -> list[SteeredInput]:
@@ -171,12 +185,12 @@ class ReducedModel:
         return ReducedState(self, self._engine.start())
 
     def step(self, state: ReducedState, controls: Controls = None, *, time: float | None = None) -> ReducedStep:
-        """Solves for the equilibrium at the controls, from `state`, and leaves it there.
+        """Solves for the equilibrium at the controls, from `state`, and stores it there.
 
         Args:
-            state: changed in place where an equilibrium is found.
-            controls: as of :meth:`Model.inputs`; an array of numbers in SI units is fastest.
-            time: of the program; None: that of the state.
+            state: changed in place if an equilibrium is found.
+            controls: as for :meth:`Model.inputs`; an array of numbers in SI units is fastest.
+            time: program time; None: that of the state.
         """
         own = self._own(state)
         known = own._state.inputs()
@@ -189,7 +203,7 @@ class ReducedModel:
         return ReducedStep(found, iterations)
 
     def solve(self, controls: Controls = None, *, state: ReducedState | None = None) -> ReducedState:
-        """The equilibrium at the controls; `state` (None: :meth:`start`) stays as it is.
+        """A new state: the equilibrium at the controls; `state` (None: :meth:`start`) does not change.
 
         Raises:
             Failure: no equilibrium was found.
@@ -214,7 +228,7 @@ class ReducedModel:
         """The equilibrium of the whole robot at the same inputs, searched from the reduced one.
 
         Raises:
-            Failure: none is found.
+            Failure: no equilibrium is found.
         """
         return State(self.model, self._engine.exact(self._own(state)._state, _check.progress(progress)))
 
@@ -223,6 +237,22 @@ class ReducedModel:
         rows = self._engine.check(_check.integer(count, "count"), _check.progress(progress))
         return [ReducedCheck(*row) for row in rows]
 
+    def _bytes(self) -> bytes:
+        """Those of the file that :meth:`save` writes."""
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "reduced"
+            self._engine.save(file)
+            return file.read_bytes()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _reduced_again, (self.model, self._bytes())
+
+    def __copy__(self) -> ReducedModel:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> ReducedModel:
+        return self
+
     def _own(self, state: ReducedState) -> ReducedState:
         if _check.instance(state, ReducedState, "state").reduced._engine is not self._engine:
             raise InputError("the state is one of another reduced model")
@@ -230,6 +260,13 @@ class ReducedModel:
 
     def __repr__(self) -> str:
         return f"<pliant.ReducedModel of {self.model.robot.name!r}: {self.mode_count} modes, {self.tet_count} tets>"
+
+
+def _reduced_again(model: Model, data: bytes) -> ReducedModel:
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "reduced"
+        file.write_bytes(data)
+        return ReducedModel.load(model, file)
 
 
 def reduce(
@@ -245,8 +282,8 @@ def reduce(
     modes of which they are made, and a few tetrahedra whose weighted forces stand for all.
 
     Args:
-        model: of a robot with a range on what may be moved; without contact, friction, moving supports, joints and
-            motion in time.
+        model: a model of a robot with a range for each actuator that may be moved; without contact, friction, moving
+            supports, joints and motion in time.
         samples: equilibria to learn from; 0: 24 for each actuator, 240 at most.
         basis_error: share of the motion of the samples that the modes may leave out.
         force_error: share of the forces in the modes that the weighted tetrahedra may miss.
@@ -254,14 +291,13 @@ def reduce(
         progress: called with (stage, share) some times a second; False cancels.
     """
     owned = _check.instance(model, Model, "model")
-    return ReducedModel(
-        owned,
-        _pliant.reduce(
+    with owned.robot._in_its_words():
+        engine = _pliant.reduce(
             owned._model,
             _check.integer(samples, "samples"),
             _check.number(basis_error, "basis_error"),
             _check.number(force_error, "force_error"),
             _check.integer(most_modes, "most_modes"),
             _check.progress(progress),
-        ),
-    )
+        )
+    return ReducedModel(owned, engine)

@@ -1,4 +1,4 @@
-"""What is read off a state. SI units throughout."""
+"""Measurable quantities of a state. SI units throughout."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from ._check import Array
+from ._values import Value, value_tuple
 
 
 class Cable(NamedTuple):
     """A cable of an :class:`Observation`."""
 
-    #: m, along all its points
+    #: m, along the whole cable
     length_m: float
-    #: of that at rest
+    #: length over rest length
     length_ratio: float
     #: N, never negative
     tension_N: float
@@ -22,9 +23,9 @@ class Cable(NamedTuple):
 class Chamber(NamedTuple):
     """A chamber of an :class:`Observation`."""
 
-    #: m^3, inside its walls
+    #: m^3, enclosed by its walls
     volume_m3: float
-    #: of that at rest
+    #: volume over rest volume
     volume_ratio: float
     #: Pa, above ambient
     pressure_Pa: float
@@ -39,33 +40,35 @@ class Spring(NamedTuple):
     force_N: float
 
 
+@value_tuple
 class Joint(NamedTuple):
     """A joint of an :class:`Observation`."""
 
-    #: (3,) N, of the first of the two things on the second
+    #: (3,) N, from the first connected part on the second
     force_N: Array
     #: (3,) N m, likewise, about the joint
     torque_Nm: Array
-    #: angle of a hinge, rad, with whole turns; place of a slider, m; else 0
+    #: hinge: angle with whole turns, rad; slider: displacement, m; otherwise 0
     coordinate: float
-    #: what drives, holds and damps along it, N m or N
+    #: drive, hold and damping along it, N m or N
     effort: float
 
 
+@value_tuple
 class Object(NamedTuple):
     """A rigid object of an :class:`Observation`."""
 
-    #: (3,) m, of its centre of mass
+    #: (3,) m, of the centre of mass
     position_m: Array
-    #: (4,) from where it started: unit quaternion w, x, y, z with w >= 0
+    #: (4,) since the start: unit quaternion w, x, y, z with w >= 0
     rotation: Array
-    #: (3,) N, pressure and friction of all that touches it
+    #: (3,) N, normal force and friction of everything that touches it
     force_N: Array
 
 
-@dataclass(frozen=True)
-class Observation:
-    """What can be read off a state, by the names of the robot file."""
+@dataclass(frozen=True, eq=False)
+class Observation(Value):
+    """Measurable quantities of a state, by the names of the robot file. Two are equal if all numbers are."""
 
     #: by name
     cables: dict[str, Cable]
@@ -77,28 +80,28 @@ class Observation:
     markers: dict[str, Array]
     #: by name: (3,) reaction on the robot, N
     supports: dict[str, Array]
-    #: by name of the obstacle: (3,) pressure and friction on the robot, N
+    #: by name of the obstacle: (3,) normal force and friction on the robot, N
     contacts: dict[str, Array]
-    #: by name: what a [[sensor]] reads, by name of the reading, in SI units
+    #: by name of the [[sensor]]: its readings by their names, in SI units
     sensors: dict[str, dict[str, float]]
     #: by name
     joints: dict[str, Joint]
     #: by name
     objects: dict[str, Object]
-    #: N, sum of the sizes of the robot's forces on itself
+    #: N, sum of the magnitudes of the self-contact forces
     self_contact_N: float
-    #: m, between surfaces that are near enough to act; infinite where none are
+    #: m, smallest distance between surfaces within contact range; infinite if there are none
     smallest_distance_m: float
     #: J, elastic and contact energy, minus the work of loads and gravity
     energy_J: float
-    #: J, of a motion in time
+    #: J, of a motion in time, otherwise 0
     kinetic_energy_J: float
-    #: smallest ratio of volumes, now over rest, of any point
+    #: smallest J = det F over all integration points
     min_J: float
 
 
-@dataclass(frozen=True)
-class Fields:
+@dataclass(frozen=True, eq=False)
+class Fields(Value):
     """(tets,) one value for each tetrahedron: the mean over its integration points."""
 
     #: det F
@@ -107,12 +110,12 @@ class Fields:
     von_mises_Pa: Array
     #: largest principal stretch
     max_stretch: Array
-    #: J/m^3 of rest volume; 0 where the law has no energy
+    #: J per m^3 of rest volume; 0 where the law has no energy
     energy_density_Pa: Array
 
 
 def observation(seen: dict[str, Any]) -> Observation:
-    """From what the extension gives."""
+    """From the dict of the extension."""
     named: dict[str, Any] = {
         "cables": {name: Cable(*c) for name, c in seen["cables"].items()},
         "chambers": {name: Chamber(*c) for name, c in seen["chambers"].items()},

@@ -1,18 +1,20 @@
-"""A robot as its file describes it, and meshes that a program has made."""
+"""A robot as its file describes it, and meshes made by a program."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Union
 
 import numpy as np
 
 from . import _check, _pliant, _toml
-from ._check import Array, IntArray, PathLike
-from .errors import InputError
+from ._check import AnyArray, Array, IntArray, PathLike
+from ._values import Value
+from .errors import Failure, InputError
 
 #: Changes of a robot file: {"mesh.order": 1}, or ["mesh.order=1"] as on the command line.
 Changes = Union[Mapping[str, Any], Iterable[str], None]
@@ -29,25 +31,26 @@ class Robot:
             body=[{"name": "bar", "material": "soft", "geometry": {"box": [[0, 0, 0], [60, 10, 10]]}}],
             fixed=[{"name": "clamp", "box": [[0, 0, 0], [0, 10, 10]]}])
 
-    The reference of the robot file says what every key means. Bare coordinates are in `length_unit`; everything that
-    the module gives back is in SI units. A robot never changes.
+    The reference of the robot file describes every key. Coordinates without a unit are in `length_unit`; everything
+    that the module returns is in SI units. A robot is immutable.
 
     Args:
         description: the keys as a mapping; more may follow as keyword arguments.
-        folder: where files that it names are sought; default: the current folder.
-        changes: as of :meth:`load`.
+        folder: the folder in which files that it names are looked up; default: the current folder.
+        changes: as for :meth:`load`.
 
     Raises:
-        InputError: a line for each problem; `.key` is that of the first.
+        InputError: with one line for each problem; `.key` is that of the first.
     """
 
     __slots__ = ("_robot", "text", "folder", "changes", "_in_python")
 
-    #: As a robot file (TOML).
+    _robot: _pliant.Robot
+    #: Robot file (TOML).
     text: str
-    #: Where files that it names are sought.
+    #: Folder in which files that it names are looked up.
     folder: Path
-    #: "KEY=VALUE" of each change.
+    #: Changes of the text, "KEY=VALUE" each.
     changes: tuple[str, ...]
 
     def __init__(
@@ -73,7 +76,7 @@ class Robot:
 
         Args:
             file: its path.
-            changes: keys to be changed, as {"mesh.order": 1, "cable.flexor.target.length_ratio": 0.8}.
+            changes: keys and their new values, as {"mesh.order": 1, "cable.flexor.target.length_ratio": 0.8}.
 
         Raises:
             InputError: with `.file`, `.line` and `.key` of the first problem, and a line for each.
@@ -90,9 +93,10 @@ class Robot:
 
     @classmethod
     def parse(cls, text: str, folder: PathLike = ".", changes: Changes = None) -> Robot:
-        """The same of a text; files that it names are sought from `folder`."""
+        """Reads a robot from the text of a robot file; files that it names are looked up in `folder`."""
         if not isinstance(text, str):
             raise TypeError(f"text must be a str, not {type(text).__name__}")
+        _check.text(text, "text")
         robot = cls.__new__(cls)
         robot._fill(text, _check.path(folder, "folder"), changes, False)
         return robot
@@ -103,34 +107,41 @@ class Robot:
         self.folder = folder.absolute()
         self.changes = tuple(listed)
         self._in_python = in_python
-        try:
+        with self._in_its_words():
             self._robot = _pliant.Robot.parse(text, self.folder, listed)
-        except InputError as error:
-            if not in_python:
+
+    @contextmanager
+    def _in_its_words(self, file: Path | None = None) -> Iterator[None]:
+        """Errors of a robot that was made in Python, or written to a temporary `file`, name no file: nobody has written
+        the lines of its text."""
+        try:
+            yield
+        except Failure as error:
+            text = str(file or self.folder / "robot text")
+            if not (file or self._in_python) or text not in str(error):
                 raise
-            # The lines of a text that nobody has written would only mislead.
-            message = re.sub(r"^.*robot text:(\d+:)? ", "", str(error), flags=re.MULTILINE)
-            raise InputError(message, key=error.key) from None
+            message = re.sub(re.escape(text) + r":(\d+:)? ", "", str(error)).replace(text, "the robot")
+            raise type(error)(message, key=error.key) from None
 
     def changed(self, changes: Changes) -> Robot:
-        """The same robot with more changes: {"mesh.size": "2 mm"}."""
+        """The same robot with further changes, as {"mesh.size": "2 mm"}."""
         robot = type(self).__new__(type(self))
         robot._fill(self.text, self.folder, [*self.changes, *_changes(changes)], self._in_python)
         return robot
 
     @property
     def name(self) -> str:
-        """As in the file."""
+        """Name given in the robot file."""
         return self._robot.name
 
     @property
     def duration(self) -> float:
-        """Of its program, in seconds for a motion in time."""
+        """Duration of the program; in seconds for a motion in time."""
         return self._robot.duration
 
     @property
     def steps(self) -> int:
-        """Of its program."""
+        """Number of steps of the program."""
         return self._robot.steps
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -162,32 +173,47 @@ def _changes(changes: Changes) -> list[str]:
     return _check.texts(changes, "changes")
 
 
-@dataclass(frozen=True)
-class Mesh:
-    """A mesh of tetrahedra for a robot that says ``mesh={"file": "memory:"}`` and names its regions."""
+def _kept(array: Any) -> Any:
+    """A copy that cannot be written."""
+    copy = array.copy()
+    copy.flags.writeable = False
+    return copy
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class Mesh(Value):
+    """A tetrahedral mesh for a robot with ``mesh={"file": "memory:"}``.
+
+    The arrays are copied and cannot be written. A model drops points that no tetrahedron uses, and reorders the nodes
+    of inverted tetrahedra: its nodes are numbered as in :attr:`Model.rest_positions`, which may differ from `points`.
+    """
 
     #: (points, 3) m.
     points: Array
     #: (tets, 4) or (tets, 10) indices into points; the nodes of edges 01 12 20 03 13 23 last.
     tets: IntArray
-    #: (tets,) index into region_names; None: all are in the first.
-    regions: IntArray | None = None
-    #: What `region` of a body names.
-    region_names: tuple[str, ...] = field(default=("all",))
+    #: (tets,) index into region_names; None: all tetrahedra are in the first region.
+    regions: IntArray | None
+    #: Names that `region` of a body refers to.
+    region_names: tuple[str, ...]
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        points: Union[Sequence[Sequence[float]], AnyArray],
+        tets: Union[Sequence[Sequence[int]], AnyArray],
+        regions: Union[Sequence[int], AnyArray, None] = None,
+        region_names: Iterable[str] = ("all",),
+    ) -> None:
         put = object.__setattr__
-        put(self, "points", _check.numbers(self.points, "points", (None, 3)))
-        tets = _check.integers(self.tets, "tets")
-        if tets.ndim != 2 or tets.shape[1] not in (4, 10):
-            raise InputError(f"tets has shape {tets.shape}; it must have shape (tets, 4) or (tets, 10)")
-        put(self, "tets", tets)
-        put(self, "region_names", tuple(_check.texts(self.region_names, "region_names")))
-        if self.regions is not None:
-            regions = _check.integers(self.regions, "regions")
-            if regions.shape != (len(tets),):
-                raise InputError(f"regions has shape {regions.shape}; it must have shape ({len(tets)},)")
-            put(self, "regions", regions)
+        put(self, "points", _kept(_check.numbers(points, "points", (None, 3))))
+        listed = _check.integers(tets, "tets")
+        if listed.ndim != 2 or listed.shape[1] not in (4, 10):
+            raise InputError(f"tets has shape {listed.shape}; it must have shape (tets, 4) or (tets, 10)")
+        put(self, "tets", _kept(listed))
+        put(self, "region_names", tuple(_check.texts(region_names, "region_names")))
+        put(self, "regions", None if regions is None else _kept(_check.integers(regions, "regions")))
+        if self.regions is not None and self.regions.shape != (len(self.tets),):
+            raise InputError(f"regions has shape {self.regions.shape}; it must have shape ({len(self.tets)},)")
 
     def _mesh(self) -> _pliant.Mesh:
         regions = np.empty(0, dtype=np.int32) if self.regions is None else self.regions

@@ -1,4 +1,4 @@
-"""Inverse kinematics and workspaces: what to pull so that the robot gets there, and where it can get."""
+"""Inverse kinematics and workspaces: inputs that meet goals, and the positions that markers can reach."""
 
 from __future__ import annotations
 
@@ -8,75 +8,79 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _check, _pliant
 from ._check import Array, IntArray, PathLike, Progress
 from ._pliant import StepResult
+from ._values import NotPickled, Value, value_tuple
 from .errors import InputError
 from .model import Model
 from .results import Observation, observation
 
 
 class SteeredInput(NamedTuple):
-    """An actuator with a range: what :func:`inverse` and :func:`workspace` may move."""
+    """An actuator with a range, which :func:`inverse` and :func:`workspace` may move."""
 
-    #: of the cable or chamber
+    #: name of the cable or chamber
     name: str
-    #: SI, of what its target names; "" of a ratio
+    #: SI unit of its target; "" for a ratio
     unit: str
-    #: of its range
+    #: lower end of its range
     low: float
-    #: of its range
+    #: upper end of its range
     high: float
 
 
+@value_tuple
 class GoalResult(NamedTuple):
-    """How one goal fares at a waypoint."""
+    """Result for one goal at a waypoint."""
 
     #: as in the robot file
     name: str
-    #: within its tolerance
+    #: True if the error is within the tolerance of the goal
     reached: bool
-    #: m, rad or N, as `unit` says; of several markers the largest
+    #: error in `unit` (m, rad or N); the largest of several markers
     error: float
-    #: of the error
+    #: unit of the error
     unit: str
-    #: (n, 3) places; of a plane a point and its normal; a unit direction; a force
+    #: (n, 3) wanted positions; for a plane a point and its normal; a unit direction; or a force
     wanted: Array
-    #: (n, 3) places of its markers; a direction; a force
+    #: (n, 3) positions of the markers that were reached; a direction; or a force
     got: Array
 
 
-@dataclass(frozen=True)
-class Waypoint:
-    """A waypoint, as far as the robot got to it."""
+@dataclass(frozen=True, eq=False)
+class Waypoint(Value):
+    """Result for one waypoint."""
 
-    #: all of its goals
+    #: True if all its goals are reached
     reached: bool
-    #: of the robot's program: where all that is not steered stands
+    #: program time, which sets everything that is not an input
     time: float
     #: in the order of the robot file
     goals: list[GoalResult]
-    #: by name, SI, in what the target names
+    #: values of the inputs by name, in the SI units of their targets
     inputs: dict[str, float]
-    #: where not reached: what stops it, a sentence each
+    #: limits that keep it from its goals, one sentence each; empty if it is reached
     limits: list[str]
-    #: of the equilibrium
+    #: result of the solver
     result: StepResult
-    #: what it is like
+    #: measurable quantities of the equilibrium
     observed: Observation
     #: (nodes, 3) m
     positions: Array
-    #: equilibria that were solved for on the way
+    #: number of equilibria that were solved for
     forward_solutions: int
-    #: wall time of the search
+    #: wall time of the search, s
     wall_s: float
 
 
-class InverseResult:
-    """What came of the goals: a sequence of :class:`Waypoint`."""
+class InverseResult(NotPickled):
+    """Result of :func:`inverse`: a sequence of :class:`Waypoint`."""
 
     __slots__ = ("model", "_result")
+    _instead = "pickle its waypoints, as list(result), or write its folder"
 
     def __init__(self, model: Model, result: _pliant.InverseResult) -> None:
         self.model = model
@@ -84,32 +88,32 @@ class InverseResult:
 
     @property
     def reached(self) -> bool:
-        """All waypoints."""
+        """True if all waypoints are reached."""
         return self._result.reached
 
     @property
     def message(self) -> str:
-        """Why waypoints are missing; empty where none is."""
+        """Why waypoints are missing; otherwise empty."""
         return self._result.message
 
     @property
     def notes(self) -> list[str]:
-        """What is worth knowing about the search, a sentence each."""
+        """Remarks on the search, one sentence each."""
         return self._result.notes
 
     @property
     def inputs(self) -> list[SteeredInput]:
-        """What was moved."""
+        """The inputs that were moved."""
         return [SteeredInput(*i) for i in self._result.inputs()]
 
     @property
     def waypoints_wanted(self) -> int:
-        """Waypoints of the goals."""
+        """Number of waypoints of the goals."""
         return self._result.waypoints_wanted
 
     @property
     def text(self) -> str:
-        """For people: a line for each waypoint, and what stops those that are not reached."""
+        """Text for people: a line for each waypoint, with the limits of those that are not reached."""
         return self._result.text()
 
     @property
@@ -122,9 +126,10 @@ class InverseResult:
         """Writes the folder that ``pliant inverse -o`` writes, whole or not at all.
 
         Returns:
-            Warnings where the program that leads through the waypoints, run from rest, leads elsewhere.
+            Warnings where the written program, run from rest, does not lead to the waypoints that were found.
         """
-        return self._result.write(_check.path(folder, "folder"), _check.progress(progress))
+        with self.model.robot._in_its_words():
+            return self._result.write(_check.path(folder, "folder"), _check.progress(progress))
 
     def __len__(self) -> int:
         return self._result.waypoint_count
@@ -150,25 +155,26 @@ class InverseResult:
 
 
 def inverse(model: Model, *, starts: int = 6, progress: Progress | None = None) -> InverseResult:
-    """Looks for the inputs that take the robot to the goals of its file, waypoint by waypoint; every answer is an
-    equilibrium. What cannot be reached ends as near as it gets, and is no error.
+    """Finds the inputs that meet the goals of the robot file, waypoint by waypoint; every result is an equilibrium. A
+    goal that cannot be reached is not an error: the search ends at the nearest point.
 
     Args:
-        model: of a robot with goals and with a range on what may be moved.
-        starts: beginnings spread over the ranges that are tried where the way from rest does not reach the first
-            waypoint.
+        model: a model of a robot with goals, and a range for each actuator that may be moved.
+        starts: number of further starting points, spread over the ranges, that are tried if the search from rest does
+            not reach the first waypoint.
         progress: called with (stage, share) some times a second; False cancels.
     """
     owned = _check.instance(model, Model, "model")
-    return InverseResult(
-        owned, _pliant.inverse(owned._model, _check.integer(starts, "starts"), _check.progress(progress))
-    )
+    with owned.robot._in_its_words():
+        found = _pliant.inverse(owned._model, _check.integer(starts, "starts"), _check.progress(progress))
+    return InverseResult(owned, found)
 
 
-class Workspace:
-    """Where markers can get within the ranges of the actuators, and what that takes."""
+class Workspace(NotPickled):
+    """The workspace of all markers: equilibria within the ranges of the actuators."""
 
     __slots__ = ("model", "_space", "_samples")
+    _instead = "pickle its arrays, or write its folder"
 
     def __init__(self, model: Model, space: _pliant.Workspace) -> None:
         self.model = model
@@ -177,32 +183,32 @@ class Workspace:
 
     @property
     def inputs(self) -> list[SteeredInput]:
-        """What was moved."""
+        """The inputs that were varied."""
         return [SteeredInput(*i) for i in self._space.inputs()]
 
     @property
     def values(self) -> Array:
-        """(samples, inputs) SI, where equilibria were looked for."""
+        """(samples, inputs) values of the inputs, SI."""
         return np.array([s[1] for s in self._samples]).reshape(len(self._samples), -1)
 
     @property
-    def found(self) -> Array:
-        """(samples,) 1 where there is an equilibrium, else 0."""
-        return np.array([float(s[2]) for s in self._samples])
+    def found(self) -> npt.NDArray[np.bool_]:
+        """(samples,) True where an equilibrium was found."""
+        return np.array([s[2] for s in self._samples], dtype=np.bool_)
 
     @property
     def markers(self) -> Array:
-        """(samples, markers, 3) m; not a number where no equilibrium was found."""
+        """(samples, markers, 3) m; NaN where no equilibrium was found."""
         return self._filled(3, (len(self.model.markers), 3))
 
     @property
     def tensions(self) -> Array:
-        """(samples, cables) N; not a number where no equilibrium was found."""
+        """(samples, cables) N; NaN where no equilibrium was found."""
         return self._filled(4, (len(self.model.cables),))
 
     @property
     def pressures(self) -> Array:
-        """(samples, chambers) Pa; not a number where no equilibrium was found."""
+        """(samples, chambers) Pa; NaN where no equilibrium was found."""
         return self._filled(5, (len(self.model.chambers),))
 
     def _filled(self, part: int, shape: tuple[int, ...]) -> Array:
@@ -213,14 +219,15 @@ class Workspace:
         return full
 
     def sheets(self, marker: str) -> tuple[Array, IntArray]:
-        """(points, 3) m and (triangles, 3): the surfaces on which two inputs vary and all others stand at an end."""
+        """(points, 3) m and (triangles, 3): the surfaces on which two inputs vary and all others are at an end of their
+        range."""
         if not isinstance(marker, str) or marker not in self.model.markers:
             raise InputError(f"there is no marker {marker!r}; there are {', '.join(self.model.markers) or 'none'}")
         return self._space.sheets(self.model.markers.index(marker))
 
     @property
     def summary(self) -> dict[str, Any]:
-        """Number of samples and box of each marker, as in workspace.json."""
+        """Number of samples and bounding box of each marker, as in workspace.json."""
         found: dict[str, Any] = json.loads(self._space.json())
         return found
 
@@ -248,25 +255,24 @@ def workspace(
     resume: bool = False,
     progress: Progress | None = None,
 ) -> Workspace:
-    """Solves for equilibria on sheets of the ranges and in between.
+    """Solves for equilibria on sheets of the input ranges and at further samples between them.
 
     Args:
-        model: of a robot with a range on what may be moved.
-        side: places along each input of a sheet; at least 2.
-        between: inputs that are spread over the ranges beside the sheets.
-        checkpoint: folder in which pieces are kept as they are done.
-        resume: goes on from the checkpoint; the results are those of a search that was never stopped.
+        model: a model of a robot with a range for each actuator that may be moved.
+        side: samples along each input of a sheet; at least 2.
+        between: number of further samples, spread over the ranges.
+        checkpoint: folder in which completed pieces are stored, so that the search can be resumed.
+        resume: resumes from the checkpoint; the results are those of an uninterrupted search.
         progress: called with (stage, share) some times a second; False cancels.
     """
     owned = _check.instance(model, Model, "model")
-    return Workspace(
-        owned,
-        _pliant.workspace(
+    with owned.robot._in_its_words():
+        space = _pliant.workspace(
             owned._model,
             _check.integer(side, "side"),
             _check.integer(between, "between"),
             "" if checkpoint is None else _check.path(checkpoint, "checkpoint"),
             bool(resume),
             _check.progress(progress),
-        ),
-    )
+        )
+    return Workspace(owned, space)

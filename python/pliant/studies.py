@@ -1,4 +1,4 @@
-"""Studies: any command over a plan of experiments, on all cores or on a cluster, with the results as arrays."""
+"""Studies: runs a command for many sets of values, on all cores or on a cluster, with the results as arrays."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from typing import Any, Literal, NamedTuple, Optional, Union
 import numpy as np
 import numpy.typing as npt
 
-from . import _toml
+from . import _check, _toml
+from ._values import Value
 from .errors import Cancelled, Failure, InputError
 
 
 class SobolIndex(NamedTuple):
-    """A share of a result's variance, and the interval that holds it with a confidence of 95 %."""
+    """A Sobol index, the share of the variance of a result, with its 95 % confidence interval."""
 
     value: float
     low: float
@@ -28,31 +29,31 @@ class SobolIndex(NamedTuple):
 
 
 class KeySensitivity(NamedTuple):
-    """What a key does to a result."""
+    """Sobol indices of one key for one result."""
 
-    #: alone
+    #: first-order index: the key alone
     first: SobolIndex
-    #: alone and together with other keys
+    #: total index: the key alone and together with other keys
     total: SobolIndex
 
 
-@dataclass(frozen=True)
-class StudyResult:
-    """What a study found: arrays of the same length, a row each."""
+@dataclass(frozen=True, eq=False)
+class StudyResult(Value):
+    """Results of a study: arrays of the same length, one entry for each row."""
 
-    #: by the key's name: numbers in `units`, or texts
+    #: values of each key by its name: numbers in `units`, or texts
     keys: dict[str, npt.NDArray[Any]]
-    #: by the key's name; "" for pure numbers
+    #: unit of each key by its name; "" if dimensionless
     units: dict[str, str]
-    #: by the result's name; NaN where a row failed
+    #: values of each result by its name; NaN where a row failed
     results: dict[str, npt.NDArray[np.float64]]
-    #: whether the row ran through
+    #: True where the row succeeded
     done: npt.NDArray[np.bool_]
-    #: why it failed; "" where it did not
+    #: why the row failed; "" where it succeeded
     reasons: npt.NDArray[np.str_]
-    #: as summary.json has it
+    #: all figures, as in summary.json
     summary: dict[str, Any]
-    #: that holds all of it
+    #: folder of the study
     folder: Path
 
     def __len__(self) -> int:
@@ -60,7 +61,7 @@ class StudyResult:
 
     @property
     def sensitivity(self) -> dict[str, dict[str, KeySensitivity]]:
-        """By result and key; empty unless the plan is ``"sensitivity"``."""
+        """Sobol indices by result and key; empty unless the plan is ``"sensitivity"``."""
         found: dict[str, dict[str, KeySensitivity]] = {}
         for name, figures in self.summary["results"].items():
             if "sensitivity" in figures:
@@ -72,7 +73,7 @@ class StudyResult:
 
     @classmethod
     def load(cls, folder: Union[str, os.PathLike[str]]) -> StudyResult:
-        """Of the folder of a study that was run, here or by the command line."""
+        """Reads the folder of a study that was run from Python or on the command line."""
         path = Path(folder)
         try:
             summary = json.loads((path / "summary.json").read_text(encoding="utf-8"))
@@ -99,54 +100,98 @@ def study(
     jobs: Optional[int] = None,
     resume: bool = False,
 ) -> StudyResult:
-    """Runs a study as ``pliant study`` does, and gives its results as arrays.
+    """Runs a study as ``pliant study`` does, and returns its results as arrays.
 
     Rows that fail are kept: their results are NaN, and `reasons` says why.
 
     Args:
         plan: a study file; or its keys as a dict, which is written as ``FOLDER.toml`` beside `folder`. Files that the
-            command names are beside that file.
-        folder: for rows and results; without it ``STUDY_study`` of a file ``STUDY.toml``.
+            command names are looked up beside that file.
+        folder: folder for rows and results; None: ``STUDY_study`` for a file ``STUDY.toml``.
         on: ``"local"``: all cores of this machine; ``"slurm"``: tasks of a cluster.
-        jobs: rows at a time, or tasks of the cluster; None: all cores, or all that the cluster gives.
-        resume: go on with the rows that are in the folder.
+        jobs: number of rows at a time, or of tasks of the cluster; None: all cores, or all that the cluster gives.
+        resume: continue with the rows that are in the folder.
 
     Raises:
-        InputError: the plan is wrong, or the folder holds another study.
-        Failure: the program `pliant` is not there; Slurm does not take the study.
+        InputError: the plan or an option is invalid, or the folder or ``FOLDER.toml`` holds another study. A
+            ``FOLDER.toml`` that is not the same study is never overwritten.
+        Failure: the program `pliant` is not found, or Slurm does not accept the study.
     """
+    _check.one_of(on, ("local", "slurm"), "on")
+    options = ["--on", on, "--json", *_jobs_words(jobs), *(["--resume"] if resume else [])]
+    out = None if folder is None else _check.path(folder, "folder")
     if isinstance(plan, Mapping):
-        if folder is None:
+        if out is None:
             raise InputError("a study that is described by a dict needs a folder for its results")
-        file = Path(folder).with_name(Path(folder).name + ".toml")
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(_toml.document(plan), encoding="utf-8")
+        file = _written(plan, out)
     else:
-        file = Path(plan)
-    if on not in ("local", "slurm"):
-        raise InputError(f'on is {on!r}; it is "local" or "slurm"')
-    out = Path(folder) if folder is not None else Path(f"{file.stem}_study")
-    words = [str(_program()), "study", str(file), "--output", str(out), "--on", on, "--json"]
-    if jobs is not None:
-        words += ["--jobs", str(int(jobs))]
-    if resume:
-        words.append("--resume")
-    status, output, errors = _run(words)
-    if status not in (0, 1) or not output.lstrip().startswith("{") or "error" in json.loads(output):
-        _complain(status, output, errors)
+        file = _check.path(plan, "plan")
+    out = out or Path(f"{file.stem}_study")
+    status, output, errors = _run([str(_program()), "study", str(file), "--output", str(out), *options])
+    told = _told(output)
+    if status not in (0, 1) or told is None or "error" in told:
+        _complain(status, told or {}, errors)
     return StudyResult.load(out)
 
 
-def _complain(status: int, output: str, errors: str) -> None:
-    lines = errors.strip().splitlines()
-    message = lines[-1] if lines else f"pliant study ended with exit status {status}"
+#: Begins a file that study() wrote: it may be replaced as long as there are no results.
+_MARK = "# Written by pliant.study from a dict.\n"
+
+
+def _written(plan: Mapping[str, Any], out: Path) -> Path:
+    """The file of a plan that is a dict, beside its folder of results."""
+    file = out.absolute().with_name(out.name + ".toml")
+    text = _MARK + _toml.document(plan)
+    if file.exists() and not _may_replace(file, text, out):
+        raise InputError(f"{file}: is there already, and is another study; choose another folder, or move it away")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    aside = file.with_name(file.name + ".partial")
+    try:
+        aside.write_text(text, encoding="utf-8")
+        aside.replace(file)
+    except OSError as error:
+        raise InputError(f"{file}: cannot be written: {error.strerror}", file=str(file)) from None
+    return file
+
+
+def _may_replace(file: Path, text: str, out: Path) -> bool:
+    try:
+        there = file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return False
+    return there == text or there.startswith(_MARK) and not out.exists()
+
+
+def _jobs_words(jobs: Any) -> list[str]:
+    if jobs is None:
+        return []
+    count = _check.integer(jobs, "jobs")
+    if not 1 <= count <= 100000:
+        raise InputError(f"jobs is {count}; it must be from 1 to 100000, or None for all cores")
+    return ["--jobs", str(count)]
+
+
+def _told(output: str) -> dict[str, Any] | None:
+    """What the program printed as JSON."""
+    try:
+        told = json.loads(output)
+    except ValueError:
+        return None
+    return told if isinstance(told, dict) else None
+
+
+def _complain(status: int, told: dict[str, Any], errors: str) -> None:
+    """Raises the error that the program reported, in its output or among its errors."""
+    lines = [line for line in errors.strip().splitlines() if not line.startswith("Run with --help")]
+    ended = f"pliant study ended with exit status {status}"
+    message = str(told["error"]) if "error" in told else lines[-1] if lines else ended
     if status == 2:
         raise InputError(message)
     raise (Cancelled if message.startswith("cancelled") else Failure)(message)
 
 
 def _run(words: list[str]) -> tuple[int, str, str]:
-    """An interrupt reaches the study once, and it stops in good order before the interrupt goes on."""
+    """An interrupt is passed on to the study once; it stops in good order before KeyboardInterrupt is raised here."""
     process = subprocess.Popen(
         words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     )

@@ -41,18 +41,18 @@ class _Markers(torch.autograd.Function):  # type: ignore[misc]
 
 
 def positions(model: Model, controls: Any, state: State | None = None) -> Any:
-    """(nodes, 3) m: where the nodes are at these controls, with a gradient.
+    """(nodes, 3) node positions at these controls, m, with a gradient.
 
     Args:
-        model: what is solved.
-        controls: tensor (cables + chambers,) in SI units, in the kinds of `state`.
-        state: from which it is solved; None: rest. Nothing flows back to it.
+        model: the model that is solved.
+        controls: tensor (cables + chambers,) in SI units, of the kinds of `state`.
+        state: the state to start from; None: the rest state. There is no gradient with respect to it.
     """
     return _Positions.apply(*_given(model, controls, state))
 
 
 def markers(model: Model, controls: Any, state: State | None = None) -> Any:
-    """(markers, 3) m: where the markers are at these controls, with a gradient; otherwise as :func:`positions`."""
+    """(markers, 3) marker positions at these controls, m, with a gradient; otherwise as :func:`positions`."""
     return _Markers.apply(*_given(model, controls, state))
 
 

@@ -28,6 +28,11 @@ def heights(file: Path) -> list[float]:
         raise SystemExit(f"{error.file}:{error.line}: {error.key}") from error
     plan: pliant.PrintPlan = pliant.slice(file, "job.zip", printer="tower.toml")
     found.append(plan.seconds)
+    mesh = pliant.Mesh([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 1, 2, 3]], [0], ["all"])
+    found.append(model.linearise(state).value(pliant.Measure("marker", "tip", [0, 0, 1])) + len(mesh.tets))
+    observation, info = pliant.envs.Reach().reset(seed=2**40)
+    found.append(float(observation[0]) + len(info))
+    pliant.plotting.plot(state)
     waypoint = pliant.inverse(model)[0]
     found.append(waypoint.inputs["flexor"])
     return found

@@ -4,7 +4,7 @@ import threading
 
 import numpy as np
 import pytest
-from robots import bar, block
+from robots import BAR, bar, block
 
 import pliant
 
@@ -102,3 +102,27 @@ def test_threads_take_turns_with_one_batch(model):
     for thread in threads:
         thread.join()
     assert len(found) == 3 and found[0] == found[1] == found[2]
+
+
+def test_options_of_a_model_hold_for_everything_that_is_done_with_it():
+    robot = bar(cable=[{**BAR["cable"][0], "range": ["0 mm", "8 mm"]}]).robot
+    tight = pliant.Model(robot, tolerance=1e-9)
+    loose = pliant.Model(robot)
+    state = tight.rest()
+    assert tight.step(state, [0.057]).residual < 1e-9 < loose.step(loose.rest(), [0.057]).residual
+    states = pliant.Batch(tight, 2).rest()
+    pliant.Batch(tight, 2).step(states, [[0.057]] * 2)
+    assert states == [state, state]
+    assert tight.run()[-1].result.residual < 1e-9 < loose.run()[-1].result.residual
+    tension = pliant.Measure("tension", "flexor")
+    found = [pliant.gradient(m, [tension], lambda k, v: (v[0], [1.0])).values[-1, 0] for m in (tight, loose)]
+    end = tight.run()[-1].observed.cables["flexor"].tension_N
+    assert found[0] == pytest.approx(end, rel=1e-9) and found[1] != found[0]
+    reduced = pliant.reduce(tight, samples=4)
+    exact = reduced.exact(reduced.solve([0.057]))
+    assert np.abs(exact.positions - state.positions).max() < 1e-8
+    assert len(pliant.workspace(tight, side=2, between=0)) == len(pliant.workspace(loose, side=2, between=0))
+    one = pliant.Model(robot, iteration_limit=1)
+    assert not one.run().converged
+    assert not pliant.Batch(one, 1).step(pliant.Batch(one, 1).rest(), [{"flexor": {"shortening": "20 mm"}}])[0].arrived
+    assert not pliant.workspace(one, side=2, between=0).found.all()

@@ -95,6 +95,40 @@ def test_gradients_by_guide_points_agree_with_finite_differences():
     assert judged(made(places, ends)).by_guide_points.shape == (0, 3)
 
 
+def test_an_objective_without_slopes_has_a_gradient_of_zeros():
+    model = bar(parameters={"height": 5}, program={"steps": 2})
+    found = pliant.gradient(
+        model,
+        [pliant.Measure("marker", "tip", [0, 0, 1])],
+        lambda step, values: (0.0, [0.0]),
+        rest_positions=True,
+        guide_points=True,
+        tets=True,
+        numbers=["height"],
+    )
+    assert found.value == 0 and found.values.shape == (2, 1)
+    assert found.by_parameters.shape == (len(found.parameters),) and not found.by_parameters.any()
+    assert found.by_rest_positions.shape == (model.node_count, 3) and not found.by_rest_positions.any()
+    assert found.by_guide_points.shape == (3, 3) and not found.by_guide_points.any()
+    assert found.by_numbers.tolist() == [0]
+    assert "youngs_modulus" in [tet.name for tet in found.by_tets]
+    assert all(tet.values.shape == (model.tet_count,) and not tet.values.any() for tet in found.by_tets)
+
+
+def test_controls_are_the_first_inputs_whatever_their_names():
+    model = bar(
+        cable=[
+            {"name": 'a": length', "points": [[0, 5, 9], [60, 5, 9]], "target": {"shortening": "4 mm"}},
+            {"name": "a", "points": [[0, 5, 1], [60, 5, 1]], "target": {"tension": "1 N"}},
+        ]
+    )
+    state = model.solve([0.058, 0.5])
+    found = model.grad(state, markers={"tip": [0, 0, 1]})
+    assert found.controls.tolist() == found.inputs[:2].tolist()
+    jacobian = model.jacobian(state)
+    assert jacobian.shape == (1, 3, 2) and jacobian[0, 2] == pytest.approx(found.controls, rel=1e-8)
+
+
 def test_solutions_invert_products_also_transposed(model, state):
     at = model.linearise(state)
     v = np.sin(np.arange(at.size))

@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 
+import numpy as np
 import pytest
 from robots import BAR, bar, block
 
@@ -76,6 +77,8 @@ def test_progress_is_reported_and_can_cancel(fine):
     with pytest.raises(pliant.Cancelled) as caught:
         fine.step(state, {"flexor": {"shortening": "20 mm"}}, progress=lambda stage, share: False)
     assert caught.value.kind == "cancelled" and not isinstance(caught.value, ValueError)
+    with pytest.raises(pliant.Cancelled):
+        fine.step(state, {"flexor": {"shortening": "20 mm"}}, progress=lambda stage, share: np.False_)
     result = fine.run(progress=lambda stage, share: share < 0.02)
     assert not result.converged and 1 <= len(result) < 41
 

@@ -221,3 +221,82 @@ def test_a_box_is_sampled_within_its_bounds():
     assert np.abs([f[0] for f in first]).max() <= 1 and first[0].dtype == np.float32
     assert box.contains(np.zeros(2, np.float32)) and [0.0, 1.0] in OwnBox([-1, 0], [1, 2], dtype=np.float64)
     assert not box.contains(np.array([2, 0], np.float32)) and not box.contains(np.zeros(3, np.float32))
+
+
+def test_a_bad_action_changes_no_environment_of_a_vector():
+    many = Vector(Reach, 3)
+    many.reset(seed=1)
+    many.step(np.full((3, 3), 0.3))
+    before = pickle.dumps([(e.robot.bytes(), e.pulled.tolist(), e.steps) for e in many.get_states()])
+    bad = np.full((3, 3), 0.3)
+    bad[2, 1] = np.nan
+    with pytest.raises(pliant.InputError, match="^environment 2: action has a number that is not finite"):
+        many.step(bad)
+    assert before == pickle.dumps([(e.robot.bytes(), e.pulled.tolist(), e.steps) for e in many.get_states()])
+
+
+def test_seeds_may_be_of_any_size():
+    env = Reach()
+    for seed in (0, 2**31, 2**32 - 1, 2**100, np.int64(5)):
+        first = env.reset(seed=seed)[0]
+        assert np.array_equal(first, env.reset(seed=seed)[0])
+    many = Vector(Reach, 2, model=env.model)
+    many.reset(seed=2**31)
+    assert np.array_equal(many.reset(seed=2**31 - 1)[0][1], env.reset(seed=2**31)[0])
+    env.action_space.seed(2**40)
+    for call in (lambda: env.reset(seed=-1), lambda: many.reset(seed=-1), lambda: many.reset(seed=[3, -1])):
+        with pytest.raises(pliant.InputError, match="must be a whole number that is not negative, not -1$"):
+            call()
+
+
+def test_impossible_options_are_refused_and_leave_the_environment_as_it_was():
+    reach, follow, grasp, crawl = Reach(), Follow(), Grasp(), Crawl()
+    reach.reset(seed=1)
+    before = reach.get_state()
+    wrong = {
+        "goal has a number that is not finite": lambda: reach.reset(seed=3, options={"goal": [np.nan, 0, 0]}),
+        "there is no option 'gaol' of Reach; there are: goal$": lambda: reach.reset(options={"gaol": [0.09, 0, 0]}),
+        "there are: angle, radius$": lambda: follow.reset(options={"goal": [0.09, 0, 0]}),
+        "pulled has a number that is not finite": lambda: grasp.reset(options={"pulled": [np.inf, 0]}),
+        "there are: none$": lambda: crawl.reset(options={"pulled": [0, 0]}),
+        "options must be a dict, not str": lambda: reach.reset(options="goal"),
+    }
+    for text, call in wrong.items():
+        with pytest.raises(pliant.InputError, match=text):
+            call()
+    after = reach.get_state()
+    assert after.robot == before.robot and after.random == before.random
+    assert np.array_equal(after.task["goal"], before.task["goal"])
+
+    class Own(Reach):
+        option_names = None
+
+    Own(reach.model).reset(seed=0, options={"mine": 3})
+
+
+def test_a_state_of_another_environment_is_refused():
+    reach = Reach()
+    follow, grasp = Follow(reach.model), Grasp()
+    for env in (reach, follow, grasp):
+        env.reset(seed=0)
+    with pytest.raises(pliant.InputError, match="^the state is one of Reach, not of Follow$"):
+        follow.set_state(reach.get_state())
+
+    class Other(Reach):
+        @classmethod
+        def make_model(cls):
+            return pliant.Model(super().make_model().robot.changed({"mesh.size": "9 mm"}))
+
+    other = Other()
+    other.reset(seed=0)
+    kept = other.get_state()
+    kept.kind = "Reach"
+    with pytest.raises(pliant.InputError, match="^the state is one of an environment with another robot$"):
+        reach.set_state(kept)
+    many = Vector(Reach, 2, model=reach.model)
+    many.reset(seed=0)
+    before = many.get_states()
+    with pytest.raises(pliant.InputError):
+        many.set_states([reach.get_state(), kept])
+    assert many.get_states()[0].robot == before[0].robot and many.get_states()[0].pulled is not before[0].pulled
+    assert np.array_equal(many.get_states()[0].task["goal"], before[0].task["goal"])

@@ -20,6 +20,9 @@ def body(**changes):
     return {**BAR, "body": [{**BAR["body"][0], **changes}]}
 
 
+LOOP = []
+LOOP.append(LOOP)
+
 MISTAKES = {
     "a unit is forgotten": (
         lambda m: pliant.Robot({**BAR, "material": {"soft": {"youngs_modulus": 12}}}),
@@ -95,13 +98,66 @@ MISTAKES = {
     ),
     "a tolerance is impossible": (
         lambda m: pliant.Model(m.robot, tolerance=2),
-        "a tolerance of 2 is not possible: it is between 0 and 1",
+        "a tolerance of 2 is not possible: it is between 1e-10 and 0.1",
     ),
     "a value has no place in a robot file": (
         lambda m: pliant.Robot({**BAR, "name": object()}),
         "name: an object has no place in a robot file; write text, a number, True or False, a list or a dict",
     ),
     "a job is not there": (lambda m: pliant.plan("nowhere.zip"), None),
+    "a name has half a character": (
+        lambda m: pliant.Robot({**BAR, "name": "b\udcff"}),
+        "the text 'b\\udcff' has '\\udcff', which is no character: it has no place in a text",
+    ),
+    "a text has half a character": (lambda m: pliant.Robot.parse("name = 'b\udcff'"), "text has '\\udcff'"),
+    "a change has half a character": (lambda m: m.robot.changed(["name=b\udcff"]), "changes has '\\udcff'"),
+    "a measured thing has half a character": (
+        lambda m: m.linearise(m.rest()).value(pliant.Measure("tension", "\udcff")),
+        "name has '\\udcff'",
+    ),
+    "a path is no text": (lambda m: pliant.Robot.load("b\udcff"), "b\ufffd: no such file"),
+    "a list contains itself": (lambda m: pliant.Robot({**BAR, "marker": LOOP}), "a list or dict contains itself"),
+    "resins are a list": (
+        lambda m: pliant.slice("a.toml", "a.zip", printer="b.toml", resins=["soft"]),
+        'resins must be a dict, as {"soft": "elastic 50A"}',
+    ),
+    "a state is saved as a folder": (lambda m: m.rest().save("/tmp"), "/tmp: is a folder; write the name of a file"),
+    "a state is saved in a folder that is not there": (
+        lambda m: m.rest().save("no/such/place"),
+        "no/such/place: there is no folder no/such",
+    ),
+    "a direction is forgotten": (
+        lambda m: m.linearise(m.rest()).value(pliant.Measure("marker", "tip")),
+        'a measure of marker "tip" needs a direction, such as (0, 0, 1)',
+    ),
+    "a direction of a reaction is forgotten": (
+        lambda m: m.linearise(m.rest()).gradient_of(pliant.Measure("reaction", "clamp")),
+        'a measure of support "clamp" needs a direction, such as (0, 0, 1)',
+    ),
+    "nothing is measured": (
+        lambda m: pliant.gradient(m, [], lambda step, values: (0.0, [])),
+        'measures is empty; name what is measured, as Measure("tension", "flexor")',
+    ),
+    "positions are not finite": (
+        lambda m: m.grad(m.rest(), positions=np.full((m.node_count, 3), np.nan)),
+        "positions has a number that is not finite",
+    ),
+    "tensions are not finite": (
+        lambda m: m.grad(m.rest(), tensions=[np.nan]),
+        "tensions has a number that is not finite",
+    ),
+    "weights of a marker are not finite": (
+        lambda m: m.grad(m.rest(), markers={"tip": [0, np.inf, 0]}),
+        "markers['tip'] has a number that is not finite",
+    ),
+    "a right-hand side is not finite": (
+        lambda m: m.linearise(m.rest()).solve(np.full(m.linearise(m.rest()).size, np.nan)),
+        "b has a number that is not finite",
+    ),
+    "slopes are not finite": (
+        lambda m: pliant.gradient(m, [pliant.Measure("tension", "flexor")], lambda step, values: (0.0, [np.nan])),
+        "the slopes of judge has a number that is not finite",
+    ),
     "progress cannot be called": (
         lambda m: m.step(m.rest(), [0.05], progress=True),
         "progress must be callable, as progress(stage, share), not bool",
@@ -146,3 +202,24 @@ def test_a_step_that_does_not_converge_is_reported():
     with pytest.raises(pliant.Failure) as caught:
         model.solve({"flexor": {"shortening": "20 mm"}})
     assert caught.value.kind == "failed" and not isinstance(caught.value, ValueError)
+
+
+def errors_of_a_robot(robot):
+    """Everything that fails because of it."""
+    yield lambda: pliant.Model(robot.changed({"marker.tip.point": [99, 5, 5]}))
+    ready = pliant.Model(robot)
+    yield lambda: pliant.inverse(ready)
+    yield lambda: pliant.reduce(ready)
+    yield lambda: pliant.workspace(ready)
+    yield lambda: pliant.identify(robot, ["material.soft.youngs_modulus"], "time,tip_x_mm\n")
+    yield lambda: pliant.Model(robot, progress=lambda stage, share: False)
+
+
+def test_errors_of_a_robot_made_in_python_name_no_file():
+    for work in errors_of_a_robot(pliant.Robot(BAR)):
+        with pytest.raises(pliant.Failure) as caught:
+            work()
+        assert "robot text" not in str(caught.value) and caught.value.file != "robot text", caught.value
+        assert caught.value.line == 0
+    with pytest.raises(pliant.InputError, match="robot text:"):
+        pliant.Model(pliant.Robot.parse(pliant.Robot(BAR).text, changes={"marker.tip.point": [99, 5, 5]}))

@@ -6,6 +6,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from robots import BAR, BLOCK
 
 import pliant
 
@@ -59,3 +60,17 @@ def test_a_print_can_be_cancelled_and_a_bad_job_is_refused(job, tmp_path):
     for work in (pliant.check, pliant.plan, pliant.print_virtually):
         with pytest.raises(pliant.Failure, match="broken.zip"):
             work(broken)
+
+
+def test_a_robot_made_in_python_can_be_sliced(job, tmp_path):
+    _, plan = job
+    robot = pliant.Robot.load(FINGER)
+    assert pliant.slice(robot, tmp_path / "a.zip", printer=TOWER, layer="0.1 mm", support=None).layers == plan.layers
+    changed = pliant.Robot({**BAR, "body": [{**BAR["body"][0], "geometry": {"box": [[0, 0, 0], [9, 9, "= 2 * h"]]}}]},
+                           parameters={"h": 3}).changed({"parameters.h": 4})
+    options = {"printer": TOWER, "layer": "0.1 mm", "resins": {"soft": "soft"}, "any_vat": True}
+    assert pliant.slice(changed, tmp_path / "b.zip", **options).layers == 80
+    assert pliant.slice(FINGER, tmp_path / "c.zip", printer=TOWER, layer=None, copies=1).layers > 10
+    with pytest.raises(pliant.Failure) as caught:
+        pliant.slice(pliant.Robot(BLOCK), tmp_path / "d.zip", **options)
+    assert "/tmp" not in str(caught.value)

@@ -94,3 +94,41 @@ def test_mistakes_are_reported(place):
         pliant.study(plan())
     with pytest.raises(pliant.InputError, match="no folder of a study"):
         pliant.StudyResult.load(place)
+
+
+def test_wrong_options_are_refused_with_the_reason(place):
+    for jobs, text in {0: "jobs is 0", 1.7: "jobs must be a whole number", "x": "jobs must be a whole number"}.items():
+        with pytest.raises(pliant.InputError, match=text):
+            pliant.study(plan(), place / "out", jobs=jobs)
+    with pytest.raises(pliant.InputError, match="on is local or slurm"):
+        pliant.study(plan(), place / "out", on="cloud")
+    assert not (place / "out.toml").exists()
+
+
+def test_the_reason_of_the_program_is_shown(place, monkeypatch):
+    with pytest.raises(pliant.InputError, match="is missing.*\n.*did you mean"):
+        pliant.study({"command": ["simulate", "bar.toml"], "plan": "gird", "key": plan()["key"]}, place / "a")
+    stand_in = place / "pliant"
+    said = "--jobs: not so\nRun with --help for more information."
+    stand_in.write_text(f"#!/bin/sh\ncat >&2 <<END\n{said}\nEND\nexit 2\n")
+    stand_in.chmod(0o755)
+    monkeypatch.setenv("PLIANT_PROGRAM", str(stand_in))
+    with pytest.raises(pliant.InputError, match="^--jobs: not so$"):
+        pliant.study(plan(), place / "b")
+
+
+def test_a_file_that_is_not_the_same_study_is_never_overwritten(place):
+    mine = place / "finger.toml"
+    mine.write_text("name = 'mine'\n")
+    with pytest.raises(pliant.InputError, match="finger.toml: is there already, and is another study"):
+        pliant.study(plan(), place / "finger")
+    assert mine.read_text() == "name = 'mine'\n"
+    with pytest.raises(pliant.InputError, match="did you mean"):
+        pliant.study(plan(plan="gird"), place / "out")
+    assert pliant.study(plan(), place / "out").done.all()
+    kept = (place / "out.toml").read_text()
+    with pytest.raises(pliant.InputError, match="another study"):
+        pliant.study(plan(result={"tip": "markers.tip[0]"}), place / "out")
+    assert (place / "out.toml").read_text() == kept
+    assert len(pliant.study(plan(), place / "out", resume=True)) == 3
+    assert not list(place.glob("*.partial"))

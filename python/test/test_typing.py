@@ -29,9 +29,11 @@ def test_the_type_checker_finds_mistakes(tmp_path):
         "state: pliant.State = model.observe(model.rest())\n"
         "model.step(model.rest(), tme=1.0)\n"
         "model.rest().positons\n"
+        "pliant.Modle\n"
+        "pliant.envs.Raech()\n"
     )
     said = checked(wrong, tmp_path)
-    assert [line.split(":")[1] for line in said.splitlines() if ": error:" in line] == ["2", "3", "4", "5"], said
+    assert [line.split(":")[1] for line in said.splitlines() if ": error:" in line] == list("234567"), said
 
 
 def test_the_module_itself_passes_the_type_checker(tmp_path):

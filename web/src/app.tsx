@@ -2,7 +2,7 @@
 import { useRef, useState } from 'preact/hooks';
 import { counted } from './counted';
 import { DiscardQuestion, unlessLost } from './discard';
-import { useDismiss } from './dismiss';
+import { dialogs, useDismiss } from './dismiss';
 import { Icon } from './icons';
 import { Make } from './make/make';
 import { EmergencyStop } from './print/emergency';
@@ -35,7 +35,13 @@ function Thumbnail({ of }: { of: string }) {
 
 function Open() {
   const [project, setProject] = useState<Project | null>(null);
-  const toggle = async () => setProject(project ? null : ((await (await api('/api/project')).json()) as Project));
+  const toggle = () => {
+    if (project) return setProject(null);
+    api('/api/project')
+      .then((r) => r.json())
+      .then(setProject)
+      .catch((e: Error) => say(e.message));
+  };
   const d = documentState.value;
   const box = useRef<HTMLDivElement>(null);
   useDismiss(project !== null, () => setProject(null), box);
@@ -44,7 +50,7 @@ function Open() {
       <button class="document" aria-expanded={project !== null} onClick={toggle} data-testid="open">
         <span class="title">{scene.value?.head.robot ?? (building.value ? 'building…' : 'no robot')}</span>
         <span class="quiet">
-          {d.name || 'example'}
+          {d.title}
           {d.unsaved && ' · unsaved'}
         </span>
       </button>
@@ -140,47 +146,49 @@ export function App() {
   ];
   return (
     <div class={`app ${info.value?.machine ? 'with-machine' : ''}`}>
-      <header>
-        <h1 class="brand">
-          <svg viewBox="0 0 24 24" aria-hidden="true">
-            <path d="M3 17c5.5 0 7-2.2 9-6.2S16.5 4.5 21 4.5" />
-            <circle cx="3.5" cy="17" r="1.6" />
-            <circle cx="20.5" cy="4.5" r="1.6" />
-          </svg>
-          Pliant
-        </h1>
-        <nav class="sections" aria-label="Sections">
-          {sections.map(([name, label]) => (
-            <a
-              href={`#${name}`}
-              aria-current={section.value === name ? 'page' : undefined}
-              onClick={() => (section.value = name)}
-              data-testid={`section-${name}`}
-            >
-              {label}
-            </a>
-          ))}
-        </nav>
-        <Open />
-        <span class="grow" />
-        {problems.value.length > 0 && (
-          <span class="helm lost" data-testid="file-wrong">
-            <Icon name="warn" /> {counted(problems.value.length, 'error')} in the file
-          </span>
-        )}
-        <Helm />
-        <a class="bare" href="/help/" target="_blank" rel="noopener" aria-label="Documentation" title="Documentation" data-testid="help">
-          <Icon name="help" />
-        </a>
-        <button class="bare" aria-label={theme.value === 'dark' ? 'Light theme' : 'Dark theme'} onClick={toggleTheme} data-testid="theme">
-          <Icon name={theme.value === 'dark' ? 'sun' : 'moon'} />
-        </button>
-      </header>
+      <div class="behind-dialogs" inert={dialogs.value > 0}>
+        <header>
+          <h1 class="brand">
+            <svg viewBox="0 0 24 24" aria-hidden="true">
+              <path d="M3 17c5.5 0 7-2.2 9-6.2S16.5 4.5 21 4.5" />
+              <circle cx="3.5" cy="17" r="1.6" />
+              <circle cx="20.5" cy="4.5" r="1.6" />
+            </svg>
+            Pliant
+          </h1>
+          <nav class="sections" aria-label="Sections">
+            {sections.map(([name, label]) => (
+              <a
+                href={`#${name}`}
+                aria-current={section.value === name ? 'page' : undefined}
+                onClick={() => (section.value = name)}
+                data-testid={`section-${name}`}
+              >
+                {label}
+              </a>
+            ))}
+          </nav>
+          <Open />
+          <span class="grow" />
+          {problems.value.length > 0 && (
+            <span class="helm lost" data-testid="file-wrong">
+              <Icon name="warn" /> {counted(problems.value.length, 'error')} in the file
+            </span>
+          )}
+          <Helm />
+          <a class="bare" href="/help/" target="_blank" rel="noopener" aria-label="Documentation" title="Documentation" data-testid="help">
+            <Icon name="help" />
+          </a>
+          <button class="bare" aria-label={theme.value === 'dark' ? 'Light theme' : 'Dark theme'} onClick={toggleTheme} data-testid="theme">
+            <Icon name={theme.value === 'dark' ? 'sun' : 'moon'} />
+          </button>
+        </header>
+        {section.value === 'simulate' && <Simulate />}
+        {section.value === 'make' && <Make />}
+        {section.value === 'print' && <Print />}
+        <GuideBar />
+      </div>
       <EmergencyStop />
-      {section.value === 'simulate' && <Simulate />}
-      {section.value === 'make' && <Make />}
-      {section.value === 'print' && <Print />}
-      <GuideBar />
       <Enlarged />
       <GeometryDrop />
       <DiscardQuestion />

@@ -1,5 +1,6 @@
 // Asks before unsaved changes are discarded, whether something else is opened or the page is closed.
 import { computed, signal } from '@preact/signals';
+import { useDialog } from './dismiss';
 import { documentState, helm } from './store';
 import { theirs, text, revert } from './simulate/editor';
 
@@ -20,6 +21,7 @@ window.addEventListener('beforeunload', (e) => {
 
 export function DiscardQuestion() {
   const q = question.value;
+  useDialog(q !== null);
   if (!q) return null;
   const close = () => (question.value = null);
   return (

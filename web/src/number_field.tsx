@@ -20,6 +20,9 @@ export function inRange(v: number, { from, to, open }: Range): boolean {
   return Number.isFinite(v) && (open ? v > from && v < to : v >= from && v <= to);
 }
 
+/// The error of a typed text.
+export const wrongText = (typed: string, range: Range, unit: string) => `${typed && `${typed}: `}${rangeText(range, unit)}`;
+
 interface Props {
   value: number;
   range: Range;
@@ -45,7 +48,7 @@ export function NumberField({ value, range, unit, label, step = 'any', disabled,
   const take = async (input: HTMLInputElement) => {
     if (!open.current || disabled) return;
     const v = input.valueAsNumber;
-    if (!inRange(v, range)) return setWrong(`${input.value || 'This'}: ${rangeText(range, unit)}`);
+    if (!inRange(v, range)) return setWrong(wrongText(input.value, range, unit));
     open.current = false;
     setWrong('');
     await onValue(v);

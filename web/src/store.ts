@@ -15,7 +15,7 @@ export const lines = signal(0);
 export const helm = signal({ you: true, held: true, asked: false, waiting: false, pages: 1 });
 export const mayDrive = computed(() => online.value && helm.value.you);
 
-export const documentState = signal({ name: '', unsaved: false, undo: 0, redo: 0, accuracy: 'automatic' as Accuracy });
+export const documentState = signal({ name: '', title: 'example', unsaved: false, undo: 0, redo: 0, accuracy: 'automatic' as Accuracy, digest: '' });
 export const scene = signal<Scene | null>(null);
 /// The latest frame; with linear elements it is a fast preview, too stiff to be a result, and that of a reduced model is
 /// nearly one.
@@ -180,11 +180,20 @@ export async function loadJob() {
   job.value = (await (await api('/api/job')).json()) as Job;
 }
 
+let helmTimer = 0;
+const helmKept = 10_000; // ms that the studio keeps control for a page without a connection
+/// A page that is gone loses control when another page is heard after that.
+function askForLostHelm() {
+  clearTimeout(helmTimer);
+  if (!helm.value.you && !helm.value.held) helmTimer = window.setTimeout(() => send({ type: 'ping' }), helmKept);
+}
+
 function receiveText(text: string) {
   const event = JSON.parse(text) as Record<string, unknown> & { type: string };
   if (event.type === 'helm') {
     helm.value = event as never;
     if (!helm.value.you) sentAt.clear();
+    askForLostHelm();
   }
   if (event.type === 'document') documentState.value = event as never;
   if (event.type === 'scene') loadScene().catch((e: Error) => say(e.message));

@@ -129,6 +129,12 @@ export interface Projector {
   offset_y: number;
 }
 
+/// What a job was sliced from.
+export interface JobSource {
+  robot: string; // digest of the robot file's text
+  order: Record<string, unknown>; // body of /api/job/slice
+}
+
 export interface Job {
   /** Source of its images, if not the current job. */
   at?: (layer: number, material: number) => string;
@@ -137,6 +143,8 @@ export interface Job {
   key: string;
   file: string;
   saved: boolean;
+  /** Null: not sliced from the robot in the editor. */
+  source: JobSource | null;
   printer: string;
   colours: string[];
   issues: { text: string; severity?: string; layer: number; row?: number; column?: number }[];

@@ -199,6 +199,8 @@ test('a goal is solved without editing the file: reached, or the nearest point; 
   await set('goal-low-flexor', 2);
   await page.getByTestId('find-goal').click();
   assert.match(await page.getByTestId('refused-goal').textContent(), /flexor: the range from 2 to 1 is empty/);
+  assert.equal(await page.getByTestId('goal-found').count(), 0, 'what was found before is no answer to this');
+  assert.equal(await page.getByTestId('goal-program').count(), 0);
   assert.deepEqual(wrong.filter((w) => !/422/.test(w)), []);
 });
 
@@ -217,6 +219,10 @@ test('unknown numbers are identified from a table of measurements and written in
   await page.getByTestId('measured').setInputFiles({ name: 'hole.csv', mimeType: 'text/csv', buffer: Buffer.from('time,nothing\n1,2\n') });
   await page.getByTestId('find-identify').click();
   assert.match(await page.getByTestId('refused-identify').textContent(), /hole\.csv:1: the robot has nothing that column "nothing" could be/);
+  const heldOut = page.getByTestId('judge').locator('option').first();
+  assert.equal(await heldOut.textContent(), 'none');
+  await page.getByTestId('measured').setInputFiles({ name: 'use.csv', mimeType: 'text/csv', buffer: Buffer.from('time,use,tip_z_mm\n1,fit,2\n2,judge,3\n') });
+  await page.waitForFunction(() => document.querySelector('[data-testid=judge] option').textContent === 'as in the file (1 row)');
   await page.getByTestId('measured').setInputFiles({ name: 'tip.csv', mimeType: 'text/csv', buffer: Buffer.from(`time,tip_z_mm\n${rows.join('\n')}\n`) });
   await page.getByTestId('find-identify').click();
   await page.waitForSelector('[data-testid="found-material.soft.youngs_modulus"]', { timeout: 60_000 });
@@ -461,6 +467,26 @@ test('several pages watch, one is in control, and control can be handed over', a
   await first.page.waitForSelector('[data-testid=helm][data-state=watching]');
   assert.ok(await second.page.locator('#actuator-0').isEnabled());
   assert.deepEqual([...first.wrong, ...second.wrong], []);
+});
+
+test('a new page gets control at once if the page that had it is gone, an older one within ten seconds', async (t) => {
+  const other = await startStudio();
+  t.after(() => other.stop());
+  const first = await openPage(browser, other.address, t);
+  await first.page.waitForSelector('[data-testid=helm][data-state=steering]', { state: 'attached' });
+  const crash = (page) => page.evaluate(() => { // a browser that crashes says nothing, and does not come back
+    WebSocket.prototype.send = () => {};
+    window.WebSocket = class { constructor() { throw new Error('crashed'); } };
+    window.pliant.dropLine();
+  });
+  await crash(first.page);
+  const second = await openPage(browser, other.address, t);
+  await second.page.waitForSelector('[data-testid=helm][data-state=steering]', { state: 'attached', timeout: 4000 });
+  const third = await openPage(browser, other.address, t);
+  await third.page.waitForSelector('[data-testid=helm][data-state=watching]');
+  await crash(second.page);
+  await third.page.waitForSelector('[data-testid=helm][data-state=steering]', { state: 'attached', timeout: 13_000 });
+  assert.deepEqual(third.wrong, []);
 });
 
 test('mesh, rest shape, section, exploded parts, fields and pins are drawn, and every result can be saved', async (t) => {
@@ -728,6 +754,27 @@ test('an invalid option is reported at its field; supports, bonds and exposure r
   assert.deepEqual(wrong, []);
 });
 
+test('on a small window the sliders are wide enough, and the legend covers neither robot nor status', async (t) => {
+  const { page } = await openPage(browser, studio.address, t, { viewport: { width: 1024, height: 700 } });
+  await settled(page);
+  await page.getByTestId('field').selectOption('von_mises');
+  await page.getByTestId('legend').waitFor();
+  for (const id of ['program', 'replay']) assert.ok((await page.getByTestId(id).boundingBox()).width > 150, id);
+  const apart = async (other) => {
+    const [a, b] = [await page.getByTestId('legend').boundingBox(), await page.getByTestId(other).boundingBox()];
+    const over = a.x < b.x + b.width && a.x + a.width > b.x && a.y < b.y + b.height && a.y + a.height > b.y;
+    assert.ok(!over, `${other}: ${JSON.stringify([a, b])}`);
+  };
+  await apart('status');
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.waitForTimeout(300);
+  await apart('status');
+  await apart('pin');
+  const [legend, view] = [await page.getByTestId('legend').boundingBox(), await page.getByTestId('view').boundingBox()];
+  assert.ok(legend.y > view.y + 0.75 * view.height && legend.height < 0.2 * view.height, 'it lies along the lower edge');
+  await page.getByTestId('field').selectOption('material');
+});
+
 test('on a phone no button and no field is cut off', async (t) => {
   const { page, wrong } = await openPage(browser, studio.address, t, { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true });
   await page.waitForFunction(() => window.pliant.job.value !== null);
@@ -775,5 +822,10 @@ test('a print on the virtual printer is paused, resumed and cancelled', async (t
   await page.getByTestId('cancel-sure').click();
   await page.getByTestId('start').waitFor();
   assert.match(await page.getByTestId('log').textContent(), /cancelled/);
+  const at = await layer();
+  const of = await page.evaluate(() => window.pliant.job.value.manifest.layers.length);
+  assert.equal(await page.getByTestId('print-state').textContent(), `Cancelled at layer ${at} of ${of}`);
+  assert.equal(await page.getByTestId('cancelled').textContent(), 'Remove the part from the platform.');
+  assert.equal(await page.getByTestId('time-left').textContent(), '–');
   assert.deepEqual([...wrong, ...watcher.wrong], []);
 });

@@ -5,7 +5,7 @@ import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { openPage, program, startBrowser, startPrint, startStudio, takeTwin } from './studio.mjs';
+import { openPage, program, setSpeed, startBrowser, startPrint, startStudio, takeTwin } from './studio.mjs';
 
 const robot = new URL('../../examples/tutorial/finger.toml', import.meta.url).pathname;
 const printer = new URL('../../examples/printers/tower.toml', import.meta.url).pathname;
@@ -51,10 +51,9 @@ test('a virtual print is resumed after the studio was killed, and passes the ins
   const { page } = first;
   const line = page.getByTestId('journals').locator('button', { hasText: 'finger' });
   assert.match(await line.textContent(), /virtual printer.*interrupted/);
-  await line.click();
-  await page.getByTestId('open-interrupted').click();
-  await takeTwin(page, '3000', { goOn: true });
+  await page.getByTestId('open-and-resume').click();
   await page.getByTestId('interrupted').waitFor();
+  await setSpeed(page, 3000);
   assert.equal(await page.getByTestId('start').count(), 0, 'nothing is begun anew over a print that waits');
   // The part as far as it was printed is there again.
   await shown(page, (l) => Number(document.querySelector('[data-testid=part]')?.dataset.height) >= 0.1 * l - 1e-6, broken - 2);

@@ -204,6 +204,17 @@ test('a chamber is made from a drawn box or from a cavity clicked on, and both c
   assert.match(await readRobot(page), /name = "chamber 2"\ninside = \[/);
   for (let k = 0; k < 2; ++k) await rebuilt(page, () => page.getByTestId('build-undo').click());
   assert.equal(await readRobot(page), before);
+  // One that does not fit into the body is reported here, and undone.
+  await page.getByTestId('place-chamber').click();
+  await page.getByTestId('chamber-ball').click();
+  await page.getByTestId('place-radius').fill('40');
+  await page.getByTestId('place-radius').press('Enter');
+  await click([32, 6, 12]);
+  await page.getByTestId('build-problems').waitFor();
+  assert.match(await page.getByTestId('build-problems').textContent(), /chamber 1/);
+  await page.getByTestId('build-undo-problem').click();
+  await page.getByTestId('build-problems').waitFor({ state: 'detached' });
+  assert.equal(await readRobot(page), before);
   assert.deepEqual(wrong, []);
 });
 

@@ -102,6 +102,20 @@ test('a studio that has ended is reported as such, also during a print', async (
   await told(page, /The studio does not respond/);
 });
 
+test('after the studio has ended the robot is shown as last known, and the menu says why it cannot open', async (t) => {
+  const other = await startStudio([], folder);
+  const { page, wrong } = await openPage(browser, other.address, t);
+  await settled(page);
+  other.child.kill('SIGKILL');
+  await page.getByTestId('lost').waitFor();
+  await page.waitForSelector('[data-testid=status][data-state=unknown][data-lamp=unknown]');
+  assert.match(await page.getByTestId('status').textContent(), /last known state/);
+  assert.equal(await page.getByTestId('replay-at').textContent(), 'last');
+  await page.getByTestId('open').click();
+  await told(page, /The studio does not respond/);
+  assert.deepEqual(wrong.filter((w) => !/ERR_CONNECTION|WebSocket/.test(w)), []);
+});
+
 test('the page holds the licences of its libraries', async (t) => {
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);

@@ -162,7 +162,17 @@ test('the page asks before unsaved text is lost', async (t) => {
     await page.getByTestId('discard-question').waitFor();
   };
   await open();
+  // The keyboard stays in the question, and afterwards returns to where it was.
+  const focused = () => page.evaluate(() => document.activeElement?.dataset.testid ?? document.activeElement?.tagName);
+  const reached = new Set();
+  for (let k = 0; k < 12; ++k) {
+    await page.keyboard.press('Tab');
+    reached.add(await focused());
+  }
+  assert.deepEqual([...reached].filter((id) => !['keep-editing', 'discard', 'BODY', 'HTML'].includes(id)), []);
+  assert.ok(reached.has('keep-editing') && reached.has('discard'));
   await page.getByTestId('keep-editing').click();
+  assert.equal(await page.evaluate(() => document.querySelector('.behind-dialogs').inert), false);
   assert.equal(await readRobot(page), mine);
   // What comes from the studio meanwhile does not take it either.
   await page.getByTestId('fine').click();

@@ -33,7 +33,7 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 let page;
 before(async () => {
   pretendBrowser();
-  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/fit', 'simulate/robot_keys', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'make/gantt', 'make/plan', 'make/place', 'print/telling', 'orbit_keys', 'simulate/gif', 'simulate/response', 'simulate/geometry', 'simulate/motion', 'simulate/workspace'];
+  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/fit', 'simulate/robot_keys', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'make/gantt', 'make/plan', 'make/place', 'make/order', 'make/paint', 'make/stale', 'print/telling', 'orbit_keys', 'simulate/gif', 'simulate/response', 'simulate/geometry', 'simulate/motion', 'simulate/workspace'];
   const entry = join(folder, 'entry.ts');
   writeFileSync(entry, modules.map((m) => `export * from ${JSON.stringify(join(sources, m))};`).join('\n'));
   const outfile = join(folder, 'units.mjs');
@@ -108,6 +108,130 @@ test('a number is set by the path that --set takes, in tables and in named list 
   assert.equal(page.assign(file, 'contact.friction', '0'), file.replace('0.3', '0'));
   assert.equal(page.assign(file, 'cable.middle.friction', '0'), null);
   assert.equal(page.assign(file, 'chamber.left.friction', '0'), null);
+});
+
+const withKeys = `name = "x" # a robot
+[program]
+duration = "2 s"
+
+# how it bends
+[[program.key]]      # first
+time = "1 s"         # at [half] time
+flexor = "2 mm"
+
+# and back
+[[program.key]]
+time = "2 s"
+flexor = 0
+points = [
+  [1, 2], # ]
+  [3, 4],
+]
+note = """
+[[program.key]]
+"""
+
+# where it is measured
+[[marker]]           # the tip
+name = "tip [a]"
+`;
+
+test('a program takes the place of the old one; comments, order and all else stay', () => {
+  const next = page.replaceEntries(withKeys, 'program.key', '[[program.key]]\ntime = "3 s"');
+  assert.equal(
+    next,
+    `name = "x" # a robot
+[program]
+duration = "2 s"
+
+# how it bends
+[[program.key]]
+time = "3 s"
+
+# and back
+
+# where it is measured
+[[marker]]           # the tip
+name = "tip [a]"
+`,
+  );
+  assert.equal(page.replaceEntries(next, 'program.key', '[[program.key]]\ntime = "3 s"'), next);
+});
+
+test('a file without a program gets one at its end, one with a list on a line loses that', () => {
+  const key = '[[program.key]]\ntime = "3 s"';
+  assert.equal(page.replaceEntries('a = 1\n\n[[marker]]\nname = "tip" # [\n', 'program.key', key), `a = 1\n\n[[marker]]\nname = "tip" # [\n\n${key}\n`);
+  assert.equal(page.replaceEntries('[program]\nkey = [{ time = 1 },\n  { time = 2 }] # two\nsteps = 3\n', 'program.key', key), `[program]\nsteps = 3\n\n${key}\n`);
+  assert.equal(page.replaceEntries('program.key = [] # none\na = "#[" # b\n', 'program.key', key), `a = "#[" # b\n\n${key}\n`);
+});
+
+test('a program has seconds if the file has keys for it', () => {
+  assert.equal(page.hasProgramKeys(withKeys), true);
+  assert.equal(page.hasProgramKeys('[program]\nkey = [{ time = 1 }]\n'), true);
+  assert.equal(page.hasProgramKeys('# [[program.key]]\n[program]\nsteps = 3 # key = 1\n[other]\nkey = 1\n'), false);
+});
+
+test('the rows that a table holds out itself are counted', () => {
+  assert.equal(page.judgeRows('step,use,tip_x_mm\n1,fit,59\n2, judge ,58\r\n3,"judge",57\n'), 2);
+  assert.equal(page.judgeRows('step,tip_x_mm\n1,59\n'), 0);
+});
+
+test('noise is no curve: an axis has a smallest range', () => {
+  assert.deepEqual(page.axisRange(0, 4e-15), [-0.5, 0.5]);
+  assert.deepEqual(page.axisRange(80, 80 + 1e-12), [79.5, 80.5]);
+  assert.deepEqual(page.axisRange(0, 2), [0, 2]);
+});
+
+test('a print that was cancelled is known by its state', () => {
+  const is = (flags, progress, canResume = false) => page.isCancelled({ state: { flags }, job: { canResume }, progress: { layer: 4, finished: false, failed: false, ...progress } });
+  assert.equal(is({ operational: true, ready: true }, {}), true);
+  assert.equal(is({ working: true }, {}), true);
+  for (const flag of ['printing', 'paused', 'cancelling', 'error']) assert.equal(is({ [flag]: true }, {}), false, flag);
+  for (const progress of [{ layer: null }, { finished: true }, { failed: true }]) assert.equal(is({}, progress), false);
+  assert.equal(is({}, {}, true), false, 'it is interrupted');
+});
+
+test('an empty field says what is needed', () => {
+  assert.equal(page.wrongText('', { from: 0, to: Infinity, open: true }, 'mm'), 'must be more than 0 mm');
+  assert.equal(page.wrongText('-1', { from: 0, to: Infinity, open: true }, 'mm'), '-1: must be more than 0 mm');
+});
+
+test('a job is out of date by what its robot and its form say now, in the words of the form', () => {
+  const source = { robot: 'abc', order: { printer: 'tower', copies: 1, layer: '100 um', resin: [] } };
+  const order = { copies: 1, layer: '100 um', overlap: [] };
+  assert.deepEqual(page.changesSince(source, 'abc', order), []);
+  assert.deepEqual(page.changesSince(source, 'abc', null), []);
+  assert.deepEqual(page.changesSince(source, 'def', order), ['robot']);
+  assert.deepEqual(page.changesSince(source, 'abc', { ...order, layer: '50 um', printer: 'arm.toml' }), ['printer', 'layer height']);
+  assert.deepEqual(page.changesSince(source, 'abc', { ...order, support: 'soft', lift: '2 mm', 'support-tip': '1 mm' }), ['supports']);
+  assert.deepEqual(page.changesSince({ ...source, order: { layer_um: 100 } }, 'abc', order), []);
+});
+
+test('a form that takes the order of a job gives the same order again', () => {
+  const order = {
+    printer: 'arm.toml',
+    copies: 3,
+    layer: '50 um',
+    'least-layer': '0.02 mm',
+    spacing: '3 mm',
+    support: 'soft',
+    'support-angle': '30',
+    'support-tip': '0.5 mm',
+    turn: [90, 0, 0],
+    scale: 2,
+    at: [1, -2],
+    'no-anti-alias': true,
+    threshold: 0.4,
+    resin: ['soft=semi-flex'],
+    exposure: ['soft=2.5 s,8 s', 'hard=3 s'],
+    overlap: ['soft+hard=3,1'],
+    interlock: [],
+    'support-paint': `${page.columns}\nblock,1,2,3,0,0,-1,2\n`,
+  };
+  page.setOrder(order);
+  assert.deepEqual(page.wholeOrder(['soft', 'hard']), order);
+  page.setOrder({ layer_um: 80 });
+  assert.deepEqual(page.wholeOrder(['soft']), { printer: 'tower', copies: 1, layer: '80 um', resin: [], exposure: [], overlap: [], interlock: [] });
 });
 
 test('the colours of a field are those of the pictures, and are clamped at both ends', () => {

@@ -3,11 +3,11 @@
     env = pliant.envs.Reach()
     observation, info = env.reset(seed=1)
     observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
-    kept = env.get_state()                     # all of it, to be set again: what other environments cannot do
+    kept = env.get_state()                     # the complete state: env.set_state(kept) restores it
 
-    many = pliant.envs.Vector(pliant.envs.Reach, 64)      # side by side on all cores
+    many = pliant.envs.Vector(pliant.envs.Reach, 64)      # in parallel on all cores
 
-Where Gymnasium is installed they are registered as pliant/Reach-v0, pliant/Follow-v0, pliant/Grasp-v0 and
+If Gymnasium is installed, they are registered as pliant/Reach-v0, pliant/Follow-v0, pliant/Grasp-v0 and
 pliant/Crawl-v0.
 """
 

@@ -1,10 +1,11 @@
-"""What all environments share: the signatures of Gymnasium 0.29, seeds, states that are saved and set."""
+"""Base of all environments: the signatures of Gymnasium 0.29, seeds, states that can be saved and restored."""
 
 from __future__ import annotations
 
 import copy
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -28,31 +29,45 @@ FloatArray = npt.NDArray[np.float32]
 
 @dataclass
 class Episode:
-    """Everything about an environment that changes: a value that can be copied, pickled, kept and set again."""
+    """The complete state of an environment: a value that can be copied, pickled and restored."""
 
-    #: of the robot
+    #: state of the robot
     robot: State
-    #: (actuators,) where each stands in its range, 0 to 1
+    #: (actuators,) position of each in its range, 0 to 1
     pulled: npt.NDArray[np.float64]
-    #: steps since the reset
+    #: number of steps since the reset
     steps: int = 0
-    #: what the task remembers, by name
+    #: variables of the task, by name
     task: dict[str, Any] = field(default_factory=dict)
-    #: of the generator that resets draw from
+    #: state of the random generator of resets
     random: dict[str, Any] = field(default_factory=dict)
+    #: name of the class of the environment
+    kind: str = ""
+
+
+class Half(NamedTuple):
+    """First half of a step, before the robot is solved."""
+
+    #: (actuators,) from -1 to 1
+    action: FloatArray
+    #: (actuators,) position of each in its range after the step
+    pulled: npt.NDArray[np.float64]
+    inputs: Inputs
+    #: a copy of the robot's state, to be stepped
+    robot: State
 
 
 class RobotEnv(_Base):  # type: ignore[misc]
-    """A robot, its actuators as actions, a task.
+    """A robot with a task; actions move its actuators.
 
-    An action says for each actuator how far it goes in this step: -1 and 1 are the most it may, towards the lower and
-    the upper end of its range. Every step is an equilibrium of the whole robot, or a step in time. The same seed and
+    An action is the change of each actuator in this step: -1 and 1 are the largest changes, towards the first and the
+    second end of its range. Every step is an equilibrium of the whole robot, or a step in time. The same seed and
     the same actions give the same numbers to the last bit, on any number of threads, alone or in a
     :class:`~pliant.envs.Vector`.
 
     A step that finds no equilibrium ends the episode: `terminated` is True and ``info["failed"]`` says why.
 
-    What Gymnasium's own environments cannot do: :meth:`get_state` and :meth:`set_state`.
+    Unlike Gymnasium's own environments, these can be saved and restored: :meth:`get_state` and :meth:`set_state`.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}
@@ -63,6 +78,8 @@ class RobotEnv(_Base):  # type: ignore[misc]
     max_steps: ClassVar[int] = 25
     #: Largest change of an actuator in a step, as a share of its range.
     largest_change: ClassVar[float] = 0.15
+    #: Names of the options of reset; None: any.
+    option_names: ClassVar[tuple[str, ...] | None] = None
 
     def __init__(self, model: Model | None = None, *, render_mode: str | None = None) -> None:
         if render_mode not in (None, "rgb_array"):
@@ -76,7 +93,7 @@ class RobotEnv(_Base):  # type: ignore[misc]
         self._random = np.random.default_rng()
         self._episode: Episode | None = None
 
-    # ---- what a task says
+    # ---- defined by each task
 
     @classmethod
     def make_model(cls) -> Model:
@@ -84,26 +101,26 @@ class RobotEnv(_Base):  # type: ignore[misc]
         raise NotImplementedError
 
     def ranges(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], tuple[str, ...]]:
-        """(actuators,) SI values at the lower and the upper end of each range, and the kinds of :class:`Drive`."""
+        """(actuators,) SI values at the first and the second end of each range, and the kinds of :class:`Drive`."""
         raise NotImplementedError
 
     def observation_size(self) -> int:
-        """Numbers of an observation."""
+        """Length of an observation."""
         raise NotImplementedError
 
     def begin(self, episode: Episode, options: dict[str, Any]) -> None:
         """Fills in `episode.task` from the generator `self._random` and the options of reset."""
 
     def time_after(self, episode: Episode) -> float:
-        """Of the program, after the next step."""
+        """Program time after the next step."""
         return episode.robot.time
 
     def observe(self, episode: Episode, seen: Observation) -> FloatArray:
-        """(observation_size,) what the policy sees."""
+        """(observation_size,) the observation."""
         raise NotImplementedError
 
     def judge(self, episode: Episode, seen: Observation, action: FloatArray) -> tuple[float, bool, dict[str, Any]]:
-        """Reward, whether the task is over, and what else is worth knowing."""
+        """Reward, whether the task is over, and further entries of info."""
         raise NotImplementedError
 
     # ---- the interface of Gymnasium
@@ -114,11 +131,15 @@ class RobotEnv(_Base):  # type: ignore[misc]
         """Begins an episode.
 
         Args:
-            seed: from which everything random of this and later episodes follows; None: goes on as it was.
-            options: of the task.
+            seed: whole number from 0, of any size, for everything random in this and later episodes; None: the random
+                generator continues.
+            options: options of the task, as its class describes them; others are refused.
 
         Returns:
-            (observation_size,) observation, and a dict.
+            (observation_size,) observation, and info, a dict.
+
+        Raises:
+            InputError: the seed or an option is not possible; the environment does not change.
         """
         self._begin(seed, options)
         episode = self.episode
@@ -126,17 +147,17 @@ class RobotEnv(_Base):  # type: ignore[misc]
         return self.observe(episode, seen), self._info(seen)
 
     def step(self, action: Any) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
-        """A step of the robot.
+        """One step of the robot. If it fails, the environment does not change.
 
         Args:
-            action: (actuators,) from -1 to 1; beyond is cut off.
+            action: (actuators,) from -1 to 1; larger numbers are clipped.
 
         Returns:
             observation, reward, terminated, truncated, info
         """
-        inputs, given = self._before(action)
-        result = self.model.step(self.episode.robot, inputs)
-        return self._after(given, result, self.episode.robot.observe())
+        half = self._before(action)
+        result = self.model.step(half.robot, half.inputs)
+        return self._after(half, result, half.robot.observe())
 
     def render(self) -> Any:
         """(height, width, 3) picture of the robot, with ``render_mode="rgb_array"``."""
@@ -147,73 +168,111 @@ class RobotEnv(_Base):  # type: ignore[misc]
         return picture(self.episode.robot)
 
     def close(self) -> None:
-        """Nothing is held open."""
+        """Does nothing: no files or windows are open."""
 
     @property
     def unwrapped(self) -> RobotEnv:
-        """Itself."""
+        """The environment itself, as in Gymnasium."""
         return self
 
     @property
     def np_random(self) -> np.random.Generator:
-        """What resets draw from."""
+        """Random generator of resets."""
         return self._random
 
     # ---- states
 
     @property
     def episode(self) -> Episode:
-        """The episode as it stands."""
+        """The current episode."""
         if self._episode is None:
             raise InputError("the environment has not begun; call reset() first")
         return self._episode
 
     def get_state(self) -> Episode:
-        """Everything that changes: to be kept, pickled, and set again, here or in another environment of the task."""
+        """The complete state, which can be pickled and restored in any environment of the same task and robot."""
         kept = Episode(
             self.episode.robot.copy(),
             self.episode.pulled.copy(),
             self.episode.steps,
             copy.deepcopy(self.episode.task),
             copy.deepcopy(dict(self._random.bit_generator.state)),
+            type(self).__name__,
         )
         return kept
 
     def set_state(self, episode: Episode) -> None:
-        """Goes on from where :meth:`get_state` was called."""
-        given = _check.instance(episode, Episode, "episode")
-        robot = given.robot
-        if robot.model is not self.model:
-            robot = self.model.state_from(robot.bytes())
-        self._episode = Episode(robot.copy(), given.pulled.copy(), given.steps, copy.deepcopy(given.task))
-        self._random.bit_generator.state = copy.deepcopy(given.random)
+        """Restores a state from :meth:`get_state`.
 
-    # ---- the two halves of a step, between which robots are solved alone or many at once
+        Raises:
+            InputError: the state is of another task or another robot; the environment does not change.
+        """
+        given = _check.instance(episode, Episode, "episode")
+        self._take(given, self._robot_of(given))
+
+    def _robot_of(self, episode: Episode) -> State:
+        """The robot of a state, as one of this environment's model."""
+        if episode.kind not in ("", type(self).__name__):
+            raise InputError(f"the state is one of {episode.kind}, not of {type(self).__name__}")
+        if episode.robot.model is self.model:
+            return episode.robot
+        try:
+            found = self.model.state_from(episode.robot.bytes())
+        except InputError:
+            found = None
+        if found is None or len(episode.pulled) != len(self._low):
+            raise InputError("the state is one of an environment with another robot")
+        return found
+
+    def _take(self, given: Episode, robot: State) -> None:
+        self._episode = Episode(robot.copy(), given.pulled.copy(), given.steps, copy.deepcopy(given.task))
+        if given.random:
+            self._random.bit_generator.state = copy.deepcopy(given.random)
+
+    # ---- the two halves of a step; in between, one robot is solved, or many in parallel
 
     def _begin(self, seed: int | None, options: dict[str, Any] | None) -> None:
+        """Begins an episode. If it fails, the environment does not change."""
+        given = self._known_options(options)
+        before = self._episode, self._random
         if seed is not None:
-            self._random = np.random.default_rng(_check.integer(seed, "seed"))
+            self._random = np.random.default_rng(_check.seed(seed))
         self._episode = Episode(self.model.rest(), np.zeros(len(self._low)))
-        self.begin(self._episode, {} if options is None else dict(options))
+        try:
+            self.begin(self._episode, given)
+        except BaseException:
+            self._episode, self._random = before
+            raise
 
-    def _before(self, action: Any) -> tuple[Inputs, FloatArray]:
+    def _known_options(self, options: Any) -> dict[str, Any]:
+        if options is not None and not isinstance(options, Mapping):
+            raise InputError(f"options must be a dict, not {type(options).__name__}")
+        given = dict(options or {})
+        unknown = [] if self.option_names is None else [name for name in given if name not in self.option_names]
+        if unknown:
+            known = ", ".join(self.option_names or ()) or "none"
+            raise InputError(f"there is no option {unknown[0]!r} of {type(self).__name__}; there are: {known}")
+        return given
+
+    def _before(self, action: Any) -> Half:
+        """Checks the action and prepares the step. Changes nothing, so that a step that fails has no effect."""
         episode = self.episode
-        given = np.clip(_check.numbers(action, "action", (len(self._low),)), -1, 1).astype(np.float32)
-        if not np.isfinite(given).all():
-            raise InputError("the action is not finite")
-        episode.pulled = np.clip(episode.pulled + self.largest_change * given, 0, 1)
-        return self._inputs_at(episode.pulled, self.time_after(episode)), given
+        finite = _check.finite(action, "action", (len(self._low),))
+        given = np.clip(finite, -1, 1).astype(np.float32)
+        pulled = np.clip(episode.pulled + self.largest_change * given, 0, 1)
+        return Half(given, pulled, self._inputs_at(pulled, self.time_after(episode)), episode.robot.copy())
 
     def _inputs_at(self, pulled: npt.NDArray[np.float64], time: float) -> Inputs:
         values = self._low + pulled * (self._high - self._low)
         return Inputs(self.model.actuators, time, self._kinds, values.tolist())
 
     def _after(
-        self, given: FloatArray, result: StepResult, seen: Observation
+        self, half: Half, result: StepResult, seen: Observation
     ) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
         episode = self.episode
+        episode.robot, episode.pulled = half.robot, half.pulled
         episode.steps += 1
-        reward, terminated, more = self.judge(episode, seen, given)
+        reward, terminated, more = self.judge(episode, seen, half.action)
         info = {**self._info(seen), **more}
         if not result.arrived:
             terminated = True

@@ -1,4 +1,4 @@
-"""Box spaces: those of Gymnasium where it is installed, else one with the same look."""
+"""Box spaces: those of Gymnasium if it is installed, otherwise one with the same interface."""
 
 from __future__ import annotations
 
@@ -7,9 +7,11 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from .. import _check
+
 
 class Space(Protocol):
-    """What environments need of a space, and what theirs have."""
+    """The part of the interface of Gymnasium's spaces that environments use."""
 
     low: npt.NDArray[Any]
     high: npt.NDArray[Any]
@@ -22,7 +24,7 @@ class Space(Protocol):
 
 
 class OwnBox:
-    """Arrays of one shape between two bounds, as `gymnasium.spaces.Box`."""
+    """All arrays of one shape between two bounds, as `gymnasium.spaces.Box`."""
 
     def __init__(self, low: Any, high: Any, shape: tuple[int, ...] | None = None, dtype: Any = np.float32) -> None:
         self.shape = tuple(np.shape(low)) if shape is None else tuple(shape)
@@ -32,19 +34,19 @@ class OwnBox:
         self._random = np.random.default_rng()
 
     def seed(self, seed: int | None = None) -> list[int | None]:
-        """Makes what :meth:`sample` gives follow from a number."""
-        self._random = np.random.default_rng(seed)
+        """Seeds :meth:`sample`."""
+        self._random = np.random.default_rng(None if seed is None else _check.seed(seed))
         return [seed]
 
     def sample(self) -> npt.NDArray[Any]:
-        """One of its arrays: evenly spread between finite bounds, else normally distributed."""
+        """A random array: uniform between finite bounds, otherwise normally distributed."""
         bounded = np.isfinite(self.low) & np.isfinite(self.high)
         low, high = np.where(bounded, self.low, 0), np.where(bounded, self.high, 1)
         flat = np.where(bounded, self._random.uniform(low, high), self._random.normal(size=self.shape))
         return flat.astype(self.dtype)
 
     def contains(self, x: Any) -> bool:
-        """True if x is one of its arrays."""
+        """True if x has the shape and is within the bounds."""
         array = np.asarray(x)
         if array.shape != self.shape or not np.can_cast(array.dtype, self.dtype):
             return False
@@ -66,7 +68,7 @@ class OwnBox:
 
 
 def box(low: Any, high: Any, shape: tuple[int, ...] | None = None, dtype: Any = np.float32) -> Any:
-    """A Box of Gymnasium, where it is installed, else of our own."""
+    """A Box of Gymnasium if it is installed, otherwise an OwnBox."""
     try:
         from gymnasium.spaces import Box
     except ImportError:

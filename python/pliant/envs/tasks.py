@@ -24,9 +24,9 @@ def _floats(*parts: Any) -> FloatArray:
 class _Arm(RobotEnv):
     """An arm of 100 mm with three cables, held at one end. Lengths in observations are in units of 100 mm."""
 
-    #: m, of the arm
+    #: m, length of the arm
     reach_m: ClassVar[float] = 0.1
-    #: m, of a cable at most
+    #: m, largest pull of a cable
     most_m: ClassVar[float] = 0.016
 
     @classmethod
@@ -68,7 +68,7 @@ class _Arm(RobotEnv):
         return _floats(tip / self.reach_m, (self._goal(episode) - tip) / self.reach_m, episode.pulled)
 
     def _somewhere(self) -> npt.NDArray[np.float64]:
-        """A place that the tip can get to: that of random tensions."""
+        """A position that the tip can reach: that at random tensions."""
         pulled = self._random.uniform(0, 1, len(self._low))
         pulled[int(self._random.integers(len(pulled)))] = 0
         inputs = self._inputs_at(pulled, 0.0)
@@ -76,20 +76,21 @@ class _Arm(RobotEnv):
 
 
 class Reach(_Arm):
-    """The tip of an arm with three cables goes to a place.
+    """The tip of an arm with three cables moves to a goal.
 
-    Observation (9,): tip (3) and the way from tip to goal (3) in units of 100 mm, how far each cable is pulled (3).
-    Action (3,): change of the pull of each cable. Reward: minus the distance in units of 100 mm, and 1 where the goal
-    is reached within 2 mm, which ends the episode. The goal is one that the arm can reach;
+    Observation (9,): position of the tip (3) and vector from the tip to the goal (3), in units of 100 mm; pull of each
+    cable, 0 to 1 (3). Action (3,): change of the pull of each cable. Reward: minus the distance in units of 100 mm,
+    plus 1 if the goal is reached within 2 mm, which ends the episode. The goal is random and within reach of the arm;
     ``options={"goal": [x, y, z]}`` (m) sets it.
     """
 
     #: m
     tolerance_m: ClassVar[float] = 0.002
+    option_names: ClassVar[tuple[str, ...] | None] = ("goal",)
 
     def begin(self, episode: Episode, options: dict[str, Any]) -> None:
         goal = options.get("goal")
-        episode.task["goal"] = self._somewhere() if goal is None else _check.numbers(goal, "goal", (3,))
+        episode.task["goal"] = self._somewhere() if goal is None else _check.finite(goal, "goal", (3,))
 
     def _goal(self, episode: Episode) -> npt.NDArray[np.float64]:
         goal: npt.NDArray[np.float64] = episode.task["goal"]
@@ -104,12 +105,13 @@ class Reach(_Arm):
 class Follow(_Arm):
     """The tip of an arm with three cables follows a point on a circle.
 
-    Observation (9,): tip (3) and the way from tip to the point's next place (3) in units of 100 mm, how far each cable
-    is pulled (3). Action (3,): change of the pull of each cable. Reward: minus the distance in units of 100 mm. The
-    circle begins at a random angle; ``options={"angle": radians, "radius": m}`` set it.
+    Observation (9,): position of the tip (3) and vector from the tip to the next position of the point (3), in units of
+    100 mm; pull of each cable, 0 to 1 (3). Action (3,): change of the pull of each cable. Reward: minus the distance in
+    units of 100 mm. The circle begins at a random angle; ``options={"angle": radians, "radius": m}`` sets both.
     """
 
     max_steps: ClassVar[int] = 40
+    option_names: ClassVar[tuple[str, ...] | None] = ("angle", "radius")
 
     def begin(self, episode: Episode, options: dict[str, Any]) -> None:
         angle = options.get("angle", self._random.uniform(0, 2 * np.pi))
@@ -133,9 +135,9 @@ class Follow(_Arm):
 class _InTime(RobotEnv):
     """A task whose steps are motion in time."""
 
-    #: s, of a step
+    #: s, duration of a step
     step_s: ClassVar[float] = 0.02
-    #: m, of a cable at most
+    #: m, largest pull of a cable
     most_m: ClassVar[float] = 0.004
 
     def ranges(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], tuple[str, ...]]:
@@ -147,25 +149,26 @@ class _InTime(RobotEnv):
 
 
 class Grasp(_InTime):
-    """Two fingers close on a cube that stands on a table, and hold it when the table goes away, in time.
+    """Two fingers close on a cube that stands on a table, and hold it while the table is lowered; a motion in time.
 
-    Nothing but friction carries the cube, a rigid body of 20 mm with mass of its own. The table begins to go down after
-    0.3 s, and is 30 mm lower after 0.9 s.
+    The cube, a rigid body of 20 mm with mass, is held by friction alone. The table begins to move down after 0.3 s, and
+    is 30 mm lower after 0.9 s.
 
-    Observation (11,): place of the cube from where it stood (3) in cm, its speed (3) in dm/s, how far each cable is
-    pulled (2), tension of each in N (2), time until the table begins to go, at least 0, in s. Action (2,): change of the
-    pull of each cable in 20 ms. Reward: minus how far the cube is from where it stood, in cm, at most 1, and minus a
-    tenth of the pulls' mean square; a cube that has fallen by more than 10 mm ends the episode with -10. The mass of the
-    cube is the model's: ``Grasp(Grasp.make_model(mass_g=20))``. The place from which the fingers begin is random:
-    ``options={"pulled": [0.1, 0.2]}`` sets it.
+    Observation (11,): displacement of the cube from its start (3) in cm, its velocity (3) in dm/s, pull of each cable,
+    0 to 1 (2), tension of each in N (2), time until the table begins to move, at least 0, in s. Action (2,): change of
+    the pull of each cable in 20 ms. Reward: minus the distance of the cube from its start in cm, at most 1, and minus a
+    tenth of the mean square of the pulls; if the cube has fallen by more than 10 mm, the episode ends with -10. The
+    mass of the cube is set in the model: ``Grasp(Grasp.make_model(mass_g=20))``. The pulls that the fingers begin with
+    are random: ``options={"pulled": [0.1, 0.2]}`` sets them.
     """
 
     max_steps: ClassVar[int] = 60
+    option_names: ClassVar[tuple[str, ...] | None] = ("pulled",)
     largest_change: ClassVar[float] = 0.2
     most_m: ClassVar[float] = 0.0025
-    #: s, when the table begins to go
+    #: s, time at which the table begins to move
     table_goes_s: ClassVar[float] = 0.3
-    #: m, that the cube may fall
+    #: m, distance that the cube may fall
     fallen_m: ClassVar[float] = 0.01
 
     @classmethod
@@ -222,7 +225,7 @@ class Grasp(_InTime):
 
     def begin(self, episode: Episode, options: dict[str, Any]) -> None:
         given = options.get("pulled", self._random.uniform(0, 0.2, 2))
-        episode.pulled = np.clip(_check.numbers(given, "pulled", (2,)), 0, 1)
+        episode.pulled = np.clip(_check.finite(given, "pulled", (2,)), 0, 1)
         stood = np.array(episode.robot.observe().objects["cube"].position_m)
         episode.task["stood"], episode.task["place"], episode.task["speed"] = stood, stood, np.zeros(3)
 
@@ -246,16 +249,18 @@ class Grasp(_InTime):
 
 
 class Crawl(_InTime):
-    """A worm with two cables under its back half and its front half crawls over a floor with friction, in time.
+    """A worm with a cable under its rear half and one under its front half crawls over a floor with friction; a motion
+    in time.
 
-    Nothing holds the worm. It stands on three feet; weights make its ends heavier than its middle.
+    The worm has no supports. It stands on three feet; weights make its ends heavier than its middle.
 
     Observation (8,): heights of tail, middle and head over the floor, velocities along x of the same, in cm and dm/s;
-    how far each cable is pulled (2). Action (2,): change of the pull of each cable in 20 ms. Reward: way of the middle
+    pull of each cable, 0 to 1 (2). Action (2,): change of the pull of each cable in 20 ms. Reward: motion of the middle
     along x in this step, cm.
     """
 
     max_steps: ClassVar[int] = 100
+    option_names: ClassVar[tuple[str, ...] | None] = ()
     largest_change: ClassVar[float] = 0.25
 
     @classmethod

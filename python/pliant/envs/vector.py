@@ -1,8 +1,8 @@
-"""Many environments of one task at once: their robots are solved side by side."""
+"""Many environments of one task: their robots are solved in parallel."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,24 +11,24 @@ import numpy.typing as npt
 from .. import _check
 from ..batch import Batch
 from ..errors import InputError
-from .base import Episode, FloatArray, RobotEnv
+from .base import Episode, FloatArray, Half, RobotEnv
 from .spaces import box
 
 Flags = npt.NDArray[np.bool_]
 
 
 class Vector:
-    """Environments of one task, stepped by a :class:`pliant.Batch`; the numbers are those of each alone.
+    """Environments of one task, stepped by a :class:`pliant.Batch`, with the same results as each of them alone.
 
     With the signatures of vector environments of Gymnasium 0.29: an environment whose episode is over is reset at once,
     its observation is that of the new episode, and ``infos["final_observation"]`` and ``infos["final_info"]`` hold the
-    last ones of the old.
+    last ones of the episode that is over.
 
     Args:
         task: a class of environments, as :class:`Reach`.
-        count: how many.
-        threads: 0: one for each core.
-        arguments: of each environment.
+        count: number of environments.
+        threads: number of threads; 0: one for each core.
+        arguments: passed to each environment.
     """
 
     def __init__(self, task: type[RobotEnv], count: int, *, threads: int = 0, **arguments: Any) -> None:
@@ -49,16 +49,17 @@ class Vector:
     def reset(
         self, *, seed: int | Sequence[int] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[FloatArray, dict[str, Any]]:
-        """Begins all episodes; environment k has the seed + k, or its own of a list.
+        """Begins all episodes; environment k has the seed + k, or the k-th of a list.
 
         Returns:
             (count, observation_size) observations, and infos by key.
         """
-        found = [env.reset(seed=s, options=options) for env, s in zip(self.envs, self._seeds(seed))]
+        seeds = self._seeds(seed)
+        found = [env.reset(seed=s, options=options) for env, s in zip(self.envs, seeds)]
         return np.stack([f[0] for f in found]), _gathered([f[1] for f in found])
 
     def step(self, actions: Any) -> tuple[FloatArray, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
-        """A step of all.
+        """One step of all environments. If it fails, for one bad action for example, no environment changes.
 
         Args:
             actions: (count, actuators).
@@ -67,11 +68,11 @@ class Vector:
             (count, observation_size) observations, (count,) rewards, terminated and truncated, infos by key.
         """
         given = _check.numbers(actions, "actions", (self.num_envs, None))
-        halves = [env._before(action) for env, action in zip(self.envs, given)]
-        robots = [env.episode.robot for env in self.envs]
-        results = self._batch.step(robots, [inputs for inputs, _ in halves])
+        halves = [self._half(k, action) for k, action in enumerate(given)]
+        robots = [half.robot for half in halves]
+        results = self._batch.step(robots, [half.inputs for half in halves])
         seen = self._batch.observe(robots)
-        found = [env._after(h[1], r, s) for env, h, r, s in zip(self.envs, halves, results, seen)]
+        found = [env._after(h, r, s) for env, h, r, s in zip(self.envs, halves, results, seen)]
         observations, infos = [f[0] for f in found], [f[4] for f in found]
         for k, (_, _, terminated, truncated, info) in enumerate(found):
             if terminated or truncated:
@@ -81,35 +82,44 @@ class Vector:
         rewards, ended, cut = (np.array([f[k] for f in found]) for k in (1, 2, 3))
         return np.stack(observations), rewards, ended, cut, _gathered(infos)
 
+    def _half(self, k: int, action: Any) -> Half:
+        try:
+            return self.envs[k]._before(action)
+        except InputError as error:
+            raise InputError(f"environment {k}: {error}") from None
+
     def get_states(self) -> list[Episode]:
-        """Of each environment what :meth:`RobotEnv.get_state` gives."""
+        """:meth:`RobotEnv.get_state` of each environment."""
         return [env.get_state() for env in self.envs]
 
     def set_states(self, episodes: Sequence[Episode]) -> None:
-        """Goes on from there."""
+        """Restores the state of each environment. If one of them does not fit, no environment changes."""
         if len(episodes) != self.num_envs:
             raise InputError(f"{len(episodes)} states for {self.num_envs} environments")
-        for env, episode in zip(self.envs, episodes):
-            env.set_state(episode)
+        given = [_check.instance(episode, Episode, "each of the states") for episode in episodes]
+        robots = [env._robot_of(episode) for env, episode in zip(self.envs, given)]
+        for env, episode, robot in zip(self.envs, given, robots):
+            env._take(episode, robot)
 
     def close(self) -> None:
-        """Nothing is held open."""
+        """Does nothing: no files or windows are open."""
 
     def _seeds(self, seed: int | Sequence[int] | None) -> list[int | None]:
         if seed is None:
             return [None] * self.num_envs
-        if isinstance(seed, (int, np.integer)):
-            return [int(seed) + k for k in range(self.num_envs)]
-        if len(seed) != self.num_envs:
-            raise InputError(f"{len(seed)} seeds for {self.num_envs} environments")
-        return list(seed)
+        if not isinstance(seed, Iterable) or isinstance(seed, str):
+            return [_check.seed(seed) + k for k in range(self.num_envs)]
+        each = list(seed)
+        if len(each) != self.num_envs:
+            raise InputError(f"{len(each)} seeds for {self.num_envs} environments")
+        return [None if one is None else _check.seed(one, "each seed") for one in each]
 
     def __len__(self) -> int:
         return self.num_envs
 
 
 def _gathered(infos: list[dict[str, Any]]) -> dict[str, Any]:
-    """By key, (count,) objects, and beside each ``_key``, (count,) which environments have it."""
+    """(count,) objects for each key, and for each ``_key`` (count,) flags of the environments that have it."""
     gathered: dict[str, Any] = {}
     for key in sorted({key for info in infos for key in info}):
         values = np.empty(len(infos), dtype=object)

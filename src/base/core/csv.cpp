@@ -61,7 +61,7 @@ std::string CsvTable::place(int line) const {
 
 Result<std::string_view> CsvTable::cell(const CsvRow& row, std::size_t column) const {
     if (column < row.cells.size()) return std::string_view(row.cells[column]);
-    return input_error("{}: {} columns, the first line names more", place(row.line), row.cells.size());
+    return input_error("{}: {} columns, but the first line names more", place(row.line), row.cells.size());
 }
 
 Result<double> CsvTable::number(const CsvRow& row, std::size_t column, std::string_view what) const {

@@ -36,7 +36,7 @@ TEST_CASE("separators, quotes, comments and the lines that messages name") {
 TEST_CASE("errors in a table name file and line") {
     CHECK(error_of("") == "a.csv: is empty; the first line names the columns: x,y");
     CHECK(error_of("x,y\n# none\n") == "a.csv: has no rows below the names of the columns");
-    CHECK(error_of("x,y\n1,2\n3\n") == "a.csv:3: 1 columns, the first line names more");
+    CHECK(error_of("x,y\n1,2\n3\n") == "a.csv:3: 1 columns, but the first line names more");
     CHECK(error_of("x;y\n1;2,5\n") == "a.csv:2: y \"2,5\" has a comma; write numbers with a decimal point");
     for (const char* bad : {"abc", "nan", "inf", "1e999", "", "1 2", "0x10"})
         CHECK(error_of(std::string("x,y\n1,") + bad + "\n") ==

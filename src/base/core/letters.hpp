@@ -13,6 +13,19 @@ namespace pliant {
     return c >= '0' && c <= '9';
 }
 
+/// Line ends, escapes and the like.
+[[nodiscard]] constexpr bool is_control(char c) {
+    return static_cast<unsigned char>(c) < ' ' || c == 127;
+}
+
+/// A text from elsewhere, such as a name, that can neither end a comment nor move a terminal's cursor: control
+/// characters become blanks.
+[[nodiscard]] inline std::string one_line(std::string_view text) {
+    std::string line(text);
+    for (char& c : line) c = is_control(c) ? ' ' : c;
+    return line;
+}
+
 [[nodiscard]] inline std::string lower_case(std::string_view text) {
     std::string out(text);
     for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;

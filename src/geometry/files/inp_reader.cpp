@@ -109,6 +109,7 @@ public:
         }
         if (!wanted_.empty()) return error("the file ends in the middle of an element");
         assign_regions();
+        if (visits_ > most_visits) return error("its element sets contain one another too often to tell regions apart");
         return finish(std::move(found_), name_);
     }
 
@@ -207,7 +208,8 @@ private:
         for (std::size_t a = 0; a < width_; ++a) {
             nodes[a] = found_.points.find(wanted_[a + 1]);
             if (nodes[a] < 0)
-                return error(fmt::format("element {} names node {}, there is none", wanted_[0], wanted_[a + 1]));
+                return error(
+                    fmt::format("element {} refers to node {}, which does not exist", wanted_[0], wanted_[a + 1]));
         }
         by_number_.emplace_back(wanted_[0], found_.tets.size());
         if (set_ >= 0) sets_[static_cast<std::size_t>(set_)].tets.push_back(found_.tets.size());
@@ -260,15 +262,15 @@ private:
         return {};
     }
 
-    /// Calls `use` with every tet of a set; nested sets are followed once each.
+    /// Calls `use` with every tet of a set, but not of the sets that were seen; nested sets are followed once each.
     template <class Use>
-    void each_tet(std::size_t set, const Use& use) const {
-        std::vector<bool> seen(sets_.size());
-        for (std::vector<std::size_t> open = {set}; !open.empty();) {
+    void each_tet(std::size_t set, std::vector<bool>& seen, const Use& use) {
+        for (std::vector<std::size_t> open = {set}; !open.empty() && visits_ <= most_visits;) {
             const std::size_t s = open.back();
             open.pop_back();
             if (seen[s]) continue;
             seen[s] = true;
+            visits_ += 1 + sets_[s].sets.size() + sets_[s].tets.size();
             for (const std::int64_t element : sets_[s].elements) each_in_range({element, element, 1}, use);
             for (const auto& range : sets_[s].ranges) each_in_range(range, use);
             for (const std::size_t t : sets_[s].tets) use(t);
@@ -277,17 +279,18 @@ private:
     }
 
     template <class Use>
-    void each_in_range(const std::array<std::int64_t, 3>& range, const Use& use) const {
+    void each_in_range(const std::array<std::int64_t, 3>& range, const Use& use) {
         const auto& [first, last, step] = range;
         auto at = std::lower_bound(by_number_.begin(), by_number_.end(), std::pair(first, std::size_t{0}));
-        for (; at != by_number_.end() && at->first <= last; ++at) {
-            if (static_cast<std::uint64_t>(at->first - first) % static_cast<std::uint64_t>(step) == 0) use(at->second);
+        for (; at != by_number_.end() && at->first <= last && ++visits_ <= most_visits; ++at) {
+            const std::uint64_t away = static_cast<std::uint64_t>(at->first) - static_cast<std::uint64_t>(first);
+            if (away % static_cast<std::uint64_t>(step) == 0) use(at->second);
         }
     }
 
-    /// Assigns the set to its tets that have no region yet.
+    /// Assigns the set to its tets that have no region yet. All tets of a set that another one has claimed have one.
     void claim(std::size_t set) {
-        each_tet(set, [&](std::size_t t) {
+        each_tet(set, claimed_, [&](std::size_t t) {
             if (found_.regions[t] == no_set) found_.regions[t] = static_cast<std::int64_t>(set);
         });
     }
@@ -295,6 +298,7 @@ private:
     void assign_regions() {
         std::sort(by_number_.begin(), by_number_.end());
         found_.regions.assign(found_.tets.size(), no_set);
+        claimed_.assign(sets_.size(), false);
         for (std::size_t s = 0; s < sets_.size(); ++s) {
             if (sets_[s].section) claim(s);
         }
@@ -316,7 +320,8 @@ private:
         std::vector<std::pair<std::size_t, std::size_t>> by_size;  // (tets, set)
         for (std::size_t s = 0; s < std::min<std::size_t>(sets_.size(), most_sets); ++s) {
             std::size_t size = 0;
-            each_tet(s, [&](std::size_t) { ++size; });
+            std::vector<bool> seen(sets_.size());
+            each_tet(s, seen, [&](std::size_t) { ++size; });
             by_size.emplace_back(size, s);
         }
         std::sort(by_size.begin(), by_size.end());
@@ -325,6 +330,8 @@ private:
 
     /// Maximum number of sets that can become regions by size alone: every one may contain every tet.
     static constexpr std::size_t most_sets = 1000;
+    /// Bounds the time that sets within sets can take: some seconds.
+    static constexpr std::uint64_t most_visits = 2'000'000'000;
 
     TextScanner scan_;
     std::string name_;
@@ -338,6 +345,8 @@ private:
     TextTets found_;
     std::vector<std::pair<std::int64_t, std::size_t>> by_number_;  ///< (number of the element, tet)
     std::vector<Set> sets_;
+    std::vector<bool> claimed_;               ///< (sets)
+    std::uint64_t visits_ = 0;                ///< of sets and tets
     std::map<std::string, int> set_of_name_;  ///< by lower case
     std::map<std::string, std::string> written_names_;
 };

@@ -39,7 +39,7 @@ Status order_mid_edge_nodes(std::span<const Vec3> points, std::span<TenNodes> te
         const auto& row = votes[place];
         edge_of_place[place] = static_cast<std::size_t>(std::max_element(row.begin(), row.end()) - row.begin());
         if (std::exchange(taken[edge_of_place[place]], true))
-            return input_error("the mid-edge nodes of its 10-node tetrahedra lie on no six edges");
+            return input_error("the mid-edge nodes of its 10-node tetrahedra do not match six distinct edges");
     }
     for (TenNodes& tet : tets) {
         TenNodes ordered = tet;

@@ -201,7 +201,8 @@ private:
             const Result<std::int64_t> node = next();
             if (!node) return tl::unexpected(node.error());
             const std::int64_t place = points_.find(*node);
-            if (place < 0) return in_.error(fmt::format("a tetrahedron names node {}, there is none", *node));
+            if (place < 0)
+                return in_.error(fmt::format("a tetrahedron refers to node {}, which does not exist", *node));
             tet.nodes[gmsh_order[a]] = place;
         }
         tets_.push_back(tet);

@@ -131,8 +131,8 @@ TEST_CASE("damaged files give a reason with the line, and stated sizes are not t
           "a.msh:15: \"zero\" is not a finite number");
     CHECK(msh_problem(replaced(version_2, "40 0 0 1\n", "30 0 0 1\n")).find("node 30 comes twice") !=
           std::string::npos);
-    CHECK(msh_problem(replaced(version_2, "10 20 30 40", "10 20 30 41")).find("names node 41, there is none") !=
-          std::string::npos);
+    CHECK(msh_problem(replaced(version_2, "10 20 30 40", "10 20 30 41"))
+              .find("refers to node 41, which does not exist") != std::string::npos);
     CHECK(msh_problem(replaced(version_2, "10 20 30 40", "10 20 30 30")).find("twice") != std::string::npos);
     CHECK(msh_problem(replaced(version_2, "\"grip\"", "grip")).find("a name in quotes") != std::string::npos);
     CHECK(

@@ -141,7 +141,7 @@ TEST_CASE("PLY: damaged files give a reason, and stated sizes are not trusted") 
     CHECK(surface_problem(replaced(ply, "3 1 2 3", "2 1 2 3")).find("face 2 has 2 corners") != std::string::npos);
     CHECK(surface_problem(replaced(ply, "double z", "quad z")).find("unknown type \"quad\"") != std::string::npos);
     CHECK(surface_problem(replaced(ply, "format ascii 1.0\n", "")).find("names no format") != std::string::npos);
-    CHECK(surface_problem(replaced(ply, "end_header\n", "end\n")).find("no place in a PLY header") !=
+    CHECK(surface_problem(replaced(ply, "end_header\n", "end\n")).find("unknown keyword \"end\" in the PLY header") !=
           std::string::npos);
     CHECK(surface_problem(replaced(ply, "list uchar int", "list float int")).find("whole numbers") !=
           std::string::npos);

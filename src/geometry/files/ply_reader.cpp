@@ -101,7 +101,7 @@ private:
             } else if (keyword == "property") {
                 status = read_property();
             } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
-                return scan_.error(fmt::format("\"{}\" has no place in a PLY header", keyword.substr(0, 40)));
+                return scan_.error(fmt::format("unknown keyword \"{}\" in the PLY header", keyword.substr(0, 40)));
             }
             if (!status) return status;
             scan_.rest_of_line();

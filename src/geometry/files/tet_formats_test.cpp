@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "base/core/files.hpp"
 #include "base/core/near.hpp"
@@ -165,7 +166,8 @@ TEST_CASE("TetGen: points count from 0 or 1, the attribute is the region, mid-ed
         const auto bad = parse_tetgen(points, "a.node", tets, "a.ele");
         return bad ? std::string() : bad.error().message;
     };
-    CHECK(message(tetgen_nodes, "1 4 1\n0 0 1 2 9 1\n").find("a.ele:2: a tetrahedron names node 9") == 0);
+    CHECK(message(tetgen_nodes, "1 4 1\n0 0 1 2 9 1\n")
+              .find("a.ele:2: a tetrahedron refers to node 9, which does not exist") == 0);
     CHECK(message("4000000000 3 0 0\n", tetgen_tets).find("a.node:1: 4000000000 are announced") == 0);
     CHECK(message("2 3\n0 0 0 0\n0 1 1 1\n", tetgen_tets).find("a.node:4: point 0 comes twice") == 0);
     CHECK(message("1 2\n0 0 0\n", tetgen_tets).find("dimension 2") != std::string::npos);
@@ -186,8 +188,28 @@ TEST_CASE("Abaqus: sections, then sets of element cards, then the smallest set g
     CHECK(nested->region_names == std::vector<std::string>{"outer"});
 }
 
+TEST_CASE("Abaqus: long chains of element sets with sections are followed once; ranges may begin anywhere") {
+    std::string chained = deck;
+    constexpr int sets = 60000;
+    for (int k = 0; k < sets; ++k)
+        chained += fmt::format("*ELSET, ELSET=s{0}\n{1}\n*SOLID SECTION, ELSET=s{0}\n", k,
+                               k + 1 < sets ? fmt::format("s{}", k + 1) : "both");
+    const auto begin = std::chrono::steady_clock::now();
+    const auto mesh = parse_inp(chained, "a.inp");
+    REQUIRE(mesh);
+    CHECK(mesh->region_names == std::vector<std::string>{"s0"});
+    CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(10));
+    const auto far = parse_inp(deck +
+                                   "*ELSET, ELSET=all, GENERATE\n-9223372036854775808, 9223372036854775807, 2\n"
+                                   "*SOLID SECTION, ELSET=all\n",
+                               "a.inp");
+    REQUIRE(far);
+    CHECK(far->region_names == std::vector<std::string>{"all"});
+}
+
 TEST_CASE("Abaqus: errors name the line") {
-    CHECK(tet_problem(replaced(deck, "20, 2, 3, 4, 9", "20, 2, 3, 4, 5")).find("a:16: element 20 names node 5") == 0);
+    CHECK(tet_problem(replaced(deck, "20, 2, 3, 4, 9", "20, 2, 3, 4, 5"))
+              .find("a:16: element 20 refers to node 5, which does not exist") == 0);
     CHECK(tet_problem(replaced(deck, "20, 2, 3, 4, 9", "20, 2, 3, 4")).find("a:16: an element of 4 nodes has 3") == 0);
     CHECK(tet_problem(replaced(deck, "3, 4\n*ELEMENT", "*ELEMENT")).find("a:14: the nodes of an element are missing") ==
           0);
@@ -207,7 +229,7 @@ TEST_CASE("Medit: unknown keywords are ignored; P2 and references are read") {
     const Result<TetMesh> mesh = parse_medit(text, "a.mesh");
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(mesh->region_names == std::vector<std::string>{"12"});
-    CHECK(tet_problem(replaced(text, "1 2 3 4 12", "1 2 3 5 12")).find("a:15: a tetrahedron names node 5") == 0);
+    CHECK(tet_problem(replaced(text, "1 2 3 4 12", "1 2 3 5 12")).find("a:15: a tetrahedron refers to node 5") == 0);
     CHECK(tet_problem(replaced(text, "Tetrahedra\n1", "Tetrahedra\n99999999")).find("a:14: 99999999 are announced") ==
           0);
     CHECK(tet_problem(replaced(text, "0 0 1 0", "0 0 inf 0")).find("a:10: \"inf\"") == 0);
@@ -226,7 +248,7 @@ TEST_CASE("GiD: several blocks, materials and block names are read") {
     const Result<TetMesh> mesh = parse_gid(text, "a.gid");
     REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
     CHECK(mesh->region_names == std::vector<std::string>{"left part", "31"});
-    CHECK(tet_problem(replaced(text, "1 1 2 3 4", "1 1 2 3 8")).find("a:10: a tetrahedron names node 8") == 0);
+    CHECK(tet_problem(replaced(text, "1 1 2 3 4", "1 1 2 3 8")).find("a:10: a tetrahedron refers to node 8") == 0);
     CHECK(tet_problem(replaced(text, "Nnode 4", "Nnode 5")).find("a:2: tetrahedra of 5 nodes") == 0);
     CHECK(tet_problem(replaced(text, " 3 0 1 0", " 3 0 one 0")).find("a:5: \"one\"") == 0);
     CHECK(tet_problem(text.substr(0, text.find("End Coordinates"))).find("file ends") != std::string::npos);

@@ -21,7 +21,8 @@ Result<TenNodes> read_tet_nodes(TextScanner& scan, const NumberedPoints& points,
         const Result<std::int64_t> number = scan.integer();
         if (!number) return tl::unexpected(number.error());
         nodes[a] = points.find(*number);
-        if (nodes[a] < 0) return scan.error(fmt::format("a tetrahedron names node {}, there is none", *number));
+        if (nodes[a] < 0)
+            return scan.error(fmt::format("a tetrahedron refers to node {}, which does not exist", *number));
     }
     return nodes;
 }

@@ -2,21 +2,56 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <utility>
+
 #include "base/core/counted.hpp"
 #include "geometry/files/tet_file.hpp"
 #include "geometry/mesher/mesher.hpp"
 #include "geometry/mesher/step_file.hpp"
 #include "geometry/open/open_geometry.hpp"
+#include "geometry/repair/surface_crossings.hpp"
+#include "geometry/repair/surface_seams.hpp"
 
 namespace pliant::mesh {
 namespace {
 
+double area(const TriMesh& surface) {
+    double twice = 0;
+    for (const auto& t : surface.triangles) {
+        const auto at = [&](std::size_t i) { return surface.points[static_cast<std::size_t>(t[i])]; };
+        twice += norm(cross(at(1) - at(0), at(2) - at(0)));
+    }
+    return 0.5 * twice;
+}
+
+/// Why its triangles enclose no volume that could be told; "" if they do.
+std::string no_volume(const TriMesh& surface) {
+    constexpr double flat = 1e-9;
+    const std::vector<BorderEdge> border = border_edges(surface);
+    if (!border.empty())
+        return fmt::format(
+            "the surface is open: {} without a neighbour, and an area of about {:.3g} is missing, of "
+            "{:.3g} in all; it has no volume",
+            counted(border.size(), "edge"), area(border_caps(surface)), area(surface));
+    const double size = bounds(surface).diagonal();
+    if (!(std::fabs(signed_volume(surface)) > flat * size * size * size))
+        return "the surface is flat: it encloses no volume";
+    return "";
+}
+
 std::string surface_text(const SurfaceFile& surface) {
     const Vec3 size = bounds(surface.mesh).size();
-    std::string text = fmt::format("surface, {} points, {} triangles, volume {:.6g}, {:.6g} x {:.6g} x {:.6g}",
-                                   surface.mesh.points.size(), surface.mesh.triangles.size(),
-                                   signed_volume(surface.mesh), size.x, size.y, size.z);
+    const std::string none = no_volume(surface.mesh);
+    const std::string volume = none.empty() ? fmt::format("{:.6g}", signed_volume(surface.mesh)) : "unknown";
+    std::string text = fmt::format("surface, {}, {}, volume {}, {:.6g} x {:.6g} x {:.6g}",
+                                   counted(surface.mesh.points.size(), "point"),
+                                   counted(surface.mesh.triangles.size(), "triangle"), volume, size.x, size.y, size.z);
     for (const std::string& warning : surface.warnings) text += "\n  note: " + warning;
+    if (!none.empty())
+        text += "\n  note: " + none;
+    else if (cuts_itself(surface.mesh))
+        text += "\n  note: the surface cuts itself: the volume counts what lies in two of its parts twice";
     return text;
 }
 
@@ -46,19 +81,23 @@ Result<std::string> solids_text(const std::filesystem::path& path) {
 
 }  // namespace
 
-Result<std::string> describe_mesh_file(const std::filesystem::path& path) {
-    const Result<Geometry> geometry = open_geometry(path);
+Result<std::string> describe_mesh_file(const std::filesystem::path& path, double factor) {
+    Result<Geometry> geometry = open_geometry(path);
     if (!geometry) return tl::unexpected(geometry.error());
-    if (const auto* tets = std::get_if<TetMesh>(&*geometry)) return report_text(report_on(*tets));
-    if (const auto* surface = std::get_if<SurfaceFile>(&*geometry)) return surface_text(*surface);
+    if (auto* tets = std::get_if<TetMesh>(&*geometry)) return report_text(report_on(scaled(std::move(*tets), factor)));
+    if (auto* surface = std::get_if<SurfaceFile>(&*geometry)) {
+        surface->mesh = scaled(std::move(surface->mesh), factor);
+        return surface_text(*surface);
+    }
+    if (factor != 1) return input_error("{}: carries its own unit; leave --from and --to out", path.string());
     if (const auto* plate = std::get_if<threemf::ThreeMf>(&*geometry)) return plate_text(*plate);
     return solids_text(std::get<StepPath>(*geometry).path);
 }
 
-Result<MeshReport> report_on_file(const std::filesystem::path& path) {
-    const Result<TetMesh> mesh = read_tet_mesh(path);
+Result<MeshReport> report_on_file(const std::filesystem::path& path, double factor) {
+    Result<TetMesh> mesh = read_tet_mesh(path);
     if (!mesh) return tl::unexpected(mesh.error());
-    return report_on(*mesh);
+    return report_on(scaled(std::move(*mesh), factor));
 }
 
 }  // namespace pliant::mesh

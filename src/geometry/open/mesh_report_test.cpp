@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -62,10 +63,44 @@ TEST_CASE("a file is described by its content, with notes on what was wrong") {
     const std::string tets = described(vtk_bytes(inside_out, Encoding::text));
     CHECK(tets.find("4 nodes, 1 linear tet, 1 x 1 x 1") == 0);
     CHECK(tets.find("\n  note: 1 of 1 tets were inside out and were turned") != std::string::npos);
-    CHECK(described("v 0 0 0\nv 2 0 0\nv 0 3 0\nf 1 2 3\n").find("surface, 3 points, 1 triangles") == 0);
+    CHECK(described("v 0 0 0\nv 2 0 0\nv 0 3 0\nf 1 2 3\n").find("surface, 3 points, 1 triangle, volume unknown") == 0);
     const std::string open =
         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
     CHECK(described(open).find("note: ") != std::string::npos);
+}
+
+namespace {
+
+/// A box as OFF, without its last `missing` triangles.
+std::string box_off(const Vec3& low, const Vec3& high, std::size_t missing, const std::string& more_points = "",
+                    const std::string& more_faces = "") {
+    constexpr std::array<std::string_view, 12> faces = {"0 2 1", "0 3 2", "4 5 6", "4 6 7", "0 1 5", "0 5 4",
+                                                        "1 2 6", "1 6 5", "2 3 7", "2 7 6", "3 0 4", "3 4 7"};
+    std::string text =
+        fmt::format("OFF\n{} {} 0\n", more_points.empty() ? 8 : 16, 12 - missing + (more_faces.empty() ? 0 : 12));
+    for (int k = 0; k < 8; ++k) {
+        const int x = (k + 1) / 2 % 2, y = k / 2 % 2, z = k / 4;
+        text += fmt::format("{} {} {}\n", x == 0 ? low.x : high.x, y == 0 ? low.y : high.y, z == 0 ? low.z : high.z);
+    }
+    text += more_points;
+    for (std::size_t f = 0; f + missing < 12; ++f) text += fmt::format("3 {}\n", faces[f]);
+    return text + more_faces;
+}
+
+}  // namespace
+
+TEST_CASE("a surface that is open, flat or cuts itself has no volume, or a doubtful one") {
+    CHECK(
+        described(box_off({0, 0, 0}, {10, 8, 4}, 0)).find("surface, 8 points, 12 triangles, volume 320, 10 x 8 x 4") ==
+        0);
+    const std::string open = described(box_off({0, 0, 0}, {10, 8, 4}, 2));
+    CHECK(open.find("volume unknown") != std::string::npos);
+    CHECK(
+        open.find("note: the surface is open: 4 edges without a neighbour, and an area of about 32 is missing, of 272 "
+                  "in all; it has no volume") != std::string::npos);
+    const std::string flat = described(box_off({0, 0, 0}, {10, 8, 0}, 0));
+    CHECK(flat.find("volume unknown") != std::string::npos);
+    CHECK(flat.find("encloses no volume") != std::string::npos);
 }
 
 TEST_CASE("a file of unknown format is reported with all formats; a damaged one by its reader") {

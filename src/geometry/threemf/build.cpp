@@ -32,8 +32,16 @@ Result<ThreeMf> Build::assemble(ModelPart start) {
     built_.warnings = start.warnings;
     parts_.emplace("", std::move(start));
     for (const Placed& item : items) {
+        if (!item.printable) {
+            built_.warnings.push_back(fmt::format(
+                "{}object {} is excluded from printing (printable=\"0\") and left out", item.where, item.object));
+            continue;
+        }
         if (auto status = place("", item, Transform{}, 0); !status) return tl::unexpected(status.error());
     }
+    const auto is_printable = [](const Placed& item) { return item.printable; };
+    if (!items.empty() && std::none_of(items.begin(), items.end(), is_printable))
+        return input_error("{}: every item of its build is excluded from printing (printable=\"0\")", file_);
     if (built_.bodies.empty()) return input_error("{}: its build holds no body", file_);
     std::sort(built_.warnings.begin(), built_.warnings.end());
     built_.warnings.erase(std::unique(built_.warnings.begin(), built_.warnings.end()), built_.warnings.end());

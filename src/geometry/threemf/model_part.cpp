@@ -165,6 +165,8 @@ private:
         placed.object = part_.index(node, "objectid", problem_);
         placed.path = part_.attribute(node, Space::production, "path");
         placed.where = part_.at(node, "");
+        const std::string_view printable = node.attribute("printable").value();
+        placed.printable = printable != "0" && printable != "false";
         if (problem_.found()) return placed;
         if (placed.path.empty() && !model_.objects.contains(placed.object))
             problem_.note(part_.at(node, fmt::format("objectid: there is no object {} before it", placed.object)));

@@ -27,7 +27,8 @@ struct Placed {
     int object = 0;
     std::string path;
     Transform transform;
-    std::string where;  ///< for messages
+    std::string where;      ///< for messages
+    bool printable = true;  ///< an item that PrusaSlicer excludes from printing is not
 };
 
 struct Object {

@@ -128,6 +128,18 @@ TEST_CASE("a polygon of a slice that encloses nothing is left out with a warning
           "a.3mf:4: <s:slicestack>: 2 polygon(s) of fewer than three points enclose nothing and were left out");
 }
 
+TEST_CASE("an item that is excluded from printing is left out, with a note") {
+    const std::string two = object(7, "") + object(8, "");
+    const ThreeMf file = read(model(two, "<item objectid=\"7\" printable=\"0\"/><item objectid=\"8\"/>"));
+    CHECK(file.bodies.size() == 1);
+    REQUIRE(file.warnings.size() == 1);
+    CHECK(file.warnings[0].find("object 7 is excluded from printing (printable=\"0\") and left out") !=
+          std::string::npos);
+    CHECK(read(model(two, "<item objectid=\"7\" printable=\"1\"/><item objectid=\"8\"/>")).bodies.size() == 2);
+    CHECK(refused(model(two, "<item objectid=\"7\" printable=\"0\"/>")) ==
+          "a.3mf: every item of its build is excluded from printing (printable=\"0\")");
+}
+
 TEST_CASE("violations that affect no body are warnings with their section") {
     const std::string item = "<item objectid=\"7\"/>";
     const auto warnings = [&](const std::string& before, const std::string& objects, const std::string& items) {

@@ -4,10 +4,13 @@
 #include <doctest/doctest.h>
 
 #include <atomic>
+#include <cmath>
 #include <stdexcept>
 #include <thread>
 
 #include "library/simulation/test_bar.hpp"
+#include "pliant/inverse.hpp"
+#include "pliant/program.hpp"
 
 using namespace pliant;
 using test::bar;
@@ -102,4 +105,33 @@ TEST_CASE("work on each core passes on the exception of the lowest index") {
         if (i % 2 == 1) throw std::runtime_error(std::to_string(i));
     };
     for (int k = 0; k < 20; ++k) CHECK_THROWS_WITH_AS(on_each_core(50, odd, 4), "1", std::runtime_error);
+}
+
+TEST_CASE("the options of a model are followed by everything that is done with it") {
+    const Robot robot = bar("program = { steps = 2 }\n");
+    const Model tight(robot, {.tolerance = 1e-9});
+    Stepper stepper(tight), by_itself(tight, {.tolerance = 1e-9});
+    State state = stepper.rest(), other = by_itself.rest();
+    const Inputs inputs = stepper.program(1);
+    CHECK(stepper.step(state, inputs).residual < 1e-9);
+    (void)by_itself.step(other, inputs);
+    CHECK(state == other);
+    Batch batch({tight});
+    std::vector<State> states = batch.rest();
+    (void)batch.step(states, {inputs});
+    CHECK(states[0] == state);
+    const ProgramResult result = run(tight);
+    CHECK(result.step(2).result.residual < 1e-9);
+    CHECK_FALSE(run(Model(robot, {.iteration_limit = 1})).converged());
+    const Model goal(bar("goal = [{ name = \"reach\", marker = \"tip\", tolerance = \"1 mm\", "
+                         "plane = { point = [0, 0, 8], normal = [0, 0, 1] } }]\n"),
+                     {.tolerance = 1e-9});
+    CHECK(inverse(goal).waypoint(0).result.residual < 1e-9);
+}
+
+TEST_CASE("options of a model that are not possible are refused") {
+    for (const double tolerance : {0.0, -1.0, 2.0, 1e-11, std::nan("")})
+        CHECK_THROWS_WITH_AS((void)Model(bar(), {.tolerance = tolerance}), doctest::Contains("between 1e-10 and 0.1"),
+                             Failure);
+    CHECK_THROWS_WITH_AS((void)Model(bar(), {.iteration_limit = -1}), "the iteration limit is negative", Failure);
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -21,6 +22,12 @@
 
 namespace pliant {
 namespace {
+
+void expect_finite_judgement(const Judgement& judgement) {
+    const auto is_finite = [](double number) { return std::isfinite(number); };
+    if (is_finite(judgement.value) && std::ranges::all_of(judgement.slopes, is_finite)) return;
+    throw Failure(Failure::Kind::input, "the objective gives a number that is not finite");
+}
 
 /// The objective with its measures by index. An exception of `judge` is stored and rethrown outside the solver.
 class Judge {
@@ -47,6 +54,7 @@ private:
             if (!judgement.slopes.empty() && judgement.slopes.size() != values.size())
                 throw Failure(Failure::Kind::input, fmt::format("the objective gives {} slopes of {} measures",
                                                                 judgement.slopes.size(), values.size()));
+            expect_finite_judgement(judgement);
             return {judgement.value, std::move(judgement.slopes)};
         } catch (...) {
             thrown_ = std::current_exception();
@@ -79,6 +87,22 @@ void add_names(const sim::Model& model, ProgramGradient& out) {
     out.parameters = library::parameters_of(sim::parameters(at));
 }
 
+/// An objective without slopes has an empty gradient in the engine: its derivatives are zero.
+template <class T>
+std::vector<T> or_zeros(std::vector<T> derivatives, std::size_t size) {
+    derivatives.resize(size);
+    return derivatives;
+}
+
+/// Derivative with respect to a number of the law of tet `t`.
+double by_law(const material::LawParameter& number, const Eigen::MatrixXd& constants, std::size_t t) {
+    if (constants.size() == 0) return 0;
+    double slope = 0;
+    for (std::size_t c = 0; c < number.direction.size(); ++c)
+        slope += number.direction[c] * constants(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(t));
+    return slope;
+}
+
 /// With respect to the constants of each tet's law, named as in robot files.
 std::vector<TetGradient> by_tets(const sim::Model& model, const sim::TetDerivatives& of) {
     const sim::Description& d = model.description();
@@ -96,14 +120,10 @@ std::vector<TetGradient> by_tets(const sim::Model& model, const sim::TetDerivati
         const int material = d.material_of_tet.empty()
                                  ? d.material_of_region[static_cast<std::size_t>(d.mesh.region[t])]
                                  : d.material_of_tet[t];
-        for (const material::LawParameter& number : laws[static_cast<std::size_t>(material)]) {
-            double slope = 0;
-            for (std::size_t c = 0; c < number.direction.size(); ++c)
-                slope += number.direction[c] * of.constants(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(t));
-            entry(number.name, number.unit)[t] = slope;
-        }
+        for (const material::LawParameter& number : laws[static_cast<std::size_t>(material)])
+            entry(number.name, number.unit)[t] = by_law(number, of.constants, t);
     }
-    if (of.density.size() > 0) entry("density", "kg/m^3") = library::list_of(of.density);
+    entry("density", "kg/m^3") = or_zeros(library::list_of(of.density), tets);
     return out;
 }
 
@@ -171,12 +191,12 @@ ProgramGradient gradient(const Model& model, const Objective& objective, const G
     out.value = of.value;
     out.values = of.values;
     add_names(scene.model, out);
-    out.by_parameters = library::list_of(of.by.parameters);
-    out.by_numbers = library::list_of(of.by.numbers);
-    if (options.rest_positions) out.by_rest_positions = library::points_of(linalg::points_of(of.by.rest));
+    out.by_parameters = or_zeros(library::list_of(of.by.parameters), out.parameters.size());
+    out.by_numbers = or_zeros(library::list_of(of.by.numbers), options.numbers.size());
+    if (options.rest_positions)
+        out.by_rest_positions = or_zeros(library::points_of(linalg::points_of(of.by.rest)), model.node_count());
     out.guide_points = std::move(guides.shown);
-    out.by_guide_points = library::points_of(linalg::points_of(of.by.guides));
-    out.by_guide_points.resize(out.guide_points.size());  // for an objective that depends on nothing
+    out.by_guide_points = or_zeros(library::points_of(linalg::points_of(of.by.guides)), out.guide_points.size());
     if (options.tets) out.by_tets = by_tets(scene.model, of.by.tets);
     for (const auto& instant : of.instants)
         out.instants.push_back({instant.step, instant.time, library::list_of(instant.by_inputs)});

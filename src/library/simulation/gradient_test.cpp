@@ -89,6 +89,10 @@ TEST_CASE("a measure at a state has the observed value, and a gradient that agre
     CHECK_THROWS_WITH_AS((void)at.value({Measure::Of::spring_force, "s", {}}),
                          "there is no spring \"s\": the robot has none", Failure);
     CHECK_THROWS_AS((void)at.value({Measure::Of::marker, "tip", {std::nan(""), 0, 0}}), Failure);
+    CHECK_THROWS_WITH_AS((void)at.value({Measure::Of::marker, "tip", {}}),
+                         "a measure of marker \"tip\" needs a direction, such as (0, 0, 1)", Failure);
+    CHECK_THROWS_WITH_AS((void)at.gradient(Measure{Measure::Of::reaction, "clamp", {}}),
+                         "a measure of support \"clamp\" needs a direction, such as (0, 0, 1)", Failure);
 }
 
 namespace {
@@ -184,6 +188,28 @@ TEST_CASE("guide points at a state: cable length held in m, or as a share of its
     }
 }
 
+TEST_CASE("an objective without slopes has a gradient of zeros with the full sizes") {
+    const Model model(bar(std::string("parameters = { height = 5 }\n") + four_steps));
+    Objective objective = at_end();
+    objective.judge = [](int, std::span<const double>) { return Judgement{1, {0, 0}}; };
+    const ProgramGradient of =
+        gradient(model, objective, {.rest_positions = true, .guide_points = true, .tets = true, .numbers = {"height"}});
+    CHECK(of.value == 4);
+    REQUIRE(!of.parameters.empty());
+    CHECK(of.by_parameters == std::vector<double>(of.parameters.size(), 0.0));
+    CHECK(of.by_numbers == std::vector<double>{0});
+    CHECK(of.by_rest_positions == std::vector<Point>(model.node_count(), Point{}));
+    CHECK(of.by_guide_points == std::vector<Point>(3, Point{}));
+    std::vector<std::string> names;
+    for (const TetGradient& one : of.by_tets) {
+        names.push_back(one.name);
+        CHECK(one.values == std::vector<double>(model.tet_count(), 0.0));
+    }
+    const ProgramGradient other = gradient(model, at_end(), {.tets = true});
+    REQUIRE(names.size() == other.by_tets.size());
+    for (std::size_t k = 0; k < names.size(); ++k) CHECK(names[k] == other.by_tets[k].name);
+}
+
 TEST_CASE("an exception of the objective is passed on, and gradients of the wrong size are refused") {
     const Model model(bar(four_steps));
     Objective objective = at_end();
@@ -191,6 +217,8 @@ TEST_CASE("an exception of the objective is passed on, and gradients of the wron
     CHECK_THROWS_WITH_AS((void)gradient(model, objective), "mine", std::out_of_range);
     objective.judge = [](int, std::span<const double>) { return Judgement{1, {1}}; };
     CHECK_THROWS_WITH_AS((void)gradient(model, objective), "the objective gives 1 slopes of 2 measures", Failure);
+    objective.judge = [](int, std::span<const double>) { return Judgement{1, {0, std::nan("")}}; };
+    CHECK_THROWS_WITH_AS((void)gradient(model, objective), "the objective gives a number that is not finite", Failure);
     objective.judge = nullptr;
     CHECK_THROWS_AS((void)gradient(model, objective), Failure);
     CHECK_THROWS_AS((void)gradient(model, at_end(), {}, [](std::string_view, double) { return false; }), Failure);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -23,6 +25,11 @@ void expect_size(std::size_t size, std::size_t wanted, const char* what) {
     throw Failure(Failure::Kind::input, fmt::format("{} has {} entries; it takes {}", what, size, wanted));
 }
 
+void expect_finite(std::span<const double> numbers, const char* what) {
+    if (std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); })) return;
+    throw Failure(Failure::Kind::input, fmt::format("{} has a number that is not finite", what));
+}
+
 }  // namespace
 
 struct Linearisation::Work {
@@ -38,6 +45,7 @@ struct Linearisation::Work {
 
     [[nodiscard]] Eigen::VectorXd unknowns(std::span<const double> v) const {
         expect_size(v.size(), static_cast<std::size_t>(at.size()), "the vector");
+        expect_finite(v, "the vector");
         return Eigen::Map<const Eigen::VectorXd>(v.data(), at.size());
     }
     [[nodiscard]] Change shown_change(const sim::Change& change) const;
@@ -75,16 +83,19 @@ sim::Quantity Linearisation::Work::quantity(const Quantity& asked) const {
     sim::Quantity q{Eigen::VectorXd::Zero(at.state().x.size()), Eigen::VectorXd::Zero(at.state().multiplier.size())};
     if (!asked.by_positions.empty()) {
         expect_size(asked.by_positions.size(), model->scene.model.node_count(), "by_positions");
+        for (const Point& p : asked.by_positions) expect_finite(p, "by_positions");
         for (std::size_t n = 0; n < asked.by_positions.size(); ++n)
             for (std::size_t k = 0; k < 3; ++k)
                 q.by_positions[static_cast<Eigen::Index>(3 * n + k)] = asked.by_positions[n][k];
     }
     if (!asked.by_tensions.empty()) {
         expect_size(asked.by_tensions.size(), d.cables.size(), "by_tensions");
+        expect_finite(asked.by_tensions, "by_tensions");
         q.by_multipliers.head(cables) = Eigen::Map<const Eigen::VectorXd>(asked.by_tensions.data(), cables);
     }
     if (!asked.by_pressures.empty()) {
         expect_size(asked.by_pressures.size(), d.chambers.size(), "by_pressures");
+        expect_finite(asked.by_pressures, "by_pressures");
         q.by_multipliers.segment(cables, chambers) =
             -Eigen::Map<const Eigen::VectorXd>(asked.by_pressures.data(), chambers);
     }
@@ -170,6 +181,7 @@ Quantity Linearisation::marker_coordinate(std::size_t marker, const Point& direc
     const std::size_t markers = work_->model->scene.model.description().markers.size();
     if (marker >= markers)
         throw Failure(Failure::Kind::input, fmt::format("there is no marker {}; there are {}", marker, markers));
+    expect_finite(direction, "the direction");
     const sim::Quantity q = sim::marker_coordinate(work_->system, marker, {direction[0], direction[1], direction[2]});
     return {library::points_of(linalg::points_of(q.by_positions)), {}, {}};
 }

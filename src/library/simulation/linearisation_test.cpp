@@ -98,6 +98,26 @@ TEST_CASE("the gradient of a tip by cable length, modulus and rest shape agrees 
     CHECK(moved == near(1, {.relative = 1e-8}));
 }
 
+TEST_CASE("the inputs begin with one for each cable, then one for each chamber") {
+    const Model model(Robot::parse(R"(
+        name = "both"
+        length_unit = "mm"
+        material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.45 }
+        mesh = { order = 1, size = "5 mm" }
+        body = [{ name = "bar", material = "soft", geometry = { difference = [
+            { box = [[0, 0, 0], [30, 10, 10]] }, { box = [[5, 3, 3], [25, 7, 7]] }] } }]
+        fixed = [{ name = "clamp", box = [[0, 0, 0], [0, 10, 10]] }]
+        chamber = [{ name = "left", inside = [15, 5, 5], target.volume_ratio = 1.1 }]
+        cable = [{ name = "left", points = [[0, 5, 9], [30, 5, 9]], target.shortening = "1 mm" },
+                 { name = "right", points = [[0, 5, 1], [30, 5, 1]], target.tension = "1 N" }]
+    )"));
+    const Linearisation at(Stepper(model).rest());
+    REQUIRE(at.inputs().size() >= 3);
+    CHECK(at.inputs()[0].name == "cable \"left\": length");
+    CHECK(at.inputs()[1].name.starts_with("cable \"right\": "));
+    CHECK(at.inputs()[2].name.starts_with("chamber \"left\": "));
+}
+
 TEST_CASE("wrong requests are refused with the reason") {
     const Pulled bent{bar()};
     Linearisation at(bent.state);
@@ -106,6 +126,13 @@ TEST_CASE("wrong requests are refused with the reason") {
     Quantity wrong;
     wrong.by_pressures = {1, 2};
     CHECK_THROWS_WITH_AS((void)at.gradient(wrong), "by_pressures has 2 entries; it takes 0", Failure);
+    std::vector<double> b(at.size());
+    b[3] = NAN;
+    CHECK_THROWS_WITH_AS((void)at.solve(b), "the vector has a number that is not finite", Failure);
+    Quantity quantity;
+    quantity.by_tensions = {INFINITY};
+    CHECK_THROWS_WITH_AS((void)at.gradient(quantity), "by_tensions has a number that is not finite", Failure);
+    CHECK_THROWS_AS((void)at.marker_coordinate(0, {0, NAN, 0}), Failure);
 }
 
 TEST_CASE("contact forces on the nodes add up to the force of the obstacle") {

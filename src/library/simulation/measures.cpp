@@ -76,20 +76,33 @@ Choice choice_of(const sim::Description& d, Measure::Of of) {
                       : fmt::format("there is no {} \"{}\"; did you mean \"{}\"?", choice.what, name, nearest));
 }
 
+bool has_direction(MeasureKind kind) {
+    return kind == MeasureKind::marker || kind == MeasureKind::reaction || kind == MeasureKind::contact_force;
+}
+
+void expect_direction(const Choice& choice, const std::string& name, const Vec3& direction) {
+    if (!is_finite(direction)) throw Failure(Failure::Kind::input, "the direction of a measure is not finite");
+    if (has_direction(choice.kind) && !(norm(direction) > 0))
+        throw Failure(Failure::Kind::input,
+                      fmt::format("a measure of {} \"{}\" needs a direction, such as (0, 0, 1)", choice.what, name));
+}
+
 }  // namespace
 
 sim::Measure measure_for(const sim::Model& model, const Measure& asked) {
     const sim::Description& d = model.description();
     const Choice choice = choice_of(d, asked.of);
     const Vec3 direction{asked.direction[0], asked.direction[1], asked.direction[2]};
-    if (!is_finite(direction)) throw Failure(Failure::Kind::input, "the direction of a measure is not finite");
     sim::Measure measure{choice.kind, 0, direction, {}, false};
     if (choice.kind == MeasureKind::self_contact) return measure;
     const auto index_in = [&](const std::vector<std::string>& names) {
         return static_cast<std::size_t>(std::ranges::find(names, asked.name) - names.begin());
     };
     measure.index = index_in(choice.names);
-    if (measure.index < choice.names.size()) return measure;
+    if (measure.index < choice.names.size()) {
+        expect_direction(choice, asked.name, direction);
+        return measure;
+    }
     const std::vector<std::string> loads = names_in(d.pressures);
     measure.index = index_in(loads);
     if (asked.of != Measure::Of::pressure || measure.index == loads.size()) refuse_name(choice, asked.name);

@@ -24,6 +24,30 @@ std::vector<std::string> names_of(const std::vector<T>& all) {
     throw Failure(Failure::Kind::input, "the mesh: " + why);
 }
 
+void check_step_options(const StepOptions& options) {
+    constexpr double least = 1e-10, most = 0.1;
+    if (options.tolerance && !(*options.tolerance >= least && *options.tolerance <= most))
+        throw Failure(Failure::Kind::input,
+                      fmt::format("a tolerance of {:g} is not possible: it is between {:g} and {:g}",
+                                  *options.tolerance, least, most));
+    if (options.iteration_limit && *options.iteration_limit < 0)
+        throw Failure(Failure::Kind::input, "the iteration limit is negative");
+}
+
+/// The robot with the options as changes of its file: whatever reads its program follows them.
+std::shared_ptr<const Robot::Data> with_options(const std::shared_ptr<const Robot::Data>& robot,
+                                                const StepOptions& options) {
+    check_step_options(options);
+    std::vector<std::string> changes;
+    if (options.tolerance) changes.push_back(fmt::format("program.tolerance={}", *options.tolerance));
+    if (options.iteration_limit) changes.push_back(fmt::format("program.max_iterations={}", *options.iteration_limit));
+    if (changes.empty()) return robot;
+    Robot::Data data = *robot;
+    data.robot = library::value_of(library::read_again(*robot, changes));
+    data.changes.insert(data.changes.end(), changes.begin(), changes.end());
+    return std::make_shared<const Robot::Data>(std::move(data));
+}
+
 }  // namespace
 
 mesh::TetMesh library::tet_mesh(const Mesh& given) {
@@ -56,18 +80,23 @@ mesh::TetMesh library::tet_mesh(const Mesh& given) {
     return std::move(*mesh);
 }
 
-Model::Model(const Robot& robot, const Mesh& mesh) {
+Model::Model(const Robot& robot, const Mesh& mesh, const StepOptions& options) {
     mesh::TetMesh given = library::tet_mesh(mesh);
-    robot::Scene scene = library::value_of(robot::build_scene(robot.data().robot, given));
-    data_ = std::make_shared<const Data>(Data{std::move(scene), robot.shared(), std::move(given)});
+    std::shared_ptr<const Robot::Data> solved = with_options(robot.shared(), options);
+    robot::Scene scene = library::value_of(robot::build_scene(solved->robot, given));
+    data_ = std::make_shared<const Data>(Data{std::move(scene), std::move(solved), std::move(given)});
 }
 
-Model::Model(const Robot& robot, const Watch& watch) {
+Model::Model(const Robot& robot, const StepOptions& options, const Watch& watch) {
+    std::shared_ptr<const Robot::Data> solved = with_options(robot.shared(), options);
     library::WatchedProgress progress(watch);
-    auto scene = robot::build_scene(robot.data().robot, progress);
+    auto scene = robot::build_scene(solved->robot, progress);
     progress.rethrow();
-    data_ = std::make_shared<const Data>(Data{library::value_of(std::move(scene)), robot.shared()});
+    data_ = std::make_shared<const Data>(Data{library::value_of(std::move(scene)), std::move(solved)});
 }
+
+Model::Model(const Robot& robot, const Mesh& mesh) : Model(robot, mesh, StepOptions{}) {}
+Model::Model(const Robot& robot, const Watch& watch) : Model(robot, StepOptions{}, watch) {}
 
 std::size_t Model::node_count() const {
     return data_->scene.model.mesh().points.size();

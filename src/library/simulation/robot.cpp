@@ -6,6 +6,7 @@
 #include "base/core/files.hpp"
 #include "library/base/calls.hpp"
 #include "library/simulation/data.hpp"
+#include "robot/file/robot_document.hpp"
 #include "robot/file/robot_file.hpp"
 
 namespace pliant {
@@ -43,6 +44,9 @@ double Robot::duration() const {
 }
 int Robot::steps() const {
     return data_->robot.program.steps;
+}
+std::string Robot::text(const std::filesystem::path& folder) const {
+    return library::value_of(robot::robot_text(data_->text, data_->file, data_->changes, folder));
 }
 
 }  // namespace pliant

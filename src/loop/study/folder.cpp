@@ -45,7 +45,7 @@ Status place_plan(const Plan& plan, const fs::path& folder) {
 Status make_folder(const Plan& plan, const fs::path& folder) {
     std::error_code error;
     if (fs::exists(folder, error) && (!fs::is_directory(folder, error) || !is_beginning(folder)))
-        return input_error("{}: holds something else than a study; choose another folder with -o", folder.string());
+        return input_error("{}: contains files that are not a study; choose another folder with -o", folder.string());
     fs::create_directories(folder / "records", error);
     if (error) return failure("{}: cannot be made: {}", folder.string(), error.message());
     return place_plan(plan, folder);

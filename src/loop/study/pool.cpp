@@ -255,7 +255,7 @@ private:
         const Death death = worker.died();
         cpu_s_ += death.cpu_s;
         if (!worker.ready && ++failed_starts_ >= most_failed_starts)
-            return failure("{}: ends before it runs a row ({})", options_.worker.program.string(),
+            return failure("{}: worker exited before its first row ({})", options_.worker.program.string(),
                            words_of(death.status));
         if (!worker.order) return {};
         const bool killed = WIFSIGNALED(death.status) && WTERMSIG(death.status) == SIGKILL;

@@ -127,8 +127,8 @@ private:
         const std::size_t chunks_of_task = chunks_for_each_task(chunks.size(), most_at_a_time());
         const auto tasks = tasks_of(chunks, chunks_of_task);
         if (idle_ >= most_idle)
-            return failure("{} tasks in turn ended without a row; the last words of one: {}", most_idle,
-                           last_words(folder_, tasks));
+            return failure("the tasks of {} submissions in turn ended without a row; the last words of one: {}",
+                           most_idle, last_words(folder_, tasks));
         if (Status status = write_script(chunks_of_task); !status) return status;
         recorded_at_submission_ = count_.recorded;
         const auto answer =

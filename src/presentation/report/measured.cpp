@@ -55,22 +55,20 @@ Result<std::vector<Columns>> read_header(const CsvTable& table, const std::vecto
     return found;
 }
 
-/// The point in a row; empty if all its cells are empty.
+/// The point in a row; empty if one of its cells is.
 Result<std::optional<Vec3>> read_point(const CsvTable& table, const CsvRow& row, const Columns& columns,
                                        const sim::MarkerState& marker) {
     Vec3 point = marker.position_m;
-    bool any = false;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (!columns.at[axis]) continue;
         const auto cell = table.cell(row, *columns.at[axis]);
         if (!cell) return tl::unexpected(cell.error());
-        if (cell->empty()) continue;
+        if (cell->empty()) return std::nullopt;
         const auto value_mm = table.number(row, *columns.at[axis], marker.name);
         if (!value_mm) return tl::unexpected(value_mm.error());
         point[axis] = 1e-3 * *value_mm;
-        any = true;
     }
-    return any ? std::optional<Vec3>(point) : std::nullopt;
+    return point;
 }
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {

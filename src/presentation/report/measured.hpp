@@ -18,10 +18,9 @@ struct MeasuredPath {
 };
 
 /// Reads the columns of markers.csv: NAME_x_mm, NAME_y_mm, NAME_z_mm of any markers of the simulation, in any order;
-/// other columns (index, time) are ignored. A missing column, or an empty cell, is replaced by the coordinate of the
-/// marker at rest: a video shows only two coordinates. Rows in which all three cells of a marker are empty are skipped.
-/// Errors, with file and line: no column for any marker of `rest`; a marker that the simulation does not have; invalid
-/// values.
+/// other columns (index, time) are ignored. A missing column is replaced by the coordinate of the marker at rest: a
+/// video shows only two coordinates. An empty cell was not measured: the marker has no point in that row. Errors, with
+/// file and line: no column for any marker of `rest`; a marker that the simulation does not have; invalid values.
 [[nodiscard]] Result<std::vector<MeasuredPath>> parse_measured(std::string_view text, const std::string& file,
                                                                const sim::Step& rest);
 

@@ -64,11 +64,11 @@ TEST_CASE("deviations are distances to the path between the steps, or to its end
 }
 
 TEST_CASE("measured markers may have two coordinates, and missing values") {
-    const auto paths = read("time;middle_x_mm;middle_z_mm;tip_z_mm\n0;50;0;0\n1;49;;10\n2;;;20\n");
+    const auto paths = read("time;middle_x_mm;middle_z_mm;tip_z_mm\n0;50;0;0\n1;49;;10\n2;;;20\n3;48;1;\n");
     REQUIRE(paths.size() == 2);
     CHECK(paths[0].marker == "middle");
-    REQUIRE(paths[0].points.size() == 2);
-    CHECK(norm(paths[0].points[1] - Vec3{0.049, 0.01, 0}) < 1e-12);
+    REQUIRE(paths[0].points.size() == 2);  // not that of which x alone was measured
+    CHECK(norm(paths[0].points[1] - Vec3{0.048, 0.01, 0.001}) < 1e-12);
     REQUIRE(paths[1].points.size() == 3);
     CHECK(norm(paths[1].points[2] - Vec3{0.1, 0, 0.02}) < 1e-12);
 }

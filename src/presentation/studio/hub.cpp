@@ -75,7 +75,8 @@ void Hub::hello(const std::shared_ptr<Connection>& connection, const std::string
     const std::lock_guard lock(mutex_);
     connection->page = page;
     drop_lost_helm();
-    if (helm_.empty()) helm_ = page;
+    const bool fresh = seen_.insert(page).second;
+    if (helm_.empty() || (fresh && helm_lost_)) helm_ = page;
     if (helm_ == page) helm_lost_.reset();
     tell_everybody();
 }
@@ -83,6 +84,11 @@ void Hub::hello(const std::shared_ptr<Connection>& connection, const std::string
 void Hub::want_fields(const std::shared_ptr<Connection>& connection, std::set<std::string> fields) {
     const std::lock_guard lock(mutex_);
     connection->fields = std::move(fields);
+}
+
+void Hub::ping() {
+    const std::lock_guard lock(mutex_);
+    drop_lost_helm();
 }
 
 void Hub::ask(const std::shared_ptr<Connection>& connection) {
@@ -110,13 +116,7 @@ void Hub::give(const std::shared_ptr<Connection>& connection) {
 
 void Hub::let_go(const std::shared_ptr<Connection>& connection) {
     const std::lock_guard lock(mutex_);
-    if (connection->page != helm_) return;
-    helm_.clear();
-    if (!asking_.empty()) {
-        helm_ = asking_.front();
-        asking_.pop_front();
-    }
-    tell_everybody();
+    if (connection->page == helm_) pass_on(connection->page);
 }
 
 bool Hub::may_steer(const std::string& page) {
@@ -127,8 +127,17 @@ bool Hub::may_steer(const std::string& page) {
 
 void Hub::drop_lost_helm() {
     if (!helm_lost_ || now_() - *helm_lost_ < helm_kept) return;
-    helm_.clear();
     helm_lost_.reset();
+    pass_on(helm_);
+}
+
+/// To the page that asked first, else to any other that is connected.
+void Hub::pass_on(const std::string& from) {
+    const auto other = [&](const auto& c) { return !c->page.empty() && c->page != from; };
+    const auto found = std::find_if(connections_.begin(), connections_.end(), other);
+    helm_ = !asking_.empty() ? asking_.front() : found != connections_.end() ? (*found)->page : "";
+    std::erase(asking_, helm_);
+    tell_everybody();
 }
 
 void Hub::tell_everybody() {

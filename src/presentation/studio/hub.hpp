@@ -55,14 +55,19 @@ public:
 
     [[nodiscard]] std::shared_ptr<Connection> join();
     void leave(const std::shared_ptr<Connection>& connection);
-    /// Registers a page; if no page is in control, this one takes control. All pages are told.
+    /// Registers a page. It takes control if no page is in control, or if it is a new page and the one in control has
+    /// no connection. All pages are told.
     void hello(const std::shared_ptr<Connection>& connection, const std::string& page);
     void want_fields(const std::shared_ptr<Connection>& connection, std::set<std::string> fields);
+
+    /// Some page is there: control that has been lost for 10 s passes on.
+    void ping();
 
     /// Requests control: taken at once if free, otherwise the page in control is asked.
     void ask(const std::shared_ptr<Connection>& connection);
     /// Passes control to the page that asked first.
     void give(const std::shared_ptr<Connection>& connection);
+    /// The same; if none has asked, to another one that is connected.
     void let_go(const std::shared_ptr<Connection>& connection);
     /// True for the page in control and, while there is none, for any page. A page loses control after 10 s without a
     /// connection.
@@ -77,6 +82,7 @@ public:
 
 private:
     void drop_lost_helm();
+    void pass_on(const std::string& from);
     void tell_everybody();
 
     std::function<Clock::time_point()> now_;
@@ -85,6 +91,7 @@ private:
     std::string helm_;                            ///< page in control; empty: none
     std::optional<Clock::time_point> helm_lost_;  ///< when its last connection closed
     std::deque<std::string> asking_;
+    std::set<std::string> seen_;  ///< all pages so far
 };
 
 }  // namespace pliant::studio

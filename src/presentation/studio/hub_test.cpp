@@ -66,10 +66,8 @@ TEST_CASE("a page that disconnects keeps control for ten seconds") {
     now += std::chrono::seconds(11);
     CHECK(hub.may_steer("page_bbbb"));
 
-    hub.hello(hub.join(), "page_aaaa");  // returns too late, but nobody has taken control
-    CHECK(hub.may_steer("page_aaaa"));
-    hub.ask(b);
-    CHECK_FALSE(hub.may_steer("page_bbbb"));
+    hub.hello(hub.join(), "page_aaaa");  // returns too late
+    CHECK_FALSE(hub.may_steer("page_aaaa"));
 }
 
 TEST_CASE("a slow page gets the latest frame only, but every text in order") {
@@ -119,4 +117,45 @@ TEST_CASE("two robots have separate latest frames, and neither waits for the oth
     CHECK(*page->next()->bytes == "b3");
     hub.close_all();
     CHECK_FALSE(page->next());
+}
+
+TEST_CASE("a new page gets control at once if the page in control has no connection") {
+    Hub hub;
+    const auto a = hub.join();
+    hub.hello(a, "page_aaaa");
+    hub.leave(a);  // its browser has crashed
+    const auto b = hub.join();
+    hub.hello(b, "page_bbbb");
+    CHECK(says(last_text(b), R"("you":true)"));
+    CHECK(hub.may_steer("page_bbbb"));
+    CHECK_FALSE(hub.may_steer("page_aaaa"));
+}
+
+TEST_CASE("a page that watches gets control without a request once the lost one's ten seconds are over") {
+    Hub::Clock::time_point now{};
+    Hub hub([&] { return now; });
+    const auto a = hub.join(), b = hub.join();
+    hub.hello(a, "page_aaaa");
+    hub.hello(b, "page_bbbb");
+    hub.ping();
+    CHECK(says(last_text(b), R"("you":false)"));
+    hub.leave(a);
+    now += std::chrono::seconds(9);
+    hub.ping();
+    CHECK(says(last_text(b), R"("you":false)"));
+    now += std::chrono::seconds(2);
+    hub.ping();
+    CHECK(says(last_text(b), R"("you":true)"));
+}
+
+TEST_CASE("a page that is closed hands control to one that watches; to none if it is the last") {
+    Hub hub;
+    const auto a = hub.join(), b = hub.join();
+    hub.hello(a, "page_aaaa");
+    hub.hello(b, "page_bbbb");
+    hub.let_go(a);
+    hub.leave(a);
+    CHECK(says(last_text(b), R"("you":true)"));
+    hub.let_go(b);
+    CHECK(says(last_text(b), R"("you":false,"held":false)"));
 }

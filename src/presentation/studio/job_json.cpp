@@ -99,6 +99,7 @@ std::string job_json(const OpenJob& open, bool saved) {
                  {"issues", issues_json(manifest)},
                  {"projector", Json::parse(projector_json(p.projector))},
                  {"platform", {{"width_mm", p.platform.width_um / 1e3}, {"depth_mm", p.platform.depth_um / 1e3}}},
+                 {"source", open.source.empty() ? Json(nullptr) : Json::parse(open.source)},
                  {"printer", p.name}};
     if (plan) {
         json["plan"] = Json::parse(plan::plan_json(*plan));

@@ -25,6 +25,10 @@ bool nested_too_deep(std::string_view text) {
 
 }  // namespace
 
+bool is_object(std::string_view text) {
+    return !nested_too_deep(text) && nlohmann::json::parse(text, nullptr, false).is_object();
+}
+
 Result<nlohmann::json> parse_object(const char* what, std::string_view text, std::size_t longest) {
     if (text.size() > longest) return input_error("{}: over {} bytes", what, longest);
     if (nested_too_deep(text)) return input_error("{}: nested too deep", what);

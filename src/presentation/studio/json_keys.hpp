@@ -47,8 +47,8 @@ public:
             return wrong(key, "a list of at most 256"), empty;
         return *found;
     }
-    void wrong(const char* key, const char* wanted) {
-        if (error_.empty()) error_ = fmt::format("{}: {}: {} is needed", what_, key, wanted);
+    void wrong(const char* key, const char* wanted, bool many = false) {
+        if (error_.empty()) error_ = fmt::format("{}: {}: {} {} needed", what_, key, wanted, many ? "are" : "is");
     }
     [[nodiscard]] const std::string& error() const { return error_; }
 
@@ -68,7 +68,7 @@ public:
         for (std::size_t k = 0; k < 3; ++k) {
             const bool good = value.is_array() && value.size() == 3 && value[k].is_number() &&
                               std::fabs(value[k].get<double>()) <= largest_number;
-            if (!good) return wrong(key, "three numbers"), std::array<double, 3>{};
+            if (!good) return wrong(key, "three numbers", true), std::array<double, 3>{};
             point[k] = value[k].get<double>();
         }
         return point;
@@ -81,6 +81,9 @@ private:
     const nlohmann::json& object_;
     std::string error_;
 };
+
+/// True if a text is one JSON object.
+[[nodiscard]] bool is_object(std::string_view text);
 
 /// Errors: longer than `longest` bytes, nested too deeply, not an object.
 [[nodiscard]] Result<nlohmann::json> parse_object(const char* what, std::string_view text, std::size_t longest);

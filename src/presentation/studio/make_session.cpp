@@ -25,6 +25,11 @@ std::vector<std::string> colours_of(const job::Manifest& manifest) {
 
 }  // namespace
 
+ScratchFile::~ScratchFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+}
+
 class MakeSession::Watch final : public Progress {
 public:
     explicit Watch(MakeSession& session) : session_(session) {}
@@ -60,7 +65,7 @@ Status MakeSession::open(const std::filesystem::path& file) {
 
 Status MakeSession::save(const std::filesystem::path& file) {
     const auto job = this->job();
-    if (!job) return failure("there is no job yet: slice the robot, or open a job file");
+    if (!job) return failure("{}", no_job_text);
     std::error_code ignored;
     if (std::filesystem::exists(file, ignored))
         return input_error("{} exists; choose another name", file.filename().string());
@@ -72,22 +77,25 @@ Status MakeSession::save(const std::filesystem::path& file) {
         const std::lock_guard lock(mutex_);
         before = before_;
     }
-    Status adopted = adopt(file, job->colours);
+    Status adopted = adopt(file, {job->source, job->colours, nullptr}, job->key);
     const std::lock_guard lock(mutex_);
     before_ = before;
     return adopted;
 }
 
-Status MakeSession::adopt(const std::filesystem::path& file, std::vector<std::string> colours) {
+Status MakeSession::adopt(const std::filesystem::path& file, JobOrigin origin, const std::string& key) {
     Result<operate::OpenJob> open = operate::open_job(file);
     if (!open) return tl::unexpected(open.error());
-    if (colours.empty()) colours = colours_of(open->archive.manifest());
+    if (origin.colours.empty()) origin.colours = colours_of(open->archive.manifest());
     std::string news;
     {
         const std::lock_guard lock(mutex_);
         if (job_ && job_->file != file) before_ = job_;
         job_ = std::make_shared<OpenJob>(std::move(open->archive), std::move(open->printer), file, ++revision_);
-        job_->colours = std::move(colours);
+        job_->colours = std::move(origin.colours);
+        job_->source = std::move(origin.source);
+        job_->scratch = std::move(origin.scratch);
+        if (!key.empty()) job_->key = key;
         news = dumped({{"type", "job"}, {"revision", revision_}});
     }
     tell_(news);
@@ -110,12 +118,11 @@ void MakeSession::work(const SliceOrder& order) {
     std::filesystem::create_directories(scratch_, error);
     std::filesystem::permissions(scratch_, std::filesystem::perms::owner_all, error);
     const std::filesystem::path file = scratch_ / ("job_" + random_key() + ".zip");
+    auto scratch = std::make_shared<const ScratchFile>(file);
     Result<std::vector<std::string>> colours = slice_robot(order, file, watch, under_way_);
-    if (colours && cancelled_) {  // since the slicer last looked
-        std::filesystem::remove(file, error);
-        colours = cancelled();
-    }
-    Status status = colours ? adopt(file, std::move(*colours)) : Status(tl::unexpected(colours.error()));
+    if (colours && cancelled_) colours = cancelled();  // since the slicer last looked
+    Status status = colours ? adopt(file, {order.source, std::move(*colours), std::move(scratch)})
+                            : Status(tl::unexpected(colours.error()));
     under_way_.clear();
     slicing_ = false;  // before the pages are told: they may start the next one at once
     tell_(dumped({{"type", "slicing"},
@@ -127,10 +134,7 @@ void MakeSession::work(const SliceOrder& order) {
 Result<std::shared_ptr<OpenJob>> MakeSession::other(const std::filesystem::path& file) {
     {
         const std::lock_guard lock(mutex_);
-        if (file.empty()) {
-            if (!before_) return input_error("no other job has been at hand");
-            return before_;
-        }
+        if (file.empty()) return before_;
         if (other_ && other_->file == file) return other_;
     }
     Result<operate::OpenJob> open = operate::open_job(file);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -24,6 +25,26 @@ struct SliceOrder {
     std::filesystem::path robot_file;
     prepare::PrinterFile printer;
     prepare::Order order;  ///< its inputs are the robot's
+    std::string source{};  ///< see JobOrigin::source
+};
+
+/// A file that is deleted with the last object that uses it.
+class ScratchFile {
+public:
+    explicit ScratchFile(std::filesystem::path path) : path_(std::move(path)) {}
+    ~ScratchFile();
+    ScratchFile(const ScratchFile&) = delete;
+    ScratchFile& operator=(const ScratchFile&) = delete;
+
+private:
+    std::filesystem::path path_;
+};
+
+/// Where a job comes from: what its file does not tell.
+struct JobOrigin {
+    std::string source{};  ///< robot text and options, as JSON for the page; "": it was not sliced from the editor
+    std::vector<std::string> colours{};            ///< (materials); empty: those of the file
+    std::shared_ptr<const ScratchFile> scratch{};  ///< null: its file stays
 };
 
 /// A job and the machine that it was made for.
@@ -35,10 +56,15 @@ struct OpenJob {
     std::filesystem::path file;
     int revision;
     std::string key = random_key();      ///< in the addresses of its images, which browsers keep for ever
+    std::string source{};                ///< see JobOrigin::source
     std::vector<std::string> colours{};  ///< (materials)
-    std::mutex mutex{};                  ///< an archive must be used by one thread at a time
-    std::string part{};                  ///< see job_part(); "": not requested yet
+    std::shared_ptr<const ScratchFile> scratch{};
+    std::mutex mutex{};  ///< an archive must be used by one thread at a time
+    std::string part{};  ///< see job_part(); "": not requested yet
 };
+
+/// The error of every request that needs a job.
+inline constexpr std::string_view no_job_text = "there is no job yet: slice the robot, or open a job file";
 
 class MakeSession {
 public:
@@ -48,8 +74,8 @@ public:
     MakeSession& operator=(const MakeSession&) = delete;
 
     [[nodiscard]] Status open(const std::filesystem::path& file);
-    /// Saves the current job to a file, which it uses from then on. Errors: there is none, the file exists, it cannot
-    /// be written.
+    /// Saves the current job to a file, which it uses from then on; it keeps its key. Errors: there is none, the file
+    /// exists, it cannot be written.
     [[nodiscard]] Status save(const std::filesystem::path& file);
     /// Starts slicing; the pages are told of its progress and its end. Errors: it is slicing already.
     [[nodiscard]] Status slice(SliceOrder order);
@@ -57,14 +83,14 @@ public:
     [[nodiscard]] std::shared_ptr<OpenJob> job() const;
     /// The layers of the job that is being sliced.
     [[nodiscard]] const JobUnderWay& under_way() const { return under_way_; }
-    /// A job to compare the current one with: the previous one, or `file`. Its revision is below 0. Errors: there was
-    /// none before; not a job.
+    /// A job to compare the current one with: the previous one, null if there was none, or `file`, whose revision is
+    /// below 0. Errors: not a job.
     [[nodiscard]] Result<std::shared_ptr<OpenJob>> other(const std::filesystem::path& file = {});
     [[nodiscard]] std::vector<std::string> news() const;
 
 private:
     class Watch;
-    [[nodiscard]] Status adopt(const std::filesystem::path& file, std::vector<std::string> colours);
+    [[nodiscard]] Status adopt(const std::filesystem::path& file, JobOrigin origin, const std::string& key = {});
     void work(const SliceOrder& order);
 
     std::function<void(const std::string& json)> tell_;

@@ -123,3 +123,41 @@ TEST_CASE("one job is sliced at a time; a cancelled one ends without error and w
     CHECK(end_of_slicing(events) == "");
     CHECK(session.job() != nullptr);
 }
+
+TEST_CASE("a job remembers what it was sliced from, also after it has been saved; a file says nothing of it") {
+    const pliant::test::Folder folder;
+    Events events;
+    MakeSession session([&](const std::string& json) { events.add(json); }, "test");
+    SliceOrder order = slice_order();
+    order.source = R"({"robot":"abc"})";
+    REQUIRE(session.slice(order).has_value());
+    REQUIRE(end_of_slicing(events) == "");
+    const std::string key = session.job()->key;
+    CHECK(session.job()->source == order.source);
+    REQUIRE(session.save(folder / "a.zip").has_value());
+    CHECK(session.job()->source == order.source);
+    CHECK(session.job()->key == key);  // the same images
+    REQUIRE(session.open(folder / "a.zip").has_value());
+    CHECK(session.job()->source.empty());
+    CHECK(session.job()->key != key);
+}
+
+TEST_CASE("the file of a sliced job is deleted as soon as nothing uses it") {
+    Events events;
+    MakeSession session([&](const std::string& json) { events.add(json); }, "test");
+    const auto slice = [&] {
+        events.clear();
+        REQUIRE(session.slice(slice_order()).has_value());
+        REQUIRE(end_of_slicing(events) == "");
+        return session.job()->file;
+    };
+    const fs::path first = slice(), second = slice();
+    CHECK(fs::exists(first));                         // it is the one to compare with
+    auto printed = session.other().value()->scratch;  // a printer still has it
+    const fs::path third = slice();
+    CHECK(fs::exists(first));
+    printed.reset();
+    CHECK_FALSE(fs::exists(first));
+    CHECK(fs::exists(second));
+    CHECK(fs::exists(third));
+}

@@ -17,7 +17,7 @@ Message read_hello(Keys& keys) {
     Hello hello{keys.text("page")};
     const auto plain = [](char c) { return is_letter(c) || is_digit(c) || c == '-' || c == '_'; };
     if (hello.page.size() < 8 || hello.page.size() > 64 || !std::all_of(hello.page.begin(), hello.page.end(), plain))
-        keys.wrong("page", "8 to 64 letters and digits");
+        keys.wrong("page", "8 to 64 letters and digits", true);
     return hello;
 }
 
@@ -31,7 +31,7 @@ Message read_drive(Keys& keys) {
         Keys inner("message", entry);
         drive.actuators.push_back({inner.text("name"), inner.text("kind"), inner.number("value")});
         if (!inner.error().empty()) {
-            keys.wrong("actuators", "name, kind and value of each");
+            keys.wrong("actuators", "name, kind and value of each", true);
             break;
         }
     }

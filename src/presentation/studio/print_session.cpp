@@ -128,21 +128,18 @@ private:
 
 /// Either a twin or a machine at a port.
 struct PrintSession::Machine {
-    Machine(const Order& order, operate::ReadyJob ready_, twin::Options options, double speed)
-        : file(order.job),
-          colours(order.colours),
+    Machine(Order order_, operate::ReadyJob ready_, twin::Options options, double speed)
+        : order(std::move(order_)),
           ready(std::move(ready_)),
           twin(std::make_unique<PacedTwin>(ready.printer, std::move(options), speed)),
-          part(file, ready),
+          part(order.job, ready),
           control(setup()) {}
-    Machine(const Order& order, operate::ReadyJob ready_, std::unique_ptr<operate::PortStation> port_,
-            std::string device_)
-        : file(order.job),
-          colours(order.colours),
+    Machine(Order order_, operate::ReadyJob ready_, std::unique_ptr<operate::PortStation> port_, std::string device_)
+        : order(std::move(order_)),
           ready(std::move(ready_)),
           port(std::move(port_)),
           device(std::move(device_)),
-          part(file, ready),
+          part(order.job, ready),
           control(setup()) {}
 
     host::ControlSetup setup() {
@@ -169,8 +166,7 @@ struct PrintSession::Machine {
         return !is_under_way(now.state) && !now.can_resume;
     }
 
-    std::filesystem::path file;
-    std::vector<std::string> colours;
+    Order order;
     operate::ReadyJob ready;
     std::unique_ptr<PacedTwin> twin;
     std::unique_ptr<operate::PortStation> port;
@@ -204,7 +200,7 @@ std::shared_ptr<PrintSession::Machine> PrintSession::machine() const {
 PrintSession::Files PrintSession::files() const {
     const auto machine = this->machine();
     if (!machine) return {};
-    return {machine->file, machine->ready.job.journal};
+    return {machine->order.job, machine->ready.job.journal};
 }
 
 report::PrintExtras PrintSession::extras() const {
@@ -214,7 +210,7 @@ report::PrintExtras PrintSession::extras() const {
     report::PrintExtras extras{machine->twin ? "virtual printer" : machine->device, now.firmware, now.lines_sent,
                                now.resends, nullptr};
     // A block that still grows is not compared.
-    if (machine->twin && machine->is_free()) extras.block = block_of(*machine->twin, machine->file);
+    if (machine->twin && machine->is_free()) extras.block = block_of(*machine->twin, machine->order.job);
     return extras;
 }
 
@@ -230,7 +226,7 @@ std::string PrintSession::verdict() const {
 std::shared_ptr<const report::CuredBlock> PrintSession::finished_block(Machine& machine) {
     if (!machine.twin || !machine.is_free() || !machine.control.snapshot().finished) return nullptr;
     const std::lock_guard lock(machine.block_mutex);
-    if (!machine.block) machine.block = block_of(*machine.twin, machine.file);
+    if (!machine.block) machine.block = block_of(*machine.twin, machine.order.job);
     return machine.block;
 }
 
@@ -385,7 +381,7 @@ Status PrintSession::discard() {
     if (!std::filesystem::remove(journal, error) || error)
         return failure("{}: cannot be removed: {}", journal.string(), error.message());
     // The interrupted print may have left a vat on the carriage: the next one begins on another virtual printer.
-    const Order order{machine->file, machine->colours, machine->keeps_journal ? journal : std::filesystem::path()};
+    const Order order = machine->order;  // the machine ends before the next one begins
     return take_twin(order, machine->twin->pace().speed());
 }
 
@@ -472,7 +468,7 @@ std::string PrintSession::describe() const {
         materials.push_back({{"name", listed[m].name},
                              {"resin", listed[m].resin},
                              {"exposure_s", listed[m].exposure_s},
-                             {"colour", m < machine->colours.size() ? machine->colours[m] : ""}});
+                             {"colour", m < machine->order.colours.size() ? machine->order.colours[m] : ""}});
     }
     long last = 0;
     const Json history = Json::parse(host::history_message(machine->control, last));
@@ -480,7 +476,8 @@ std::string PrintSession::describe() const {
                    {"twin", machine->twin != nullptr},
                    {"device", machine->device},
                    {"speed", machine->twin ? machine->twin->pace().speed() : 1},
-                   {"file", machine->file.filename().string()},
+                   {"key", machine->order.key},
+                   {"file", machine->order.job.filename().string()},
                    {"materials", materials},
                    {"taken", taken_.load()},
                    {"job", machine->ready.job.name},

@@ -32,7 +32,9 @@ public:
     struct Order {
         std::filesystem::path job;
         std::vector<std::string> colours;
-        std::filesystem::path journal{};  ///< of a virtual print; "": a temporary one, deleted with the session
+        std::filesystem::path journal{};        ///< of a virtual print; "": a temporary one, deleted with the session
+        std::string key{};                      ///< of the job, see OpenJob::key
+        std::shared_ptr<const void> scratch{};  ///< keeps the job's file, if that is a temporary one
     };
     /// Connects to a twin of the machine that the job was made for. Refused during a print. If the journal holds an
     /// interrupted print of this job, the twin is restored to the state at the interruption, and the print can be

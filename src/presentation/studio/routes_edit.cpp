@@ -43,6 +43,11 @@ Response add_entry(Studio& studio, const Request& request) {
     return text ? done(studio.edit(*text)) : error_response(text.error());
 }
 
+Response open_new(Studio& studio, const Request& request) {
+    const auto name = request.query.find("name");
+    return done(studio.open_new(request.body, name == request.query.end() ? "" : name->second));
+}
+
 Response check(Studio& studio, const Request& request) {
     const Status status = studio.check(request.body);
     return json_response(fmt::format(R"({{"lines":{}}})", status ? "[]" : problem_lines(status.error())));
@@ -67,8 +72,9 @@ void add_edit_routes(std::vector<Route>& routes) {
                       true, set_values, json});
     routes.push_back({"POST", "/api/robot/add", "{\"list\", \"entry\"}: one more entry, as of [[marker]]", json, true,
                       add_entry, json});
-    routes.push_back({"POST", "/api/robot/new", "a robot that is in no file yet, by its text", json, true,
-                      [](Studio& s, const Request& r) { return done(s.open_new(r.body)); }, "text/plain"});
+    routes.push_back({"POST", "/api/robot/new",
+                      "a robot that is in no file of the folder yet, by its text; ?name= of the file it came from",
+                      json, true, open_new, "text/plain"});
     routes.push_back({"POST", "/api/robot/check", "what is wrong with a robot file, by line; nothing is built", json,
                       true, check, "text/plain"});
     routes.push_back({"GET", "/api/materials", "the library of materials", json, false, materials});

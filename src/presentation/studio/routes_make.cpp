@@ -11,6 +11,7 @@
 #include "presentation/studio/slice_order.hpp"
 #include "presentation/studio/slice_robot.hpp"
 #include "presentation/studio/studio.hpp"
+#include "printing/job/sha256.hpp"
 #include "printing/plan/plan.hpp"
 #include "printing/plan/timeline.hpp"
 
@@ -20,7 +21,7 @@ namespace {
 using Json = nlohmann::json;
 
 Response no_job() {
-    return error_response(404, "there is no job yet: slice the robot, or open a job file");
+    return error_response(404, no_job_text);
 }
 
 Response job(Studio& studio, const Request&) {
@@ -71,12 +72,14 @@ Result<std::shared_ptr<OpenJob>> other_job(Studio& studio, const Request& reques
 Response other(Studio& studio, const Request& request) {
     const auto open = other_job(studio, request);
     if (!open) return error_response(open.error());
+    if (!*open) return json_response("null");
     return json_response(job_json(**open, studio.folder().holds((*open)->file)));
 }
 
 Response other_image(Studio& studio, const Request& request) {
     const auto open = other_job(studio, request);
-    return open ? layer_image(**open, request) : error_response(open.error());
+    if (!open) return error_response(open.error());
+    return *open ? layer_image(**open, request) : Response{204, "image/png", ""};
 }
 
 Response under_way(Studio& studio, const Request&) {
@@ -166,7 +169,8 @@ Result<SliceOrder> read_order(Studio& studio, const Request& request) {
             return input_error("robot: names a file outside of the project folder");
     }
     order->inputs = {d.file.filename().string()};
-    return SliceOrder{d.text, d.file, std::move(*printer), std::move(*order)};
+    std::string source = *own ? "" : dumped({{"robot", job::sha256_hex(d.text)}, {"order", Json::parse(request.body)}});
+    return SliceOrder{d.text, d.file, std::move(*printer), std::move(*order), std::move(source)};
 }
 
 Response slice(Studio& studio, const Request& request) {
@@ -176,12 +180,11 @@ Response slice(Studio& studio, const Request& request) {
     return status ? json_response("{}") : error_response(status.error());
 }
 
-/// Estimate of time and resin before slicing.
+/// Estimate of time and resin before slicing, or why the order cannot be sliced: an answer, not a failed request.
 Response estimate(Studio& studio, const Request& request) {
-    Result<SliceOrder> order = read_order(studio, request);
-    if (!order) return error_response(order.error());
-    const Result<plan::Plan> plan = estimate_robot(*order);
-    if (!plan) return error_response(plan.error());
+    const Result<SliceOrder> order = read_order(studio, request);
+    const Result<plan::Plan> plan = order ? estimate_robot(*order) : tl::unexpected(order.error());
+    if (!plan) return json_response(dumped({{"problem", plan.error().message}}));
     Json resin = Json::object();
     for (const plan::VatUse& vat : plan->vats) resin[vat.resin] = resin.value(vat.resin, 0.0) + vat.resin_ml;
     return json_response(dumped(
@@ -226,15 +229,17 @@ void add_make_routes(std::vector<Route>& routes) {
     const std::string json = "application/json";
     routes.push_back({"POST", "/api/job/slice", "slices the robot: {\"printer\"} and the options of pliant slice", json,
                       true, slice, json});
-    routes.push_back({"POST", "/api/job/estimate", "what the print will take: the body of /api/job/slice", json, false,
-                      estimate, json});
+    routes.push_back({"POST", "/api/job/estimate",
+                      "what the print will take, or its problem: the body of /api/job/slice", json, false, estimate,
+                      json});
     routes.push_back({"GET", "/api/printer", "a built-in printer or one of the folder: ?name=", json, false, printer});
     routes.push_back({"POST", "/api/job/cancel", "cancels slicing", json, true, cancel});
     routes.push_back({"GET", "/api/job", "the job: manifest, plan, one swap, issues", json, false, job});
     routes.push_back({"GET", "/api/job/layers/{layer}/{material}",
                       "one image; 204 without content if it is not of job ?job=, its key", "image/png", false, image});
-    routes.push_back({"GET", "/api/job/other", "a job to compare with: ?name= of the folder; the one before without it",
-                      json, false, other});
+    routes.push_back({"GET", "/api/job/other",
+                      "a job to compare with: ?name= of the folder; without it the one before, or null", json, false,
+                      other});
     routes.push_back({"GET", "/api/job/other/{layer}/{material}", "one image of it", "image/png", false, other_image});
     routes.push_back(
         {"GET", "/api/job/under-way", "the layers of the job that is being sliced, so far", json, false, under_way});

@@ -20,17 +20,18 @@ double speed_of(const Request& request) {
 
 Response take_twin(Studio& studio, const Request& request) {
     const auto job = studio.make().job();
-    if (!job) return error_response(404, "there is no job yet: slice the robot, or open a job file");
+    if (!job) return error_response(404, no_job_text);
     // A job that was never saved has no place for a journal either.
     const bool lies = studio.folder().holds(job->file);
     return done(studio.print().take_twin(
-        {job->file, job->colours, lies ? virtual_journal(job->file) : std::filesystem::path()}, speed_of(request)));
+        {job->file, job->colours, lies ? virtual_journal(job->file) : std::filesystem::path(), job->key, job->scratch},
+        speed_of(request)));
 }
 
 /// Device and projector as for `pliant print`; a projector folder is created in the project.
 Response take_port(Studio& studio, const Request& request) {
     const auto job = studio.make().job();
-    if (!job) return error_response(404, "there is no job yet: slice the robot, or open a job file");
+    if (!job) return error_response(404, no_job_text);
     if (!studio.folder().holds(job->file))
         return error_response(409, "save the job into the folder first: the print journal is stored next to it");
     const Json json = Json::parse(request.body, nullptr, false);
@@ -51,7 +52,7 @@ Response take_port(Studio& studio, const Request& request) {
         if (!file) return error_response(422, "clock: " + file.error().message);
         port.clock_file = *file;
     }
-    return done(studio.print().take_port({job->file, job->colours}, port));
+    return done(studio.print().take_port({job->file, job->colours, {}, job->key, {}}, port));
 }
 
 Response journals(Studio& studio, const Request&) {

@@ -52,6 +52,12 @@ Response set_accuracy(Studio& studio, const Request& request) {
     return json_response("{}");
 }
 
+Response open_file(Studio& studio, const Request& request) {
+    const std::string name = body_text(request, "name");
+    if (name.empty()) return error_response(422, "name: the name of a file is needed");
+    return done(studio.open_file(name));
+}
+
 Response open_example(Studio& studio, const Request& request) {
     const std::string name = body_text(request, "name");
     if (find_file(example_robots(), name) == nullptr) return error_response(404, "there is no such example");
@@ -91,8 +97,8 @@ void add_project_routes(std::vector<Route>& routes) {
                       [](Studio& s, const Request&) { return done(s.redo()); }});
     routes.push_back({"POST", "/api/robot/save", "writes the robot file; {\"name\"} for a new one", json, true,
                       [](Studio& s, const Request& r) { return done(s.save(body_text(r, "name"))); }, json});
-    routes.push_back({"POST", "/api/open", "opens {\"name\"}, a robot file or job of the folder", json, true,
-                      [](Studio& s, const Request& r) { return done(s.open_file(body_text(r, "name"))); }, json});
+    routes.push_back(
+        {"POST", "/api/open", "opens {\"name\"}, a robot file or job of the folder", json, true, open_file, json});
     routes.push_back(
         {"POST", "/api/example", "opens {\"name\"}, a robot that is built in", json, true, open_example, json});
     routes.push_back(

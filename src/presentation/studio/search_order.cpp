@@ -19,7 +19,7 @@ std::vector<InputRange> read_inputs(const char* what, Keys& keys) {
         if (!entry.is_object()) return keys.wrong("inputs", "a list of objects"), inputs;
         Keys inner(what, entry);
         inputs.push_back({inner.text("name"), inner.number("low"), inner.number("high")});
-        if (!inner.error().empty()) return keys.wrong("inputs", "name, low and high of each"), inputs;
+        if (!inner.error().empty()) return keys.wrong("inputs", "name, low and high of each", true), inputs;
     }
     if (inputs.empty()) keys.wrong("inputs", "an actuator that may be moved");
     return inputs;
@@ -49,7 +49,7 @@ SweepAxis read_axis(const Json& entry, Keys& keys) {
         axis.values.push_back(value.is_number() ? value.get<double>() : 0);
     }
     if (axis.values.empty()) inner.wrong("values", "at least one number");
-    if (!inner.error().empty()) keys.wrong("axes", "key, unit and values of each");
+    if (!inner.error().empty()) keys.wrong("axes", "key, unit and values of each", true);
     return axis;
 }
 

@@ -8,7 +8,9 @@
 #include "base/core/files.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
+#include "presentation/studio/json_keys.hpp"
 #include "presentation/studio/limits.hpp"
+#include "printing/job/sha256.hpp"
 #include "printing/machine/printer.hpp"
 #include "robot/file/robot_file.hpp"
 
@@ -19,8 +21,14 @@ constexpr std::size_t most_undo = 200;
 constexpr std::string_view first_example = "cable_gripper";
 
 std::string document_event(const Studio::Document& d) {
-    const nlohmann::json json = {{"type", "document"},    {"name", d.name},        {"unsaved", d.text != d.saved},
-                                 {"undo", d.undo.size()}, {"redo", d.redo.size()}, {"accuracy", name(d.accuracy)}};
+    const nlohmann::json json = {{"type", "document"},
+                                 {"name", d.name},
+                                 {"unsaved", d.text != d.saved},
+                                 {"undo", d.undo.size()},
+                                 {"redo", d.redo.size()},
+                                 {"accuracy", name(d.accuracy)},
+                                 {"digest", job::sha256_hex(d.text)},
+                                 {"title", d.name.empty() ? d.title : d.name}};
     return dumped(json);
 }
 
@@ -28,6 +36,10 @@ std::string document_event(const Studio::Document& d) {
 std::string comparison_event(const std::string& title) {
     const nlohmann::json json = {{"type", "comparison"}, {"title", title}};
     return dumped(json);
+}
+
+tl::unexpected<Error> not_a_robot(const std::string& name) {
+    return input_error("\"{}\": a robot file ends with .toml", name);
 }
 
 /// Refuses a printer file, which is opened elsewhere.
@@ -97,15 +109,15 @@ void Studio::rebuild(After after) {
     hub_.send_text(document_event(document_));
 }
 
-/// A text received over the network must not make the program read files outside the folder.
-Status Studio::check_files(const std::string& text) const {
+/// A text received over the network must be short, and must not make the program read files outside the folder.
+Status Studio::check_text(const std::string& text) const {
+    if (text.size() > largest_robot) return input_error("a robot file of over 4 MB is refused");
     return folder_.check_texts(text, document_.file, document_.outside);
 }
 
 Status Studio::edit(const std::string& text) {
     const std::lock_guard lock(mutex_);
-    if (text.size() > largest_robot) return input_error("a robot file of over 4 MB is refused");
-    if (Status status = check_files(text); !status) return status;
+    if (Status status = check_text(text); !status) return status;
     if (text != document_.text) {
         document_.undo.push_back(document_.text);
         if (document_.undo.size() > most_undo) document_.undo.erase(document_.undo.begin());
@@ -118,8 +130,7 @@ Status Studio::edit(const std::string& text) {
 
 Status Studio::check(const std::string& text) {
     const std::lock_guard lock(mutex_);
-    if (text.size() > largest_robot) return input_error("a robot file of over 4 MB is refused");
-    if (Status status = check_files(text); !status) return status;
+    if (Status status = check_text(text); !status) return status;
     const Result<robot::Robot> robot = robot::parse_robot(text, document_.file);
     return robot ? Status{} : tl::unexpected(robot.error());
 }
@@ -148,7 +159,7 @@ Status Studio::save(const std::string& name) {
     const std::lock_guard lock(mutex_);
     const Result<std::filesystem::path> path = folder_.resolve(name.empty() ? document_.name : name);
     if (!path) return tl::unexpected(path.error());
-    if (path->extension() != ".toml") return input_error("\"{}\": a robot file ends with .toml", name);
+    if (path->extension() != ".toml") return not_a_robot(name);
     std::error_code ignored;
     // An example or a new robot has a place in the folder, where another file may be.
     const bool is_its_own = !document_.name.empty() && *path == document_.file;
@@ -174,7 +185,7 @@ Status Studio::open_file(const std::string& name) {
     const std::lock_guard lock(mutex_);
     Document opened{name, *path, *text, *text, {}, {}, document_.accuracy, {}};
     std::swap(document_, opened);
-    if (Status status = check_files(*text); !status) {
+    if (Status status = check_text(*text); !status) {
         std::swap(document_, opened);
         return status;
     }
@@ -187,16 +198,19 @@ void Studio::open_example(const std::string& name) {
     if (example == nullptr) return;
     const std::lock_guard lock(mutex_);
     const std::string text(example->text);
-    document_ = {"", folder_.path() / (name + ".toml"), text, text, {}, {}, document_.accuracy, {}};
+    document_ = {"", folder_.path() / (name + ".toml"), text, text, {}, {}, document_.accuracy, {}, "example"};
     rebuild(After::from_rest);
 }
 
-Status Studio::open_new(const std::string& text) {
+Status Studio::open_new(const std::string& text, const std::string& name) {
+    const Result<std::filesystem::path> place = folder_.resolve(name.empty() ? "robot.toml" : name);
+    if (!place) return tl::unexpected(place.error());
+    if (place->extension() != ".toml") return not_a_robot(name);
     const std::lock_guard lock(mutex_);
-    if (text.size() > largest_robot) return input_error("a robot file of over 4 MB is refused");
-    Document fresh{"", folder_.path() / "robot.toml", text, "", {}, {}, document_.accuracy, {}};
+    Document fresh{"", *place, text, "", {}, {}, document_.accuracy, {}};
+    if (!name.empty()) fresh.title = name;
     std::swap(document_, fresh);
-    if (Status status = check_files(text); !status) {
+    if (Status status = check_text(text); !status) {
         std::swap(document_, fresh);
         return status;
     }
@@ -281,6 +295,8 @@ Response Studio::handle(const Request& request) {
         if (route.method != request.method) continue;
         if (route.steers && !hub_.may_steer(request.page))
             return error_response(423, "another page has control; request control first");
+        if (route.takes == "application/json" && !request.body.empty() && !is_object(request.body))
+            return error_response(422, "a JSON object is needed");
         return route.answer(*this, asked);
     }
     return known ? error_response(405, "method not allowed") : error_response(404, "not found");
@@ -355,8 +371,10 @@ void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_
         if (steer->action == Steer::Action::ask) return hub_.ask(connection);
         return steer->action == Steer::Action::give ? hub_.give(connection) : hub_.let_go(connection);
     }
-    if (std::holds_alternative<Ping>(*message))
+    if (std::holds_alternative<Ping>(*message)) {
+        hub_.ping();
         return connection->send_text(std::make_shared<const std::string>(R"({"type":"pong"})"));
+    }
     if (connection->page.empty() || !hub_.may_steer(connection->page)) return refuse("another page has control");
     steer(*message, *simulation_, false);
     if (const auto second = beside()) steer(*message, *second, true);

@@ -73,7 +73,8 @@ public:
         std::string text, saved;
         std::vector<std::string> undo, redo;
         Accuracy accuracy = Accuracy::automatic;
-        std::vector<std::string> outside;  ///< paths outside the folder in the file with which the studio was started
+        std::vector<std::string> outside{};  ///< paths outside the folder in the file with which the studio was started
+        std::string title = "new";           ///< what pages call it while it has no name
     };
     [[nodiscard]] Document document();
     /// Checks and builds the new text. `because` tells the pages the cause of the change.
@@ -85,8 +86,9 @@ public:
     [[nodiscard]] Status save(const std::string& name);
     [[nodiscard]] Status open_file(const std::string& name);
     void open_example(const std::string& name);
-    /// Opens a robot that has no file yet. Errors: as for edit().
-    [[nodiscard]] Status open_new(const std::string& text);
+    /// Opens a robot that has no file yet; `name`: of the file that its text came from, "" if none. Errors: as for
+    /// edit(); `name` is not that of a robot file.
+    [[nodiscard]] Status open_new(const std::string& text, const std::string& name = {});
     void set_accuracy(Accuracy accuracy);
 
     /// Adds a second robot for comparison: it receives every input of the first one, and has a scene and frames of its
@@ -100,7 +102,7 @@ public:
 private:
     Studio(ProjectFolder folder, Start start);
     [[nodiscard]] Status start(const std::filesystem::path& file);
-    [[nodiscard]] Status check_files(const std::string& text) const;
+    [[nodiscard]] Status check_text(const std::string& text) const;
     /// Undo or redo: restores the last text of `from`; the current one is appended to `to`.
     void take_back(std::vector<std::string>& from, std::vector<std::string>& to);
     void rebuild(After after);

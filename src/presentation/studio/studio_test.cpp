@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
@@ -376,7 +377,12 @@ TEST_CASE("a robot is sliced, its layers and plan can be read, and slicing can b
     CHECK(estimate["layers"] == job["plan"]["layers"]);
     CHECK(estimate["swaps"] == job["plan"]["swaps"]);
     CHECK(estimate["seconds"].get<double>() == near(job["plan"]["seconds"]["total"].get<double>(), {.relative = 0.01}));
-    CHECK(ask(studio, "POST", "/api/job/estimate", R"({"printer":"tower","layer":"thick"})").status == 422);
+    const auto problem = [&](const std::string& body) {
+        return Json::parse(ask(studio, "POST", "/api/job/estimate", body).body)["problem"].get<std::string>();
+    };
+    CHECK(problem(R"({"printer":"tower","layer":"thick"})").starts_with("--layer: "));
+    CHECK(problem(R"({"printer":"tower","support":"soft","support-tip":"9 apples"})").starts_with("--support-tip: "));
+    CHECK(problem(R"({"printer":"tower","support-angle":"steep"})").starts_with("--support-angle "));
     CHECK(ask(studio, "POST", "/api/job/save", R"({"name":"bar.zip"})").status == 200);
     CHECK(ask(studio, "POST", "/api/open", R"({"name":"bar.zip"})").status == 200);
 
@@ -627,4 +633,70 @@ TEST_CASE("values and entries of the robot file change by request, and a text ca
     CHECK(Json::parse(studio->handle({"GET", "/api/materials"}).body).size() > 10);
     CHECK(post("/api/robot/new", project_bar).status == 200);
     CHECK(studio->document().name.empty());
+}
+
+TEST_CASE("a job tells which robot text and which options it was sliced from, and pages know the present text") {
+    const Project project;
+    const auto studio = opened(project);
+    const auto page = joined(*studio, "page_aaaa");
+    const auto digest = [&] {
+        for (;;) {
+            const auto out = page->next();
+            REQUIRE(out);
+            if (out->binary) continue;
+            const Json event = Json::parse(*out->bytes);
+            if (event["type"] == "document") return event["digest"].get<std::string>();
+        }
+    };
+    const std::string before = digest();
+    const std::string order = R"({"printer":"tower","layer":"100 um","copies":1})";
+    const auto slice = [&](const std::string& body) {
+        const int last = studio->make().job() ? studio->make().job()->revision : 0;
+        REQUIRE(ask(*studio, "POST", "/api/job/slice", body, "page_aaaa").status == 200);
+        while (!studio->make().job() || studio->make().job()->revision == last)
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        return Json::parse(ask(*studio, "GET", "/api/job").body)["source"];
+    };
+    const Json source = slice(order);
+    CHECK(source["robot"] == before);
+    CHECK(source["order"] == Json::parse(order));
+    REQUIRE(studio->edit(std::string(project_bar) + "# longer").has_value());
+    CHECK(digest() != before);
+    REQUIRE(studio->undo().has_value());
+    CHECK(digest() == before);
+    // A robot of its own, as a wizard's, is not the one in the editor.
+    CHECK(slice(Json{{"printer", "tower"}, {"layer", "100 um"}, {"robot", project_bar}}.dump()).is_null());
+}
+
+TEST_CASE("a robot that is in no file is called by what it came from") {
+    const Project project;
+    const auto studio = opened(project);
+    const auto title = [&](const std::string& path) {
+        const Response made = ask(*studio, "POST", path, project_bar);
+        return made.status == 200 ? studio->document().title : made.body;
+    };
+    CHECK(title("/api/robot/new") == "new");
+    Request dropped{"POST", "/api/robot/new", {{"name", "finger.toml"}}};
+    dropped.body = project_bar;
+    REQUIRE(studio->handle(dropped).status == 200);
+    CHECK(studio->document().title == "finger.toml");
+    CHECK(studio->document().name.empty());
+    dropped.query["name"] = "../finger.toml";
+    CHECK(studio->handle(dropped).status == 422);
+    studio->open_example("cable_gripper");
+    CHECK(studio->document().title == "example");
+}
+
+TEST_CASE("a body that is no JSON object is refused as such, by every request that takes one") {
+    const auto studio = opened();
+    for (const Route& route : studio->routes()) {
+        if (route.takes != "application/json") continue;
+        for (const char* body : {"{", "[]", "\"name\"", "{\"name\": }"}) {
+            INFO(route.path, " ", body);
+            const Response answer = ask(*studio, route.method, route.path, body);
+            CHECK(answer.status == 422);
+            CHECK(answer.body == R"({"error":"a JSON object is needed"})");
+        }
+    }
+    CHECK(ask(*studio, "POST", "/api/open", "{}").body == R"({"error":"name: the name of a file is needed"})");
 }

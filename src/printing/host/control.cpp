@@ -713,8 +713,9 @@ Result<Ending> Control::State_::print_anew(Journal* journal) {
         const auto facts = facts_of(journal->records());
         if (!facts) return tl::unexpected(facts.error());
         if (is_interrupted(*facts)) {
-            return input_error("{}: this job was interrupted; go on with --resume, or delete the journal to start anew",
-                               job->journal.string());
+            return input_error(
+                "{}: this job was interrupted; continue with --resume, or delete the journal to start over",
+                job->journal.string());
         }
         may_be_halted = may_be_halted || facts->halted;
         if (Status status = journal->clear(); !status) return tl::unexpected(status.error());
@@ -826,7 +827,7 @@ void Control::State_::finish(const Result<Ending>& ending) {
     const char* what = *ending == Ending::finished    ? "the print is complete"
                        : *ending == Ending::cancelled ? "the print was cancelled, the machine is parked"
                        : *ending == Ending::left
-                           ? "the print is suspended; the machine stands where it was: the door is open"
+                           ? "the print is suspended, and the machine is not parked, because the door is open"
                            : "the print is suspended, the machine is parked";
     desk.event("log", what);
     desk.state(State::idle, what);

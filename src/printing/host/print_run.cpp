@@ -79,7 +79,7 @@ Result<Ending> PrintRun::resume(const Recovery& recovery) {
     }
     const bool there = run_.machine.state().position()[Axis::platform] == recovery.target.position()[Axis::platform] &&
                        run_.machine.state().hooked_vat() == recovery.target.hooked_vat();
-    if (!there) return failure("the program that goes on does not lead to the next light");
+    if (!there) return failure("the program for resuming does not end where the next exposure begins");
     return steps_from(next_light(facts_, run_.script));
 }
 

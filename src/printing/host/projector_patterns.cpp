@@ -161,7 +161,7 @@ Status check(const PatternOptions& o) {
         return input_error("a pattern of {} x {} px: must be {} to {} each way", o.width_px, o.height_px, least_px,
                            most_px);
     if (o.square_px < 1 || o.square_px > most_px)
-        return input_error("squares of {} px: must be at least 1", o.square_px);
+        return input_error("squares of {} px: must be 1 to {}", o.square_px, most_px);
     if (o.columns < 2 || o.rows < 2 || o.columns > 100 || o.rows > 100)
         return input_error("{} x {} points: must be 2 to 100 each way", o.columns, o.rows);
     return {};

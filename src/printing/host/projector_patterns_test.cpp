@@ -113,3 +113,10 @@ TEST_CASE("an invalid table is refused, by line") {
     CHECK(said("1 2\n").find("1 rows of 2") != std::string::npos);
     CHECK(said("").find("0 rows") != std::string::npos);
 }
+
+TEST_CASE("squares of too many pixels are refused with the limit") {
+    PatternOptions options;
+    options.width_px = options.height_px = 64;
+    options.square_px = 100000;
+    CHECK(test_pattern("checkerboard", options).error().message == "squares of 100000 px: must be 1 to 32768");
+}

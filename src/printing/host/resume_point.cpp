@@ -120,8 +120,9 @@ Result<std::optional<OpenLight>> close_open_light(JournalFacts& facts, Guard* gu
             open.assumed = true;
         } else {
             return failure(
-                "layer {}, material {}: the light of {:g} s was on when the host ended, and nobody saw how "
-                "long; check the part and resume with --assume-lit SECONDS (0: not at all, {:g}: all of it)",
+                "layer {}, material {}: an exposure of {:g} s was in progress when the host ended, and how long it "
+                "lasted is not recorded; inspect the part and resume with --assume-lit SECONDS (0: none, {:g}: all of "
+                "it)",
                 fact.layer, fact.material, fact.planned_s - fact.lit_s, fact.planned_s - fact.lit_s);
         }
         fact.lit_s += open.on_s;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/core/files.hpp"
+#include "base/core/letters.hpp"
 #include "base/zip/zip_file.hpp"
 #include "printing/job/png.hpp"
 #include "printing/job/stack_height.hpp"
@@ -27,8 +28,7 @@ constexpr std::uint64_t max_stack_files = 1 << 22;
 
 /// "layers/cone_" and 12 of "layers/cone_0012.png".
 std::optional<std::pair<std::string, long>> split_name(const std::string& name) {
-    std::string lower = name;
-    std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string lower = lower_case(name);
     if (!lower.ends_with(".png") || lower.find("thumbnail") != std::string::npos ||
         lower.find("preview") != std::string::npos)
         return std::nullopt;
@@ -87,6 +87,7 @@ struct ImageStack::State {
     std::vector<StackImage> entries;
     PngSize size;
     std::optional<double> layer_um;
+    std::optional<PixelSize> pixel;
 
     [[nodiscard]] Result<std::string> read(const std::string& name, std::uint64_t most) const {
         return zip ? zip->read(name, most) : read_file(path / name, most);
@@ -112,10 +113,13 @@ Result<ImageStack> ImageStack::open(const fs::path& path) {
     auto entries = choose(*names, path.string());
     if (!entries) return tl::unexpected(entries.error());
     state->entries = std::move(*entries);
-    const auto layer_um =
-        stated_layer_um(*names, [&](const std::string& name) { return state->read(name, max_text_bytes); });
+    const SideText side_text = [&](const std::string& name) { return state->read(name, max_text_bytes); };
+    const auto layer_um = stated_layer_um(*names, side_text);
     if (!layer_um) return input_error("{}: {}", path.string(), layer_um.error().message);
     state->layer_um = *layer_um;
+    const auto pixel = stated_pixel(*names, side_text);
+    if (!pixel) return input_error("{}: {}", path.string(), pixel.error().message);
+    state->pixel = *pixel;
     const auto first = state->bytes(0);
     if (!first) return tl::unexpected(first.error());
     const auto size = any_png_size(*first, fmt::format("{}: {}", path.string(), state->entries[0].name));
@@ -140,6 +144,10 @@ std::optional<double> ImageStack::layer_um() const {
     return state_->layer_um;
 }
 
+std::optional<PixelSize> ImageStack::pixel() const {
+    return state_->pixel;
+}
+
 Result<slice::Image> ImageStack::image(int layer) const {
     const auto i = static_cast<std::size_t>(layer);
     const auto bytes = state_->bytes(i);
@@ -152,7 +160,8 @@ bool is_image_stack(const fs::path& path) {
     const auto zip = ZipReader::open(path);
     if (!zip || zip->has("_rels/.rels") || zip->has("manifest.json")) return false;
     const auto names = names_in(path, &*zip);
-    return names && std::any_of(names->begin(), names->end(), [](const std::string& n) { return n.ends_with(".png"); });
+    return names && std::any_of(names->begin(), names->end(),
+                                [](const std::string& n) { return lower_case(n).ends_with(".png"); });
 }
 
 }  // namespace pliant::job

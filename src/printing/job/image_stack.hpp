@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/core/error.hpp"
+#include "printing/job/stack_height.hpp"
 #include "printing/slice/image.hpp"
 
 namespace pliant::job {
@@ -28,6 +29,8 @@ public:
     [[nodiscard]] int height_px() const;
     /// From the files beside the images; nullopt if they do not say.
     [[nodiscard]] std::optional<double> layer_um() const;
+    /// Likewise.
+    [[nodiscard]] std::optional<PixelSize> pixel() const;
     /// The image as grey, whatever kind of PNG the file holds. Errors: what libpng rejects.
     [[nodiscard]] Result<slice::Image> image(int layer) const;
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/core/letters.hpp"
 #include "printing/job/manifest.hpp"
 #include "printing/job/sha256.hpp"
 
@@ -22,8 +23,16 @@ bool is_colour(std::string_view text) {
            text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string_view::npos;
 }
 
+/// Names go to terminals, and into comments of programs.
+bool has_control(std::string_view name) {
+    return std::any_of(name.begin(), name.end(), is_control);
+}
+
 Status check_material(const Material& m, std::size_t i, std::string_view where) {
     if (m.name.empty()) return input_error("{}: materials[{}].name: must not be empty", where, i);
+    const auto odd_part = [](const MaterialPart& part) { return has_control(part.name); };
+    if (has_control(m.name) || has_control(m.resin) || std::any_of(m.parts.begin(), m.parts.end(), odd_part))
+        return input_error("{}: materials[{}]: name or resin has a line break or another control character", where, i);
     const std::pair<const char*, double> amounts[] = {{"model_volume_mm3", m.model_volume_mm3},
                                                       {"model_area_mm2", m.model_area_mm2},
                                                       {"exposure_s", m.exposure_s},
@@ -93,6 +102,9 @@ Status check_layers(const Manifest& manifest, std::string_view where) {
         if (layer.thickness_um < 1 || layer.thickness_um > layer.z_um)
             return input_error("{}: layers[{}].thickness_um: {} must be 1 to z_um, {}", where, k, layer.thickness_um,
                                layer.z_um);
+        if (layer.thickness_um != layer.z_um - below_um)
+            return input_error("{}: layers[{}].thickness_um: {} must be the step of z_um, {}", where, k,
+                               layer.thickness_um, layer.z_um - below_um);
         if (auto status = check_images(manifest, k, where); !status) return status;
         below_um = layer.z_um;
     }
@@ -159,6 +171,8 @@ Status check(const Manifest& manifest, std::string_view where) {
                            height, max_side_px);
     if (!(manifest.pixel_um > 0 && manifest.pixel_um <= 10000))
         return input_error("{}: pixel_um: {} must be above 0 and at most 10000", where, manifest.pixel_um);
+    if (has_control(manifest.name))
+        return input_error("{}: name: has a line break or another control character", where);
     if (manifest.bottom_layers < 0)
         return input_error("{}: bottom_layers: {} must be 0 or more", where, manifest.bottom_layers);
     if (auto status = check_materials(manifest.materials, where); !status) return status;

@@ -118,6 +118,21 @@ TEST_CASE("an inconsistent manifest is refused") {
     refuse(m, "area_mm2");
 }
 
+TEST_CASE("a thickness other than the step of z_um, and names with control characters are refused") {
+    Manifest m = example();
+    m.layers[1].thickness_um = 40;
+    refuse(m, "layers[1].thickness_um: 40 must be the step of z_um, 50");
+    m = example();
+    m.name = "a\nM42 P4 S255";
+    refuse(m, "name: has a line break");
+    m = example();
+    m.materials[1].name = "a\x1b[2J";
+    refuse(m, "materials[1]: name or resin has a line break");
+    m = example();
+    m.materials[0].resin = "soft\r";
+    refuse(m, "materials[0]: name or resin has a line break");
+}
+
 TEST_CASE("JSON of another shape is refused with the key") {
     const std::string good = to_json(example());
     CHECK(refused_json("").find("parse error") != std::string::npos);

@@ -110,4 +110,48 @@ Result<std::optional<double>> stated_layer_um(const std::vector<std::string>& na
     return std::nullopt;
 }
 
+namespace {
+
+/// A pixel is `size` / `count` mm, or 1 / `count` where the size is "", or `size` where the count is "".
+struct PixelSource {
+    std::string_view file;
+    Values (*values)(std::string_view text, std::string_view key);
+    std::string_view size_x, count_x, size_y, count_y;
+};
+constexpr std::array<PixelSource, 4> pixel_sources = {
+    PixelSource{"prusaslicer.ini", ini_values, "display_width", "display_pixels_x", "display_height",
+                "display_pixels_y"},
+    PixelSource{"slicer.json", json_values, "XPixelSize", "", "YPixelSize", ""},
+    PixelSource{"*.slicing", xml_values, "", "DotsPermmX", "", "DotsPermmY"},
+    PixelSource{"manifest.uvtools", xml_values, "DisplayWidth", "ResolutionX", "DisplayHeight", "ResolutionY"}};
+
+/// 1 without a key; 0 where the file does not say, as programs write for what they do not know.
+double amount(const PixelSource& source, const std::string& text, std::string_view key) {
+    if (key.empty()) return 1;
+    const Values values = source.values(text, key);
+    if (values.size() != 1) return 0;
+    char* end = nullptr;
+    const double value = std::strtod(values.front().c_str(), &end);
+    return *end == '\0' && std::isfinite(value) && value > 0 ? value : 0;
+}
+
+}  // namespace
+
+Result<std::optional<PixelSize>> stated_pixel(const std::vector<std::string>& names, const SideText& text) {
+    for (const PixelSource& source : pixel_sources) {
+        const auto file =
+            std::find_if(names.begin(), names.end(), [&](const std::string& n) { return is_named(n, source.file); });
+        if (file == names.end()) continue;
+        const Result<std::string> content = text(*file);
+        if (!content) return tl::unexpected(content.error());
+        const auto edge_um = [&](std::string_view size, std::string_view count) {
+            const double pixels = amount(source, *content, count);
+            return pixels > 0 ? um_per_mm * amount(source, *content, size) / pixels : 0;
+        };
+        const PixelSize pixel{edge_um(source.size_x, source.count_x), edge_um(source.size_y, source.count_y)};
+        if (pixel.x_um > 0 && pixel.y_um > 0) return pixel;
+    }
+    return std::nullopt;
+}
+
 }  // namespace pliant::job

@@ -1,4 +1,4 @@
-// Layer height of image stacks from other programs.
+// Layer height and pixel size of image stacks from other programs.
 #pragma once
 
 #include <functional>
@@ -18,6 +18,16 @@ using SideText = std::function<Result<std::string>(const std::string&)>;
 /// nullopt: none of them exists or gives one. Errors, which name file and key: a height that is not a number between 0
 /// and 10 mm, slices of several heights, those of `text`.
 [[nodiscard]] Result<std::optional<double>> stated_layer_um(const std::vector<std::string>& names,
+                                                            const SideText& text);
+
+/// Edges of a pixel, in micrometres.
+struct PixelSize {
+    double x_um = 0, y_um = 0;
+};
+
+/// The size of a pixel, from the size of the display and its pixels in the same files: prusaslicer.ini, slicer.json,
+/// NAME.slicing, manifest.uvtools. nullopt: none of them says. Errors: those of `text`.
+[[nodiscard]] Result<std::optional<PixelSize>> stated_pixel(const std::vector<std::string>& names,
                                                             const SideText& text);
 
 }  // namespace pliant::job

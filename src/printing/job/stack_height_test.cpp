@@ -70,3 +70,33 @@ TEST_CASE("an invalid layer height is an error that names file and key") {
     CHECK(refused_height({{"a.slicing", "<SliceHeight>0.05</SliceHeight><SliceHeight>0.1</SliceHeight>"}}) ==
           "a.slicing: SliceHeight is 50 um and 100 um: layers of one height are needed");
 }
+
+TEST_CASE("the size of a pixel is read from every format that states display or pixels") {
+    const auto pixel = [](const Files& files) {
+        std::vector<std::string> names;
+        for (const auto& [name, text] : files) names.push_back(name);
+        return stated_pixel(names, [&](const std::string& name) -> Result<std::string> { return files.at(name); })
+            .value()
+            .value_or(PixelSize{});
+    };
+    const auto is = [](const PixelSize& p, double x_um, double y_um) {
+        return p.x_um == near(x_um, {.relative = 1e-12}) && p.y_um == near(y_um, {.relative = 1e-12});
+    };
+    CHECK(is(pixel({{"prusaslicer.ini",
+                     "display_height = 67.5\ndisplay_pixels_x = 2560\ndisplay_pixels_y = 1440\n"
+                     "display_width = 120\n"}}),
+             46.875, 46.875));
+    CHECK(is(pixel({{"slicer.json", R"({"XPixelSize": 0.05, "YPixelSize": 0.06})"}}), 50, 60));
+    CHECK(is(pixel({{"a.slicing", "<DotsPermmX>20</DotsPermmX><DotsPermmY>25</DotsPermmY>"}}), 50, 40));
+    CHECK(is(pixel({{"manifest.uvtools",
+                     "<ResolutionX>100</ResolutionX><ResolutionY>50</ResolutionY>"
+                     "<DisplayWidth>10</DisplayWidth><DisplayHeight>5</DisplayHeight>"}}),
+             100, 100));
+    // Zeros, lists and what is missing state nothing.
+    CHECK(is(pixel({{"manifest.uvtools",
+                     "<ResolutionX>100</ResolutionX><ResolutionY>50</ResolutionY>"
+                     "<DisplayWidth>0</DisplayWidth><DisplayHeight>0</DisplayHeight>"}}),
+             0, 0));
+    CHECK(is(pixel({{"slicer.json", "[1]"}, {"config.ini", "layerHeight = 0.1"}}), 0, 0));
+    CHECK(is(pixel({{"prusaslicer.ini", "display_width = wide\ndisplay_pixels_x = 0\n"}}), 0, 0));
+}

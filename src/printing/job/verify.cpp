@@ -55,7 +55,7 @@ Status check_shared(const Manifest& m, std::size_t k, const std::vector<slice::R
 
 }  // namespace
 
-Status verify_images(const Archive& archive, bool corrected, const std::string& path) {
+Status verify_images(const Archive& archive, bool corrected, const std::string& path, const PlatformEdge* edge) {
     const Manifest& m = archive.manifest();
     const double pixel_mm2 = m.pixel_um * m.pixel_um / 1e6;
     for (std::size_t k = 0; k < m.layers.size(); ++k) {
@@ -68,6 +68,8 @@ Status verify_images(const Archive& archive, bool corrected, const std::string& 
             if (!corrected && std::fabs(area - entry.area_mm2) > 1e-6 * (area + pixel_mm2))
                 return input_error("{}: {}: its pixels hold {:.6g} mm^2, the manifest says {:.6g}", path, entry.file,
                                    area, entry.area_mm2);
+            const Beyond beyond = edge != nullptr ? edge->beyond(seen.back()) : Beyond{};
+            if (beyond.um > 0) return input_error("{}: {}: its light {}", path, entry.file, edge->text(beyond));
         }
         if (auto status = check_shared(m, k, seen, corrected, path); !status) return status;
     }

@@ -2,12 +2,15 @@
 #pragma once
 
 #include "printing/job/job.hpp"
+#include "printing/job/platform_edge.hpp"
 
 namespace pliant::job {
 
 /// Decodes every image. Its area must be the manifest's, unless `corrected` says that images hold greys calibrated for
-/// a projector; and no two images of a layer may light the same pixel, except for the shared area in the manifest.
+/// a projector; and no two images of a layer may light the same pixel, except for the shared area in the manifest,
+/// or anything beside the platform, if its `edge` is given (else null).
 /// Errors name archive, layer and image.
-[[nodiscard]] Status verify_images(const Archive& archive, bool corrected, const std::string& path);
+[[nodiscard]] Status verify_images(const Archive& archive, bool corrected, const std::string& path,
+                                   const PlatformEdge* edge = nullptr);
 
 }  // namespace pliant::job

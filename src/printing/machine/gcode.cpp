@@ -41,9 +41,10 @@ Result<Word> parse_word(std::string_view token) {
     if (!is_capital(word.letter)) return input_error("\"{}\" does not begin with a capital letter", token);
     if (token.size() == 1) return word;
     double value = 0;
-    if (!parse_whole(token.substr(1), value) || !(std::abs(value) <= largest_value)) {
-        return input_error("\"{}\" is not a letter and a number", token);
-    }
+    const bool readable = parse_whole(token.substr(1), value) && std::abs(value) <= largest_value;
+    if (readable && token.find_first_of("eE", 1) != std::string_view::npos)
+        return input_error("\"{}\" has an exponent, which Marlin does not read: write {}{}", token, word.letter, value);
+    if (!readable) return input_error("\"{}\" is not a letter and a number", token);
     word.value = value;
     return word;
 }

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "base/core/letters.hpp"
+
 using namespace pliant;
 using namespace pliant::machine;
 
@@ -44,6 +46,21 @@ TEST_CASE("anything but a strict command is refused") {
         CAPTURE(line);
         CHECK_FALSE(parse_command(line));
     }
+}
+
+TEST_CASE("an exponent is refused: Marlin ends a number there") {
+    CHECK(parse_command("G1 X2.4E2").error().message ==
+          "\"X2.4E2\" has an exponent, which Marlin does not read: write X240");
+    CHECK(parse_command("G1 Z1 F9e2").error().message ==
+          "\"F9e2\" has an exponent, which Marlin does not read: write F900");
+    CHECK(parse_command("G4 P1e-3").error().message.find("write P0.001") != std::string::npos);
+    CHECK(parse_command("G1 E240")->value('E') == 240);
+    CHECK(parse_command("M118 E1 1E2")->text == "1E2");
+}
+
+TEST_CASE("a name in a comment cannot begin a line of its own") {
+    CHECK(one_line("rob\nM42 P4 S255\r\x7f;") == "rob M42 P4 S255  ;");
+    CHECK(one_line("Füße") == "Füße");
 }
 
 TEST_CASE("comments, blanks and line ends are removed") {

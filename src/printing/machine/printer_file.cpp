@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/core/config.hpp"
+#include "base/core/letters.hpp"
 #include "printing/machine/gcode.hpp"
 #include "printing/machine/printer.hpp"
 #include "printing/machine/printer_reading.hpp"
@@ -112,7 +113,7 @@ Platform read_platform(Reader r) {
     p.lift_speed_mm_s = speed(r, "lift_speed");
     p.approach_um = length_um(r, "approach");
     p.approach_speed_mm_s = speed(r, "approach_speed");
-    p.settle_s = not_negative(r, "settle", Dimension::time);
+    p.settle_s = wait_s(r, "settle");
     r.finish();
     return p;
 }
@@ -216,7 +217,7 @@ Projector read_projector(Reader r) {
     p.grey = read_grey(r);
     p.mask = r.text("mask", "");
     p.irradiance_W_m2 = not_negative(r, "irradiance", Dimension::irradiance);
-    p.delay_s = not_negative(r, "delay", Dimension::time);
+    p.delay_s = wait_s(r, "delay");
     r.finish();
     return p;
 }
@@ -275,6 +276,8 @@ void check_pairs(Reader& root, const Printer& p) {
 Printer read_printer(Reader& root, const StoreTables& has) {
     Printer p;
     p.name = root.text("name");
+    if (std::any_of(p.name.begin(), p.name.end(), is_control))
+        root.problem("name", "must have no line breaks or other control characters");
     if (root.has("layer_height")) p.layer_um = length_um(root, "layer_height", 1);
     p.controller = read_controller(root.table("controller"));
     read_axes(root.table("axis"), p, has);

@@ -80,11 +80,11 @@ Cleaning read_cleaning(Reader r, Store store, int clearance_um) {
         return c;
     }
     c.method = read_method(r);
-    c.spray_s = not_negative(r, r.has("duration") ? "duration" : "spray", Dimension::time);
+    c.spray_s = wait_s(r, r.has("duration") ? "duration" : "spray");
     if (store == Store::tower || store == Store::wall) c.stroke_x_um = length_um(r, "stroke_x", 1);
     c.stroke_z_um = length_um(r, "stroke_z");
     c.speed_mm_s = speed(r, "speed");
-    c.dry_s = not_negative(r, "dry", Dimension::time);
+    c.dry_s = wait_s(r, "dry");
     read_brush(r, store, clearance_um, c);
     if (r.has("film")) c.film_um = length_um(r, "film");
     c.solvent_ml_s = not_negative(r, "solvent", Dimension::volume, 1e6) / std::max(1e-9, c.spray_s > 0 ? c.spray_s : 1);

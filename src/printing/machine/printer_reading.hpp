@@ -44,6 +44,14 @@ inline double not_negative(Reader& r, std::string_view key, Dimension dimension,
     return value;
 }
 
+/// A wait between commands. Longer ones are slips of the unit, and their numbers too large for G-code.
+inline double wait_s(Reader& r, std::string_view key) {
+    constexpr double most_s = 3600;
+    const double value = not_negative(r, key, Dimension::time);
+    if (value > most_s) r.problem(key, fmt::format("is {:g} s, must be at most {:g} s", value, most_s));
+    return value;
+}
+
 inline int whole(Reader& r, std::string_view key, int low, int high) {
     const auto value = r.integer(key);
     if (r.has(key) && (value < low || value > high)) {

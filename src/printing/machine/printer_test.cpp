@@ -113,6 +113,23 @@ TEST_CASE("image rotation, offset, grey curve and mask are read, and invalid val
     CHECK(!with("offset = [\"1 mm\"]").has_value());
 }
 
+TEST_CASE("waits of over an hour, and a name with a line break, are refused") {
+    const auto with = [](const std::string& old, const std::string& line) {
+        const std::string text = read_file("examples/printers/tower.toml").value();
+        const std::size_t at = text.find("\n" + old) + 1;
+        const auto printer = parse_printer(text.substr(0, at) + line + text.substr(text.find('\n', at)), "p.toml");
+        return printer ? std::string() : printer.error().message;
+    };
+    CHECK(with("settle = ", "settle = \"1 h\"").empty());
+    CHECK(with("settle = ", "settle = \"1e9 s\"").find("platform.settle: is 1e+09 s, must be at most 3600 s") !=
+          std::string::npos);
+    CHECK(with("delay = ", "delay = \"2 h\"").find("projector.delay: is 7200 s") != std::string::npos);
+    CHECK(with("spray = ", "spray = \"2 h\"").find("cleaning.spray: is 7200 s") != std::string::npos);
+    CHECK(with("spray = ", "spray = \"15 s\"\ndry = \"2 h\"").find("cleaning.dry: is 7200 s") != std::string::npos);
+    CHECK(with("name = ", "name = \"tower\\nM42 P4 S255\"").find("name: must have no line breaks") !=
+          std::string::npos);
+}
+
 TEST_CASE("an empty file and a missing file are errors, not crashes") {
     CHECK_FALSE(parse_printer("", "p.toml"));
     CHECK_FALSE(parse_printer("vat = 3\naxis = \"x\"\nresin = [1]\n", "p.toml"));

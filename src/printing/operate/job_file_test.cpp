@@ -169,6 +169,22 @@ TEST_CASE("a changed G-code line is refused with its number, even if all checksu
     CHECK_FALSE(load_job(job.path).has_value());
 }
 
+TEST_CASE("a job without a single image is refused") {
+    Job job;
+    for (job::Layer& layer : job.manifest.layers) layer.images.clear();
+    job.gcode = "G90\nM84 S0\n";
+    job.write();
+    CHECK(holds(load_job(job.path).error().message, "halves.zip: the job prints nothing"));
+}
+
+TEST_CASE("a job that lights pixels beside the platform is refused by the check of its images") {
+    Job job;
+    job.set("size", "[\"0.5 mm\", \"6 in\"]");  // the image is 8 x 158.75 um wide
+    job.write();
+    CHECK(holds(prove_job(job.path, Pixels::areas).error().message,
+                "halves.zip: layers/0_0.png: its light lies 0.306 mm beyond the platform at -x"));
+}
+
 TEST_CASE("the host's limits come from the printer file, its programs from the planner") {
     Job job;
     machine::Controller controller;

@@ -1,8 +1,10 @@
 #include "printing/operate/proved_job.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "printing/job/verify.hpp"
+#include "printing/machine/image_room.hpp"
 #include "printing/operate/job_file.hpp"
 #include "printing/plan/proof.hpp"
 
@@ -20,7 +22,8 @@ Status check_fingerprints(const job::Archive& archive) {
 Status check_pixels(const OpenJob& job, const std::string& path) {
     const machine::Projector& projector = job.printer.projector;
     const bool corrected = !projector.grey.empty() || !projector.mask.empty();
-    return job::verify_images(job.archive, corrected, path);
+    const job::PlatformEdge edge = machine::platform_edge(job.printer);
+    return job::verify_images(job.archive, corrected, path, &edge);
 }
 
 }  // namespace
@@ -30,6 +33,8 @@ Result<ProvedJob> prove_job(const std::filesystem::path& path, Pixels pixels, co
     Result<OpenJob> open = open_job(path);
     if (!open) return tl::unexpected(open.error());
     const job::Manifest& manifest = open->archive.manifest();
+    if (std::all_of(manifest.layers.begin(), manifest.layers.end(), [](auto& layer) { return layer.images.empty(); }))
+        return input_error("{}: the job prints nothing: none of its layers has an image", where);
     const bool sealed = !manifest.sha256.empty();
     if (Status status = check_fingerprints(open->archive); !status) return tl::unexpected(status.error());
     if (const auto mask = mask_of(open->archive, open->printer.projector); !mask) return tl::unexpected(mask.error());

@@ -105,7 +105,7 @@ TEST_CASE("the planned order never takes longer than the thesis' rule or the nai
         for (int round = 0; round < 10; ++round) {
             const Plan plan = make_plan(random_job(printer, random), printer).value();
             REQUIRE(plan.compared.size() == 3);
-            for (const OrderCost& c : plan.compared) CHECK(c.change_s >= plan.least_change_s - 1e-9);
+            for (const OrderCost& c : plan.compared) CHECK(c.change_s + c.penalty_s >= plan.least_change_s - 1e-9);
             CHECK(plan.compared[2].change_s == near(plan.least_change_s, {.relative = 1e-12}));
         }
     }
@@ -162,6 +162,16 @@ TEST_CASE("a pair with longer cleaning, or with an extra cost, changes the order
     printer.cleaning.pairs = {{"semi-flex", "rigid-flex", 60, 0}, {"rigid-flex", "semi-flex", 15, 500}};
     const Plan plan = make_plan(job, printer).value();
     for (std::size_t i = 1; i < 3; ++i) CHECK_FALSE(plan.order[0][i] + plan.order[0][i - 1] == 1);
+    // Penalties steer the choice, but take no time.
+    const OrderCost& naive = plan.compared[0];
+    CHECK(naive.penalty_s == 0);  // 0, 1, 2
+    machine::Printer penalised = printer;
+    penalised.cleaning.pairs = {{"semi-flex", "rigid-flex", 60, 1000}, {"rigid-flex", "semi-flex", 15, 500}};
+    const OrderCost other = make_plan(job, penalised).value().compared[0];
+    CHECK(other.penalty_s == near(1000, {.relative = 1e-9}));
+    CHECK(other.change_s == near(naive.change_s, {.relative = 1e-12}));
+    CHECK(plan_text(make_plan(job, penalised).value()).find("of changing vats, penalties of 0:16:40") !=
+          std::string::npos);
     const double before = swap_seconds(printer, 1, 3).total;
     CHECK(swap_seconds(printer, 1, 2).clean == near(60, {.relative = 1e-3}));
     CHECK(before < 80);

@@ -88,8 +88,8 @@ std::vector<VatList> vats_by_layer(const std::vector<std::vector<int>>& vat_of_i
     return layers;
 }
 
-/// Duration of every change between vats that the job uses, plus the penalty of the pair.
-ChangeCosts change_costs(const Plan& plan, const Printer& printer) {
+/// Duration of every change between vats that the job uses.
+ChangeCosts change_times(const Plan& plan, const Printer& printer) {
     ChangeCosts costs(static_cast<int>(printer.vats.size()));
     for (const VatUse& from : plan.vats) {
         Sequence s = standing_at(printer, from.slot);
@@ -98,8 +98,17 @@ ChangeCosts change_costs(const Plan& plan, const Printer& printer) {
         costs.load[static_cast<std::size_t>(from.vat)] = load_seconds(printer, from.slot).total;
         for (const VatUse& to : plan.vats) {
             if (to.vat == from.vat) continue;
-            costs.swap[costs.at(from.vat, to.vat)] =
-                swap_seconds(printer, from.slot, to.slot).total + printer.penalty_s(from.vat, to.vat);
+            costs.swap[costs.at(from.vat, to.vat)] = swap_seconds(printer, from.slot, to.slot).total;
+        }
+    }
+    return costs;
+}
+
+/// With the penalties of the pairs.
+ChangeCosts with_penalties(ChangeCosts costs, const Plan& plan, const Printer& printer) {
+    for (const VatUse& from : plan.vats) {
+        for (const VatUse& to : plan.vats) {
+            if (to.vat != from.vat) costs.swap[costs.at(from.vat, to.vat)] += printer.penalty_s(from.vat, to.vat);
         }
     }
     return costs;
@@ -112,14 +121,15 @@ Printer with_resins(const Plan& plan, Printer printer) {
 }
 
 void choose_order(Plan& plan, const std::vector<VatList>& layers, const Printer& printer, OrderRule rule) {
-    const ChangeCosts costs = change_costs(plan, printer);
+    const ChangeCosts times = change_times(plan, printer), costs = with_penalties(times, plan, printer);
     const LeastCost least = least_cost_order(layers, costs);
     if (!least.exact)
         plan.warnings.emplace_back(
             "layers of more than 12 vats: their order is close to the optimum, not proved to be it");
     for (const OrderRule each : {OrderRule::naive, OrderRule::thesis, OrderRule::least_cost}) {
         std::vector<VatList> order = each == OrderRule::least_cost ? least.order : order_vats(layers, each);
-        plan.compared.push_back({each, count_swaps(order), change_cost(order, costs)});
+        const double change_s = change_cost(order, times);
+        plan.compared.push_back({each, count_swaps(order), change_s, change_cost(order, costs) - change_s});
         if (each == rule) plan.order = std::move(order);
     }
     if (rule == OrderRule::fewest_swaps) plan.order = order_vats(layers, rule);

@@ -37,7 +37,8 @@ struct RefillBefore {
 struct OrderCost {
     OrderRule rule = OrderRule::naive;
     int swaps = 0;
-    double change_s = 0;
+    double change_s = 0;   ///< that the changes take
+    double penalty_s = 0;  ///< of the pairs, which only count in the choice
 };
 
 struct Plan {
@@ -54,7 +55,7 @@ struct Plan {
     std::vector<VatList> order;                  ///< for each layer, the vats (indices into Printer::vats) in order
     OrderRule rule = OrderRule::least_cost;      ///< rule that gave `order`
     std::vector<OrderCost> compared;             ///< naive, thesis, least cost: the time of each
-    double least_change_s = 0;                   ///< lower bound of the time for vat changes over all orders
+    double least_change_s = 0;                   ///< lower bound of change_s + penalty_s over all orders
     std::vector<Seconds> layer_seconds;          ///< of each layer, including vat changes before and within it
     double waste_ml = 0;                         ///< resin washed off
     double solvent_ml = 0;                       ///< cleaning solution consumed

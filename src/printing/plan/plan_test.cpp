@@ -214,3 +214,17 @@ TEST_CASE("the list of vats says what to fill in") {
               "slot 1: glue, 0.0 ml, to be filled in: the printer file has another resin there, or none",
               "slot 2: rigid-flex, 0.0 ml"});
 }
+
+TEST_CASE("no name can add a line to the program") {
+    machine::Printer printer = plan::test::tower();
+    job::Manifest job = plan::test::make_job(repeated({0, 1}, 2), two);
+    const auto lines = [&] {
+        const std::string text = write_gcode(planned(job, printer), job, printer);
+        return std::count(text.begin(), text.end(), '\n');
+    };
+    const auto plain = lines();
+    job.name = "rob\nM42 P4 S255\n;";
+    printer.name = "tower\r\nM42 P4 S255";
+    CHECK(lines() == plain);
+    CHECK(holds(write_gcode(planned(job, printer), job, printer), "rob M42 P4 S255 ; on tower"));
+}

@@ -45,7 +45,8 @@ Json order_json(const Plan& plan) {
 Json orders_json(const Plan& plan) {
     Json orders = Json::object();
     for (const OrderCost& c : plan.compared) {
-        orders[std::string(rule_name(c.rule))] = {{"swaps", c.swaps}, {"change_s", rounded(c.change_s)}};
+        orders[std::string(rule_name(c.rule))] = {
+            {"swaps", c.swaps}, {"change_s", rounded(c.change_s)}, {"penalty_s", rounded(c.penalty_s)}};
     }
     return orders;
 }
@@ -111,8 +112,10 @@ std::string orders_text(const Plan& plan) {
     std::string text;
     for (const OrderCost& c : plan.compared) {
         const bool chosen = c.rule == plan.rule;
-        text += fmt::format("  {:<14}{:>6} {:<5}{:>12} of changing vats{}\n", rule_name(c.rule), c.swaps,
-                            c.swaps == 1 ? "swap" : "swaps", clock_text(c.change_s), chosen ? "   (planned)" : "");
+        const std::string penalty = c.penalty_s >= 0.5 ? ", penalties of " + clock_text(c.penalty_s) : "";
+        text +=
+            fmt::format("  {:<14}{:>6} {:<5}{:>12} of changing vats{}{}\n", rule_name(c.rule), c.swaps,
+                        c.swaps == 1 ? "swap" : "swaps", clock_text(c.change_s), penalty, chosen ? "   (planned)" : "");
     }
     return text;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/core/letters.hpp"
 #include "printing/machine/motion.hpp"
 
 namespace pliant::plan {
@@ -66,7 +67,7 @@ void Sequence::note_switch(Device device, bool on, double& on_s) {
 void Sequence::comment(std::string_view text) {
     if (muted_) return;
     text_ += "; ";
-    text_ += text.substr(0, machine::max_line_chars - 2);
+    text_ += one_line(text.substr(0, machine::max_line_chars - 2));
     text_ += '\n';
 }
 

@@ -55,7 +55,27 @@ Result<Vec3> shift_of(const Order& order) {
     return Vec3{um * order.at[0], um * order.at[1], 0};
 }
 
-Status place(const Order& order, const slice::Raster& raster, Drawing& drawing) {
+/// Copies stand within the image, and on the platform.
+slice::Room room_of(const job::JobSettings& settings) {
+    if (!settings.edge || !settings.edge->limits()) return settings.slicing.raster;
+    return {settings.edge->width_um(), settings.edge->depth_um(), "the platform"};
+}
+
+/// Supports and rafts count too.
+Status check_edge(const job::JobSettings& settings, const Drawing& drawing) {
+    if (!settings.edge) return {};
+    for (std::size_t i = 0; i < drawing.bodies.size(); ++i) {
+        const std::string label = describe(drawing.bodies[i], i);
+        const Result<Box3> box = bounds(drawing.bodies[i], label);
+        if (!box) return tl::unexpected(box.error());
+        if (box->empty()) continue;
+        if (Status status = job::check_on_platform(*settings.edge, *box, label); !status) return status;
+    }
+    return {};
+}
+
+Status place(const Order& order, const job::JobSettings& settings, Drawing& drawing) {
+    const slice::Raster& raster = settings.slicing.raster;
     if (order.scale != 1) {
         if (Status status = slice::scale(drawing.bodies, order.scale); !status)
             return input_error("--scale: {}", status.error().message);
@@ -66,7 +86,8 @@ Status place(const Order& order, const slice::Raster& raster, Drawing& drawing) 
     }
     double spacing_um = 0;
     if (Status status = read_lengths({{"--spacing", &order.spacing, &spacing_um}}); !status) return status;
-    if (Status status = slice::repeat(drawing.bodies, order.copies, spacing_um, raster); !status) return status;
+    if (Status status = slice::repeat(drawing.bodies, order.copies, spacing_um, room_of(settings)); !status)
+        return status;
     const Result<std::vector<std::string>> warnings = slice::place_on_platform(drawing.bodies, raster);
     if (!warnings) return tl::unexpected(warnings.error());
     drawing.warnings.insert(drawing.warnings.end(), warnings->begin(), warnings->end());
@@ -164,7 +185,7 @@ Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,
     }
     std::vector<slice::SupportTouch> touches;
     if (Status status = add_paint(order, drawing, touches); !status) return status;
-    if (Status status = place(order, settings.slicing.raster, drawing); !status) return status;
+    if (Status status = place(order, settings, drawing); !status) return status;
     slice::SupportSettings wanted;
     if (supported) {
         Result<slice::SupportSettings> read = support_settings(order);
@@ -173,6 +194,7 @@ Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,
         if (Status status = lift(order, wanted.raft_um, drawing); !status) return status;
         wanted.paint = take_paint(drawing, touches, order.scale);
     }
+    if (Status status = check_edge(settings, drawing); !status) return status;
     if (Status status = set_heights(order, drawing, settings.slicing); !status) return status;
     if (Status status = hollow_part(order, settings, drawing, notes, progress); !status) return status;
     if (!supported) return {};
@@ -186,7 +208,7 @@ Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,
         drawing.warnings.push_back(fmt::format("supports do not reach {}", number(supports->islands_left, "island")));
     drawing.bodies.insert(drawing.bodies.begin(), std::make_move_iterator(supports->bodies.begin()),
                           std::make_move_iterator(supports->bodies.end()));
-    return {};
+    return check_edge(settings, drawing);
 }
 
 }  // namespace pliant::prepare

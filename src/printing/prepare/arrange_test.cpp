@@ -28,11 +28,12 @@ struct Arranged {
     }
 };
 
-Arranged arranged(const std::function<void(Order&)>& change, Drawing drawing = two_blocks()) {
+Arranged arranged(const std::function<void(Order&)>& change, Drawing drawing = two_blocks(),
+                  const machine::Printer& machine = printer()) {
     Order order;
     change(order);
     Arranged a{std::move(drawing), {}, {}, {}};
-    auto settings = job_settings(order, printer(), {}, a.drawing);
+    auto settings = job_settings(order, machine, {}, a.drawing);
     REQUIRE_MESSAGE(settings.has_value(), (settings ? "" : settings.error().message));
     a.settings = std::move(*settings);
     Progress silent;
@@ -81,6 +82,43 @@ TEST_CASE("--turn, --copies and --spacing arrange the part") {
     CHECK(!refused([](Order& o) { o.spacing = "-1 mm"; }).empty());
     CHECK(refused([](Order& o) { o.spacing = "2"; }).find("--spacing: ") == 0);
     CHECK(!refused([](Order& o) { o.turn = {0, HUGE_VAL, 0}; }).empty());
+}
+
+TEST_CASE("a part, its copies and its supports must stand on the platform, not only in the image") {
+    machine::Printer narrow = printer();  // its image is 20 x 10 mm
+    narrow.platform.width_um = 18000;
+    narrow.platform.depth_um = 6000;
+    const auto message = [&](const std::function<void(Order&)>& change) {
+        const Arranged a = arranged(change, two_blocks(), narrow);
+        return a.status ? std::string() : a.status.error().message;
+    };
+    CHECK(message([](Order&) {}).empty());
+    CHECK(message([](Order& o) { o.at = {5, -1}; }).empty());
+    CHECK(message([](Order& o) {
+              o.at = {0, -1.5};
+          }) ==
+          "body 'left' (soft): lies 0.500 mm beyond the platform at -y, which reaches from -3.000 to 3.000 mm there; "
+          "move, turn or scale the part");
+    CHECK(message([](Order& o) {
+              o.at = {5.25, 0};
+          }).find("body 'right' (firm): lies 0.250 mm beyond the platform at +x") == 0);
+    CHECK(message([](Order& o) { o.scale = 2; }).find("lies 1.000 mm beyond the platform at -y") != std::string::npos);
+    CHECK(message([](Order& o) { o.copies = 2; }).empty());
+    CHECK(message([](Order& o) { o.copies = 3; }).find("do not fit the platform of 18.000 x 6.000 mm: 2 do") !=
+          std::string::npos);
+    const auto raft = [](Order& o) {
+        o.support = "firm";
+        o.raft = "1 mm";
+        o.support_pillar = "2 mm";
+        o.at = {3.9, 0};
+    };
+    narrow.projector.width_px = 400;
+    narrow.projector.height_px = 200;
+    narrow.platform.depth_um = 20000;
+    CHECK(message(raft).find("body 'support' (firm): lies ") == 0);
+    CHECK(message(raft).find(" beyond the platform at +x") != std::string::npos);
+    // Without a size of the platform the image is the limit.
+    CHECK(arranged([](Order& o) { o.at = {5.25, 0}; }).status.has_value());
 }
 
 TEST_CASE("--support, --lift and --raft add supports") {

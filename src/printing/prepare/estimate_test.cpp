@@ -2,9 +2,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <filesystem>
+
 #include "base/core/files.hpp"
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
+#include "printing/job/png.hpp"
 #include "printing/prepare/slice_job.hpp"
 #include "printing/prepare/test_order.hpp"
 #include "robot/file/robot_file.hpp"
@@ -68,6 +72,47 @@ TEST_CASE("the estimate of a real robot is close to the plan of its sliced job")
     REQUIRE_MESSAGE(guess, (guess ? "" : guess.error().message));
     CHECK(guess->layers == made->plan.layers);
     CHECK(guess->seconds.total == near(made->plan.seconds.total, {.relative = 0.02}));
+}
+
+TEST_CASE("exposures of layers that the job does not have, and a job that prints nothing, are refused") {
+    const pliant::test::Folder folder;
+    const PrinterFile printer = tower();
+    const auto sliced = [&](const std::string& exposure, Drawing drawing) {
+        Order order;
+        order.inputs = {"blocks"};
+        order.layer = "1 mm";
+        if (!exposure.empty()) order.exposures = {exposure};
+        Progress silent;
+        return slice_job(order, printer, std::move(drawing), folder / "blocks.zip", silent);
+    };
+    const auto warned = [](const Result<SlicedJob>& made) {
+        const std::string text = "the last layer is ";
+        const auto& warnings = made.value().manifest.warnings;
+        return std::any_of(warnings.begin(), warnings.end(),
+                           [&](const std::string& w) { return w.find(text) != std::string::npos; });
+    };
+    const auto plain = sliced("", blocks());
+    REQUIRE_MESSAGE(plain, (plain ? "" : plain.error().message));
+    const auto count = static_cast<int>(plain->manifest.layers.size());
+    const std::string name = blocks().resin_of_material[0].first;
+    CHECK_FALSE(warned(sliced(fmt::format("{}:0-{}=4 s", name, count - 1), blocks())));
+    CHECK(warned(sliced(fmt::format("{}:0-{}=4 s", name, count), blocks())));
+    std::filesystem::remove(folder / "blocks.zip");
+    CHECK(sliced(fmt::format("{}:{}-{}=4 s", name, count, count + 5), blocks()).error().message ==
+          fmt::format("--exposure {}:{}-{}=4 s: the job has no such layers, its layers are 0 to {}", name, count,
+                      count + 5, count - 1));
+    // Every image of a stack may be dark.
+    const std::filesystem::path dark = folder / "dark";
+    std::filesystem::create_directories(dark);
+    for (const char* image : {"a0.png", "a1.png"}) {
+        const machine::Projector& p = printer.printer.projector;
+        REQUIRE(write_file(dark / image, job::encode_png(slice::RunImage(p.width_px, p.height_px))));
+    }
+    Progress silent;
+    const std::string message =
+        sliced("", read_drawing({"semi-flex=" + dark.string()}, {}, silent).value()).error().message;
+    CHECK(message.find("nothing is printed: not one pixel of 2 layers is lit") == 0);
+    CHECK_FALSE(std::filesystem::exists(folder / "blocks.zip"));
 }
 
 TEST_CASE("orders that slicing refuses have no estimate") {

@@ -34,10 +34,21 @@ struct LayerSource {
     bool parallel = true;
 };
 
+/// No image lights anything beside the platform.
+Status check_light(const slice::SlicedLayer& layer, const JobSettings& settings, int k) {
+    if (!settings.edge) return {};
+    for (const slice::MaterialImage& m : layer.images) {
+        const Beyond beyond = settings.edge->beyond(m.image);
+        if (beyond.um > 0) return input_error("layer {}: light {}", k, settings.edge->text(beyond));
+    }
+    return {};
+}
+
 Result<Prepared> prepare_layer(const LayerSource& source, const JobSettings& settings, const Thumbnail& thumbnail,
                                int k) {
     auto sliced = source.layer(k);
     if (!sliced) return tl::unexpected(sliced.error());
+    if (Status status = check_light(*sliced, settings, k); !status) return tl::unexpected(status.error());
     Prepared prepared{std::move(*sliced), {}, {}, {}, {}, {}};
     for (const slice::MaterialImage& m : prepared.sliced.images) prepared.drawn_sums[m.material] = m.value_sum;
     put_together(prepared.sliced, source.printed_as);

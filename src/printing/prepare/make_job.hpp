@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "printing/job/exposure.hpp"
 #include "printing/job/image_stack.hpp"
 #include "printing/job/job.hpp"
+#include "printing/job/platform_edge.hpp"
 #include "printing/slice/light.hpp"
 #include "printing/slice/slicer.hpp"
 
@@ -32,8 +34,9 @@ struct JobSettings {
     double least_feature_um = 0;     ///< narrower features give a warning; 0: none
     /// For materials whose layers are not all exposed as JobSettings::bottom_layers says.
     std::map<std::string, ExposureRule> exposures{};
-    bool any_vat = false;  ///< as in Manifest
-    LayerWatch watch{};    ///< may be empty
+    bool any_vat = false;                ///< as in Manifest
+    std::optional<PlatformEdge> edge{};  ///< light beyond it is an error; nothing: not known
+    LayerWatch watch{};                  ///< may be empty
 };
 
 struct MadeJob {

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <optional>
 
+#include "base/core/letters.hpp"
 #include "base/core/text.hpp"
 #include "base/core/units.hpp"
+#include "printing/machine/image_room.hpp"
 #include "printing/machine/working_curve.hpp"
 #include "printing/plan/assign.hpp"
 #include "printing/prepare/option_text.hpp"
@@ -211,10 +213,6 @@ int bottom_layers(const machine::Printer& printer) {
     return layers;
 }
 
-slice::Raster raster_of(const machine::Projector& p) {
-    return {p.width_px, p.height_px, p.pixel_um, p.mirror_x, p.mirror_y, p.rotation_deg, p.offset_x_um, p.offset_y_um};
-}
-
 /// Adds the material of supports, in the resin of its name or of --resin, unless a body has it already.
 Status add_support_material(const Order& order, const machine::Printer& printer, Drawing& drawing) {
     if (order.support.empty()) return {};
@@ -274,6 +272,23 @@ Result<std::optional<double>> stacked_layer_um(const Drawing& drawing) {
     return first->stack.layer_um();
 }
 
+/// Images made for pixels of another size would give a part that is too large or too small.
+Status check_pixels(const Drawing& drawing, const machine::Projector& projector) {
+    constexpr double rounding = 0.005;  // of displays stated in tenths of a millimetre
+    for (const job::MaterialStack& s : drawing.stacks) {
+        const std::optional<job::PixelSize> pixel = s.stack.pixel();
+        if (!pixel) continue;
+        for (const auto& [um, way] : {std::pair{pixel->x_um, "wide"}, {pixel->y_um, "deep"}}) {
+            if (std::fabs(projector.pixel_um / um - 1) <= rounding) continue;
+            return input_error(
+                "images of \"{}\" are for pixels of {:.4g} x {:.4g} um, the projector has {:.4g} um: the part would "
+                "come out {:.3g} times as {}; slice it for this printer",
+                s.material, pixel->x_um, pixel->y_um, projector.pixel_um, projector.pixel_um / um, way);
+        }
+    }
+    return {};
+}
+
 /// --layer, else the height that layer images were made for, else the printer's. Images printed at another layer height
 /// would give a part that is too tall or too short.
 Result<int> layer_of(const Order& order, const machine::Printer& printer, Drawing& drawing) {
@@ -301,6 +316,18 @@ Result<int> layer_of(const Order& order, const machine::Printer& printer, Drawin
     return static_cast<int>(um);
 }
 
+/// Names of materials and resins go to terminals, and into comments of programs.
+Status check_names(const Drawing& drawing) {
+    for (const auto& [material, resin] : drawing.resin_of_material) {
+        for (const std::string& name : {material, resin}) {
+            if (std::any_of(name.begin(), name.end(), is_control))
+                return input_error("material \"{}\": a name must have no line breaks or other control characters",
+                                   one_line(name));
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<job::JobSettings> job_settings(const Order& order, const machine::Printer& printer,
@@ -309,14 +336,17 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
     if (Status status = add_support_material(order, printer, drawing); !status) return tl::unexpected(status.error());
     if (Status status = set_resins(order.resins, drawing); !status) return tl::unexpected(status.error());
     job::JobSettings settings;
-    settings.name = drawing.name;
+    settings.name = one_line(drawing.name);
+    if (Status status = check_names(drawing); !status) return tl::unexpected(status.error());
     settings.pliant_version = order.version;
     settings.bottom_layers = bottom_layers(printer);
-    settings.slicing.raster = raster_of(printer.projector);
+    settings.slicing.raster = machine::raster_of(printer.projector);
+    settings.edge = machine::platform_edge(printer);
     if (!printer.projector.grey.empty()) settings.light.grey = slice::grey_values(printer.projector.grey);
     settings.light.mask = std::move(mask);
     settings.copies = order.copies;
     settings.any_vat = order.any_vat;
+    if (Status status = check_pixels(drawing, printer.projector); !status) return tl::unexpected(status.error());
     const Result<int> layer_um = layer_of(order, printer, drawing);
     if (!layer_um) return tl::unexpected(layer_um.error());
     settings.slicing.layer_um = *layer_um;

@@ -89,6 +89,37 @@ TEST_CASE("layer images are printed at the height they were sliced at") {
     CHECK(layer_or_error("", stacks(folder, "1.5")).find("layer images are for layers of 1500 um") == 0);
 }
 
+TEST_CASE("layer images for pixels of another size are refused") {
+    const pliant::test::Folder folder("stack_pixels");
+    const auto with = [&](double x_mm, double y_mm) {
+        const std::filesystem::path at = folder / fmt::format("{}_{}", x_mm, y_mm);
+        write_stack(at, "");
+        REQUIRE(write_file(at / "slicer.json",
+                           fmt::format(R"({{"Thickness": 50, "XPixelSize": {}, "YPixelSize": {}}})", x_mm, y_mm)));
+        Progress silent;
+        return layer_or_error("", read_drawing({"soft=" + at.string()}, {}, silent).value());
+    };
+    CHECK(with(0.1, 0.1) == "50");
+    CHECK(with(0.1004, 0.0996) == "50");  // rounded by the other program
+    CHECK(
+        with(0.05, 0.05) ==
+        "images of \"soft\" are for pixels of 50 x 50 um, the projector has 100 um: the part would come out 2 times as "
+        "wide; slice it for this printer");
+    CHECK(with(0.1, 0.125).find("0.8 times as deep") != std::string::npos);
+}
+
+TEST_CASE("a name with a line break stays out of the job") {
+    Drawing drawing = two_blocks();
+    drawing.name = "rob\nM42 P4 S255\n;";
+    CHECK(settings_of([](Order&) {}, std::move(drawing)).name == "rob M42 P4 S255 ;");
+    drawing = two_blocks();
+    drawing.bodies[0].material = "so\nft";
+    drawing.resin_of_material[0] = {"so\nft", "soft"};
+    Order order;
+    CHECK(job_settings(order, printer(), {}, drawing).error().message ==
+          "material \"so ft\": a name must have no line breaks or other control characters");
+}
+
 TEST_CASE("images without a layer height take --layer, or the printer's with a warning") {
     const pliant::test::Folder folder("stacks");
     CHECK(layer_or_error("100 um", stacks(folder, "")) == "100");

@@ -1,7 +1,9 @@
 #include "printing/prepare/slice_job.hpp"
 
+#include <algorithm>
 #include <utility>
 
+#include "base/core/counted.hpp"
 #include "printing/plan/proof.hpp"
 #include "printing/prepare/paint_file.hpp"
 
@@ -22,6 +24,29 @@ Status add_files(const Order& order, const PrinterFile& printer, const job::JobS
     return status;
 }
 
+Status check_printed(const job::Manifest& manifest) {
+    const auto has_image = [](const job::Layer& layer) { return !layer.images.empty(); };
+    if (std::any_of(manifest.layers.begin(), manifest.layers.end(), has_image)) return {};
+    return input_error("nothing is printed: not one pixel of {} is lit; is the part thinner than a layer or a pixel?",
+                       counted(manifest.layers.size(), "layer"));
+}
+
+/// Exposures of layers that the job does not have would change nothing.
+Status check_spans(const job::JobSettings& settings, job::Manifest& manifest) {
+    const int count = static_cast<int>(manifest.layers.size());
+    for (const auto& [material, rule] : settings.exposures) {
+        for (const job::ExposureSpan& span : rule.spans) {
+            const std::string option =
+                fmt::format("--exposure {}:{}-{}={:g} s", material, span.first, span.last, span.seconds);
+            if (span.first >= count)
+                return input_error("{}: the job has no such layers, its layers are 0 to {}", option, count - 1);
+            if (span.last >= count)
+                manifest.warnings.push_back(fmt::format("{}: the last layer is {}", option, count - 1));
+        }
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<SlicedJob> slice_job(const Order& order, const PrinterFile& printer, Drawing drawing,
@@ -38,6 +63,8 @@ Result<SlicedJob> slice_job(const Order& order, const PrinterFile& printer, Draw
                                     : job::stacks_to_job(drawing.stacks, *settings, *writer, progress);
     if (!made) return tl::unexpected(made.error());
     job::Manifest& manifest = made->manifest;
+    if (Status printed = check_printed(manifest); !printed) return tl::unexpected(printed.error());
+    if (Status spans = check_spans(*settings, manifest); !spans) return tl::unexpected(spans.error());
     manifest.warnings.insert(manifest.warnings.begin(), drawing.warnings.begin(), drawing.warnings.end());
     Result<plan::Plan> plan = plan::make_plan(manifest, printer.printer);
     if (!plan) return tl::unexpected(plan.error());

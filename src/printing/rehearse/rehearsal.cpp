@@ -33,6 +33,8 @@ Result<Rehearsal> Rehearsal::make(operate::ReadyJob ready_job, Options options) 
     Result<std::optional<job::Image>> mask = operate::mask_of(*ready->archive, ready->printer.projector);
     if (!mask) return tl::unexpected(mask.error());
     options.printer.mask = std::move(*mask);
+    if (Status status = twin::check_faults(options.printer.faults, ready->printer); !status)
+        return tl::unexpected(status.error());
     auto images = std::make_shared<Images>(ready->archive);
     host::PrintJob job = ready->job;
     job.images = [images](int layer, int material) { return images->show(layer, material); };

@@ -80,7 +80,7 @@ Status turn(std::vector<Body>& bodies, const Vec3& degrees) {
     return {};
 }
 
-Status repeat(std::vector<Body>& bodies, int count, double spacing_um, const Raster& raster) {
+Status repeat(std::vector<Body>& bodies, int count, double spacing_um, const Room& room) {
     if (count < 1 || count > most_copies) return input_error("{} copies: must be 1 to {}", count, most_copies);
     if (!(spacing_um >= 0 && std::isfinite(spacing_um)))
         return input_error("copies {:.6g} um apart: must be 0 or more", spacing_um);
@@ -89,13 +89,13 @@ Status repeat(std::vector<Body>& bodies, int count, double spacing_um, const Ras
     if (!box) return tl::unexpected(box.error());
     if (box->empty()) return {};
     const Vec3 size = box->size();
-    const int columns = std::min(count, fitting(raster.width_um(), size.x, spacing_um));
-    const int rows = fitting(raster.height_um(), size.y, spacing_um);
+    const int columns = std::min(count, fitting(room.width_um, size.x, spacing_um));
+    const int rows = fitting(room.depth_um, size.y, spacing_um);
     if (static_cast<long long>(columns) * rows < count)
         return input_error(
-            "{} copies of {:.3f} x {:.3f} mm, {:.3f} mm apart, do not fit an image of {:.3f} x {:.3f} mm: {} do", count,
-            size.x / 1000, size.y / 1000, spacing_um / 1000, raster.width_um() / 1000, raster.height_um() / 1000,
-            static_cast<long long>(fitting(raster.width_um(), size.x, spacing_um)) * rows);
+            "{} copies of {:.3f} x {:.3f} mm, {:.3f} mm apart, do not fit {} of {:.3f} x {:.3f} mm: {} do", count,
+            size.x / 1000, size.y / 1000, spacing_um / 1000, room.name, room.width_um / 1000, room.depth_um / 1000,
+            static_cast<long long>(fitting(room.width_um, size.x, spacing_um)) * rows);
     const std::vector<Body> part = bodies;
     for (int n = 1; n < count; ++n) {
         const int column = n % columns, row = n / columns;

@@ -15,9 +15,18 @@ namespace pliant::slice {
 /// exact. Errors: a body of slices rotated about an axis other than z.
 [[nodiscard]] Status turn(std::vector<Body>& bodies, const Vec3& degrees);
 
-/// Repeats the part `count` times in a grid of as few rows as the image's width allows, `spacing_um` apart; place the
+/// Where copies may stand.
+struct Room {
+    double width_um = 0, depth_um = 0;
+    const char* name = "an image";
+
+    Room(const Raster& raster) : width_um(raster.width_um()), depth_um(raster.height_um()) {}
+    Room(double width, double depth, const char* what) : width_um(width), depth_um(depth), name(what) {}
+};
+
+/// Repeats the part `count` times in a grid of as few rows as the room's width allows, `spacing_um` apart; place the
 /// result with place_on_platform(). Names of copies end in " #2", " #3" and so on. Errors, with numbers: fewer than 1
-/// or more than 10000 copies, a negative spacing, or more copies than the image has room for.
-[[nodiscard]] Status repeat(std::vector<Body>& bodies, int count, double spacing_um, const Raster& raster);
+/// or more than 10000 copies, a negative spacing, or more copies than there is room for.
+[[nodiscard]] Status repeat(std::vector<Body>& bodies, int count, double spacing_um, const Room& room);
 
 }  // namespace pliant::slice

@@ -1,9 +1,13 @@
 #include "printing/twin/fault.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <utility>
+
+#include "printing/machine/switches.hpp"
 
 namespace pliant::twin {
 namespace {
@@ -45,7 +49,50 @@ std::string_view take_part(std::string_view& rest) {
     return part;
 }
 
+/// "" if the machine has what fails, else what it lacks.
+std::string lacking(const Fault& fault, const machine::Printer& printer) {
+    const auto fewer = [&](std::size_t switches) {
+        if (static_cast<std::size_t>(fault.n) <= switches) return std::string();
+        return fmt::format("has {} limit switch{}", switches, switches == 1 ? "" : "es");
+    };
+    switch (fault.kind) {
+        case FaultKind::stuck_switch:
+            return printer.limit_switches.empty() ? "lists no [[limit_switch]] for the host to look at"
+                                                  : fewer(printer.limit_switches.size());
+        case FaultKind::dead_switch:
+            return fewer(machine::switches_of(printer).size());
+        case FaultKind::weak_magnet:
+            return printer.hooks.magnet.present() ? "" : "has no magnet";
+        case FaultKind::stuck_fork:
+            return printer.store() == machine::Store::wall ? "" : "has no retriever with a fork";
+        case FaultKind::stuck_hook:
+            return printer.has_carriage() ? "" : "has no hooks";
+        case FaultKind::empty_vat:
+            return printer.vat_of_slot(fault.n) != nullptr ? "" : fmt::format("has no vat in slot {}", fault.n);
+        case FaultKind::dead_pump:
+            return printer.pump.on.empty() ? "has no pump" : "";
+        case FaultKind::door_open:
+            return printer.door.present() ? "" : "has no [door] switch, so that nobody would notice";
+        default:
+            return "";
+    }
+}
+
 }  // namespace
+
+Status check_faults(const std::vector<Fault>& faults, const machine::Printer& printer) {
+    for (const Fault& fault : faults) {
+        const std::string lack = lacking(fault, printer);
+        if (!lack.empty())
+            return input_error("--fault {}: cannot occur: the {} {}", fault_text(fault), printer.name, lack);
+    }
+    return {};
+}
+
+std::string fault_text(const Fault& fault) {
+    const auto entry = std::find_if(kinds.begin(), kinds.end(), [&](auto& kind) { return kind.second == fault.kind; });
+    return fmt::format("{}:{}{}", entry->first, fault.n, fault.amount > 0 ? fmt::format(":{:g}", fault.amount) : "");
+}
 
 std::string fault_names() {
     std::string names;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/core/error.hpp"
+#include "printing/machine/printer.hpp"
 
 namespace pliant::twin {
 
@@ -45,5 +46,11 @@ struct Fault {
 [[nodiscard]] Result<Fault> parse_fault(std::string_view text);
 
 [[nodiscard]] std::string fault_names();
+
+/// As parse_fault() reads it.
+[[nodiscard]] std::string fault_text(const Fault& fault);
+
+/// Whether the machine has the part that fails. Errors name fault and part.
+[[nodiscard]] Status check_faults(const std::vector<Fault>& faults, const machine::Printer& printer);
 
 }  // namespace pliant::twin

@@ -17,7 +17,7 @@ struct Named {
     bool acceptable;
 };
 
-constexpr std::array<Named, 12> named_findings{{{FindingKind::missing, "missing", false},
+constexpr std::array<Named, 14> named_findings{{{FindingKind::missing, "missing", false},
                                                 {FindingKind::foreign, "foreign", false},
                                                 {FindingKind::stray, "stray", false},
                                                 {FindingKind::dose, "dose", false},
@@ -28,6 +28,8 @@ constexpr std::array<Named, 12> named_findings{{{FindingKind::missing, "missing"
                                                 {FindingKind::overcure, "overcure", true},
                                                 {FindingKind::contamination, "contamination", true},
                                                 {FindingKind::cleaning, "cleaning", true},
+                                                {FindingKind::platform, "platform", false},
+                                                {FindingKind::fault, "fault", false},
                                                 {FindingKind::interlock, "interlock", false}}};
 
 const Named& named(FindingKind kind) {

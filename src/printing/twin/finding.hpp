@@ -24,6 +24,8 @@ struct Finding {
         overcure,       ///< cured deeper below an underside than allowed
         contamination,  ///< a vat with too much foreign resin
         cleaning,       ///< a swap with too little cleaning
+        platform,       ///< cured beside the platform
+        fault,          ///< a fault to be injected did not occur: the print proves nothing about it
         interlock,      ///< a forbidden action
     };
     Kind kind = Kind::missing;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "printing/machine/image_room.hpp"
 #include "printing/twin/layer_inspection.hpp"
 
 namespace pliant::twin {
@@ -85,6 +86,12 @@ public:
         if (n > 0) add(kind, fmt::format("{} {}", n, what));
     }
 
+    void count_faults(const Twin& twin) {
+        if (!judgement_.faults_must_occur) return;
+        for (const std::string& fault : twin.missed_faults())
+            add(Finding::Kind::fault, fmt::format("the fault {} did not occur", fault));
+    }
+
 private:
     Report& report_;
     const Judgement& judgement_;
@@ -138,8 +145,26 @@ void judge_overcure(Report& report, const job::Manifest& job, Verdict& verdict) 
     }
 }
 
+/// Nothing holds what cures beside the platform.
+void judge_edge(Report& report, Twin& twin, const job::Manifest& job, Verdict& verdict) {
+    const job::PlatformEdge edge = machine::platform_edge(twin.printer());
+    job::Beyond most;
+    int first_um = 0;
+    for (const CuredLayer& layer : twin.cured().layers()) {
+        for (const VatLayer& vat : layer.vats) {
+            for (const Run& run : vat.runs) most.merge(edge.beyond(run.row, run.begin, run.end));
+        }
+        if (most.um > 0 && first_um == 0) first_um = layer.top_um;
+    }
+    if (most.um <= 0) return;
+    verdict.add(Finding::Kind::platform, "the part " + edge.text(most));
+    const auto layer = std::find_if(job.layers.begin(), job.layers.end(), [&](auto& l) { return l.z_um == first_um; });
+    note_first(report, job, static_cast<int>(layer - job.layers.begin()), -1, "cured beside the platform");
+}
+
 void judge(Report& report, Twin& twin, Verdict& verdict) {
     using Kind = Finding::Kind;
+    if (report.layers == 0) verdict.add(Kind::missing, "nothing is printed");
     verdict.count(Kind::missing, report.missing_layers, "layers missing");
     verdict.count(Kind::height, report.stray_layers, "layers at heights where the job has none");
     verdict.count(Kind::height, report.wrong_thickness, "layers of the wrong thickness");
@@ -157,6 +182,7 @@ void judge(Report& report, Twin& twin, Verdict& verdict) {
     verdict.count(Kind::cleaning, report.log.short_cleanings, "swaps with too little cleaning");
     for (const std::string& fault : twin.cured().faults()) verdict.add(Kind::light, fault);
     for (const std::string& violation : report.log.violations) verdict.add(Kind::interlock, "interlock: " + violation);
+    verdict.count_faults(twin);
     report.passed = report.reasons.empty();
     if (!report.passed && report.first_deviation.empty()) report.first_deviation = report.reasons.front();
 }
@@ -196,6 +222,7 @@ Result<Report> inspect(Twin& twin, const job::Manifest& job, const RunSource& im
     report.trapped = trapped_resin(cured.layers(), projector.width_px, projector.height_px, projector.pixel_um);
     judge_materials(report, job, *kind, verdict);
     judge_overcure(report, job, verdict);
+    judge_edge(report, twin, job, verdict);
     judge(report, twin, verdict);
     return report;
 }

@@ -46,6 +46,7 @@ struct ResinReport {
 struct Judgement {
     std::vector<Finding::Kind> accepted;  ///< findings that are reported but do not fail the print
     double light_slack_s = 0.01;          ///< uncertainty of the clock in the length of an exposure
+    bool faults_must_occur = false;       ///< an injected fault whose occasion never came fails the print
 };
 
 struct Report {

@@ -348,3 +348,68 @@ TEST_CASE("the volume tolerance: half a layer at surfaces, and rounding of grey 
     CHECK(border_error_um(158.75, true, true) == near(20.4402, {.relative = 1e-4}));
     CHECK(border_error_um(30, true, true) == near(15 + 30 * 1.41421356 / 510, {.relative = 1e-9}));
 }
+
+TEST_CASE("what cures beside the platform fails the print, and cannot be accepted") {
+    auto printer = small_tower();
+    printer.projector.width_px = 8;
+    printer.projector.height_px = 4;
+    const job::Image corner{
+        8, 4, {255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}};
+    job::Manifest job = job_of({corner});
+    job.width_px = 8;
+    job.height_px = 4;
+    const auto verdict_on = [&](int width_um, int depth_um) {
+        printer.platform.width_um = width_um;
+        printer.platform.depth_um = depth_um;
+        Twin twin(printer);
+        print(twin, {{0.05, corner}});
+        return inspect(twin, job, [&](int, int) -> Result<job::Image> { return corner; }).value();
+    };
+    CHECK(verdict_on(8000, 4000).passed);
+    CHECK(verdict_on(6000, 4000).passed);  // the pixel touches the edge
+    const Report report = verdict_on(4500, 4000);
+    CHECK(names(report) == "platform");
+    CHECK(report.reasons.at(0) ==
+          "the part lies 1.250 mm beyond the platform at -x, which reaches from -2.250 to 2.250 mm there");
+    CHECK(report.first_deviation == "layer 0: cured beside the platform");
+    CHECK_FALSE(accepted_finding("platform"));
+}
+
+TEST_CASE("a fault that did not occur fails the print; one that the machine cannot have is refused") {
+    const auto printer = small_tower();
+    const auto verdict_with = [&](const char* text) {
+        twin::Options options;
+        options.faults = {parse_fault(text).value()};
+        Twin twin(printer, options);
+        print(twin, {0.05, 0.1});
+        return inspect(twin, half_job(), half_image, {{}, 0.01, true}).value();
+    };
+    const Report missed = verdict_with("lose-byte:999999999");
+    CHECK(names(missed) == "fault");
+    CHECK(missed.reasons.at(0) == "the fault lose-byte:999999999 did not occur");
+    CHECK(names(verdict_with("dark-projector:3:2")) == "fault");
+    CHECK(names(verdict_with("lose-ok:2")).empty());
+    CHECK(names(verdict_with("empty-vat:1")).find("fault") == std::string::npos);
+
+    const auto refused = [](const char* text, const machine::Printer& machine) {
+        const Status status = check_faults({parse_fault(text).value()}, machine);
+        return status ? std::string() : status.error().message;
+    };
+    machine::Printer plain = printer;
+    plain.limit_switches.clear();
+    plain.door = {};
+    plain.pump = {};
+    CHECK(refused("stuck-switch", printer).empty());
+    CHECK(
+        refused("stuck-switch", plain) ==
+        "--fault stuck-switch:1: cannot occur: the tower prototype lists no [[limit_switch]] for the host to look at");
+    CHECK(refused("dead-switch:9", plain).find("has 3 limit switches") != std::string::npos);
+    CHECK(refused("weak-magnet", printer).find("has no magnet") != std::string::npos);
+    CHECK(refused("stuck-fork", printer).find("has no retriever") != std::string::npos);
+    CHECK(refused("door-open:2:5", plain).find("--fault door-open:2:5: cannot occur") == 0);
+    CHECK(refused("empty-vat:99", plain).find("has no vat in slot 99") != std::string::npos);
+    CHECK(refused("dead-pump", plain).find("has no pump") != std::string::npos);
+    CHECK(refused("stuck-hook", machine::load_printer("examples/printers/rotary.toml").value()).find("has no hooks") !=
+          std::string::npos);
+    CHECK(refused("lose-byte:999999999", plain).empty());
+}

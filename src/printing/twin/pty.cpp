@@ -15,9 +15,34 @@
 namespace pliant::twin {
 namespace {
 
+/// Whether a twin still serves a pseudo-terminal. That of a twin which has died is gone, or belongs to a terminal by
+/// now, which is never as raw.
+bool is_served(const std::filesystem::path& device) {
+    const FileHandle file(::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+    termios settings{};
+    if (!file.is_open() || ::tcgetattr(file.number(), &settings) != 0) return false;
+    return (settings.c_lflag & (ICANON | ECHO | ISIG)) == 0 && (settings.c_oflag & OPOST) == 0;
+}
+
+/// A link that a twin has left behind may be replaced.
+Status check_link(const std::filesystem::path& link) {
+    std::error_code error;
+    const std::filesystem::path device = std::filesystem::read_symlink(link, error);
+    if (device.parent_path() != "/dev/pts")
+        return input_error("{}: leads to {}, which is no pseudo-terminal; give a name that is free", link.string(),
+                           device.string());
+    if (is_served(device))
+        return input_error("{}: leads to {}, which another twin serves; end it, or give a name that is free",
+                           link.string(), device.string());
+    return {};
+}
+
 Status put_link(const std::filesystem::path& link, const std::string& device) {
     std::error_code error;
-    if (std::filesystem::is_symlink(link, error)) std::filesystem::remove(link, error);
+    if (std::filesystem::is_symlink(link, error)) {
+        if (Status status = check_link(link); !status) return status;
+        std::filesystem::remove(link, error);
+    }
     std::filesystem::create_symlink(device, link, error);
     return error ? Status(input_error("{}: {}; give a name that is free", link.string(), error.message())) : Status{};
 }
@@ -34,8 +59,8 @@ Pty::Pty(Pty&& other) noexcept
       link_(std::exchange(other.link_, {})) {}
 
 Pty::~Pty() {
-    std::error_code ignored;
-    if (!link_.empty()) std::filesystem::remove(link_, ignored);
+    std::error_code none;
+    if (!link_.empty() && std::filesystem::read_symlink(link_, none) == device_) std::filesystem::remove(link_, none);
 }
 
 Result<Pty> Pty::open(const std::filesystem::path& link) {

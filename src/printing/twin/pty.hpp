@@ -12,12 +12,12 @@ namespace pliant::twin {
 
 class Pty {
 public:
-    /// Opens a pseudo-terminal in raw mode; `link` makes a symbolic link of that name to the device (an old link is
-    /// replaced, any other file is not).
+    /// Opens a pseudo-terminal in raw mode; `link` makes a symbolic link of that name to the device (one that a
+    /// twin has left behind is replaced). Errors: another file of that name, a link that another twin still serves.
     [[nodiscard]] static Result<Pty> open(const std::filesystem::path& link = {});
     Pty(Pty&& other) noexcept;
     Pty& operator=(Pty&&) = delete;
-    ~Pty();  ///< removes the link
+    ~Pty();  ///< removes the link, if it is still its own
 
     /// The device for hosts, such as /dev/pts/3.
     [[nodiscard]] const std::string& device() const { return device_; }

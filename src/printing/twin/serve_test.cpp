@@ -74,3 +74,30 @@ TEST_CASE("a link does not replace an existing file") {
     CHECK_FALSE(Pty::open(folder.path()));
     CHECK_FALSE(Pty::open(folder / "no such folder" / "x"));
 }
+
+TEST_CASE("the link of a running twin is neither taken over nor removed; one left behind is replaced") {
+    const pliant::test::Folder folder("pty_link");
+    const auto link = folder / "port";
+    {
+        auto first = Pty::open(link);
+        REQUIRE(first);
+        const auto second = Pty::open(link);
+        REQUIRE_FALSE(second);
+        CHECK(second.error().message.find("leads to " + first->device() + ", which another twin serves") !=
+              std::string::npos);
+        CHECK(std::filesystem::read_symlink(link) == first->device());
+        // Somebody has put another link in its place.
+        std::filesystem::remove(link);
+        std::filesystem::create_symlink("/dev/pts/999999", link);
+    }
+    CHECK(std::filesystem::is_symlink(link));
+    {
+        const auto next = Pty::open(link);
+        REQUIRE(next);
+        CHECK(std::filesystem::read_symlink(link) == next->device());
+    }
+    CHECK_FALSE(std::filesystem::is_symlink(link));
+    std::filesystem::create_symlink(folder / "mine", link);
+    CHECK_FALSE(Pty::open(link));
+    CHECK(std::filesystem::is_symlink(link));
+}

@@ -40,15 +40,15 @@ Twin::Twin(const machine::Printer& printer, Options options)
     : printer_(printer),
       options_(std::move(options)),
       screen_(printer_.projector, options_.mask),
+      occurred_(options_.faults.size(), false),
       motors_(printer_, unknown_start(printer_)),
       cure_(printer_),
       fluids_(printer_),
       busy_every_s_(options_.busy_every_s),
       fan_since_s_(printer_.fans.size(), -1) {
     log_.fan_s.resize(printer_.fans.size());
-    for (const Fault& f : options_.faults) {
-        const machine::Vat* vat = f.kind == Fault::Kind::empty_vat ? printer_.vat_of_slot(f.n) : nullptr;
-        if (vat != nullptr) cure_.set_level_ml(static_cast<int>(vat - printer_.vats.data()), 0);
+    for (std::size_t i = 0; i < printer_.vats.size(); ++i) {
+        if (fault_hits(Fault::Kind::empty_vat, printer_.vats[i].slot)) cure_.set_level_ml(static_cast<int>(i), 0);
     }
     if (options_.boot_s > 0)
         boots_at_s_ = options_.boot_s;
@@ -79,7 +79,17 @@ std::string Twin::take_output() {
 const Fault* Twin::fault_at(Fault::Kind kind, int n) const {
     const auto found = std::find_if(options_.faults.begin(), options_.faults.end(),
                                     [&](const Fault& f) { return f.kind == kind && f.n == n; });
-    return found == options_.faults.end() ? nullptr : &*found;
+    if (found == options_.faults.end()) return nullptr;
+    occurred_[static_cast<std::size_t>(found - options_.faults.begin())] = true;
+    return &*found;
+}
+
+std::vector<std::string> Twin::missed_faults() const {
+    std::vector<std::string> missed;
+    for (std::size_t i = 0; i < options_.faults.size(); ++i) {
+        if (!occurred_[i]) missed.push_back(fault_text(options_.faults[i]));
+    }
+    return missed;
 }
 
 void Twin::say_ok(const Queued& queued, std::string_view data) {
@@ -117,8 +127,8 @@ void Twin::take_line(std::string line) {
     ++lines_;
     if (fault_hits(Fault::Kind::reset, lines_)) return reset();
     if (dead_ || fault_hits(Fault::Kind::lose_line, lines_)) return;
-    if (fault_hits(Fault::Kind::lose_number, lines_) && line.front() == 'N') line.erase(0, line.find(' ') + 1);
-    if (fault_hits(Fault::Kind::corrupt_byte, lines_) && line.size() > 2) line[line.size() / 2] ^= 4;
+    if (line.front() == 'N' && fault_hits(Fault::Kind::lose_number, lines_)) line.erase(0, line.find(' ') + 1);
+    if (line.size() > 2 && fault_hits(Fault::Kind::corrupt_byte, lines_)) line[line.size() / 2] ^= 4;
     if (const Fault* f = fault_at(Fault::Kind::stall, lines_))
         stalled_until_s_ = now_s_ + (f->amount > 0 ? f->amount : 30);
     if (const Fault* f = fault_at(Fault::Kind::resend_loop, lines_))

@@ -124,6 +124,8 @@ public:
     [[nodiscard]] machine::Position motors_position() const { return motors_.position_at(now_s_); }
     [[nodiscard]] const machine::Interlock& interlock() const { return motors_.interlock(); }
     [[nodiscard]] const Log& log() const { return log_; }
+    /// The faults whose occasion has not come, as in fault_text().
+    [[nodiscard]] std::vector<std::string> missed_faults() const;
     [[nodiscard]] const Screen& screen() const { return screen_; }
     /// The cured block, closed up to now.
     [[nodiscard]] const Cure& cured();
@@ -205,6 +207,7 @@ private:
     const machine::Printer printer_;
     const Options options_;
     const Screen screen_;
+    mutable std::vector<bool> occurred_;  ///< by fault: whether it was asked for when it was due
     Motors motors_;
     Cure cure_;
     Fluids fluids_;

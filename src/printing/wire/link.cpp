@@ -140,7 +140,7 @@ Status Link::pass_fence() {
         drop_outstanding([&](long number) { return number < token_line; });
         return {};
     }
-    return failure("the printer answers, but never the echo that ends a move");
+    return failure("the printer answers, but never sends the echo that marks the end of a move (M118)");
 }
 
 Status Link::listen_for(double seconds, bool repair) {
@@ -277,7 +277,7 @@ Status Link::handle(std::string_view line) {
     } else if (begins(line, "echo:Unknown command:")) {
         return handle_unknown(line);
     } else if (begins(line, "echo:Home ") && line.ends_with(" First")) {
-        return connected_ ? failure("the printer has left a move out: {}", line.substr(5)) : Status{};
+        return connected_ ? failure("the printer skipped a move: {}", line.substr(5)) : Status{};
     } else if (begins(line, "echo:Homing Failed")) {
         homing_failed_ = true;
     } else if (begins(line, "echo:busy:")) {
@@ -425,7 +425,8 @@ Status Link::go_back_to(long number) {
     // Its `start` was missed: line 1 is requested although more lines were sent than could be accepted without it.
     if (number == 1 && (base_ > 0 || next_to_send_ > 1 + options_.window_lines)) return handle_restart();
     if (number > next_number_ || number <= base_) {
-        return failure("the printer asks for line {}, lines {} to {} are at hand", number, base_ + 1, next_number_ - 1);
+        return failure("the printer requests line {}; only lines {} to {} can be sent again", number, base_ + 1,
+                       next_number_ - 1);
     }
     repeats_ = number == repeated_ ? repeats_ + 1 : 0;
     repeated_ = number;

@@ -152,7 +152,7 @@ TEST_CASE("halting sends M410, and M112 between 5 and 20 ms later") {
 }
 
 TEST_CASE("a move that the firmware leaves out, and homing that fails, end the print") {
-    CHECK(holds(Bench(AnswerOnce{"X3*", "echo:Home X First\nok\n"}).error_of_print(), "left a move out: Home X First"));
+    CHECK(holds(Bench(AnswerOnce{"X3*", "echo:Home X First\nok\n"}).error_of_print(), "skipped a move: Home X First"));
     const std::string killed = "echo:Homing Failed\nError:Printer halted. kill() called!\n//action:poweroff\n";
     const std::string message = Bench(AnswerOnce{"X3*", killed}).error_of_print();
     CHECK(holds(message, "homing failed"));
@@ -217,7 +217,7 @@ TEST_CASE("messages of an unknown command, a restart or a halt end the print") {
     Bench reset(AnswerOnce{"X6*", "oksta" + anew});
     CHECK(holds(reset.error_of_print(), "restarted"));
     CHECK(reset.times_written("X1*") == 1);
-    CHECK(holds(Bench(AnswerOnce{"X3*", "Resend: 77\nok\n"}).error_of_print(), "asks for line 77"));
+    CHECK(holds(Bench(AnswerOnce{"X3*", "Resend: 77\nok\n"}).error_of_print(), "requests line 77"));
 }
 
 TEST_CASE("endless refusals, and endless silence, end with an error") {

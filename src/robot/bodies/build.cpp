@@ -104,12 +104,36 @@ Result<Shape> body_shape(const Robot& robot, const BodySpec& body, const std::ve
     return std::move(*surface);
 }
 
+/// The file says how long edges are everywhere.
+bool has_size(const Robot& robot) {
+    return robot.mesh.size > 0 || std::ranges::all_of(robot.bodies, [](const BodySpec& body) { return body.size > 0; });
+}
+
+/// The size of what has none of its own.
+double general_size(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies) {
+    if (robot.mesh.size > 0) return robot.mesh.size;
+    if (!has_size(robot)) return automatic_size(bodies);
+    return std::ranges::max(robot.bodies, {}, &BodySpec::size).size;
+}
+
+/// The mesher takes the size of its settings as the largest: where a body has a larger size than `general`, the others
+/// get that as their own.
+Result<mesh::TetMesh> mesh_with_sizes(std::vector<mesh::BodyGeometry> bodies, double general,
+                                      mesh::MeshSettings settings, Progress& progress) {
+    settings.size = general;
+    for (const mesh::BodyGeometry& body : bodies) settings.size = std::max(settings.size, body.size);
+    if (settings.size > general) {
+        for (mesh::BodyGeometry& body : bodies) body.size = body.size > 0 ? body.size : general;
+    }
+    return mesh::mesh_bodies(bodies, settings, progress);
+}
+
 /// A size in the file is used as given; without one, walls get three elements.
-mesh::MeshSettings mesh_settings(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies) {
+mesh::MeshSettings mesh_settings(const Robot& robot, double size) {
     mesh::MeshSettings settings;
-    settings.size = robot.mesh.size > 0 ? robot.mesh.size : automatic_size(bodies);
+    settings.size = size;
     settings.order = robot.mesh.order;
-    settings.through_wall = robot.mesh.elements_through_wall.value_or(robot.mesh.size > 0 ? 0 : 3);
+    settings.through_wall = robot.mesh.elements_through_wall.value_or(has_size(robot) ? 0 : 3);
     settings.judge_walls = !robot.mesh.elements_through_wall;
     settings.close_gaps = robot.mesh.close_gaps.value_or(1e-3 * settings.size);
     settings.size_near_cables = robot.mesh.size_near_cables;
@@ -124,9 +148,10 @@ Result<mesh::TetMesh> mesh_within_budget(const Robot& robot, const std::vector<m
     constexpr std::size_t most_automatic_nodes = 20000;
     constexpr int tries = 3;
     constexpr double most_coarser = 1.6;  // per attempt: notches and walls should still be meshed well
-    mesh::MeshSettings settings = mesh_settings(robot, bodies);
-    Result<mesh::TetMesh> mesh = mesh::mesh_bodies(bodies, settings, progress);
-    const bool asked = robot.mesh.size > 0 || robot.mesh.elements_through_wall || robot.mesh.size_near_cables > 0;
+    double size = general_size(robot, bodies);
+    mesh::MeshSettings settings = mesh_settings(robot, size);
+    Result<mesh::TetMesh> mesh = mesh_with_sizes(bodies, size, settings, progress);
+    const bool asked = has_size(robot) || robot.mesh.elements_through_wall || robot.mesh.size_near_cables > 0;
     if (!mesh || asked || mesh->points.size() <= most_automatic_nodes) return mesh;
     const std::size_t usual = mesh->points.size();
     for (int i = 0; i < tries && mesh && mesh->points.size() > most_automatic_nodes; ++i) {
@@ -134,15 +159,15 @@ Result<mesh::TetMesh> mesh_within_budget(const Robot& robot, const std::vector<m
         if (settings.through_wall > 1)
             --settings.through_wall;
         else
-            settings.size *= std::clamp(std::cbrt(excess), 1.1, most_coarser);
-        mesh = mesh::mesh_bodies(bodies, settings, progress);
+            size *= std::clamp(std::cbrt(excess), 1.1, most_coarser);
+        mesh = mesh_with_sizes(bodies, size, settings, progress);
     }
     if (mesh)
         mesh->notes.push_back(
             fmt::format("no mesh.size is given: {} nodes in place of {} with 3 elements through every "
                         "wall, so that a step takes seconds; for a finer mesh set mesh.size (here {:.3g}) "
                         "or mesh.elements_through_wall (here {})",
-                        mesh->points.size(), usual, settings.size, settings.through_wall));
+                        mesh->points.size(), usual, size, settings.through_wall));
     return mesh;
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -15,6 +17,13 @@ namespace {
 
 using config::Reader;
 
+bool is_number(Reader& reader, std::string_view key) {
+    const config::Value* value = reader.raw(key);
+    if (value == nullptr) return false;
+    const auto* real = std::get_if<double>(&value->data);
+    return real != nullptr ? std::isfinite(*real) : std::holds_alternative<std::int64_t>(value->data);
+}
+
 CableTarget read_target(Reader& cable) {
     using Kind = CableTarget::Kind;
     Reader reader = cable.table("target", !cable.has("range"));  // default: the rest value
@@ -24,7 +33,8 @@ CableTarget read_target(Reader& cable) {
     if (reader.has("length_ratio")) {
         target = {Kind::length_ratio, reader.number("length_ratio")};
         const TargetLimits limits = target_limits(target.kind, false);
-        if (!(target.value > 0 && target.value <= limits.high))
+        // A value that is no finite number has been reported.
+        if (is_number(reader, "length_ratio") && !(target.value > 0 && target.value <= limits.high))
             reader.problem("length_ratio", fmt::format("{} is not possible: {}", target.value, limits.words));
     }
     if (reader.has("shortening")) target = {Kind::shortening_m, reader.quantity("shortening", Dimension::length)};

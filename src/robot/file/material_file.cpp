@@ -211,6 +211,25 @@ void read_hyperelastic(Reader& reader, const std::string& law, MaterialSpec& mat
     material.poisson_ratio = material::poisson_ratio(material::moduli(elastic));
 }
 
+/// Larger numbers overflow when they are multiplied; no material comes near them.
+constexpr double most_Pa = 1e18, most_density_kg_m3 = 1e9;
+
+/// The key that is to blame for a modulus that is too large.
+std::string_view modulus_key(Reader& reader, const std::string& law) {
+    if (reader.has("youngs_modulus")) return "youngs_modulus";
+    return law == "ogden" ? "mu" : "c10";
+}
+
+void check_size(Reader& reader, const std::string& law, const MaterialSpec& material) {
+    const double E = material.youngs_modulus_Pa;
+    if (E > 0 && !(E <= most_Pa))
+        reader.problem(
+            modulus_key(reader, law),
+            fmt::format("{:.3g} Pa is not possible; diamond has 1e12, and at most {:.0e} are taken", E, most_Pa));
+    else if (reader.has("bulk_modulus") && !(material::moduli(material.law).bulk_Pa <= most_Pa))
+        reader.problem("bulk_modulus", fmt::format("is not possible; at most {:.0e} Pa are taken", most_Pa));
+}
+
 }  // namespace
 
 double read_exposure(Reader& reader, std::string_view key) {
@@ -232,8 +251,13 @@ MaterialSpec read_material(Reader& reader, const std::string& name) {
         read_hyperelastic(reader, law, material);
     else
         read_two_moduli(reader, law, material);
+    check_size(reader, law, material);
     material.density_kg_m3 = reader.quantity("density", Dimension::density, 1000);
     if (material.density_kg_m3 < 0) reader.problem("density", "must not be negative");
+    if (!(material.density_kg_m3 <= most_density_kg_m3))
+        reader.problem("density", fmt::format("{:.3g} kg/m^3 is not possible; osmium has 22600, and at most {:.0e} are "
+                                              "taken",
+                                              material.density_kg_m3, most_density_kg_m3));
     material.resin = reader.text("resin", name);
     material.colour = read_colour(reader);
     material.exposure_s = read_exposure(reader, "exposure");

@@ -1,11 +1,15 @@
 #include "robot/file/robot_document.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <system_error>
 #include <utility>
 
 #include "base/core/config_text.hpp"
+#include "base/core/text.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -36,6 +40,58 @@ void forget_lines(config::Value& value) {
     }
 }
 
+constexpr std::array<std::string_view, 3> tables_of_names = {"material", "parameters", "shape"};
+
+/// A table entry that an assignment has added, such as material.soft.
+struct AddedName {
+    std::string kind, name;
+};
+
+const config::Value* entry_of(const config::Value& value, std::string_view key) {
+    const auto* table = std::get_if<config::Table>(&value.data);
+    if (table == nullptr) return nullptr;
+    const auto found = std::ranges::find(*table, key, [](const config::Entry& entry) { return entry.first; });
+    return found == table->end() ? nullptr : &found->second;
+}
+
+/// The entry that this assignment is about to add, if any.
+std::optional<AddedName> added_name(const config::Document& document, std::string_view assignment) {
+    const std::string_view key = assignment.substr(0, assignment.find('='));
+    const std::size_t dot = key.find('.');
+    if (dot == std::string_view::npos) return std::nullopt;
+    AddedName added{std::string(key.substr(0, dot)), std::string(key.substr(dot + 1))};
+    added.name.resize(std::min(added.name.find('.'), added.name.size()));
+    if (std::ranges::find(tables_of_names, added.kind) == tables_of_names.end()) return std::nullopt;
+    const config::Value* table = entry_of(document.root, added.kind);
+    if (table != nullptr && entry_of(*table, added.name) != nullptr) return std::nullopt;
+    return added;
+}
+
+/// Some text is the name, or a formula that holds it.
+bool is_mentioned(const config::Value& value, const std::string& name) {
+    if (const auto* text = std::get_if<std::string>(&value.data))
+        return *text == name || (text->starts_with("=") && text->find(name) != std::string::npos);
+    if (const auto* list = std::get_if<config::Array>(&value.data))
+        return std::ranges::any_of(*list, [&](const config::Value& entry) { return is_mentioned(entry, name); });
+    const auto* table = std::get_if<config::Table>(&value.data);
+    return table != nullptr &&
+           std::ranges::any_of(*table, [&](const config::Entry& entry) { return is_mentioned(entry.second, name); });
+}
+
+tl::unexpected<Error> not_used(const config::Document& document, const AddedName& added) {
+    std::vector<std::string> others;
+    if (const auto* table = std::get_if<config::Table>(&entry_of(document.root, added.kind)->data)) {
+        for (const auto& [name, value] : *table)
+            if (name != added.name) others.push_back(name);
+    }
+    const std::string near = nearest_name(added.name, others);
+    const std::string hint = !near.empty()    ? fmt::format("; did you mean \"{}\"?", near)
+                             : others.empty() ? ""
+                                              : fmt::format("; the file has {}", join_names(others));
+    return input_error("--set {}.{}: the file has no {} \"{}\", and nothing would use it{}", added.kind, added.name,
+                       added.kind == "parameters" ? "parameter" : added.kind, added.name, hint);
+}
+
 /// Keys whose values are file names, in any table.
 constexpr std::array<std::string_view, 4> path_keys = {"geometry", "surface", "file", "path"};
 
@@ -59,6 +115,19 @@ void lead_paths(config::Value& value, const fs::path& from, const fs::path& to) 
 
 }  // namespace
 
+Status set_all(config::Document& document, const std::vector<std::string>& assignments) {
+    std::vector<AddedName> all;
+    for (const std::string& assignment : assignments) {
+        std::optional<AddedName> added = added_name(document, assignment);
+        if (Status status = config::set(document, assignment); !status) return status;
+        if (added) all.push_back(std::move(*added));
+    }
+    for (const AddedName& added : all) {
+        if (!is_mentioned(document.root, added.name)) return not_used(document, added);
+    }
+    return {};
+}
+
 Result<config::Document> on_base(config::Document document) {
     Problems problems(document.file.string());
     Reader root(document.root, problems);
@@ -72,9 +141,7 @@ Result<config::Document> on_base(config::Document document) {
     if (Status status = problems.status(); !status) return tl::unexpected(status.error());
     Result<config::Document> base = config::load(file);
     if (!base) return tl::unexpected(base.error());
-    for (const std::string& change : changes) {
-        if (Status status = config::set(*base, change); !status) return tl::unexpected(status.error());
-    }
+    if (Status status = set_all(*base, changes); !status) return tl::unexpected(status.error());
     auto& table = std::get<config::Table>(base->root.data);
     if (program == nullptr) return base;
     config::Value own = *program;
@@ -96,9 +163,7 @@ Result<config::Document> whole_document(std::string_view text, const fs::path& f
     Result<config::Document> document = config::parse(text, file);
     if (document) document = on_base(std::move(*document));
     if (!document) return document;
-    for (const std::string& assignment : assignments) {
-        if (Status status = config::set(*document, assignment); !status) return tl::unexpected(status.error());
-    }
+    if (Status status = set_all(*document, assignments); !status) return tl::unexpected(status.error());
     return document;
 }
 

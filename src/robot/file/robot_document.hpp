@@ -16,6 +16,10 @@ namespace pliant::robot {
 /// what it says there. Without that key the document as it is. Errors: of either file; any other key beside those.
 [[nodiscard]] Result<config::Document> on_base(config::Document document);
 
+/// Applies each "KEY=VALUE". Errors: those of config::set(); a material, parameter or shape that the document does not
+/// have and nothing in it uses.
+[[nodiscard]] Status set_all(config::Document& document, const std::vector<std::string>& assignments);
+
 /// The numbers of [parameters] that are written as numbers, not as formulas of others, in the order of the file.
 /// Errors: of the text and what it stands on, of an assignment.
 [[nodiscard]] Result<std::vector<std::pair<std::string, double>>> free_parameters(

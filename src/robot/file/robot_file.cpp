@@ -39,9 +39,7 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
     Result<config::Document> based = on_base(std::move(given));
     if (!based) return tl::unexpected(based.error());
     config::Document& document = *based;
-    for (const std::string& assignment : assignments) {
-        if (Status status = config::set(document, assignment); !status) return tl::unexpected(status.error());
-    }
+    if (Status status = set_all(document, assignments); !status) return tl::unexpected(status.error());
     if (Status status = config::resolve_parameters(document); !status) return tl::unexpected(status.error());
 
     Problems problems(document.file.string());

@@ -151,8 +151,8 @@ TEST_CASE("the gradient of a program in dynamics") {
                               .solver = Solver::newton,
                               .dynamics = Dynamics{damping},
                               .checks = false};
-        MESSAGE("in time, damped by stiffness ", damping.stiffness_s, " s: ",
-                worst_error(bender(1, program.duration), program));
+        const double worst = worst_error(bender(1, program.duration), program);
+        MESSAGE("in time, damped by stiffness ", damping.stiffness_s, " s: ", worst);
     }
 }
 

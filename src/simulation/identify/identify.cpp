@@ -21,8 +21,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Default scatter of a unit: this share of the spread of its values.
-constexpr double share_of_spread = 0.01;
+/// Default scatter of a unit: this share of the largest motion of a quantity in that unit.
+constexpr double share_of_motion = 0.01;
 /// Smaller effects on all residuals together count as none, in units of scatter.
 constexpr double negligible = 1e-6;
 constexpr double longest_step = 1.5;  // of log(value): a factor of 4.5
@@ -35,19 +35,32 @@ std::vector<double> times_of(const std::vector<MeasuredValue>& values) {
     return times;
 }
 
-/// The scatter of each value: its own, else that of its unit.
-VectorXd scatters_of(const Measurements& m) {
-    std::map<std::string, std::pair<double, double>> range;
+/// How far the quantity that moves most in a unit moves, measured from the lowest value to the highest, rest included.
+std::map<std::string, double> motions(const Measurements& m, const VectorXd& rest) {
+    std::vector<std::pair<double, double>> range;
+    for (std::size_t c = 0; c < m.channels.size(); ++c)
+        range.emplace_back(rest[static_cast<Index>(c)], rest[static_cast<Index>(c)]);
     for (const MeasuredValue& value : m.values) {
-        const auto [at, is_new] = range.try_emplace(m.channels[value.channel].unit, value.value, value.value);
-        at->second = {std::min(at->second.first, value.value), std::max(at->second.second, value.value)};
+        auto& [low, high] = range[value.channel];
+        low = std::min(low, value.value);
+        high = std::max(high, value.value);
     }
+    std::map<std::string, double> motion;
+    for (std::size_t c = 0; c < m.channels.size(); ++c) {
+        double& largest = motion[m.channels[c].unit];
+        largest = std::max(largest, range[c].second - range[c].first);
+    }
+    return motion;
+}
+
+/// The scatter of each value: its own, else that of its unit.
+VectorXd scatters_of(const Measurements& m, const VectorXd& rest) {
+    const std::map<std::string, double> motion = motions(m, rest);
     VectorXd scatters(static_cast<Index>(m.values.size()));
     for (std::size_t k = 0; k < m.values.size(); ++k) {
-        const auto& [low, high] = range.at(m.channels[m.values[k].channel].unit);
-        const double size = high > low ? high - low : std::max({std::fabs(low), std::fabs(high)});
-        const double whole = size > 0 ? size : 1;
-        scatters[static_cast<Index>(k)] = m.values[k].scatter > 0 ? m.values[k].scatter : share_of_spread * whole;
+        const double whole = motion.at(m.channels[m.values[k].channel].unit);
+        scatters[static_cast<Index>(k)] =
+            m.values[k].scatter > 0 ? m.values[k].scatter : share_of_motion * (whole > 0 ? whole : 1);
     }
     return scatters;
 }
@@ -56,12 +69,7 @@ class Search {
 public:
     Search(const Source& source, const std::vector<Unknown>& unknowns, const Measurements& measurements,
            Progress& progress)
-        : source_(source),
-          unknowns_(unknowns),
-          m_(measurements),
-          progress_(progress),
-          times_(times_of(m_.values)),
-          scatters_(scatters_of(m_)) {
+        : source_(source), unknowns_(unknowns), m_(measurements), progress_(progress), times_(times_of(m_.values)) {
         for (std::size_t k = 0; k < m_.values.size(); ++k) {
             if (!m_.values[k].judged) fitted_.push_back(k);
         }
@@ -114,6 +122,7 @@ private:
         auto trial = Trial::solve(std::move(*variant), m_.channels, times_, progress_);
         if (!trial && (!best_ || trial.error().cause != Cause::failed)) return tl::unexpected(trial.error());
         if (!trial) return std::nullopt;
+        if (!best_) scatters_ = scatters_of(m_, (*trial)->rest());
         VectorXd r(static_cast<Index>(fitted_.size()));
         for (std::size_t k = 0; k < fitted_.size(); ++k) {
             const MeasuredValue& value = m_.values[fitted_[k]];
@@ -174,6 +183,29 @@ private:
         }
     }
 
+    /// A group of the fitted values with noise of its own: a unit, with scatters that are given or not.
+    [[nodiscard]] int group_of(const MeasuredValue& value) const {
+        const auto same = std::ranges::find(m_.channels, m_.channels[value.channel].unit, &Channel::unit);
+        return static_cast<int>(2 * (same - m_.channels.begin())) + (value.scatter > 0 ? 1 : 0);
+    }
+
+    [[nodiscard]] std::vector<int> groups() const {
+        std::vector<int> all;
+        for (const std::size_t k : fitted_) all.push_back(group_of(m_.values[k]));
+        return all;
+    }
+
+    void warn_of_noise(const Confidence& known, Identification& result) const {
+        if (fitted_.size() == unknowns_.size()) return;
+        for (const int group : known.unclear) {
+            const std::string& unit = m_.channels[static_cast<std::size_t>(group / 2)].unit;
+            result.warnings.push_back(
+                fmt::format("the values in {} are too few to show their noise, so some intervals are missing; measure "
+                            "more of them",
+                            unit.empty() ? "ratios" : unit));
+        }
+    }
+
     void warn(const Confidence& known, Identification& result) const {
         for (const Found& found : result.found) {
             if (!found.matters)
@@ -191,6 +223,7 @@ private:
                 "fix {} or measure something else",
                 join_names(names), names.size() > 2 ? "s" : "", names.size() > 2 ? "some" : "one"));
         }
+        warn_of_noise(known, result);
         if (fitted_.size() == unknowns_.size())
             result.warnings.emplace_back("as many unknowns as measured values: how well they are known cannot be told");
         if (!result.converged)
@@ -203,7 +236,7 @@ private:
         std::vector<bool> held;
         for (Index j = 0; j < end.u.size(); ++j)
             held.push_back((end.u[j] <= low[j] && gradient[j] > 0) || (end.u[j] >= high[j] && gradient[j] < 0));
-        const Confidence known = confidence(end.jacobian, end.residuals, held, negligible);
+        const Confidence known = confidence(end.jacobian, end.residuals, held, negligible, groups());
         Identification result;
         result.trials = end.trials;
         result.converged = end.converged;
@@ -226,7 +259,7 @@ private:
     const Measurements& m_;
     Progress& progress_;
     std::vector<double> times_;
-    VectorXd scatters_;
+    VectorXd scatters_;                ///< (values)
     std::vector<std::size_t> fitted_;  ///< places in the values
     std::unique_ptr<Trial> best_;
     VectorXd best_u_;

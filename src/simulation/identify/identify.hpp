@@ -49,12 +49,13 @@ struct Identification {
 };
 
 /// Least-squares fit to all values that are not held out, each weighted by its scatter. Without scatter, all values of
-/// one unit have the same weight, and different units are scaled by the spread of their values, so that neither
-/// dominates. Intervals are those of the linear theory at the solution, t s sqrt(C_jj) with C = (J^T J)^-1, s^2 = |r|^2
-/// / (n - unknowns) over the n values that depend on an unknown, and Student's t, in the coordinate of each unknown
-/// (Seber and Wild, Nonlinear Regression, 1989, section 2.1.2): they reflect noise in the data, not a model that does
-/// not fit. Errors: fewer values than unknowns; an unknown that is named twice; a start from which the program cannot
-/// be solved; errors of the source and the measurements; cancelled.
+/// one unit have the same weight: their scatter is a hundredth of the largest motion, from rest, of a quantity in that
+/// unit. Intervals are those of the linear theory at the solution, t sqrt(C_jj) with C = G S G^T, G = (J^T J)^-1 J^T, S
+/// the diagonal matrix of the noise of each value, and Student's t, in the coordinate of each unknown (Seber and Wild,
+/// Nonlinear Regression, 1989, section 2.1.2). The noise is estimated for each unit, for values with a given scatter
+/// apart from the others, from the values that depend on an unknown; t has the freedom of Satterthwaite 1946. They
+/// reflect noise in the data, not a model that does not fit. Errors: fewer values than unknowns; an unknown that is
+/// named twice; a start from which the program cannot be solved; errors of the source and the measurements; cancelled.
 [[nodiscard]] Result<Identification> identify(const Source& source, const std::vector<Unknown>& unknowns,
                                               const Measurements& measurements, Progress& progress);
 

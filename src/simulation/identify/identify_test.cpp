@@ -38,6 +38,27 @@ void check_found(const Bar& bar, const std::vector<std::string>& keys, const std
     for (const Errors& errors : result.fitted) CHECK(errors.after < 1e-5 * errors.before);
 }
 
+/// A bar far above the origin, with the bending cable of `at`.
+Bar bar_at(double z) {
+    mesh::TetMesh mesh = bar_mesh(false);
+    for (Vec3& point : mesh.points) point.z += 1e-3 * z;
+    return Bar(fmt::format(R"(
+        name = "bar"
+        length_unit = "mm"
+        material.firm = {{ youngs_modulus = "2 MPa", poisson_ratio = 0.4 }}
+        material.soft = {{ youngs_modulus = "0.7 MPa", poisson_ratio = 0.42 }}
+        mesh = {{ file = "memory:", order = 1 }}
+        body = [{{ name = "root", material = "firm", region = "root" }},
+                {{ name = "end", material = "soft", region = "end" }}]
+        fixed = [{{ name = "clamp", box = [[0, 0, {0}], [0, 10, {1}]] }}]
+        marker = [{{ name = "tip", point = [60, 5, {2}] }}]
+        cable = [{{ name = "flexor", points = [[0, 5, {3}], [30, 5, {3}], [60, 5, {3}]], target.length_ratio = 0.9 }}]
+        program = {{ steps = 4 }}
+    )",
+                           z - 1, z + 11, z + 5, z + 9),
+               std::move(mesh));
+}
+
 /// Of normal distribution, always the same.
 class Noise {
 public:
@@ -155,7 +176,7 @@ TEST_CASE("unknowns that cannot be separated, and unknowns without effect, are n
     CHECK(result.fitted[0].after < 1e-4 * result.fitted[0].before);
     // With a force beside them each has its own effect.
     const auto forces =
-        bar.read(table_of(bar, both, {6e3, 2.2e6}, {"tip_z_mm", "clamp_force_z_N"}, {0.5, 1}, undisturbed));
+        bar.read(table_of(bar, both, {6e3, 2.2e6}, {"tip_z_mm", "clamp_force_z_N"}, {0.25, 0.5, 0.75, 1}, undisturbed));
     const Identification told = find(bar, both, forces);
     CHECK(told.warnings.empty());
     CHECK(told.found[0].value == near(6e3, {.relative = 1e-6}));
@@ -201,6 +222,51 @@ TEST_CASE("95 % intervals hold the true value in about 95 % of tries, and held-o
     CHECK(result.judged[0].before > 0.2);
     CHECK(result.judged[0].after == near(0.05, {.relative = 0.4}));
     CHECK(result.fitted[0].after == near(0.05, {.relative = 0.4}));
+}
+
+TEST_CASE("what is found does not depend on where the robot is") {
+    std::vector<Found> found;
+    for (const double z : {0.0, 400.0}) {
+        const Bar bar = bar_at(z);
+        const auto unknowns = bar.unknowns({"material.soft.youngs_modulus"});
+        Noise noise(0.1, 5);
+        const auto data = bar.read(table_of(bar, unknowns, {1e6}, {"tip_x_mm", "tip_z_mm", "flexor_tension_N"},
+                                            {0.25, 0.5, 0.75, 1}, [&](int k) { return noise(k); }));
+        found.push_back(find(bar, unknowns, data).found[0]);
+    }
+    CHECK(found[1].value == near(found[0].value, {.relative = 1e-6}));
+    CHECK(*found[1].low == near(*found[0].low, {.relative = 1e-6}));
+    CHECK(*found[1].high == near(*found[0].high, {.relative = 1e-6}));
+}
+
+TEST_CASE("95 % intervals hold for values in two units, with noise of their own") {
+    const Bar bar = bar_at(0);
+    const auto unknowns = bar.unknowns({"material.firm.youngs_modulus", "material.soft.youngs_modulus"});
+    const std::vector<double> truth = {1.6e6, 0.8e6};
+    const std::vector<std::string> columns = {"tip_x_mm", "tip_z_mm", "flexor_tension_N"};
+    for (const auto& [of_mm, of_N] : {std::pair(0.3, 0.01), std::pair(0.005, 0.2)}) {
+        CAPTURE(of_mm);
+        std::array<int, 2> held{};
+        for (int k = 0; k < 20; ++k) {
+            Noise noise(1, 17 + static_cast<unsigned long long>(k));
+            const auto data = bar.read(table_of(bar, unknowns, truth, columns, {0.25, 0.5, 0.75, 1},
+                                                [&](int i) { return noise(i) * (i % 3 == 2 ? of_N : of_mm); }));
+            const Identification result = find(bar, unknowns, data);
+            for (std::size_t j = 0; j < 2; ++j)
+                held[j] += *result.found[j].low < truth[j] && truth[j] < *result.found[j].high ? 1 : 0;
+        }
+        CHECK(held[0] >= 16);
+        CHECK(held[1] >= 16);
+    }
+}
+
+TEST_CASE("too few values of a unit leave an interval open, which is said") {
+    const Bar bar(pulled);
+    const auto unknowns = bar.unknowns({"material.firm.youngs_modulus", "material.soft.youngs_modulus"});
+    const auto data = bar.read("time,tip_z_mm,tip-middle_angle_x_deg\n0.25,5.6,\n0.5,6.4,\n0.75,7.1,\n1,8.1,170\n");
+    const Identification result = find(bar, unknowns, data);
+    CHECK_FALSE(result.found[0].low);
+    CHECK(has_warning(result, {"the values in deg are too few to show their noise"}));
 }
 
 TEST_CASE("the same bits on any number of threads") {

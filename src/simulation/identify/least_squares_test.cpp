@@ -106,6 +106,25 @@ TEST_CASE("the intervals of a straight-line fit agree with the formula") {
     CHECK(std::isnan(held.half_width[0]));
 }
 
+TEST_CASE("residuals of two groups have a noise of their own") {
+    // The mean of eight values, of which four are ten times as noisy.
+    const MatrixXd J = MatrixXd::Ones(8, 1);
+    VectorXd r(8);
+    r << 1, -1, 1, -1, 0.1, -0.1, 0.1, -0.1;
+    const Confidence known = confidence(J, r, {false}, 1e-9, {0, 0, 0, 0, 1, 1, 1, 1});
+    // Each group has 3.5 values to spare, and half of the weights: variance (s1^2 + s2^2) / 16, s1^2 = 4 / 3.5 =
+    // 100 s2^2; freedom 3.5 * 1.01^2 / 1.0001 = 3.57, for which t(3) = 3.18245.
+    CHECK(known.half_width[0] == near(3.18245 * std::sqrt(1.01 * 4 / 3.5 / 16), {.relative = 2e-3}));
+    CHECK(known.unclear.empty());
+    // The noise of a value on its own is not known, unless it hardly counts.
+    const Confidence lone = confidence(J, r, {false}, 1e-9, {0, 0, 0, 0, 0, 0, 0, 1});
+    CHECK(std::isnan(lone.half_width[0]));
+    CHECK(lone.unclear == std::set<int>{1});
+    MatrixXd weak = J;
+    weak(7, 0) = 1e-3;
+    CHECK(std::isfinite(confidence(weak, r, {false}, 1e-9, {0, 0, 0, 0, 0, 0, 0, 1}).half_width[0]));
+}
+
 TEST_CASE("parallel and nearly parallel columns are named; a column of zeros is ignored") {
     MatrixXd J(4, 4);
     J << 1, 2, 1, 0, 1, 2, 0, 0, 2, 4, 1, 0, 3, 6, 5, 0;

@@ -32,6 +32,8 @@ public:
 
     /// (times, channels), in the channels' units.
     [[nodiscard]] const Eigen::MatrixXd& values() const { return values_; }
+    /// (channels) values at rest, in the channels' units.
+    [[nodiscard]] Eigen::VectorXd rest() const { return channel_values(pieces_.front()); }
     /// (times) of (channels, unknowns): by linearising each state and, with contact friction or a motion in time,
     /// through the steps before it. Lagged quantities are held fixed as in Linearisation. Errors: a state that has no
     /// derivative; cancelled.

@@ -144,6 +144,8 @@ std::string text(const Limit& limit) {
             return limit.input + " changes as fast as its rate allows";
         case Limit::Kind::slack:
             return limit.input + " is slack, and would have to push";
+        case Limit::Kind::goals:
+            return "goals " + limit.reason + " contradict each other: what brings one nearer takes the other away";
         case Limit::Kind::no_state:
             break;
     }

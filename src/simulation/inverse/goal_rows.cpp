@@ -189,6 +189,16 @@ Eigen::VectorXd GoalRows::values(const RobotState& robot, const Eigen::VectorXd&
     return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 
+std::vector<std::size_t> GoalRows::goals_of_rows(const RobotState& robot, std::size_t waypoint) const {
+    std::vector<std::size_t> all;
+    for (std::size_t g = 0; g < task_->goals.size(); ++g) {
+        const Goal& goal = task_->goals[g];
+        const std::size_t rows = misses(goal, got(stepper_->system(), robot, goal), goal.at(waypoint)).size();
+        all.insert(all.end(), rows, g);
+    }
+    return all;
+}
+
 double GoalRows::effort_unit(Eigen::Index input) const {
     return space_->input(input).actuator < stepper_->system().cable_count() ? tension_N_ : pressure_Pa_;
 }

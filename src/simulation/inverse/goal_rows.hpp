@@ -43,6 +43,8 @@ public:
     [[nodiscard]] std::vector<GoalState> goals(const RobotState& robot, std::size_t waypoint) const;
     [[nodiscard]] Eigen::VectorXd values(const RobotState& robot, const Eigen::VectorXd& inputs, std::size_t waypoint,
                                          const PriceTerm& price) const;
+    /// The goal of each of these values, without those of penalties.
+    [[nodiscard]] std::vector<std::size_t> goals_of_rows(const RobotState& robot, std::size_t waypoint) const;
     /// Derivatives, in the same order. `at`: linearised at this state.
     [[nodiscard]] RowGradients gradients(Linearisation& at, std::size_t waypoint, const PriceTerm& price) const;
     /// True if any actuator has a penalty.

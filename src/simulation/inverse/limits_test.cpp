@@ -77,6 +77,28 @@ TEST_CASE("a cable that would have to push is named; actuators that act in other
     CHECK(aside.goals[0].error == near(0.01, {.absolute = 2e-5}));
 }
 
+TEST_CASE("goals that contradict each other are named, not the slack antagonist") {
+    const Model model = made(bar(2));
+    InverseTask task = task_for(model, {{0.7, 1}, {0.7, 1}});
+    const Vec3 up = tip_under(model, task, {0.9, 1});
+    const auto on_plane = [&](const std::string& name, double z) {
+        Goal goal;
+        goal.name = name;
+        goal.kind = GoalKind::plane;
+        goal.markers = {0};
+        goal.wanted = {{Vec3{up.x, up.y, z}, Vec3{0, 0, 1}}};
+        goal.tolerance = 1e-5;
+        return goal;
+    };
+    task.goals = {on_plane("high", up.z + 1e-3), on_plane("low", up.z - 1e-3)};
+    const Waypoint found = solve(model, task).waypoints.at(0);
+    CHECK_FALSE(found.reached);
+    REQUIRE(found.limits.size() == 1);
+    CHECK(text(found.limits[0]) ==
+          "goals \"high\" and \"low\" contradict each other: what brings one nearer takes the other away");
+    CHECK(found.goals[0].error == near(1e-3, {.relative = 0.03}));
+}
+
 TEST_CASE("an antagonist cable lengthens first and then pulls") {
     const Model model = made(bar(2));
     InverseTask task = task_for(model, {{0.7, 1}, {0.7, 1}});

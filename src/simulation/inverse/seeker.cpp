@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/core/text.hpp"
+
 namespace pliant::sim::inverse {
 namespace {
 
@@ -19,6 +21,7 @@ constexpr int most_moves = 60;      // for one waypoint
 constexpr double price_room = 0.1;  // of the cost at one tolerance
 constexpr double widened = 30;      // tolerances while the penalty is being lowered
 constexpr int price_rounds = 4;
+constexpr double cancels = 0.05;  // share of a sum's terms that may remain where they cancel: the search stops early
 
 /// Distance from the goals, in tolerances.
 double distance(double cost) {
@@ -365,10 +368,56 @@ void Seeker::minimise(Search& search, const Progress& progress) {
     }
 }
 
-std::vector<Limit> Seeker::limits(const Search& search) const {
+/// True if a slack cable could bring the goals nearer by pushing, as far as that is known.
+bool Seeker::would_push(const Search& search, std::size_t cable) {
+    if (!search.fresh || !sensitivity_) return true;
+    const Eigen::VectorXd by_tension = sensitivity_->rows_by_tension(cable);
+    const Eigen::VectorXd shares = search.residuals.cwiseProduct(by_tension);
+    return !(shares.sum() < cancels * shares.lpNorm<1>());
+}
+
+/// (goals) of (inputs): what each goal alone asks of the inputs, the gradient of its part of the cost. Empty if it is
+/// not known, or with one goal.
+std::vector<Eigen::VectorXd> Seeker::gradients_of_goals(const Search& search) {
+    std::vector<Eigen::VectorXd> gradients;
+    if (!search.fresh || !sensitivity_ || task_->goals.size() < 2) return gradients;
+    const std::vector<std::size_t> goal_of_row = rows_.goals_of_rows(search.now.robot, search.waypoint);
+    for (std::size_t g = 0; g < task_->goals.size(); ++g) {
+        Eigen::VectorXd own = Eigen::VectorXd::Zero(search.residuals.size());
+        for (std::size_t r = 0; r < goal_of_row.size(); ++r) {
+            const auto at = static_cast<Eigen::Index>(r);
+            if (goal_of_row[r] == g) own[at] = search.residuals[at];
+        }
+        gradients.push_back(sensitivity_->multiply_transposed(own));
+    }
+    return gradients;
+}
+
+/// The goals of which what brings one nearer takes another away; "" if there are none.
+std::string Seeker::contradicting_goals(const std::vector<Eigen::VectorXd>& gradients) const {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(space_.size());
+    double largest = 0, lengths = 0;
+    for (const Eigen::VectorXd& gradient : gradients) {
+        sum += gradient;
+        largest = std::max(largest, gradient.norm());
+        lengths += gradient.norm();
+    }
+    std::vector<std::string> names;
+    for (std::size_t g = 0; g < gradients.size(); ++g)
+        if (gradients[g].norm() > cancels * largest) names.push_back("\"" + task_->goals[g].name + "\"");
+    return names.size() > 1 && sum.norm() < cancels * lengths ? join_names(names) : "";
+}
+
+std::vector<Limit> Seeker::limits(const Search& search) {
     std::vector<Limit> limits;
     constexpr double matters = 1e-3;  // of the largest entry that the gradient could have
     const double least = matters * search.gradient.lpNorm<Eigen::Infinity>();
+    const std::vector<Eigen::VectorXd> of_goals = gradients_of_goals(search);
+    const auto is_cancelled = [&](Eigen::Index i) {
+        double asked = 0;
+        for (const Eigen::VectorXd& gradient : of_goals) asked += std::fabs(gradient[i]);
+        return std::fabs(search.gradient[i]) < cancels * asked;
+    };
     for (Eigen::Index i = 0; i < search.gradient.size(); ++i) {
         const double downhill = -search.gradient[i];
         const auto k = static_cast<std::size_t>(i);
@@ -377,14 +426,18 @@ std::vector<Limit> Seeker::limits(const Search& search) const {
         const bool wants_longer = (downhill > 0) == space_.drives_longer(i);
         const bool slack = space_.is_slack(search.now.robot, i);
         if (slack && (!pulls_[k] || wants_longer)) {
-            limits.push_back({Limit::Kind::slack, name, ""});
+            if (would_push(search, space_.input(i).actuator)) limits.push_back({Limit::Kind::slack, name, ""});
             continue;
         }
-        if (!(std::fabs(downhill) > least)) continue;
+        if (!(std::fabs(downhill) > least) || is_cancelled(i)) continue;
         if (downhill > 0 && search.now.inputs[i] > search.bounds->upper[i] - rounding)
             limits.push_back({search.bounds->rate_upper[k] ? Limit::Kind::rate : Limit::Kind::upper, name, ""});
         if (downhill < 0 && search.now.inputs[i] < search.bounds->lower[i] + rounding)
             limits.push_back({search.bounds->rate_lower[k] ? Limit::Kind::rate : Limit::Kind::lower, name, ""});
+    }
+    if (limits.empty() && search.no_state.empty()) {
+        if (std::string names = contradicting_goals(of_goals); !names.empty())
+            limits.push_back({Limit::Kind::goals, "", std::move(names)});
     }
     if (!search.no_state.empty()) limits.push_back({Limit::Kind::no_state, "", search.no_state});
     return limits;

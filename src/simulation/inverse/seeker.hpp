@@ -35,11 +35,12 @@ struct Limit {
         upper,     ///< likewise
         rate,      ///< largest rate of change
         slack,     ///< the cable is slack: it would have to push
+        goals,     ///< goals contradict each other
         no_state,  ///< no equilibrium was found beyond this
     };
     Kind kind = Kind::lower;
-    std::string input;   ///< which input; empty for no_state
-    std::string reason;  ///< for no_state
+    std::string input;   ///< which input; empty for goals and no_state
+    std::string reason;  ///< for no_state; for goals their names
 };
 
 struct Found {
@@ -96,7 +97,10 @@ private:
     [[nodiscard]] BoundedStep best_step(const Search& search);
     [[nodiscard]] bool is_at(const Point& point, const Eigen::VectorXd& inputs) const;
     [[nodiscard]] bool judge(Search& search, const BoundedStep& step, Trial trial);
-    [[nodiscard]] std::vector<Limit> limits(const Search& search) const;
+    [[nodiscard]] std::vector<Limit> limits(const Search& search);
+    [[nodiscard]] bool would_push(const Search& search, std::size_t cable);
+    [[nodiscard]] std::vector<Eigen::VectorXd> gradients_of_goals(const Search& search);
+    [[nodiscard]] std::string contradicting_goals(const std::vector<Eigen::VectorXd>& gradients) const;
     [[nodiscard]] double cost_of(const Search& search, const Point& point, Eigen::VectorXd& residuals) const;
 
     Stepper* stepper_;

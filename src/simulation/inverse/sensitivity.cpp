@@ -277,6 +277,11 @@ Eigen::VectorXd Sensitivity::by_tensions(const Eigen::VectorXd& rows, const std:
     return result;
 }
 
+Eigen::VectorXd Sensitivity::rows_by_tension(std::size_t cable) {
+    const std::vector<Change> by_tension = responses_to_tensions({cable});
+    return by_tension.empty() ? Eigen::VectorXd(Eigen::VectorXd::Zero(rows_.by_inputs.rows())) : rows_of(by_tension[0]);
+}
+
 void Sensitivity::learn(const Eigen::VectorXd& inputs, const Eigen::VectorXd& miss) {
     const double square = inputs.squaredNorm();
     if (square > 0) learnt_.push_back({miss / square, inputs});

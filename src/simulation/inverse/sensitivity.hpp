@@ -37,6 +37,8 @@ public:
     /// d (weights . residuals) / dT of these cables, as if their tensions were prescribed: shows whether tightening a
     /// slack cable helps. (rows) -> (cables)
     [[nodiscard]] Eigen::VectorXd by_tensions(const Eigen::VectorXd& rows, const std::vector<std::size_t>& cables);
+    /// (rows) their derivatives with respect to the tension of this cable, likewise.
+    [[nodiscard]] Eigen::VectorXd rows_by_tension(std::size_t cable);
     [[nodiscard]] const Status& status() const { return status_; }
 
     /// `miss`: difference between the observed change and the product with `inputs`. Corrects the product by the

@@ -198,6 +198,10 @@ private:
 
 }  // namespace
 
+bool can_tell_left_open(const Model& model) {
+    return model.free_pieces().size() + model.objects().size() <= most_bodies;
+}
+
 std::string left_open(const Equilibrium& system, const State& state, const Controls& controls) {
     return Bodies(system, state, controls).describe();
 }

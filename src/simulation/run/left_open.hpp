@@ -12,4 +12,7 @@ namespace pliant::sim {
 /// step that led to `state`. Cost: a proximity search, and a dense matrix of six rows for each piece or object.
 [[nodiscard]] std::string left_open(const Equilibrium& system, const State& state, const Controls& controls);
 
+/// False if the robot has too many pieces and objects for left_open(), which then says nothing.
+[[nodiscard]] bool can_tell_left_open(const Model& model);
+
 }  // namespace pliant::sim

@@ -98,6 +98,25 @@ void RunChecks::warn_of_closed_gaps(const RobotState& robot, int step, std::vect
     }
 }
 
+void RunChecks::warn_of_uncarried_loads(const RobotState& robot, int step, std::vector<std::string>& warnings) const {
+    constexpr double noticeable_share = 0.01;
+    constexpr std::string_view what = "the loads are not carried";
+    const Evaluation& now = robot.evaluation;
+    const Eigen::VectorXd& loads = robot.controls.external_N;
+    const bool loaded = system_.restrict_to_free(loads).norm() > 0;
+    if (program_.dynamics || !loaded || now.residual > program_.tolerance || !now.multiplier.isZero(0)) return;
+    const double largest = std::max((now.out_of_balance + loads).norm(), loads.norm());
+    const double open = system_.restrict_to_free(now.out_of_balance).norm();
+    if (!(open > std::max(noticeable_share, 2 * program_.tolerance) * largest)) return;
+    const auto says_so = [&](const std::string& warning) { return warning.find(what) != std::string::npos; };
+    if (std::ranges::any_of(warnings, says_so)) return;
+    warnings.push_back(
+        fmt::format("from step {} on {}: {:.2g} % of the forces are out of balance, and too small beside the stiffest "
+                    "material to be told from rounding errors; bring the moduli nearer to each other, or leave out "
+                    "what hardly deforms",
+                    step, what, 100 * open / largest));
+}
+
 void RunChecks::look_for_crossings(const RobotState& robot, std::vector<Step>& steps, bool last) const {
     constexpr int interval = 32;
     const auto look = [&](Step& step) {

@@ -32,6 +32,9 @@ public:
                     const Progress& progress);
     /// Warns of gaps that have closed between two guide points: from here on the flanks would touch.
     void warn_of_closed_gaps(const RobotState& robot, int step, std::vector<std::string>& warnings);
+    /// Warns, once, of a static step that counts as converged although the loads are not carried: where they are within
+    /// the rounding of much larger forces, as between very stiff and very soft materials.
+    void warn_of_uncarried_loads(const RobotState& robot, int step, std::vector<std::string>& warnings) const;
     /// Checks for intersecting surfaces in every 32nd step and the last, because a search takes half as long as a step,
     /// and, once found, backwards to the last step without.
     void look_for_crossings(const RobotState& robot, std::vector<Step>& steps, bool last) const;

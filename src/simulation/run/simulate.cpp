@@ -56,8 +56,6 @@ private:
             now_.checks = checks_.state();
             now_.so_far.solver = name(stepper_.solvers().first());
             now_.so_far.warnings = warnings_at_rest(stepper_.model());
-            if (std::string held = held_by_nothing(stepper_.model()); !program_.dynamics && !held.empty())
-                now_.so_far.warnings.push_back(std::move(held));
             Step rest;
             describe(rest);
             add(std::move(rest));
@@ -97,6 +95,7 @@ private:
         if (report.loose) step.reason = report.reason;
         describe(step);
         checks_.warn_of_closed_gaps(now_.robot, k, result.warnings);
+        checks_.warn_of_uncarried_loads(now_.robot, k, result.warnings);
         step.wall_s = watch.read_s();
         result.solve_s += step.wall_s;
         add(std::move(step));
@@ -136,6 +135,12 @@ private:
         Trajectory& result = now_.so_far;
         checks_.look_for_crossings(now_.robot, result.steps, true);
         if (!progress.cancelled()) checks_.at_end(now_.robot, result);
+        // At the end of the program the checks say what is left open.
+        const bool checked = result.converged && !progress.cancelled() && can_tell_left_open(stepper_.model());
+        if (!program_.dynamics && !checked) {
+            if (std::string held = held_by_nothing(stepper_.model()); !held.empty())
+                result.warnings.push_back(std::move(held));
+        }
         result.solve_s += watch.read_s();
         add_warnings(result);
     }

@@ -8,6 +8,7 @@
 #include "geometry/repair/cavity.hpp"
 #include "geometry/repair/surface_check.hpp"
 #include "simulation/scene/build_places.hpp"
+#include "simulation/scene/chamber_mouths.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -16,33 +17,7 @@ namespace {
 /// robot's size.
 constexpr double wall_reach = 0.03;
 
-void check_mouth(ModelDraft& draft, const ChamberSpec& spec, const sim::Wall& wall) {
-    std::vector<bool> held(draft.description.mesh.points.size(), false);
-    for (const sim::Support& support : draft.description.supports) {
-        for (const int node : support.nodes)
-            held[static_cast<std::size_t>(node)] = !support.moves() && support.directions.empty();
-    }
-    std::size_t loose = 0;
-    for (const sim::WallFace& face : wall.faces) {
-        bool open = false;
-        bool fast = true;
-        for (const int point : face) {
-            if (point < 0) continue;
-            const auto& nodes = wall.points[static_cast<std::size_t>(point)].nodes;
-            open = open || nodes.empty();
-            fast = fast && (nodes.empty() || held[static_cast<std::size_t>(nodes[0])]);
-        }
-        loose += open && !fast ? 1 : 0;
-    }
-    if (loose > 0)
-        draft.problem(
-            spec.line, "chamber", spec.name,
-            fmt::format("{} faces of its wall belong to no body: the chamber is open; close it with a body, or "
-                        "let its mouth lie in a [[fixed]] without move or rotate",
-                        loose));
-}
-
-/// The boundary of a meshed chamber. A mouth not covered by a body must be inside a support that does not move.
+/// The boundary of a meshed chamber. A mouth not covered by a body must be inside a support.
 sim::Wall wall_of_region(ModelDraft& draft, const ChamberSpec& spec) {
     const int region = static_cast<int>(draft.region_of(Region::Use::chamber, spec.name));
     const std::vector<mesh::Face> faces = mesh::region_faces(draft.whole, region);
@@ -51,7 +26,8 @@ sim::Wall wall_of_region(ModelDraft& draft, const ChamberSpec& spec) {
         draft.problem(spec.line, "chamber", spec.name, "is empty");
         return {};
     }
-    check_mouth(draft, spec, wall);
+    if (const std::string open = open_mouth(draft, spec, faces, wall); !open.empty())
+        draft.problem(spec.line, "chamber", spec.name, open);
     return wall;
 }
 

@@ -10,6 +10,7 @@
 #include "base/core/test_text.hpp"
 #include "geometry/files/tet_writer.hpp"
 #include "robot/bodies/build.hpp"
+#include "robot/description/unused.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/scene/build_model.hpp"
 #include "simulation/scene/test_run.hpp"
@@ -408,6 +409,111 @@ TEST_CASE("chambers without air, or not closed, are refused") {
     std::string turning = chamber(mouth, "volume_ratio = 1.2");
     turning.insert(turning.find(box), "rotate = { angle = 5, axis = [1, 0, 0] }\n");
     check_problem(turning, "let its mouth lie in a [[fixed]] without move or rotate");
+}
+
+TEST_CASE("a misspelt material, parameter or shape in an assignment is an error, and an unused material a remark") {
+    const auto set = [](const std::string& assignment) { return problem(good, {assignment}); };
+    CHECK(set("material.softt.youngs_modulus=2 MPa") ==
+          "--set material.softt: the file has no material \"softt\", and nothing would use it; did you mean "
+          "\"soft\"?");
+    CHECK(set("parameters.lenght=3").starts_with("--set parameters.lenght: the file has no parameter \"lenght\""));
+    CHECK(set("shape.notch={ sphere = { center = [0, 0, 0], radius = 1 } }").starts_with("--set shape.notch: "));
+    // What another assignment uses may be new.
+    CHECK(problem(good, {"material.other.youngs_modulus=2 MPa", "body.0.material=other"}).empty());
+    CHECK(problem(good, {"parameters.ratio=0.95", "cable.flexor.target.length_ratio== ratio"}).empty());
+    const auto robot = parse_robot(good + "[material.sofd]\nyoungs_modulus = \"2 MPa\"\n", "bar.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    CHECK(unused_materials(*robot) ==
+          std::vector<std::string>{"no body uses material \"sofd\"; did you mean \"soft\"?"});
+}
+
+TEST_CASE("moduli and densities that overflow are refused at their key") {
+    CHECK(problem(good, {"material.soft.youngs_modulus=1e300 GPa"}).find("material.soft.youngs_modulus: ") !=
+          std::string::npos);
+    CHECK(problem(good, {"material.soft.density=1e200 kg/m^3"})
+              .find("material.soft.density: 1e+200 kg/m^3 is not "
+                    "possible") != std::string::npos);
+    CHECK(problem(good, {"material.soft={ law = \"yeoh\", c10 = \"1e300 Pa\" }"}).find("material.soft.c10: ") !=
+          std::string::npos);
+}
+
+TEST_CASE("a number that is none is one problem") {
+    const std::string found = problem(good, {"cable.flexor.target.length_ratio=nan"});
+    CHECK(found.find("cable[0].target.length_ratio: is ") != std::string::npos);
+    CHECK(found.find('\n') == std::string::npos);
+}
+
+TEST_CASE("a body's own size is used where it is larger than that of the mesh, or where the mesh has none") {
+    const auto tets = [](const std::string& mesh, const std::string& size) {
+        return build_text("name = \"two\"\nlength_unit = \"mm\"\n" + mesh +
+                          "[material.soft]\nyoungs_modulus = \"1 MPa\"\n"
+                          "[[body]]\nname = \"a\"\nmaterial = \"soft\"\n" +
+                          size +
+                          "geometry = { box = [[0, 0, 0], [20, 20, 20]] }\n"
+                          "[[fixed]]\nname = \"c\"\nbox = [[0, 0, 0], [20, 20, 0]]\n")
+            .model.mesh()
+            .tet_count();
+    };
+    const std::size_t coarse = tets("mesh = { size = \"10 mm\" }\n", "");
+    CHECK(tets("", "size = \"10 mm\"\n") == coarse);
+    CHECK(tets("mesh = { size = \"4 mm\" }\n", "size = \"10 mm\"\n") < 2 * coarse);
+    CHECK(tets("mesh = { size = \"4 mm\" }\n", "") > 4 * coarse);
+}
+
+TEST_CASE("loads that are too small to be carried beside a very stiff material are reported") {
+    const auto pulled = [](const std::string& force) {
+        return run_text(
+            "name = \"two\"\nlength_unit = \"mm\"\nmesh = { size = \"4 mm\" }\n"
+            "[material.hard]\nyoungs_modulus = \"200 GPa\"\n"
+            "[material.soft]\nyoungs_modulus = \"1 kPa\"\n"
+            "[[body]]\nname = \"a\"\nmaterial = \"hard\"\n"
+            "geometry = { box = [[0, 0, 0], [10, 10, 10]] }\n"
+            "[[body]]\nname = \"b\"\nmaterial = \"soft\"\n"
+            "geometry = { box = [[10, 0, 0], [20, 10, 10]] }\n"
+            "[[fixed]]\nname = \"c\"\nbox = [[0, 0, 0], [0, 10, 10]]\n"
+            "[[load]]\nname = \"pull\"\nbox = [[20, 0, 0], [20, 10, 10]]\nforce = [\"" +
+            force + "\", \"0 N\", \"0 N\"]\n[program]\nsteps = 1\n");
+    };
+    CHECK(pulled("20 mN").warnings.empty());
+    const std::vector<std::string> warnings = pulled("1e-6 mN").warnings;
+    REQUIRE(warnings.size() == 1);
+    CHECK(warnings[0].starts_with("from step 1 on the loads are not carried: "));
+}
+
+TEST_CASE("a chamber outside every body, and chambers that overlap, are refused by name") {
+    for (const char* target : {"volume_ratio = 1.2", "pressure = \"1 kPa\"", "gas_ratio = 2"}) {
+        const std::string outside = chamber("geometry = { box = [[50, 3, 3], [56, 7, 7]] }", target);
+        check_problem(outside, "bar.toml:39: chamber \"air\": lies outside every body");
+    }
+    const std::string second =
+        "[[chamber]]\nname = \"more\"\ngeometry = { box = [[30, 4, 3], [38, 6, 6]] }\ntarget.volume_ratio = 1.1\n";
+    check_problem(chamber(room, "volume_ratio = 1.2") + second,
+                  "chamber \"air\": overlaps chamber \"more\", or touches it without a wall between them, between "
+                  "(30, 4, 3) and (36, 6, 6)");
+    check_problem(chamber(room, "volume_ratio = 1.2") + second, "chamber \"more\": overlaps chamber \"air\"");
+}
+
+TEST_CASE("a plane of symmetry closes a chamber: half a robot inflates like the whole one") {
+    const auto balloon = [](const std::string& low, const std::string& supports) {
+        return "name = \"balloon\"\nlength_unit = \"mm\"\nmesh = { size = \"4 mm\" }\n"
+               "[material.soft]\nyoungs_modulus = \"1 MPa\"\n"
+               "[[body]]\nname = \"skin\"\nmaterial = \"soft\"\ngeometry = { box = [[" +
+               low + ", 0, 0], [20, 12, 12]] }\n" + supports +
+               "[[fixed]]\nname = \"end\"\nbox = [[20, 0, 0], [20, 12, 12]]\n"
+               "[[chamber]]\nname = \"air\"\ngeometry = { box = [[" +
+               (low == "0" ? "0" : "-14") + ", 3, 3], [14, 9, 9]] }\ntarget = { pressure = \"60 kPa\" }\n" +
+               "[[marker]]\nname = \"side\"\npoint = [0, 6, 12]\n[program]\nsteps = 2\n";
+    };
+    const std::string roller = "[[fixed]]\nname = \"middle\"\nplane = { point = [0, 0, 0], normal = [1, 0, 0] }\n";
+    const std::string other_end = "[[fixed]]\nname = \"start\"\nbox = [[-20, 0, 0], [-20, 12, 12]]\n";
+    const sim::Step half = last_step(build_text(balloon("0", roller + "directions = \"normal\"\n")));
+    const sim::Step whole = last_step(build_text(balloon("-20", other_end)));
+    const double grown = half.chambers[0].volume_ratio - 1;
+    CHECK(grown > 0.05);
+    CHECK(half.chambers[0].volume_m3 == near(0.5 * whole.chambers[0].volume_m3, {.relative = 0.02 * grown}));
+    CHECK(half.markers[0].position_m.z - 12e-3 == near(whole.markers[0].position_m.z - 12e-3, {.relative = 0.03}));
+    // A support that holds another direction does not close it.
+    check_problem(balloon("0", roller + "directions = [\"y\"]\n"), "the chamber is open");
 }
 
 TEST_CASE("a pressure load acts on the faces in its box") {

@@ -1,15 +1,16 @@
 // The robot on the platform before slicing: moved, rotated, scaled, copied, in the colours of its materials. Clicking a
 // face lays it on the platform, and supports can be painted on the part.
 import { signal } from '@preact/signals';
-import { useEffect, useRef, useState } from 'preact/hooks';
+import { useEffect, useRef } from 'preact/hooks';
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { counted } from '../counted';
 import { orbitHelp, orbitKeys, turnAround } from '../orbit_keys';
-import { api, mayDrive, say, scene } from '../store';
+import { mayDrive, say, scene } from '../store';
 import { theme } from '../theme';
 import type { Scene } from '../types';
-import { copies, fields, orderJson, printer, printerInfo, scale, shift, support, turn, type PrinterInfo } from './order';
+import { estimate } from './estimate';
+import { copies, fields, printer, printerInfo, scale, shift, support, turn, type PrinterInfo } from './order';
 import { painted, paintTable, readPaint, refined, strokes, touches, wishColours, type Touch, type Wish } from './paint';
 import { layOnFace, placed, rotationOf, type Degrees } from './place';
 import { clock } from './plan';
@@ -327,33 +328,6 @@ class BedView {
   }
 }
 
-interface Estimate {
-  layers: number;
-  seconds: number;
-  swaps: number;
-  resin_ml: Record<string, number>;
-}
-
-/// An estimate of time and resin by the planner, before slicing.
-function useEstimate(order: string, can: boolean): Estimate | null {
-  const [estimate, setEstimate] = useState<Estimate | null>(null);
-  useEffect(() => {
-    if (!can) return;
-    const stop = new AbortController();
-    const timer = setTimeout(() => {
-      api('/api/job/estimate', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: order, signal: stop.signal })
-        .then((r) => r.json())
-        .then((e: Estimate) => setEstimate(e))
-        .catch(() => stop.signal.aborted || setEstimate(null)); // errors are shown when slicing
-    }, 350);
-    return () => {
-      clearTimeout(timer);
-      stop.abort();
-    };
-  }, [order, can]);
-  return estimate;
-}
-
 /// The support brush: what it paints, its radius, and undo.
 function Brush({ materials, lookUp }: { materials: string[]; lookUp: () => void }) {
   const on = isBrush(tool.value);
@@ -439,8 +413,7 @@ export function Bed() {
   const count = Math.max(1, Math.min(1000, Math.round(copies.value) || 1));
   const where = s && p ? placed(s.f32('rest'), turn.value, count, spacing, p.image_mm, p.platform.height_mm, scale.value, shift.value) : null;
   const materials = s?.head.materials.map((m) => m.name) ?? [];
-  const order = JSON.stringify(orderJson(materials));
-  const estimate = useEstimate(`${order}`, Boolean(s && p && mayDrive.value));
+  const e = estimate.value;
   const angle = Number(fields.value['support-angle'] || 45);
   const flattest = isBrush(tool.value) && Number.isFinite(angle) ? angle : -1;
 
@@ -491,10 +464,10 @@ export function Bed() {
             undersides flatter than {angle}° are supported automatically; only downward-facing faces can be painted
           </p>
         ) : (
-          estimate && (
+          e && (
             <p class="estimate" role="status" data-testid="estimate">
-              about <b>{clock(estimate.seconds)}</b> · {counted(estimate.layers, 'layer')} · {counted(estimate.swaps, 'swap')}
-              {Object.entries(estimate.resin_ml).map(([resin, ml]) => ` · ${ml.toFixed(1)} ml ${resin}`)}
+              about <b>{clock(e.seconds)}</b> · {counted(e.layers, 'layer')} · {counted(e.swaps, 'swap')}
+              {Object.entries(e.resin_ml).map(([resin, ml]) => ` · ${ml.toFixed(1)} ml ${resin}`)}
             </p>
           )
         )}

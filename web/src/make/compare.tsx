@@ -10,6 +10,8 @@ import { clock } from './plan';
 /// "": the previous job.
 const chosen = signal('');
 
+const noJobBefore = 'There is no previous job yet: slice again with other settings, or choose a job from the folder.';
+
 interface Line {
   name: string;
   of: (job: Job) => number | null;
@@ -153,7 +155,7 @@ export function Compare({ job }: { job: Job }) {
     setWhy('');
     api(`/api/job/other?name=${name}`)
       .then((r) => r.json())
-      .then((o: Job) => setOther({ ...o, at: (l, m) => `/api/job/other/${l}/${m}?name=${name}&job=${o.key}` }))
+      .then((o: Job | null) => !o ? setWhy(noJobBefore) : setOther({ ...o, at: (l, m) => `/api/job/other/${l}/${m}?name=${name}&job=${o.key}` }))
       .catch((e: Error) => setWhy(e.message));
   }, [chosen.value, job.revision]);
   return (
@@ -167,7 +169,7 @@ export function Compare({ job }: { job: Job }) {
           ))}
         </select>
       </label>
-      {why && <p class="quiet" data-testid="compare-none">{chosen.value ? why : 'There is no previous job yet: slice again with other settings, or choose a job from the folder.'}</p>}
+      {why && <p class="quiet" data-testid="compare-none">{why}</p>}
       {other && (
         <>
           <table class="compare-table">

@@ -6,10 +6,12 @@ import { Icon } from '../icons';
 import { job, mayDrive, post, say, slicing } from '../store';
 import { Bed } from './bed';
 import { Compare } from './compare';
+import { jobFileName } from './file_name';
 import { goal, Layers, layer } from './layers';
 import { SliceForm } from './order';
 import { PlanView } from './plan';
 import { Stack } from './stack';
+import { changes, staleText } from './stale';
 import { UnderWay } from './under_way';
 
 /// Before slicing the robot is shown on the platform.
@@ -80,9 +82,26 @@ function Volumes() {
   );
 }
 
+/// The job does not belong to the robot and the form as they are.
+function Stale() {
+  if (changes.value.length === 0) return null;
+  return (
+    <div class="prompt" role="status" data-testid="stale">
+      <Icon name="warn" />
+      <span>
+        {staleText(changes.value)}{' '}
+        <button class="small" form="slice-form" disabled={!mayDrive.value || slicing.value !== null}>
+          Slice again
+        </button>
+      </span>
+    </div>
+  );
+}
+
 export function Make() {
   const j = job.value;
-  const [name, setName] = useState('');
+  const [typed, setName] = useState<string | null>(null);
+  const name = typed ?? (j ? jobFileName(j.manifest.name) : '');
   const stage = useRef<HTMLElement>(null);
   const known = useRef(j?.revision);
   const seen = (slicing.value?.layers ?? 0) > 0; // some layers can be viewed before the job is complete
@@ -100,6 +119,7 @@ export function Make() {
         <SliceForm />
         {j && (
           <>
+            <Stale />
             <Volumes />
             <Issues />
             <div class="job-file">
@@ -112,7 +132,7 @@ export function Make() {
                   if (await post('/api/job/save', { name })) say(`Saved ${name}`);
                 }}
               >
-                <input placeholder="gripper.zip" aria-label="Name of the job file" value={name} onInput={(e) => setName(e.currentTarget.value)} />
+                <input aria-label="Name of the job file" value={name} onInput={(e) => setName(e.currentTarget.value)} />
                 <button class="small" disabled={!name || !mayDrive.value}>
                   Save
                 </button>
@@ -130,6 +150,11 @@ export function Make() {
                   {{ bed: 'Placement', layers: 'Layers', stack: '3D', plan: 'Plan', compare: 'Compare' }[t]}
                 </button>
               ))}
+              {changes.value.length > 0 && tab.value !== 'bed' && (
+                <span class="out-of-date" data-testid="out-of-date">
+                  <Icon name="warn" /> out of date
+                </span>
+              )}
             </div>
             {tab.value === 'bed' && !seen && <Bed />}
             {tab.value === 'layers' && !seen && <Layers key={j.revision} job={j} />}

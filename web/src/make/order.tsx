@@ -1,12 +1,13 @@
 // The slicing form: the options of `pliant slice` in groups. Errors are shown at their fields.
-import { computed, signal } from '@preact/signals';
+import { batch, computed, signal } from '@preact/signals';
 import type { ComponentChildren } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
 import { counted } from '../counted';
 import { Icon } from '../icons';
 import { NumberField } from '../number_field';
-import { paintTable, strokes, touches } from './paint';
 import { api, documentState, mayDrive, post, say, scene, sliceError, slicing } from '../store';
+import { orderProblem, useEstimate } from './estimate';
+import { paintTable, readPaint, strokes, touches } from './paint';
 
 export interface PrinterInfo {
   name: string;
@@ -47,9 +48,11 @@ const bonds = signal<Bond[]>([]);
 const lights = signal<Record<string, Light>>({});
 export const support = signal('');
 
-/// The option that the last error refers to, and its message.
+/// The error of the last slicing, or what the studio finds wrong with the form as it is.
+const problem = computed(() => sliceError.value || orderProblem.value);
+/// The option that it refers to, and its message.
 const wrong = computed(() => {
-  const match = /^--([a-z-]+)(?: ([^:]*))?: (.*)$/s.exec(sliceError.value);
+  const match = /^--([a-z-]+)(?: ([^:]*))?: (.*)$/s.exec(problem.value);
   return match ? { option: match[1], value: match[2] ?? '', text: match[3] } : null;
 });
 
@@ -64,12 +67,70 @@ function quantity(option: string, text: string): string {
 const seconds = (text: string) => (/^[\d.]+$/.test(text.trim()) ? `${text.trim()} s` : text.trim());
 
 /// Including painted supports, which an estimate does not need.
-const wholeOrder = (materials: string[]) => {
+export const wholeOrder = (materials: string[]) => {
   const order = orderJson(materials);
   const table = support.value ? paintTable(touches()) : '';
   if (table) order['support-paint'] = table;
   return order;
 };
+
+/// Everything in the form, to notice whether somebody has touched it.
+const formText = () => JSON.stringify([printer, copies, fields, turn, scale, shift, plainPixels, bonds, lights, support, strokes].map((s) => s.peek()));
+let given = formText(); // by the page itself or by a job
+
+/// A value without the unit that its field adds.
+function bare(option: string, text: string): string {
+  const unit = unitOf[option] ?? 'mm';
+  const number = unit && text.endsWith(` ${unit}`) ? text.slice(0, -unit.length - 1) : text;
+  return quantity(option, number) === text ? number : text;
+}
+
+const texts = (list: unknown) => (Array.isArray(list) ? list.map(String) : []);
+const withoutSeconds = (text: string) => text.trim().replace(/^([\d.]+) s$/, '$1');
+
+function bondsOf(order: Record<string, unknown>): Bond[] {
+  return (['overlap', 'interlock'] as const).flatMap((kind) =>
+    texts(order[kind]).flatMap((text) => {
+      const [, a, b, pixels, layers] = /^(.*)\+(.*)=(\d+),(\d+)$/.exec(text) ?? [];
+      return a ? [{ kind, a, b, pixels: Number(pixels), layers: Number(layers) }] : [];
+    }),
+  );
+}
+
+function lightsOf(order: Record<string, unknown>): Record<string, Light> {
+  const all: Record<string, Light> = {};
+  const of = (m: string) => (all[m] ??= { resin: '', time: '', bottom: '' });
+  const split = (text: string) => [text.slice(0, text.indexOf('=')), text.slice(text.indexOf('=') + 1)];
+  for (const [m, resin] of texts(order.resin).map(split)) of(m).resin = resin;
+  for (const [m, times] of texts(order.exposure).map(split)) [of(m).time, of(m).bottom] = [...times.split(',').map(withoutSeconds), ''];
+  return all;
+}
+
+/// The form that gives this order.
+export function setOrder(order: Record<string, unknown>) {
+  const other = ['printer', 'copies', 'turn', 'scale', 'at', 'support', 'support-paint', 'layer_um'];
+  const given = Object.entries(order).filter(([k, v]) => !other.includes(k) && (typeof v === 'string' || typeof v === 'number'));
+  batch(() => {
+    printer.value = String(order.printer ?? 'tower');
+    copies.value = Number(order.copies ?? 1);
+    fields.value = { ...(order.layer_um ? { layer: String(order.layer_um) } : {}), ...Object.fromEntries(given.map(([k, v]) => [k, bare(k, String(v))])) };
+    turn.value = (order.turn as typeof turn.value | undefined) ?? [0, 0, 0];
+    scale.value = Number(order.scale ?? 1);
+    shift.value = (order.at as typeof shift.value | undefined) ?? [0, 0];
+    plainPixels.value = order['no-anti-alias'] === true;
+    bonds.value = bondsOf(order);
+    lights.value = lightsOf(order);
+    support.value = String(order.support ?? '');
+    strokes.value = order['support-paint'] ? [{ touches: readPaint(String(order['support-paint'])) }] : [];
+  });
+}
+
+/// Likewise, but only over a form that nobody has touched.
+export function adoptOrder(order: Record<string, unknown>) {
+  if (formText() !== given) return;
+  setOrder(order);
+  given = formText();
+}
 
 export function orderJson(materials: string[]) {
   const order: Record<string, unknown> = { printer: printer.value, copies: copies.value };
@@ -90,6 +151,12 @@ export function orderJson(materials: string[]) {
   for (const kind of ['overlap', 'interlock'] as const)
     order[kind] = bonds.value.filter((b) => b.kind === kind).map((b) => `${b.a}+${b.b}=${b.pixels},${b.layers}`);
   return order;
+}
+
+/// A value that has been changed is no longer wrong, until the studio says so again.
+function forget() {
+  sliceError.value = '';
+  orderProblem.value = '';
 }
 
 function Problem({ option }: { option: string }) {
@@ -118,7 +185,7 @@ function Field({ option, label, hint, title }: { option: string; label: string; 
             data-testid={`option-${option}`}
             onInput={(e) => {
               fields.value = { ...fields.value, [option]: e.currentTarget.value };
-              if (bad) sliceError.value = '';
+              if (bad) forget();
             }}
           />
           <span class="unit">{option === 'support-angle' ? '°' : unit}</span>
@@ -156,7 +223,7 @@ function Materials({ materials }: { materials: string[] }) {
   const resinOf = (m: string) => scene.value?.head.materials.find((x) => x.name === m)?.resin || m;
   const set = (m: string, change: Partial<Light>) => {
     lights.value = { ...lights.value, [m]: { ...(lights.value[m] ?? { resin: '', time: '', bottom: '' }), ...change } };
-    sliceError.value = '';
+    forget();
   };
   return (
     <Group name="Resins, colours and exposure" options={['exposure', 'resin']} given={Object.values(lights.value).some((l) => l.resin || l.time)}>
@@ -202,7 +269,7 @@ function Materials({ materials }: { materials: string[] }) {
 function Bonds({ materials }: { materials: string[] }) {
   const change = (k: number, by: Partial<Bond>) => {
     bonds.value = bonds.value.map((b, i) => (i === k ? { ...b, ...by } : b));
-    sliceError.value = '';
+    forget();
   };
   const pick = (value: string, set: (v: string) => void, label: string) => (
     <select value={value} aria-label={label} onChange={(e) => set(e.currentTarget.value)}>
@@ -387,10 +454,12 @@ export function SliceForm() {
   const busy = slicing.value;
   const materials = scene.value?.head.materials.map((m) => m.name) ?? [];
   const placed = ['layer', 'least-layer', 'least-feature', 'threshold', 'turn', 'scale', 'at', 'copies', 'spacing', 'hollow', 'drain', 'overlap', 'interlock', 'resin', 'exposure', 'support', 'support-angle', 'support-spacing', 'support-tip', 'support-pillar', 'support-paint', 'lift', 'raft'];
-  const elsewhere = sliceError.value && !(wrong.value && placed.includes(wrong.value.option));
+  const elsewhere = problem.value && !(wrong.value && placed.includes(wrong.value.option));
+  useEstimate(JSON.stringify(orderJson(materials)), documentState.value.digest, scene.value !== null && mayDrive.value && !busy);
   return (
     <form
       class="slice-form"
+      id="slice-form"
       onKeyDown={(e) => {
         // Enter confirms a value, as in any other field of the page; only the button slices.
         if (e.key !== 'Enter' || !(e.target instanceof HTMLInputElement)) return;
@@ -399,7 +468,7 @@ export function SliceForm() {
       }}
       onSubmit={(e) => {
         e.preventDefault();
-        sliceError.value = '';
+        forget();
         // Errors in the order itself are shown at their field too.
         void post('/api/job/slice', wholeOrder(materials), (text) => (sliceError.value = text));
       }}
@@ -437,8 +506,8 @@ export function SliceForm() {
         </div>
       )}
       {elsewhere && (
-        <p class="problems" role="alert">
-          {sliceError.value}
+        <p class="problems" role="alert" data-testid="slice-problem">
+          {problem.value}
         </p>
       )}
       {documentState.value.unsaved && <p class="quiet">The robot is sliced with its unsaved changes.</p>}

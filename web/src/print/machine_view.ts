@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { placeLabels } from '../labels';
+import { fitPoints } from '../simulate/fit';
 import { orbitKeys, turnAround } from '../orbit_keys';
 import type { Part } from './part';
 import { PartMesh } from './part_mesh';
@@ -26,6 +27,8 @@ export class MachineView {
   private readonly light: THREE.Mesh;
   private readonly spray: THREE.Points;
   private readonly resize: ResizeObserver;
+  private fitted = new THREE.Box3(); // what of the machine the camera has in view
+  private moved = false; // somebody has turned the view: it stays
   private near = false; // shows the part alone, not the whole machine
   private seen = new THREE.Box3(); // bounds of the part when the camera was last positioned for it
   private last: Now | null = null;
@@ -38,8 +41,9 @@ export class MachineView {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.draw());
+    this.controls.addEventListener('start', () => (this.moved = true));
     canvas.addEventListener('keydown', (e) =>
-      orbitKeys(e, (around, up, nearer) => turnAround(this.camera, this.controls, around, up, nearer), () => this.lookAt(this.near)),
+      orbitKeys(e, (around, up, nearer) => ((this.moved = true), turnAround(this.camera, this.controls, around, up, nearer)), () => this.lookAt(this.near)),
     );
     this.world.add(new THREE.HemisphereLight(0xffffff, 0x8a8f98, 1.7));
     const key = new THREE.DirectionalLight(0xffffff, 1.8);
@@ -83,7 +87,6 @@ export class MachineView {
     this.floor.position.z = -h - 40 - this.depth();
     this.world.add(this.floor);
     this.nameParts();
-    this.look();
     this.resize = new ResizeObserver(() => {
       const box = canvas.parentElement!.getBoundingClientRect();
       if (!box.width) return;
@@ -91,6 +94,8 @@ export class MachineView {
       this.renderer.setSize(box.width, box.height, false);
       this.camera.aspect = box.width / box.height;
       this.camera.updateProjectionMatrix();
+      this.fitted.makeEmpty();
+      this.fit();
       this.draw();
     });
     this.resize.observe(canvas.parentElement!);
@@ -102,8 +107,10 @@ export class MachineView {
     this.shown = '';
     this.seen.makeEmpty();
     if (this.last) this.show(this.last);
+    this.moved = false;
+    this.fitted.makeEmpty();
     if (near) this.lookAtPart();
-    else this.look();
+    else this.fit();
     this.draw();
   }
 
@@ -119,16 +126,30 @@ export class MachineView {
     this.controls.update();
   }
 
-  private look() {
-    const w = this.machine.platform.width * 1.15;
-    const reach = this.machine.store === 'tower' ? this.machine.carriage.tower - this.machine.carriage.print : 0;
-    const size = Math.abs(reach) + 1.6 * w;
-    // The whole tower is in view: its vats hang below the current one.
-    const deep = this.depth();
-    const far = Math.max(2.1 * size, 1.15 * size + 1.5 * deep);
-    this.controls.target.set(0.3 * reach, 0, 0.1 * size - 0.42 * deep);
-    this.camera.position.set(0.3 * reach - 0.4 * size, -far, 0.1 * size - 0.42 * deep + 0.5 * far);
+  /// Moves the camera back until platform and vats are in view; again whenever one of them has left the view.
+  private fit() {
+    if (this.near || this.moved) return;
+    const box = this.bounds();
+    if (!this.fitted.isEmpty() && this.fitted.containsBox(box)) return;
+    const { min, max } = this.fitted.union(box);
+    const corners = [min.x, max.x].flatMap((x) => [min.y, max.y].flatMap((y) => [min.z, max.z].flatMap((z) => [x, y, z])));
+    const forward = new THREE.Vector3(0.18, 1, -0.5).normalize();
+    const right = new THREE.Vector3().crossVectors(forward, this.camera.up).normalize();
+    const up = new THREE.Vector3().crossVectors(right, forward);
+    const tan = 0.94 * Math.tan((this.camera.fov * Math.PI) / 360); // with a margin
+    const place = fitPoints(corners, right.toArray(), up.toArray(), forward.toArray(), tan * this.camera.aspect, tan);
+    this.controls.target.set(...place.target);
+    this.camera.position.set(...place.camera);
     this.controls.update();
+  }
+
+  /// Of platform and vats as they stand, with room for the platform's name.
+  private bounds() {
+    this.world.updateMatrixWorld(true);
+    const box = new THREE.Box3();
+    for (const object of [this.plate, this.cleaning, ...this.vats.values()]) if (object.visible) box.expandByObject(object);
+    box.max.z += 30;
+    return box;
   }
 
   /// Extent of the tower below the current vat, mm.
@@ -226,6 +247,7 @@ export class MachineView {
     const z = at('platform') - Math.max(this.machine.wall, 20) * 0.62;
     // The part alone stays in place, and so does the camera.
     this.platform.position.z = this.near ? 0 : z;
+    this.fit();
     this.showLight(now);
     this.spray.visible = now.machine.pump;
     this.draw();

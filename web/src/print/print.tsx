@@ -3,15 +3,17 @@ import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { counted } from '../counted';
 import { Icon } from '../icons';
+import { Lost } from '../lost';
 import { NumberField } from '../number_field';
-import { post } from '../store';
+import { job, post } from '../store';
 import { clock } from '../make/plan';
+import { changes, staleText } from '../make/stale';
 import { orbitHelp } from '../orbit_keys';
 import { theme } from '../theme';
 import { MachineView } from './machine_view';
 import { followPart, part } from './part';
 import { Safety } from './safety';
-import { busy, events, flags, host, info, known, maySteer, now, verdict } from './state';
+import { busy, events, flags, host, info, isCancelled, known, maySteer, now, verdict } from './state';
 import { enlarged } from './enlarged';
 import { stopOf } from './stopped';
 import { Notifications } from './tell';
@@ -63,6 +65,14 @@ function Known() {
   );
 }
 
+/// Why the job that would be printed is perhaps not the one that is meant; "": no reason.
+function oldJob(): string {
+  const i = info.value!;
+  const j = job.value;
+  if (j && j.key !== i.key && !(j.saved && j.file === i.file)) return 'The job at hand is another one: this machine prints the job with which it was connected. To print the other one, disconnect and connect again.';
+  return changes.value.length > 0 ? `${staleText(changes.value)} Slice again, or confirm that it is meant.` : '';
+}
+
 function Checklist() {
   const i = info.value!;
   const items: [string, string][] = [
@@ -71,6 +81,8 @@ function Checklist() {
     ['path', 'carriage, tower and platform are free to move'],
     ['solution', 'the cleaning solution is full, the drain is clear'],
   ];
+  const old = oldJob();
+  if (old) items.unshift([old, old]); // another change is to be confirmed again
   const open = items.filter(([key]) => !ticks.value[key]).length;
   const doorOpen = now.value!.machine.door === 'open';
   return (
@@ -80,7 +92,7 @@ function Checklist() {
       <ul class="checklist">
         {items.map(([key, text]) => (
           <li key={key}>
-            <label>
+            <label class={key === old ? 'old-job' : ''} data-testid={`check-${key === old ? 'old' : key}`}>
               <input type="checkbox" checked={ticks.value[key] ?? false} disabled={!maySteer.value} onChange={(e) => (ticks.value = { ...ticks.value, [key]: e.currentTarget.checked })} />
               <span>{text}</span>
             </label>
@@ -205,19 +217,8 @@ function Light() {
   );
 }
 
-/// Connection lost: what is shown may be outdated.
-function Lost() {
-  return (
-    <div class="prompt bad" role="alert" data-testid="lost">
-      <Icon name="warn" />
-      <span>
-        <b>Connection lost, reconnecting…</b>
-        This page has lost its connection to the studio, so the state of the machine is unknown. A print continues without this page as long as the studio runs; if the studio has ended, the light
-        is off and the machine stands still. To stop the machine now, use its own switch.
-      </span>
-    </div>
-  );
-}
+const lostText =
+  'so the state of the machine is unknown. A print continues without this page as long as the studio runs; if the studio has ended, the light is off and the machine stands still. To stop the machine now, use its own switch.';
 
 const refillOf = (prompt: string | null) => info.value!.refills.find((r) => r.text === prompt);
 
@@ -340,15 +341,19 @@ function Verdict() {
   );
 }
 
+/// The last print was cancelled for good.
+const wasCancelled = () => known.value && isCancelled(now.value!);
+
 function Headline() {
   const n = now.value!;
   const stop = known.value ? stopOf() : null;
   const printed = n.progress.finished && !busy.value;
+  const cancelled = !stop && wasCancelled();
   return (
     <>
       <div class="row">
         <b class="state" data-testid="print-state">
-          {!known.value ? 'Unknown' : stop ? stop.title : printed ? 'Printed' : n.state.text}
+          {!known.value ? 'Unknown' : stop ? stop.title : printed ? 'Printed' : cancelled ? `Cancelled at layer ${n.progress.layer! + 1} of ${n.job.layers}` : n.state.text}
         </b>
         <span class="quiet">{n.job.file.name}</span>
       </div>
@@ -360,6 +365,7 @@ function Headline() {
       ) : (
         known.value && n.state.message && <p class={n.progress.failed || flags.value.error ? 'problems' : 'quiet'}>{n.state.message}</p>
       )}
+      {cancelled && <p data-testid="cancelled">Remove the part from the platform.</p>}
       <Verdict />
     </>
   );
@@ -389,7 +395,7 @@ function Progress() {
           <span>of {counted(n.job.layers, 'layer')}</span>
         </div>
         <div>
-          <b>{told(clock(p.printTimeLeft ?? 0))}</b>
+          <b data-testid="time-left">{told(wasCancelled() ? '–' : clock(p.printTimeLeft ?? 0))}</b>
           <span>left</span>
         </div>
         <div>
@@ -614,7 +620,7 @@ export function Print() {
           <b>{i.machine.name}</b>
           <span class="quiet">{i.twin ? 'virtual printer' : i.device}</span>
         </div>
-        {!known.value && <Lost />}
+        {!known.value && <Lost text={lostText} />}
         <Progress />
         <Steering />
         {!busy.value && (now.value.job.canResume ? <GoOn /> : <Checklist />)}

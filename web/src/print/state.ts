@@ -59,6 +59,7 @@ export interface PrintInfo {
   materials: { name: string; resin: string; exposure_s: number; colour: string }[];
   taken: number; // distinguishes this machine's pictures from those of an earlier one
   job: string;
+  key: string; // of the job as it was when the machine was connected
   seconds: number;
   /** What of the job could not be verified. */
   warnings: string[];
@@ -71,6 +72,12 @@ export const now = signal<Now | null>(null);
 export const events = signal<Now['events']>([]);
 export const flags = computed(() => now.value?.state.flags ?? {});
 export const busy = computed(() => ['printing', 'pausing', 'paused', 'cancelling'].some((f) => flags.value[f]));
+
+/// True after a print that was begun, is neither complete nor failed, and cannot be resumed.
+export function isCancelled({ state: { flags: f }, job: j, progress: p }: Now): boolean {
+  const working = ['printing', 'pausing', 'paused', 'cancelling', 'error', 'closedOrError'].some((flag) => f[flag]);
+  return !working && p.layer !== null && !p.finished && !p.failed && !j.canResume;
+}
 
 /// Verdict on a complete print; null: unknown.
 export const verdict = signal<{ passed: boolean; reasons: string[] } | null>(null);

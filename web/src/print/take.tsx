@@ -3,11 +3,14 @@ import { useEffect, useState } from 'preact/hooks';
 import { counted } from '../counted';
 import { Icon } from '../icons';
 import { api, job, mayDrive, post, say, section } from '../store';
+import { jobFileName } from '../make/file_name';
 import { clock } from '../make/plan';
+import { changes, staleText } from '../make/stale';
 import { Wizards } from '../wizard/list';
 import { Queue } from './queue';
 
 const speeds = [1, 10, 60, 300, 3000];
+const usualSpeed = 60;
 
 interface Ports {
   ports: { device: string; name: string }[];
@@ -33,7 +36,7 @@ interface Journal extends JournalLine {
 }
 
 function TakeTwin() {
-  const [speed, setSpeed] = useState(60);
+  const [speed, setSpeed] = useState(usualSpeed);
   return (
     <section class="card">
       <h3>Virtual printer</h3>
@@ -60,7 +63,7 @@ function TakeTwin() {
 /// A job that was only sliced has no file yet.
 function SaveFirst() {
   const j = job.value!;
-  const [name, setName] = useState(`${j.manifest.name.replace(/[^\w-]+/g, '_')}.zip`);
+  const [name, setName] = useState(jobFileName(j.manifest.name));
   return (
     <form
       class="row left wrap"
@@ -225,6 +228,14 @@ function endOf(name: string): string {
   return m ? new Date(`${m[1]}T${m[2]}:${m[3]}:${m[4]}Z`).toLocaleString() : '';
 }
 
+/// Opens the job of an interrupted print; a virtual printer is connected at once, so that Resume is offered.
+async function openToResume(line: JournalLine) {
+  if (!(await post('/api/open', { name: line.file }))) return;
+  section.value = 'print';
+  if (line.virtual) await post('/api/print/twin', { speed: usualSpeed });
+  else say('Connect the printer; then the print can be resumed.');
+}
+
 function Journals() {
   const [lines, setLines] = useState<JournalLine[]>([]);
   const [open, setOpen] = useState('');
@@ -251,6 +262,11 @@ function Journals() {
               </span>
               <span class="quiet">{l.error ?? `${l.state}${l.layer !== undefined && l.layer >= 0 ? `, last layer ${l.layer + 1}` : ''}`}</span>
             </button>
+            {l.state === 'interrupted' && (
+              <button class="small" disabled={!mayDrive.value} data-testid="open-and-resume" onClick={() => void openToResume(l)}>
+                Open and resume
+              </button>
+            )}
           </li>
         ))}
       </ul>
@@ -270,6 +286,18 @@ export function TakeMachine() {
             <b>{j.manifest.name}</b>, {counted(j.manifest.layers.length, 'layer')}, for {j.printer}
             {j.plan && `: ${clock(j.plan.seconds.total)}, ${counted(j.plan.swaps, 'swap')}`}.
           </p>
+          {changes.value.length > 0 && (
+            <div class="prompt" role="status" data-testid="stale-job">
+              <Icon name="warn" />
+              <span>
+                {staleText(changes.value)}{' '}
+                <a href="#make" onClick={() => (section.value = 'make')}>
+                  Slice again
+                </a>{' '}
+                under Prepare.
+              </span>
+            </div>
+          )}
           <div class="cards">
             <TakeTwin />
             <TakePort key={j.revision} />

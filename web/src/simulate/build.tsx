@@ -4,7 +4,7 @@ import { computed, effect, signal } from '@preact/signals';
 import { counted } from '../counted';
 import { Icon } from '../icons';
 import { NumberField } from '../number_field';
-import { api, documentState, mayDrive, post, scene } from '../store';
+import { api, documentState, mayDrive, post, problems, scene } from '../store';
 import { text, theirs } from './editor';
 import { PickGeometry } from './geometry';
 import { theView } from './the_view';
@@ -274,6 +274,19 @@ export function Build() {
         <span class="grow" />
         <PickGeometry label="Add geometry…" testId="build-geometry" />
       </div>
+      {problems.value.length > 0 && (
+        <div class="problems" role="alert" data-testid="build-problems">
+          <p>With the last change the file has an error, and the robot is still the one before:</p>
+          <ul>
+            {problems.value.map((p) => (
+              <li>{p.text}</li>
+            ))}
+          </ul>
+          <button class="small" disabled={!documentState.value.undo || !mayDrive.value} onClick={() => post('/api/robot/undo')} data-testid="build-undo-problem">
+            <Icon name="undo" /> Undo the change
+          </button>
+        </div>
+      )}
       <Placing />
       <Parameters />
       <BodyMaterials />

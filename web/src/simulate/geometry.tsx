@@ -3,6 +3,7 @@
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { unlessLost } from '../discard';
+import { useDialog } from '../dismiss';
 import { api, documentState, mayDrive, page, post, say, scene } from '../store';
 import { freeName, library } from './build';
 import { theirs } from './editor';
@@ -72,7 +73,7 @@ export function takeFiles(files: ArrayLike<File>) {
   unlessLost(`Opening ${file.name}`, () => {
     void file
       .text()
-      .then((text) => api('/api/robot/new', { method: 'POST', headers: { 'Content-Type': 'text/plain' }, body: text }))
+      .then((text) => api(`/api/robot/new?name=${encodeURIComponent(file.name)}`, { method: 'POST', headers: { 'Content-Type': 'text/plain' }, body: text }))
       .catch((e: Error) => say(e.message));
   });
 }
@@ -310,6 +311,7 @@ export function GeometryDrop() {
   }, []);
   const close = () => (state.value = null);
   const now = state.value;
+  useDialog(now !== null);
   return (
     <>
       {over && !now && (

@@ -5,7 +5,7 @@ import { api, frame, mayDrive, say, scene } from '../store';
 import { driveTo, units } from './actuators';
 import { text } from './editor';
 import { insertKeys, programKeys } from './recorder';
-import { begin, result, Search, type WaypointFound } from './search';
+import { begin, resultOf, Search, type WaypointFound } from './search';
 
 type Point = [number, number, number];
 
@@ -176,9 +176,9 @@ function Waypoint({ at }: { at: WaypointFound }) {
 }
 
 function Found() {
-  const { kind, found, revision } = result.value;
-  if (kind !== 'goal' || revision !== scene.value?.head.revision) return null;
-  const waypoints = (found as { waypoints: WaypointFound[] }).waypoints;
+  const last = resultOf('goal');
+  if (!last || last.revision !== scene.value?.head.revision) return null;
+  const waypoints = (last.found as { waypoints: WaypointFound[] }).waypoints;
   return (
     <>
       <ol class="waypoints" data-testid="goal-found">

@@ -1,9 +1,11 @@
 // Identifies parameters of the robot from a table of measurements.
 import { effect, signal } from '@preact/signals';
+import { counted } from '../counted';
 import { enlarged } from '../print/enlarged';
 import { api, mayDrive, say, scene } from '../store';
 import { apply, pinNow, text } from './editor';
-import { begin, type IdentifyFound, result, resultNumber, Search } from './search';
+import { begin, type IdentifyFound, resultNumber, resultOf, Search } from './search';
+import { judgeRows } from './tracks';
 import { assign } from './toml_edit';
 
 interface Unknown {
@@ -52,6 +54,7 @@ function Unknowns() {
 
 function Table() {
   const head = scene.value!.head;
+  const held = table.value ? judgeRows(table.value.csv) : 0;
   const columns = [...head.markers.flatMap((m) => [`${m.name}_x_mm`, `${m.name}_z_mm`]), ...head.actuators.map((a) => (a.type === 'cable' ? `${a.name}_tension_N` : `${a.name}_pressure_kPa`))];
   return (
     <>
@@ -74,7 +77,7 @@ function Table() {
       <label class="row">
         Held-out rows
         <select value={judge.value} onChange={(e) => (judge.value = e.currentTarget.value)} data-testid="judge">
-          <option value="">none</option>
+          <option value="">{held > 0 ? `as in the file (${counted(held, 'row')})` : 'none'}</option>
           <option value="every-second">every second row</option>
           <option value="second-half">the second half</option>
         </select>
@@ -124,8 +127,9 @@ function FoundPlot({ address }: { address: string }) {
 }
 
 function Found() {
-  if (result.value.kind !== 'identify') return null;
-  const found = result.value.found as IdentifyFound;
+  const last = resultOf('identify');
+  if (!last) return null;
+  const found = last.found as IdentifyFound;
   return (
     <div data-testid="identify-found">
       <table class="readings">

@@ -86,7 +86,7 @@ export function Legend() {
   return (
     <div class="legend" ref={box} data-testid="legend">
       <button class="field-legend" aria-expanded={open} aria-label={`Legend of ${f.label}: colours and range`} onClick={() => setOpen(!open)} data-testid="legend-button">
-        <span class="bar" style={{ background: gradientCss(look.map.value, look.bands.value) }} />
+        <span class="bar" style={{ background: gradientCss(look.map.value, look.bands.value, 'var(--along, to top)') }} />
         <span class="ticks">
           {[1, 0.75, 0.5, 0.25, 0].map((t) => (
             <span key={t}>{number(low + t * (high - low))}</span>

@@ -7,7 +7,7 @@ import { counted } from '../counted';
 import { Icon } from '../icons';
 import { say, scene } from '../store';
 import { cssColour, theme } from '../theme';
-import { keepRun, plottedVersion, readTable, runs, tracks, valuesOf, type Channel } from './tracks';
+import { axisRange, keepRun, plottedVersion, readTable, runs, tracks, valuesOf, type Channel } from './tracks';
 
 /// Powers of ten, thinned out: grid lines of a logarithmic axis over many decades would merge into a grey block.
 function decades(least: number, most: number): number[] {
@@ -156,7 +156,7 @@ function Plot({ shown, onClose }: { shown: Shown; onClose?: () => void }) {
       padding: [8, 8, 0, 0],
       cursor: { points: { size: 7 }, drag: { x: false, y: false } },
       legend: { show: false },
-      scales: { x: { time: false }, y: shown.log ? { distr: 3 } : {} },
+      scales: { x: { time: false }, y: shown.log ? { distr: 3 } : { range: (_: uPlot, least: number, most: number) => uPlot.rangeNum(...axisRange(least, most), 0.1, true) } },
       axes: [
         { ...axis, size: 24, values: (_, v) => v.map((s) => `${+s.toPrecision(4)}`) },
         { ...axis, size: 44, ...(shown.log && { splits: (_: uPlot, __: number, least: number, most: number) => decades(least, most), filter: (_: uPlot, lines: number[]) => lines }), values: (_, v) => v.map((y) => (y == null ? '' : shown.log ? y.toExponential(0) : `${+y.toPrecision(4)}`)) },

@@ -3,6 +3,7 @@ import { signal } from '@preact/signals';
 import { scene } from '../store';
 import { reading } from './actuators';
 import { apply } from './editor';
+import { replaceEntries } from './toml_edit';
 
 export interface Key {
   time: number;
@@ -73,10 +74,9 @@ export function programKeys(keys: Key[]): string {
     .join('\n\n');
 }
 
-/// The file with its keys replaced by these.
+/// Puts these in the place of the keys of the file.
 export function insertKeys(file: string, keys: string): Promise<boolean> {
-  const without = file.replace(/\n*\[\[program\.key\]\][^[]*/g, '\n');
-  return apply(`${without.trimEnd()}\n\n${keys}\n`);
+  return apply(replaceEntries(file, 'program.key', keys));
 }
 
 /// Uses for each actuator only the kind that drove it last, and drops collinear keys.

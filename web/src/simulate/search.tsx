@@ -32,6 +32,8 @@ interface Result {
 export const searching = signal<{ kind: Kind; stage: string; fraction: number } | null>(null);
 export const refused = signal<{ kind: Kind; why: string } | null>(null);
 export const result = signal<Result>({});
+/// The last result, if it is of this kind and no later search of the kind was refused or has failed.
+export const resultOf = (kind: Kind): Result | null => (result.value.kind === kind && refused.value?.kind !== kind ? result.value : null);
 /// Counts results, so that pictures of different results have different addresses.
 export const resultNumber = signal(0);
 

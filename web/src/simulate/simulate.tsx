@@ -1,9 +1,10 @@
 // The interactive robot: 3D view, actuators, plots, file.
-import { effect, signal } from '@preact/signals';
+import { computed, effect, signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { counted } from '../counted';
 import { useDismiss } from '../dismiss';
 import { Icon } from '../icons';
+import { Lost } from '../lost';
 import { orbitHelp, orbitKeys } from '../orbit_keys';
 import {
   building,
@@ -11,7 +12,9 @@ import {
   frame,
   frameRate,
   latency,
+  lines,
   mayDrive,
+  online,
   post,
   problems,
   isRough,
@@ -31,7 +34,7 @@ import type { Accuracy } from '../types';
 import { Actuators } from './actuators';
 import { CanvasBeside, Compare, Compared, comparing, ranges, tellRange } from './beside';
 import { Build, draft, placed, takePlace } from './build';
-import { Editor, Materials, pinNow, text } from './editor';
+import { Editor, Materials, pinNow, text, theirs } from './editor';
 import { film, filming, gif, stopFilming } from './film';
 import { FirstPicture } from './first_picture';
 import { Goal, path } from './goal';
@@ -46,6 +49,7 @@ import { saveBlob as save } from './save';
 import { Measure, presetKey, ScaleBar, SectionHandle, takePick, ViewCube, ViewMenu } from './stage_tools';
 import { Sweep } from './sweep';
 import { drawn, theView } from './the_view';
+import { hasProgramKeys } from './toml_edit';
 import { RobotView } from './view';
 import * as look from './view_state';
 import { reach, Workspace } from './workspace';
@@ -251,6 +255,8 @@ function toRest() {
   clearTracks();
 }
 
+const inSeconds = computed(() => (scene.value?.head.program.timed ?? false) || hasProgramKeys(theirs.value));
+
 function Timeline() {
   tracksVersion.value;
   const head = scene.value?.head;
@@ -272,7 +278,7 @@ function Timeline() {
       <label class="track">
         <span>Program</span>
         <input type="range" data-testid="program" min={0} max={duration} step={duration / 1000} value={time} disabled={!mayDrive.value} style={{ '--at': `${(100 * time) / duration}%` }} class={following.value ? '' : 'idle'} onInput={(e) => follow(Number(e.currentTarget.value))} />
-        <output>{duration === 1 ? `${Math.round(100 * time)} %` : `${time.toFixed(2)} s`}</output>
+        <output>{duration === 1 && !inSeconds.value ? `${Math.round(100 * time)} %` : `${time.toFixed(2)} s`}</output>
       </label>
       {motion.value ? (
         <MotionTrack />
@@ -283,7 +289,7 @@ function Timeline() {
           const k = Number(e.currentTarget.value);
           look.shownFrame.value = k >= frames.length - 1 ? null : frames[k];
         }} />
-        <output>{look.shownFrame.value ? `${shown + 1} of ${frames.length}` : 'live'}</output>
+        <output data-testid="replay-at">{look.shownFrame.value ? `${shown + 1} of ${frames.length}` : online.value ? 'live' : 'last'}</output>
       </label>
       )}
       <RunMotion />
@@ -387,6 +393,12 @@ function Status() {
       </div>
     );
   if (!head || !s) return <div class="status" data-testid="status" data-state="none" />;
+  if (!online.value)
+    return (
+      <div class="status" role="status" data-testid="status" data-state="unknown" data-lamp="unknown">
+        <span class="lamp unknown" /> last known state
+      </div>
+    );
   const led = head.lead?.settled ?? false;
   const state = look.shownFrame.value ? 'replay' : head.stuck ? 'stuck' : head.arrived ? 'arrived' : head.refining ? 'refining' : led ? 'led' : 'solving';
   const warning = head.warnings.join('. ');
@@ -609,7 +621,7 @@ export function Simulate() {
         <ViewCube />
         <Measure />
         <div class="stage-foot">
-          <Hints />
+          {online.value || lines.value === 0 ? <Hints /> : <Lost text="so the robot is shown as it was last known." />}
           <ScaleBar />
           <Status />
         </div>

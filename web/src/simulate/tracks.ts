@@ -180,3 +180,17 @@ export function readTable(name: string, text: string): Run | string {
   }
   return columns[head[0]].length ? { name, columns } : `${name}: there are no rows`;
 }
+
+/// Rows that a table holds out itself: "judge" in its column use.
+export function judgeRows(csv: string): number {
+  const rows = csv.split(/\r?\n/).map((row) => row.split(',').map((cell) => cell.trim().replace(/^"(.*)"$/, '$1')));
+  const use = rows[0].indexOf('use');
+  return use < 0 ? 0 : rows.filter((row) => row[use] === 'judge').length;
+}
+
+/// The range of an axis: noise of the solver is no curve, and gets a range of one unit.
+export function axisRange(low: number, high: number): [number, number] {
+  const noise = 1e-6;
+  const middle = Math.round((low + high) / 2 / noise) * noise;
+  return high - low >= noise ? [low, high] : [middle - 0.5, middle + 0.5];
+}

@@ -5,7 +5,7 @@ import { NumberField } from '../number_field';
 import { mayDrive, scene } from '../store';
 import { inputs, Ranges } from './goal';
 import { saveBlob } from './save';
-import { begin, result, Search } from './search';
+import { begin, resultOf, Search } from './search';
 
 interface Reach {
   name: string;
@@ -23,7 +23,10 @@ const side = signal(7);
 const between = signal(20);
 const shown = signal<string | null>(null); // the displayed marker; null: the first
 
-const found = computed(() => (result.value.kind === 'workspace' && result.value.revision === scene.value?.head.revision ? (result.value.found as WorkspaceFound) : null));
+const found = computed(() => {
+  const last = resultOf('workspace');
+  return last?.revision === scene.value?.head.revision ? ((last?.found as WorkspaceFound | undefined) ?? null) : null;
+});
 /// What the view draws; null: nothing.
 export const reach = computed<Reach | null>(() => {
   const list = found.value?.reach ?? [];

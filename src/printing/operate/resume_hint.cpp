@@ -1,0 +1,66 @@
+#include "printing/operate/resume_hint.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "base/core/files.hpp"
+#include "printing/host/journal_facts.hpp"
+
+namespace pliant::operate {
+namespace {
+
+/// In single quotes unless it is plain.
+std::string shell_word(const std::string& text) {
+    const auto is_plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               std::string_view("_-./:,+=@%").find(c) != std::string_view::npos;
+    };
+    if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain)) return text;
+    std::string word = "'";
+    for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return word + "'";
+}
+
+}  // namespace
+
+std::string resume_command(const PrintCall& call) {
+    std::string line = "pliant print " + shell_word(call.job);
+    const auto add = [&](const char* option, const std::string& value) {
+        if (!value.empty()) line += fmt::format(" {} {}", option, shell_word(value));
+    };
+    add("--port", call.port.device);
+    add("--projector", call.port.projector);
+    add("--journal", call.journal);
+    add("--emergency-line", call.port.emergency_line);
+    add("--after-layer", call.after_layer);
+    add("--report", call.report);
+    if (call.port.speed != 1) add("--speed", fmt::format("{}", call.port.speed));
+    add("--clock", call.port.clock_file.string());
+    return line + " --resume";
+}
+
+std::optional<long> interrupted_at(const std::filesystem::path& journal, const std::string& digest,
+                                   const std::string& printer) {
+    const Result<std::string> text = read_file(journal);
+    if (!text) return {};
+    const auto parsed = host::parse_journal(*text, journal.string());
+    if (!parsed || parsed->records.empty()) return {};
+    const auto facts = host::facts_of(parsed->records);
+    if (!facts || !host::is_interrupted(*facts)) return {};
+    if (facts->digest != digest || facts->printer != printer) return {};
+    return parsed->records.back().number;
+}
+
+Status expect_journal(const std::filesystem::path& journal, const std::string& job) {
+    std::error_code none;
+    if (std::filesystem::exists(journal, none)) return {};
+    return input_error(
+        "--resume: there is no journal {}; name the one of the interrupted print with --journal FILE. Its part may "
+        "still "
+        "hang on the platform: look before you print {} from its first layer, without --resume",
+        journal.string(), job);
+}
+
+}  // namespace pliant::operate
