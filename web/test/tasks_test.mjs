@@ -119,6 +119,9 @@ const tasks = {
     await page.getByTestId('wizards').waitFor();
   },
   'print it on the virtual printer': async (page, click) => {
+    // The wizard has left its printer in the form; the job is for the other one.
+    await page.getByTestId('section-make').click();
+    await page.getByTestId('printer').selectOption('tower');
     await click(page.getByTestId('section-print'));
     await click(page.getByTestId('take-twin'));
     await page.waitForSelector('[data-testid=print-state]');
