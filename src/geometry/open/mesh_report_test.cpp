@@ -28,11 +28,11 @@ TetMesh one_tet(const std::vector<Vec3>& points) {
     return mesh;
 }
 
-/// The description of a file with this content.
-std::string described(std::string_view bytes) {
+/// The description of a file with this content, lengths times `factor`.
+std::string described(std::string_view bytes, double factor = 1) {
     const pliant::test::Folder folder("mesh_report");
     REQUIRE(write_file(folder / "nameless", bytes));
-    const Result<std::string> text = describe_mesh_file(folder / "nameless");
+    const Result<std::string> text = describe_mesh_file(folder / "nameless", factor);
     return text ? *text : text.error().message;
 }
 
@@ -71,36 +71,61 @@ TEST_CASE("a file is described by its content, with notes on what was wrong") {
 
 namespace {
 
-/// A box as OFF, without its last `missing` triangles.
-std::string box_off(const Vec3& low, const Vec3& high, std::size_t missing, const std::string& more_points = "",
-                    const std::string& more_faces = "") {
-    constexpr std::array<std::string_view, 12> faces = {"0 2 1", "0 3 2", "4 5 6", "4 6 7", "0 1 5", "0 5 4",
-                                                        "1 2 6", "1 6 5", "2 3 7", "2 7 6", "3 0 4", "3 4 7"};
-    std::string text =
-        fmt::format("OFF\n{} {} 0\n", more_points.empty() ? 8 : 16, 12 - missing + (more_faces.empty() ? 0 : 12));
-    for (int k = 0; k < 8; ++k) {
-        const int x = (k + 1) / 2 % 2, y = k / 2 % 2, z = k / 4;
-        text += fmt::format("{} {} {}\n", x == 0 ? low.x : high.x, y == 0 ? low.y : high.y, z == 0 ? low.z : high.z);
+/// Boxes as OFF, without the last `missing` triangles.
+std::string boxes_off(const std::vector<Box3>& boxes, std::size_t missing = 0) {
+    constexpr std::array<std::array<int, 3>, 12> faces = {{{0, 2, 1},
+                                                           {0, 3, 2},
+                                                           {4, 5, 6},
+                                                           {4, 6, 7},
+                                                           {0, 1, 5},
+                                                           {0, 5, 4},
+                                                           {1, 2, 6},
+                                                           {1, 6, 5},
+                                                           {2, 3, 7},
+                                                           {2, 7, 6},
+                                                           {3, 0, 4},
+                                                           {3, 4, 7}}};
+    const std::size_t count = 12 * boxes.size() - missing;
+    std::string text = fmt::format("OFF\n{} {} 0\n", 8 * boxes.size(), count);
+    for (const Box3& box : boxes) {
+        for (int k = 0; k < 8; ++k)
+            text += fmt::format("{} {} {}\n", (k + 1) / 2 % 2 == 0 ? box.low.x : box.high.x,
+                                k / 2 % 2 == 0 ? box.low.y : box.high.y, k < 4 ? box.low.z : box.high.z);
     }
-    text += more_points;
-    for (std::size_t f = 0; f + missing < 12; ++f) text += fmt::format("3 {}\n", faces[f]);
-    return text + more_faces;
+    for (std::size_t f = 0; f < count; ++f) {
+        const int first = 8 * static_cast<int>(f / 12);
+        const auto& [a, b, c] = faces[f % 12];
+        text += fmt::format("3 {} {} {}\n", first + a, first + b, first + c);
+    }
+    return text;
+}
+
+bool has(const std::string& text, std::string_view words) {
+    return text.find(words) != std::string::npos;
 }
 
 }  // namespace
 
-TEST_CASE("a surface that is open, flat or cuts itself has no volume, or a doubtful one") {
-    CHECK(
-        described(box_off({0, 0, 0}, {10, 8, 4}, 0)).find("surface, 8 points, 12 triangles, volume 320, 10 x 8 x 4") ==
-        0);
-    const std::string open = described(box_off({0, 0, 0}, {10, 8, 4}, 2));
-    CHECK(open.find("volume unknown") != std::string::npos);
-    CHECK(
-        open.find("note: the surface is open: 4 edges without a neighbour, and an area of about 32 is missing, of 272 "
-                  "in all; it has no volume") != std::string::npos);
-    const std::string flat = described(box_off({0, 0, 0}, {10, 8, 0}, 0));
-    CHECK(flat.find("volume unknown") != std::string::npos);
-    CHECK(flat.find("encloses no volume") != std::string::npos);
+TEST_CASE("a surface that is open or flat has no volume, and one that cuts itself a doubtful one") {
+    const Box3 box{{0, 0, 0}, {10, 8, 4}};
+    CHECK(described(boxes_off({box})).find("surface, 8 points, 12 triangles, volume 320, 10 x 8 x 4") == 0);
+    CHECK_FALSE(has(described(boxes_off({box})), "note: "));
+    const std::string open = described(boxes_off({box}, 2));
+    CHECK(has(open, "volume unknown"));
+    CHECK(has(open,
+              "note: the surface is open: 4 edges without a neighbour, and an area of about 32 is missing, of 272 "
+              "in all; it has no volume"));
+    const std::string flat = described(boxes_off({{{0, 0, 0}, {10, 8, 0}}}));
+    CHECK(has(flat, "volume unknown"));
+    CHECK(has(flat, "note: the surface is flat: it encloses no volume"));
+    CHECK(has(described(boxes_off({box, {{7, 5, 1}, {12, 12, 9}}})),
+              "note: the surface cuts itself: the volume counts what lies in two of its parts twice"));
+}
+
+TEST_CASE("a report in another unit") {
+    CHECK(has(described(boxes_off({{{0, 0, 0}, {10, 8, 4}}}), 25.4), "volume 5.24386e+06, 254 x 203.2 x 101.6"));
+    const TetMesh tet = one_tet({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+    CHECK(has(described(vtk_bytes(tet, Encoding::text), 10), "10 x 10 x 10"));
 }
 
 TEST_CASE("a file of unknown format is reported with all formats; a damaged one by its reader") {

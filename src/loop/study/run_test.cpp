@@ -146,7 +146,7 @@ TEST_CASE("a program that cannot serve rows is an error at once") {
     how.worker.program = "/bin/false";
     const auto account = run(plan, folder / "s", how);
     REQUIRE_FALSE(account);
-    CHECK(account.error().message == "/bin/false: ends before it runs a row (exit status 1)");
+    CHECK(account.error().message == "/bin/false: worker exited before its first row (exit status 1)");
 }
 
 TEST_CASE("a cancelled study resumes where it was, and leaves no processes") {

@@ -657,14 +657,14 @@ void Control::State_::show_switches() {
     });
 }
 
-/// Whether the loaded job was interrupted.
+/// Whether the loaded job was interrupted on this printer.
 void Control::State_::look_at_journal() {
     bool interrupted = false;
     std::error_code none;
     if (job && !job->journal.empty() && std::filesystem::exists(job->journal, none)) {
         const auto journal = Journal::open(job->journal, false);
         const auto facts = journal ? facts_of(journal->records()) : tl::unexpected(journal.error());
-        interrupted = facts && is_interrupted(*facts);
+        interrupted = facts && is_interrupted(*facts) && check_journal(*facts);
     }
     desk.update([&](Snapshot& s) { s.can_resume = interrupted; });
 }
