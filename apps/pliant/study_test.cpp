@@ -105,6 +105,25 @@ std::vector<double> column(const fs::path& file, const std::string& name) {
 
 }  // namespace
 
+TEST_CASE("an empty name of the output is an error, of a study as of other commands") {
+    const Place place(head + "plan = \"grid\"\n" + modulus + ", levels = 2 }\n" + force);
+    const Ended ended = place.wait(place.start({(place / "s.toml").string(), "-o", ""}));
+    CHECK(ended.status == 2);
+    CHECK(ended.errors.starts_with("--output: the name is empty"));
+}
+
+TEST_CASE("a key of a material that the robot does not have fails every row, and says so") {
+    const Place place(
+        head + "plan = \"grid\"\n" +
+        "key.modulus = { set = \"material.sotf.youngs_modulus\", range = [\"1 MPa\", \"4 MPa\"], levels = 2 "
+        "}\n" +
+        force);
+    const Ended ended = place.run();
+    CHECK(ended.status == 1);
+    CHECK(ended.errors.find("2 of 2 rows failed; row 0: --set material.sotf: the file has no material \"sotf\", and "
+                            "nothing would use it; did you mean \"soft\"?") != std::string::npos);
+}
+
 TEST_CASE("a study gives forces proportional to the modulus in every row, and the same on one core and on two") {
     const Place place(head + "plan = \"sobol\"\nsamples = 12\n" + modulus + " }\n" + force);
     const Ended ended = place.run({"--jobs", "2"});
