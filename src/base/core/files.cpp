@@ -81,7 +81,7 @@ namespace {
 
 /// The old folder is deleted last, and put back if the new one cannot take its place.
 Status put_in_place(const fs::path& fresh, const fs::path& target) {
-    const fs::path old = target.string() + ".old";
+    const fs::path old = target.string() + ".replaced";  // not ".old", which may be somebody's own copy
     std::error_code code, ignored;
     const bool replaces = fs::exists(target, ignored);
     if (replaces) {

@@ -81,7 +81,7 @@ TEST_CASE("a folder is written whole or not at all, and folders with other files
     CHECK_FALSE(write_folder(folder, "summary.json", [](const fs::path&) -> Status { return failure("no"); }));
     CHECK(fs::exists(folder / "summary.json"));
     CHECK_FALSE(fs::exists(folder.string() + ".partial"));
-    CHECK_FALSE(fs::exists(folder.string() + ".old"));
+    CHECK_FALSE(fs::exists(folder.string() + ".replaced"));
 
     const fs::path foreign = scratch / "foreign";
     fs::create_directories(foreign);
