@@ -37,13 +37,17 @@ Manifest manifest() {
             {}};
 }
 
-Status write(const fs::path& path, const Manifest& m = manifest()) {
+Writer filled(const fs::path& path) {
     auto writer = Writer::create(path);
     REQUIRE(writer.has_value());
     REQUIRE(writer->add_image("layers/00000_soft.png", image_a).has_value());
     REQUIRE(writer->add_image("layers/00001_rigid.png", image_b).has_value());
     REQUIRE(writer->add_file("printer.toml", std::string(5000, 'x')).has_value());
-    return writer->finish(m);
+    return std::move(*writer);
+}
+
+Status write(const fs::path& path, const Manifest& m = manifest()) {
+    return filled(path).finish(m);
 }
 
 std::string refused(const fs::path& path) {
@@ -173,6 +177,14 @@ TEST_CASE("without finish, or when it fails, nothing is left behind and nothing 
     CHECK(read_file(path).value() == "before");
     REQUIRE(write(path).has_value());
     CHECK(Archive::open(path).has_value());
+}
+
+TEST_CASE("a writer that has finished takes nothing more") {
+    const Folder folder;
+    Writer writer = filled(folder / "a.zip");
+    REQUIRE(writer.finish(manifest()));
+    CHECK(writer.add_file("more", "").error().message.ends_with("is already finished"));
+    CHECK(writer.finish(manifest()).error().message.ends_with("is already finished"));
 }
 
 TEST_CASE("the writer refuses bad names, repeated names and missing folders") {

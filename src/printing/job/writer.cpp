@@ -61,7 +61,6 @@ Result<Writer> Writer::create(const fs::path& path) {
     const fs::path folder = fs::absolute(path, code).parent_path();
     if (!fs::is_directory(folder, code))
         return input_error("{}: there is no folder {}", path.string(), folder.string());
-    if (fs::is_directory(path, code)) return input_error("{}: is a folder, a file is needed", path.string());
     auto zip = ZipWriter::create(path);
     if (!zip) return tl::unexpected(zip.error());
     return Writer(std::make_unique<State>(State{path, std::move(*zip), {}, {}, false}));
@@ -91,6 +90,7 @@ Status Writer::finish(const Manifest& manifest) {
     Manifest sealed = manifest;
     sealed.sha256 = state_->sha256;
     if (auto status = add_file("manifest.json", to_json(sealed)); !status) return status;
+    state_->finished = true;
     return state_->zip.close();
 }
 
