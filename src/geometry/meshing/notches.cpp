@@ -12,8 +12,8 @@
 #include <numbers>
 #include <optional>
 
+#include "geometry/mesh/triangle_corners.hpp"
 #include "geometry/mesh/triangle_tree.hpp"
-#include "geometry/meshing/triangle_corners.hpp"
 
 namespace pliant::mesh {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "geometry/meshing/triangle_corners.hpp"
+#include "geometry/mesh/triangle_corners.hpp"
 #include "geometry/repair/surface_seams.hpp"
 
 namespace pliant::mesh {

@@ -7,6 +7,7 @@
 
 #include "base/core/counted.hpp"
 #include "geometry/files/tet_file.hpp"
+#include "geometry/mesh/triangle_corners.hpp"
 #include "geometry/mesher/mesher.hpp"
 #include "geometry/mesher/step_file.hpp"
 #include "geometry/open/open_geometry.hpp"
@@ -16,15 +17,6 @@
 namespace pliant::mesh {
 namespace {
 
-double area(const TriMesh& surface) {
-    double twice = 0;
-    for (const auto& t : surface.triangles) {
-        const auto at = [&](std::size_t i) { return surface.points[static_cast<std::size_t>(t[i])]; };
-        twice += norm(cross(at(1) - at(0), at(2) - at(0)));
-    }
-    return 0.5 * twice;
-}
-
 /// Why its triangles enclose no volume that could be told; "" if they do.
 std::string no_volume(const TriMesh& surface) {
     constexpr double flat = 1e-9;
@@ -33,7 +25,7 @@ std::string no_volume(const TriMesh& surface) {
         return fmt::format(
             "the surface is open: {} without a neighbour, and an area of about {:.3g} is missing, of "
             "{:.3g} in all; it has no volume",
-            counted(border.size(), "edge"), area(border_caps(surface)), area(surface));
+            counted(border.size(), "edge"), surface_area(border_caps(surface)), surface_area(surface));
     const double size = bounds(surface).diagonal();
     if (!(std::fabs(signed_volume(surface)) > flat * size * size * size))
         return "the surface is flat: it encloses no volume";

@@ -13,7 +13,7 @@ namespace pliant::report {
 struct Written {
     Timing timing;                 ///< of the simulation, with that of files and pictures
     bool drawing_stopped = false;  ///< no pictures, because drawing them was cancelled
-    std::string warning;           ///< why there are no pictures, if a library that draws them is missing; or empty
+    std::string warning;           ///< why pictures or the film are missing, if drawing failed; else empty
 };
 
 /// Writes summary.json, steps.csv, markers.csv, iterations.csv, frames.pvd with frames/*.vtu, robot.glb, pictures/*.png

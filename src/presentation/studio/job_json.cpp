@@ -95,11 +95,11 @@ std::string job_json(const OpenJob& open, bool saved) {
                  {"file", open.file.filename().string()},
                  {"saved", saved},
                  {"manifest", Json::parse(job::to_json(manifest))},
-                 {"colours", open.colours},
+                 {"colours", open.origin.colours},
                  {"issues", issues_json(manifest)},
                  {"projector", Json::parse(projector_json(p.projector))},
                  {"platform", {{"width_mm", p.platform.width_um / 1e3}, {"depth_mm", p.platform.depth_um / 1e3}}},
-                 {"source", open.source.empty() ? Json(nullptr) : Json::parse(open.source)},
+                 {"source", open.origin.source.empty() ? Json(nullptr) : Json::parse(open.origin.source)},
                  {"printer", p.name}};
     if (plan) {
         json["plan"] = Json::parse(plan::plan_json(*plan));

@@ -77,7 +77,7 @@ Status MakeSession::save(const std::filesystem::path& file) {
         const std::lock_guard lock(mutex_);
         before = before_;
     }
-    Status adopted = adopt(file, {job->source, job->colours, nullptr}, job->key);
+    Status adopted = adopt(file, {job->origin.source, job->origin.colours, nullptr}, job->key);
     const std::lock_guard lock(mutex_);
     before_ = before;
     return adopted;
@@ -92,9 +92,7 @@ Status MakeSession::adopt(const std::filesystem::path& file, JobOrigin origin, c
         const std::lock_guard lock(mutex_);
         if (job_ && job_->file != file) before_ = job_;
         job_ = std::make_shared<OpenJob>(std::move(open->archive), std::move(open->printer), file, ++revision_);
-        job_->colours = std::move(origin.colours);
-        job_->source = std::move(origin.source);
-        job_->scratch = std::move(origin.scratch);
+        job_->origin = std::move(origin);
         if (!key.empty()) job_->key = key;
         news = dumped({{"type", "job"}, {"revision", revision_}});
     }
@@ -141,7 +139,7 @@ Result<std::shared_ptr<OpenJob>> MakeSession::other(const std::filesystem::path&
     if (!open) return tl::unexpected(open.error());
     const std::lock_guard lock(mutex_);
     auto made = std::make_shared<OpenJob>(std::move(open->archive), std::move(open->printer), file, -(++others_));
-    made->colours = colours_of(made->archive.manifest());
+    made->origin.colours = colours_of(made->archive.manifest());
     return other_ = made;
 }
 

@@ -55,12 +55,10 @@ struct OpenJob {
     machine::Printer printer;
     std::filesystem::path file;
     int revision;
-    std::string key = random_key();      ///< in the addresses of its images, which browsers keep for ever
-    std::string source{};                ///< see JobOrigin::source
-    std::vector<std::string> colours{};  ///< (materials)
-    std::shared_ptr<const ScratchFile> scratch{};
-    std::mutex mutex{};  ///< an archive must be used by one thread at a time
-    std::string part{};  ///< see job_part(); "": not requested yet
+    std::string key = random_key();  ///< in the addresses of its images, which browsers keep for ever
+    JobOrigin origin{};              ///< with colours of all materials
+    std::mutex mutex{};              ///< an archive must be used by one thread at a time
+    std::string part{};              ///< see job_part(); "": not requested yet
 };
 
 /// The error of every request that needs a job.

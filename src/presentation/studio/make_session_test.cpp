@@ -29,7 +29,7 @@ TEST_CASE("a robot becomes a job with its materials' colours; its file is delete
         REQUIRE(job != nullptr);
         CHECK(job->revision == 1);
         CHECK(job->archive.manifest().layers.size() == 40);
-        CHECK(job->colours.size() == 1);
+        CHECK(job->origin.colours.size() == 1);
         CHECK(job->printer.projector.width_px == 96);
         CHECK(session.news() == std::vector<std::string>{R"({"revision":1,"type":"job"})"});
         scratch = job->file.parent_path();
@@ -47,14 +47,14 @@ TEST_CASE("a chosen colour stays with the job that is opened again") {
     order.robot_text = pliant::test::replaced(order.robot_text, "{ youngs", "{ colour = \"#12ab34\", youngs");
     REQUIRE(session.slice(order).has_value());
     REQUIRE(end_of_slicing(events) == "");
-    CHECK(session.job()->colours == std::vector<std::string>{"#12ab34"});
+    CHECK(session.job()->origin.colours == std::vector<std::string>{"#12ab34"});
     REQUIRE(session.save(folder / "a.zip").has_value());
     MakeSession later([](const std::string&) {}, "test");
     REQUIRE(later.open(folder / "a.zip").has_value());
-    CHECK(later.job()->colours == std::vector<std::string>{"#12ab34"});
+    CHECK(later.job()->origin.colours == std::vector<std::string>{"#12ab34"});
     const auto beside = later.other(folder / "a.zip");
     REQUIRE(beside.has_value());
-    CHECK((*beside)->colours == std::vector<std::string>{"#12ab34"});
+    CHECK((*beside)->origin.colours == std::vector<std::string>{"#12ab34"});
 }
 
 TEST_CASE("a job is saved under a new name only, and the session continues with that file") {
@@ -68,7 +68,7 @@ TEST_CASE("a job is saved under a new name only, and the session continues with 
     REQUIRE(session.save(folder / "a.zip").has_value());
     CHECK(session.job()->file == folder / "a.zip");
     CHECK(session.job()->revision == 2);
-    CHECK(session.job()->colours == sliced->colours);
+    CHECK(session.job()->origin.colours == sliced->origin.colours);
     CHECK(read_file(folder / "a.zip").value() == read_file(sliced->file).value());
     CHECK(session.save(folder / "a.zip").error().message == "a.zip exists; choose another name");
     CHECK_FALSE(session.save(folder / "none/b.zip").has_value());
@@ -133,12 +133,12 @@ TEST_CASE("a job remembers what it was sliced from, also after it has been saved
     REQUIRE(session.slice(order).has_value());
     REQUIRE(end_of_slicing(events) == "");
     const std::string key = session.job()->key;
-    CHECK(session.job()->source == order.source);
+    CHECK(session.job()->origin.source == order.source);
     REQUIRE(session.save(folder / "a.zip").has_value());
-    CHECK(session.job()->source == order.source);
+    CHECK(session.job()->origin.source == order.source);
     CHECK(session.job()->key == key);  // the same images
     REQUIRE(session.open(folder / "a.zip").has_value());
-    CHECK(session.job()->source.empty());
+    CHECK(session.job()->origin.source.empty());
     CHECK(session.job()->key != key);
 }
 
@@ -152,8 +152,8 @@ TEST_CASE("the file of a sliced job is deleted as soon as nothing uses it") {
         return session.job()->file;
     };
     const fs::path first = slice(), second = slice();
-    CHECK(fs::exists(first));                         // it is the one to compare with
-    auto printed = session.other().value()->scratch;  // a printer still has it
+    CHECK(fs::exists(first));                                // it is the one to compare with
+    auto printed = session.other().value()->origin.scratch;  // a printer still has it
     const fs::path third = slice();
     CHECK(fs::exists(first));
     printed.reset();

@@ -24,7 +24,8 @@ Response take_twin(Studio& studio, const Request& request) {
     // A job that was never saved has no place for a journal either.
     const bool lies = studio.folder().holds(job->file);
     return done(studio.print().take_twin(
-        {job->file, job->colours, lies ? virtual_journal(job->file) : std::filesystem::path(), job->key, job->scratch},
+        {job->file, job->origin.colours, lies ? virtual_journal(job->file) : std::filesystem::path(), job->key,
+         job->origin.scratch},
         speed_of(request)));
 }
 
@@ -52,7 +53,7 @@ Response take_port(Studio& studio, const Request& request) {
         if (!file) return error_response(422, "clock: " + file.error().message);
         port.clock_file = *file;
     }
-    return done(studio.print().take_port({job->file, job->colours, {}, job->key, {}}, port));
+    return done(studio.print().take_port({job->file, job->origin.colours, {}, job->key, {}}, port));
 }
 
 Response journals(Studio& studio, const Request&) {

@@ -3,7 +3,6 @@
 #include "presentation/draw/colour.hpp"
 #include "presentation/scene/scene.hpp"
 #include "printing/prepare/estimate.hpp"
-#include "printing/prepare/option_text.hpp"
 #include "robot/file/robot_file.hpp"
 
 namespace pliant::studio {
@@ -30,24 +29,6 @@ std::vector<std::string> colours_by_robot(const job::Manifest& manifest, const r
     return colours;
 }
 
-/// An estimate leaves these options out; a wrong one is reported all the same.
-Status check_left_out(const prepare::Order& order) {
-    for (const auto& [option, text] : {std::pair{"--support-spacing", &order.support_spacing},
-                                       {"--support-tip", &order.support_tip},
-                                       {"--support-pillar", &order.support_pillar},
-                                       {"--lift", &order.lift},
-                                       {"--raft", &order.raft},
-                                       {"--hollow", &order.hollow},
-                                       {"--drain", &order.drain},
-                                       {"--least-layer", &order.least_layer},
-                                       {"--least-feature", &order.least_feature}}) {
-        if (const auto length = prepare::length_um(option, *text, 0); !length) return tl::unexpected(length.error());
-    }
-    if (order.support_angle.empty()) return {};
-    const auto angle = prepare::plain_degrees("--support-angle", order.support_angle);
-    return angle ? Status{} : tl::unexpected(angle.error());
-}
-
 }  // namespace
 
 Result<std::vector<std::string>> slice_robot(const SliceOrder& wanted, const std::filesystem::path& job,
@@ -66,7 +47,6 @@ Result<std::vector<std::string>> slice_robot(const SliceOrder& wanted, const std
 }
 
 Result<plan::Plan> estimate_robot(const SliceOrder& wanted) {
-    if (Status status = check_left_out(wanted.order); !status) return tl::unexpected(status.error());
     Result<robot::Robot> robot = robot::parse_robot(wanted.robot_text, wanted.robot_file);
     if (!robot) return tl::unexpected(robot.error());
     Progress silent;

@@ -58,15 +58,18 @@ struct Bench {
         s.after_light = [this](const Given& given) { lights.push_back(given); };
         return s;
     }
-    /// The error of load(), or the outcome of the print.
-    Status print(const std::string& text, const ImageSource& images = image_of) {
+    Status load(const std::string& text, const ImageSource& images = image_of) {
         PrintJob job;
         job.name = "a job";
         job.gcode = text;
         job.images = images;
         job.materials = {"soft", "firm"};
         job.layers = 1;
-        if (Status loaded = control.load(std::move(job)); !loaded) return loaded;
+        return control.load(std::move(job));
+    }
+    /// The error of load(), or the outcome of the print.
+    Status print(const std::string& text, const ImageSource& images = image_of) {
+        if (Status loaded = load(text, images); !loaded) return loaded;
         REQUIRE(control.start({}));
         control.serve_until_idle();
         const Snapshot last = control.snapshot();
@@ -145,12 +148,7 @@ TEST_CASE("after a controller restart nothing more is sent") {
 
 TEST_CASE("a request from before an emergency stop is not carried out, and the next one waits for the stop") {
     Bench b(&good_answer);
-    PrintJob job;
-    job.gcode = job_text;
-    job.images = image_of;
-    job.materials = {"soft", "firm"};
-    job.layers = 1;
-    REQUIRE(b.control.load(std::move(job)));
+    REQUIRE(b.load(job_text));
     REQUIRE(b.control.connect());
     b.control.serve_until_idle();
     REQUIRE(b.control.state() == State::idle);

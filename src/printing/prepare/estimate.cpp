@@ -2,20 +2,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/mesh/tri_mesh.hpp"
 #include "printing/job/exposure.hpp"
+#include "printing/prepare/option_text.hpp"
 #include "printing/prepare/settings.hpp"
 
 namespace pliant::prepare {
 namespace {
 
-/// Removes what an estimate does not include.
-void leave_out_slow(Order& order) {
-    for (std::string* text : {&order.support, &order.support_angle, &order.support_spacing, &order.support_tip,
-                              &order.support_pillar, &order.support_paint, &order.lift, &order.raft, &order.hollow,
-                              &order.drain, &order.least_layer, &order.least_feature})
+/// Removes what an estimate does not include. A length or angle that cannot be read is an error all the same.
+Status leave_out_slow(Order& order) {
+    for (const auto& [option, text] : {std::pair{"--support-spacing", &order.support_spacing},
+                                       {"--support-tip", &order.support_tip},
+                                       {"--support-pillar", &order.support_pillar},
+                                       {"--lift", &order.lift},
+                                       {"--raft", &order.raft},
+                                       {"--hollow", &order.hollow},
+                                       {"--drain", &order.drain},
+                                       {"--least-layer", &order.least_layer},
+                                       {"--least-feature", &order.least_feature}}) {
+        if (const auto length = length_um(option, *text, 0); !length) return tl::unexpected(length.error());
         text->clear();
+    }
+    if (!order.support_angle.empty()) {
+        const auto angle = plain_degrees("--support-angle", order.support_angle);
+        if (!angle) return tl::unexpected(angle.error());
+    }
+    for (std::string* text : {&order.support, &order.support_angle, &order.support_paint}) text->clear();
+    return {};
 }
 
 int material_of(const job::Manifest& manifest, const std::string& name) {
@@ -86,7 +102,7 @@ job::Manifest empty_job(const job::JobSettings& settings, double height_um) {
 
 Result<plan::Plan> estimate(Order order, const machine::Printer& printer, Drawing drawing) {
     if (!drawing.stacks.empty()) return input_error("layer images are planned when they are sliced: no estimate");
-    leave_out_slow(order);
+    if (Status status = leave_out_slow(order); !status) return tl::unexpected(status.error());
     order.any_vat = true;
     const Result<job::JobSettings> read = job_settings(order, printer, std::nullopt, drawing);
     if (!read) return tl::unexpected(read.error());
