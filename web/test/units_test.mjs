@@ -173,6 +173,7 @@ test('a program has seconds if the file has keys for it', () => {
 
 test('the rows that a table holds out itself are counted', () => {
   assert.equal(page.judgeRows('step,use,tip_x_mm\n1,fit,59\n2, judge ,58\r\n3,"judge",57\n'), 2);
+  assert.equal(page.judgeRows('step;use;tip_x_mm\n1;judge;59\n'), 1);
   assert.equal(page.judgeRows('step,tip_x_mm\n1,59\n'), 0);
 });
 

@@ -160,10 +160,12 @@ export function keepRun(name: string) {
   runs.value = [...runs.value, { name, columns: { ...columns, seconds: pick(tracks.seconds) } }];
 }
 
+/// The cells of a line, separated by commas, semicolons or tabs.
+const cells = (l: string) => [...l.matchAll(/(?:"((?:[^"]|"")*)"|([^,;\t"]*))(?:[,;\t]|$)/g)].map((m) => (m[1]?.replace(/""/g, '"') ?? m[2]).trim()).slice(0, l.match(/[,;\t]$/) ? undefined : -1);
+
 /// Parses a table of measurements: a header of names, then numbers. Errors name the line.
 export function readTable(name: string, text: string): Run | string {
   const lines = text.split(/\r?\n/);
-  const cells = (l: string) => [...l.matchAll(/(?:"((?:[^"]|"")*)"|([^,;\t"]*))(?:[,;\t]|$)/g)].map((m) => (m[1]?.replace(/""/g, '"') ?? m[2]).trim()).slice(0, l.match(/[,;\t]$/) ? undefined : -1);
   const head = cells(lines[0] ?? '');
   if (head.length < 2 || head.some((h) => h === '')) return `${name}:1: a header line with at least two column names is needed`;
   if (head.every((h) => Number.isFinite(Number(h)))) return `${name}:1: the first line must name the columns, as in shortening_mm,tension_N`;
@@ -183,7 +185,7 @@ export function readTable(name: string, text: string): Run | string {
 
 /// Rows that a table holds out itself: "judge" in its column use.
 export function judgeRows(csv: string): number {
-  const rows = csv.split(/\r?\n/).map((row) => row.split(',').map((cell) => cell.trim().replace(/^"(.*)"$/, '$1')));
+  const rows = csv.split(/\r?\n/).map(cells);
   const use = rows[0].indexOf('use');
   return use < 0 ? 0 : rows.filter((row) => row[use] === 'judge').length;
 }
