@@ -5,14 +5,29 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/core/letters.hpp"
 #include "base/core/text.hpp"
 
 namespace pliant::config {
 namespace {
 
-std::string_view type_name(const Value& value) {
-    constexpr std::string_view names[] = {"true or false", "a whole number", "a number", "a text", "a list", "a table"};
-    return names[value.data.index()];
+std::string quoted(std::string_view text) {
+    constexpr std::size_t most = 40;
+    const std::string line = one_line(text);
+    return line.size() <= most ? fmt::format("\"{}\"", line) : fmt::format("\"{}...\"", line.substr(0, most));
+}
+
+/// What a file says where something else is needed: a value as it is written, of lists and tables their kind.
+std::string shown(const Value& value) {
+    struct Show {
+        std::string operator()(bool flag) const { return flag ? "true" : "false"; }
+        std::string operator()(std::int64_t whole) const { return std::to_string(whole); }
+        std::string operator()(double real) const { return fmt::format("{}", real); }
+        std::string operator()(const std::string& text) const { return quoted(text); }
+        std::string operator()(const Array& list) const { return list.empty() ? "an empty list" : "a list"; }
+        std::string operator()(const Table&) const { return "a table"; }
+    };
+    return std::visit(Show{}, value.data);
 }
 
 const Value* find_entry(const Value& table, std::string_view key) {
@@ -71,7 +86,7 @@ Reader::Reader(const Value& table, Problems& problems, std::string path)
     : table_(&table), problems_(&problems), path_(std::move(path)), marks_(std::make_shared<Marks>()) {
     static const Value empty{};
     if (!std::holds_alternative<Table>(table.data)) {
-        problems.add(table.line, path_, fmt::format("is {}, a table is needed", type_name(table)));
+        problems.add(table.line, path_, fmt::format("is {}, a table is needed", shown(table)));
         table_ = &empty;
     }
 }
@@ -125,7 +140,7 @@ std::string Reader::text(std::string_view key, std::string_view fallback) {
     const Value* value = find(key);
     if (value == nullptr) return std::string(fallback);
     if (const auto* string = std::get_if<std::string>(&value->data)) return *string;
-    problem(key, fmt::format("is {}, a text in quotes is needed", type_name(*value)));
+    problem(key, fmt::format("is {}, a text in quotes is needed", shown(*value)));
     return std::string(fallback);
 }
 
@@ -137,7 +152,7 @@ double Reader::number(std::string_view key, double fallback) {
     const Value* value = find(key);
     if (value == nullptr) return fallback;
     if (const auto found = as_number(*value)) return *found;
-    problem(key, fmt::format("is {}, a finite number is needed", type_name(*value)));
+    problem(key, fmt::format("is {}, a finite number is needed", shown(*value)));
     return fallback;
 }
 
@@ -153,7 +168,7 @@ std::int64_t Reader::integer(std::string_view key, std::int64_t fallback) {
     if (const auto real = as_number(*value); real && *real == std::floor(*real) && std::fabs(*real) < 1e15) {
         return static_cast<std::int64_t>(*real);
     }
-    problem(key, fmt::format("is {}, a whole number is needed", type_name(*value)));
+    problem(key, fmt::format("is {}, a whole number is needed", shown(*value)));
     return fallback;
 }
 
@@ -161,7 +176,7 @@ bool Reader::boolean(std::string_view key, bool fallback) {
     const Value* value = find(key);
     if (value == nullptr) return fallback;
     if (const auto* flag = std::get_if<bool>(&value->data)) return *flag;
-    problem(key, fmt::format("is {}, true or false is needed", type_name(*value)));
+    problem(key, fmt::format("is {}, true or false is needed", shown(*value)));
     return fallback;
 }
 
@@ -181,7 +196,7 @@ double Reader::quantity(std::string_view key, Dimension dimension, double fallba
     if (const auto bare = as_number(*value)) {
         problem(key, fmt::format("{} has no unit; write {}", *bare, describe(dimension)));
     } else {
-        problem(key, fmt::format("is {}; write {}", type_name(*value), describe(dimension)));
+        problem(key, fmt::format("is {}; write {}", shown(*value), describe(dimension)));
     }
     return fallback;
 }
@@ -231,7 +246,7 @@ std::vector<std::string> Reader::texts(std::string_view key) {
         if (const auto* string = std::get_if<std::string>(&item.data))
             list.push_back(*string);
         else
-            problem(key, fmt::format("holds {}, only texts are allowed", type_name(item)));
+            problem(key, fmt::format("holds {}, only texts are allowed", shown(item)));
     }
     return list;
 }
@@ -291,7 +306,7 @@ std::vector<Reader> Reader::tables(std::string_view key) {
     if (value == nullptr) return readers;
     const auto* list = std::get_if<Array>(&value->data);
     if (list == nullptr) {
-        problem(key, fmt::format("is {}; write [[{}]] for each", type_name(*value), key_path(key)));
+        problem(key, fmt::format("is {}; write [[{}]] for each", shown(*value), key_path(key)));
         return readers;
     }
     for (std::size_t i = 0; i < list->size(); ++i) {
@@ -306,7 +321,7 @@ std::vector<std::pair<std::string, Reader>> Reader::named_tables(std::string_vie
     if (value == nullptr) return readers;
     const auto* table = std::get_if<Table>(&value->data);
     if (table == nullptr) {
-        problem(key, fmt::format("is {}; write [{}.NAME] for each", type_name(*value), key_path(key)));
+        problem(key, fmt::format("is {}; write [{}.NAME] for each", shown(*value), key_path(key)));
         return readers;
     }
     for (const auto& [name, entry] : *table) {

@@ -99,8 +99,8 @@ public:
 
 private:
     struct Task;
-    struct State_;
-    std::unique_ptr<State_> state_;
+    struct Private;
+    std::unique_ptr<Private> state_;
 };
 
 }  // namespace pliant::host

@@ -73,6 +73,10 @@ public:
     [[nodiscard]] std::span<const Mean> means() const {
         return scheme_ == Scheme::conserving ? std::span<const Mean>(gauss) : std::span<const Mean>();
     }
+    /// (3n) the point at `share` of the straight path from the start of the step to x.
+    [[nodiscard]] Eigen::VectorXd on_path(const Eigen::VectorXd& x, double share) const {
+        return start_.x + share * (x - start_.x);
+    }
     [[nodiscard]] Scheme scheme() const { return scheme_; }
     /// (3n) estimated error of a step that ends at x: its difference from extrapolating the last two states, times the
     /// factor from theory (Gresho, Griffiths and Silvester 2008, "Adaptive time-stepping for incompressible flow"). At

@@ -303,14 +303,18 @@ TEST_CASE("setting up counts from the model on: its time and that of the steps a
     d.markers.clear();
     const auto model = Model::create(std::move(d));
     REQUIRE(model.has_value());
-    Progress quiet;
-    Stopwatch watch;
-    const Trajectory found = run(*model, {.steps = 1}, quiet);  // nothing acts on it: the step is nearly free
-    const double all_s = watch.read_s();
-    REQUIRE(found.converged);
-    CHECK(found.setup_s > 0.05 * all_s);
-    CHECK(found.setup_s + found.solve_s <= all_s);
-    CHECK(found.setup_s + found.solve_s > 0.85 * all_s);
+    // Another program can take the processor between two readings of the clock: once in several runs is enough.
+    bool counted = false;
+    for (int attempt = 0; attempt < 10 && !counted; ++attempt) {
+        Progress quiet;
+        Stopwatch watch;
+        const Trajectory found = run(*model, {.steps = 1}, quiet);  // nothing acts on it: the step is nearly free
+        const double all_s = watch.read_s();
+        REQUIRE(found.converged);
+        CHECK(found.setup_s + found.solve_s <= all_s);
+        counted = found.setup_s > 0.05 * all_s && found.setup_s + found.solve_s > 0.85 * all_s;
+    }
+    CHECK(counted);
 }
 
 TEST_CASE("the same input gives the same bits on any number of threads") {

@@ -58,7 +58,7 @@ struct ModelDraft {
     mesh::TetMesh bodies;            ///< the description's mesh without actuated space
     Box3 box;                        ///< of the description's mesh
     double tolerance = 0;            ///< for points expected on the surface
-    double box_margin = 0;           ///< for points expected in a box
+    double box_margin = 0;           ///< for points expected in a box or sphere
     double point_reach = 0;          ///< how far outside the bodies a guide point or marker may lie
     std::vector<Diagnostic> problems;
 
