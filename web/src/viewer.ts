@@ -31,7 +31,7 @@ function show(root: HTMLElement, shown: Shown) {
   const canvas = make('canvas', stage, { tabIndex: 0, title: orbitHelp });
   canvas.setAttribute('aria-label', 'the robot in 3D');
   const view = new RobotView(canvas);
-  view.mayGrab = () => false;
+  view.pointer.mayGrab = () => false;
   view.setScene(readPacket<SceneHead>(bytes(shown.scene)));
   const frames = shown.frames.map((f) => readPacket<FrameHead>(bytes(f)));
   canvas.addEventListener('keydown', (e) =>

@@ -120,7 +120,7 @@ export function CanvasBeside({ options }: { options: () => ViewOptions }) {
     } catch {
       return; // the first view has shown the reason
     }
-    made.mayGrab = () => false;
+    made.pointer.mayGrab = () => false;
     made.onData = (low, high) => tellRange(1, low, high);
     let following = false;
     const follow = () => {

@@ -95,8 +95,8 @@ function Canvas() {
     }
     let pending = 0;
     let last: Record<string, unknown> | null = null;
-    made.mayGrab = () => mayDrive.value && look.shownFrame.value === null;
-    made.onGrab = (grab) => {
+    made.pointer.mayGrab = () => mayDrive.value && look.shownFrame.value === null;
+    made.pointer.onGrab = (grab) => {
       if (!grab) {
         last = null;
         return send({ type: 'release' });
@@ -110,7 +110,7 @@ function Canvas() {
     };
     made.onData = (low, high) => comparing.peek() && tellRange(0, low, high);
     made.onRange = (low, high) => (look.fieldRange.value = [low, high]);
-    made.onPick = (pick, rest, inward) => {
+    made.pointer.onPick = (pick, rest, inward) => {
       if (look.measuring.peek()) return takePick(pick), true;
       return takePlace(rest, inward);
     };

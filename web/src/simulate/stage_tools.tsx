@@ -5,7 +5,7 @@ import { Icon } from '../icons';
 import { frame, scene } from '../store';
 import { niceBelow } from './fit';
 import { onDrawn, theView } from './the_view';
-import type { Side } from './view';
+import type { Side } from './viewpoint';
 import * as look from './view_state';
 
 const presets: [Side, string, string][] = [
