@@ -63,30 +63,78 @@ void draw_grid(Canvas& canvas, const Axis& x, const Axis& y) {
     canvas.line(corner, 2.5, frame_colour);
 }
 
-void draw_series(Canvas& canvas, const Plot& plot, std::size_t index, const Axis& x, const Axis& y) {
-    const Series& series = plot.series[index];
-    const Colour colour = palette(static_cast<int>(index));
-    std::vector<Point2> line;
+/// A series on the canvas.
+std::vector<Point2> placed(const Plot& plot, const Series& series, const Axis& x, const Axis& y) {
+    std::vector<Point2> points;
     for (const Point2& p : series.points) {
-        if (!is_shown(plot, p)) continue;
-        line.push_back({x.at(p.x), y.at(p.y)});
-        if (series.dots) canvas.disc(line.back(), 7, colour);
+        if (is_shown(plot, p)) points.push_back({x.at(p.x), y.at(p.y)});
     }
-    if (!series.dots && line.size() > 1) canvas.line(line, 4, colour);
+    return points;
 }
 
-/// At the upper left: curves that fall by powers of ten start below it and end at the lower right.
-void draw_legend(Canvas& canvas, const Plot& plot) {
-    const double side = plot.log_y ? right - 420 : left;
-    double height = plot.log_y ? bottom - 38 * static_cast<double>(plot.series.size()) : top + 40;
+void draw_series(Canvas& canvas, const Series& series, const std::vector<Point2>& points, const Colour& colour) {
+    if (series.dots) {
+        for (const Point2& p : points) canvas.disc(p, 7, colour);
+    } else if (points.size() > 1) {
+        canvas.line(points, 4, colour);
+    }
+}
+
+struct Rectangle {
+    Point2 corner;  ///< upper left
+    double width, height;
+    [[nodiscard]] bool contains(const Point2& p) const {
+        return p.x >= corner.x && p.x <= corner.x + width && p.y >= corner.y && p.y <= corner.y + height;
+    }
+};
+
+/// How much of the curves lies in it: dots, and pieces of lines of the size of a dot.
+std::size_t covered(const Rectangle& place, const Plot& plot, const std::vector<std::vector<Point2>>& curves) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        const std::vector<Point2>& points = curves[i];
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            count += place.contains(points[k]) ? 1 : 0;
+            if (plot.series[i].dots || k == 0) continue;
+            const Point2 from = points[k - 1], way{points[k].x - from.x, points[k].y - from.y};
+            const int pieces = static_cast<int>(std::hypot(way.x, way.y) / 14);
+            for (int n = 1; n < pieces; ++n) {
+                const double share = static_cast<double>(n) / pieces;
+                count += place.contains({from.x + share * way.x, from.y + share * way.y}) ? 1 : 0;
+            }
+        }
+    }
+    return count;
+}
+
+constexpr double legend_line = 38;
+
+/// The corner of the axes in which the legend covers least. If several are as free: for curves that fall by powers of
+/// ten the lower right, else the upper left.
+Rectangle legend_place(const Canvas& canvas, const Plot& plot, const std::vector<std::vector<Point2>>& curves) {
+    double width = 0;
+    for (const Series& series : plot.series) width = std::max(width, canvas.text_width(series.name, {.size = 26}));
+    width += 84 + 14;
+    const double height = legend_line * static_cast<double>(plot.series.size()) + 8;
+    const double west = left + 16, east = std::max(west, right - width), north = top + 8, south = bottom - height - 8;
+    std::array<Point2, 4> corners{Point2{west, north}, Point2{east, north}, Point2{west, south}, Point2{east, south}};
+    if (plot.log_y) std::ranges::reverse(corners);
+    const auto hidden = [&](const Point2& corner) { return covered({corner, width, height}, plot, curves); };
+    return {*std::ranges::min_element(corners, {}, hidden), width, height};
+}
+
+void draw_legend(Canvas& canvas, const Plot& plot, const Rectangle& place) {
+    canvas.box(place.corner, place.width, place.height, white, 6, 0.8);
+    double height = place.corner.y + 30;
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
         const Colour colour = palette(static_cast<int>(i));
+        const double side = place.corner.x, middle = height - 8;
         if (plot.series[i].dots)
-            canvas.disc({side + 50, height - 8}, 7, colour);
+            canvas.disc({side + 34, middle}, 7, colour);
         else
-            canvas.line(std::array{Point2{side + 30, height - 8}, Point2{side + 70, height - 8}}, 4, colour);
-        canvas.text({side + 84, height}, plot.series[i].name, {.size = 26});
-        height += 38;
+            canvas.line(std::array{Point2{side + 14, middle}, Point2{side + 54, middle}}, 4, colour);
+        canvas.text({side + 68, height}, plot.series[i].name, {.size = 26});
+        height += legend_line;
     }
 }
 
@@ -127,8 +175,12 @@ Result<std::string> plot_png(const Plot& plot) {
     const Axis x = axis_for(plot, plot.log_x, &Point2::x, left, right);
     const Axis y = axis_for(plot, plot.log_y, &Point2::y, bottom, top);
     draw_grid(canvas, x, y);
-    for (std::size_t i = 0; i < plot.series.size(); ++i) draw_series(canvas, plot, i, x, y);
-    draw_legend(canvas, plot);
+    std::vector<std::vector<Point2>> curves;
+    for (const Series& series : plot.series) {
+        curves.push_back(placed(plot, series, x, y));
+        draw_series(canvas, series, curves.back(), palette(static_cast<int>(curves.size()) - 1));
+    }
+    draw_legend(canvas, plot, legend_place(canvas, plot, curves));
     canvas.text({left, 50}, plot.title, {.size = 32, .bold = true});
     canvas.text({(left + right) / 2, 965}, plot.x_label, {.size = 28, .align = Align::centre});
     canvas.text({left, 82}, plot.y_label, {.size = 24});
