@@ -214,7 +214,7 @@ std::vector<double> Reader::quantities(std::string_view key, Dimension dimension
         const auto* string = std::get_if<std::string>(&(*list)[i].data);
         const Result<double> parsed =
             string != nullptr ? parse_quantity(*string, dimension)
-                              : Result<double>(input_error("entry {} has no unit; write {}", i, describe(dimension)));
+                              : Result<double>(input_error("entry {} has no unit; write {}", i + 1, describe(dimension)));
         if (parsed)
             values[i] = *parsed;
         else
@@ -284,7 +284,8 @@ std::vector<Vec3> Reader::vectors(std::string_view key) {
 std::string Reader::choice(std::string_view key, const std::vector<std::string>& choices, std::string_view fallback) {
     const std::string found = fallback.empty() ? text(key) : text(key, fallback);
     if (std::find(choices.begin(), choices.end(), found) != choices.end()) return found;
-    if (has(key)) {
+    const Value* value = find_entry(*table_, key);
+    if (value != nullptr && std::holds_alternative<std::string>(value->data)) {
         const std::string near = nearest_name(found, choices);
         problem(key, fmt::format("\"{}\" is not known{}; choose from {}", found,
                                  near.empty() ? "" : fmt::format(", did you mean \"{}\"?", near), join_names(choices)));

@@ -57,6 +57,38 @@ name = "b"
     CHECK(message(problems).empty());
 }
 
+TEST_CASE("a value of another type is shown as the file has it") {
+    const Document document = document_of(R"(
+name = 5
+kind = true
+count = 2.5
+share = nan
+width = "wide"
+size = {}
+note = ["a", 7]
+sides = ["1 mm", 2]
+)");
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    (void)root.text("name");
+    (void)root.choice("kind", {"a", "b"});
+    (void)root.integer("count");
+    (void)root.number("share");
+    (void)root.number("width");
+    (void)root.number("size");
+    (void)root.texts("note");
+    (void)root.quantities("sides", Dimension::length, 2);
+    CHECK(message(problems) ==
+          "test.toml:2: name: is 5, a text in quotes is needed\n"
+          "test.toml:3: kind: is true, a text in quotes is needed\n"
+          "test.toml:4: count: is 2.5, a whole number is needed\n"
+          "test.toml:5: share: is nan, a finite number is needed\n"
+          "test.toml:6: width: is \"wide\", a finite number is needed\n"
+          "test.toml:7: size: is a table, a finite number is needed\n"
+          "test.toml:8: note: holds 7, only texts are allowed\n"
+          "test.toml:9: sides: entry 2 has no unit; write a length such as \"5 mm\"");
+}
+
 TEST_CASE("an unread key is an error that names the line and the nearest key") {
     const Document document = document_of("name = \"x\"\n\ngeometri = 3\n");
     Problems problems("test.toml");
