@@ -86,7 +86,7 @@ sides = ["1 mm", 2]
           "test.toml:6: width: is \"wide\", a finite number is needed\n"
           "test.toml:7: size: is a table, a finite number is needed\n"
           "test.toml:8: note: holds 7, only texts are allowed\n"
-          "test.toml:9: sides: entry 2 has no unit; write a length such as \"5 mm\"");
+          "test.toml:9: sides: entry 2 has no unit; write a length such as \"2.5 mm\"");
 }
 
 TEST_CASE("an unread key is an error that names the line and the nearest key") {
