@@ -11,7 +11,7 @@
 namespace pliant::config {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     constexpr std::size_t most = 40;
     const std::string line = one_line(text);
     return line.size() <= most ? fmt::format("\"{}\"", line) : fmt::format("\"{}...\"", line.substr(0, most));
@@ -23,7 +23,7 @@ std::string shown(const Value& value) {
         std::string operator()(bool flag) const { return flag ? "true" : "false"; }
         std::string operator()(std::int64_t whole) const { return std::to_string(whole); }
         std::string operator()(double real) const { return fmt::format("{}", real); }
-        std::string operator()(const std::string& text) const { return quoted(text); }
+        std::string operator()(const std::string& text) const { return in_quotes(text); }
         std::string operator()(const Array& list) const { return list.empty() ? "an empty list" : "a list"; }
         std::string operator()(const Table&) const { return "a table"; }
     };
