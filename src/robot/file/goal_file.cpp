@@ -47,15 +47,52 @@ std::vector<std::string> read_marker_names(Reader& reader, const Context& contex
     return names;
 }
 
-/// A column of coordinates: in length units, or in the unit given in brackets in its name.
-Result<std::vector<double>> read_column(const CsvTable& table, std::size_t column, double unit_m) {
+/// The name of a column, without a unit in brackets.
+std::string bare_name(std::string_view column) {
+    column = column.substr(0, column.find_first_of("(["));
+    while (!column.empty() && column.back() == ' ') column.remove_suffix(1);
+    return std::string(column);
+}
+
+/// What the columns of a path may be called: those of this goal, and those of other markers, which one table may hold.
+std::vector<std::string> path_columns(const Context& context, const GoalSpec& goal) {
+    std::vector<std::string> names = {"time"};
+    if (goal.markers.size() == 1) names.insert(names.end(), {"x", "y", "z"});
+    for (const auto& marker : context.robot.markers) {
+        for (const char* axis : {"_x", "_y", "_z"}) names.push_back(marker.name + axis);
+    }
+    return names;
+}
+
+/// Each name once, and none that nothing would read.
+Status check_columns(const CsvTable& table, const std::vector<std::string>& known) {
+    std::vector<std::string> names;
+    for (const std::string& column : table.columns) {
+        const std::string name = bare_name(column), place = table.place(table.header_line);
+        if (std::ranges::count(names, name) > 0) return input_error("{}: there are two columns \"{}\"", place, name);
+        names.push_back(name);
+        if (name != column && csv_unit(column).empty())
+            return input_error("{}: column \"{}\": its brackets hold no unit", place, column);
+        if (std::ranges::count(known, name) > 0) continue;
+        const std::string nearest = nearest_name(name, known);
+        if (nearest.empty())
+            return input_error("{}: column \"{}\" has no meaning in a path; possible are {}", place, column,
+                               join_names(known));
+        return input_error("{}: column \"{}\" has no meaning in a path; did you mean \"{}\"?", place, column, nearest);
+    }
+    return {};
+}
+
+/// A column in units of `unit_si`, or in the unit given in brackets in its name.
+Result<std::vector<double>> read_column(const CsvTable& table, std::size_t column, Dimension dimension,
+                                        double unit_si) {
     double factor = 1;
     if (const std::string_view unit = csv_unit(table.columns[column]); !unit.empty()) {
-        const Result<double> metres = unit_factor(unit, Dimension::length);
-        if (!metres)
+        const Result<double> si = unit_factor(unit, dimension);
+        if (!si)
             return input_error("{}: column \"{}\": {}", table.place(table.header_line), table.columns[column],
-                               metres.error().message);
-        factor = *metres / unit_m;
+                               si.error().message);
+        factor = *si / unit_si;
     }
     std::vector<double> values;
     for (const CsvRow& row : table.rows) {
@@ -69,11 +106,7 @@ Result<std::vector<double>> read_column(const CsvTable& table, std::size_t colum
 /// The column of this name, with or without a unit in brackets.
 std::optional<std::size_t> find_column(const CsvTable& table, std::string_view name) {
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
-        std::string_view column = table.columns[c];
-        const std::size_t bracket = column.find_first_of("([");
-        if (bracket != std::string_view::npos) column = column.substr(0, bracket);
-        while (!column.empty() && column.back() == ' ') column.remove_suffix(1);
-        if (column == name) return c;
+        if (bare_name(table.columns[c]) == name) return c;
     }
     return std::nullopt;
 }
@@ -90,18 +123,16 @@ Status read_path_table(const CsvTable& table, double unit_m, GoalSpec& goal) {
             if (!column)
                 return input_error("{}: there is no column \"{}\"; a path needs {}", table.place(table.header_line),
                                    name, count == 1 ? "x, y and z" : "MARKER_x, MARKER_y and MARKER_z of every marker");
-            const Result<std::vector<double>> values = read_column(table, *column, unit_m);
+            const Result<std::vector<double>> values = read_column(table, *column, Dimension::length, unit_m);
             if (!values) return tl::unexpected(values.error());
             for (std::size_t w = 0; w < values->size(); ++w) goal.wanted[w][m][axis] = (*values)[w];
         }
     }
     const std::optional<std::size_t> time = find_column(table, "time");
-    for (const CsvRow& row : table.rows) {
-        if (!time) break;
-        const Result<double> value = table.number(row, *time, "time");
-        if (!value) return tl::unexpected(value.error());
-        goal.times.push_back(*value);
-    }
+    if (!time) return {};
+    Result<std::vector<double>> times = read_column(table, *time, Dimension::time, 1);
+    if (!times) return tl::unexpected(times.error());
+    goal.times = std::move(*times);
     return {};
 }
 
@@ -110,8 +141,8 @@ void read_path_file(Reader& reader, const Context& context, const std::string& f
     const Result<std::string> text = read_file(path);
     if (!text) return;  // already reported
     const Result<CsvTable> table = parse_csv(*text, path.string(), "x,y,z");
-    const Status read =
-        table ? read_path_table(*table, context.robot.unit_m, goal) : Status(tl::unexpected(table.error()));
+    Status read = table ? check_columns(*table, path_columns(context, goal)) : Status(tl::unexpected(table.error()));
+    if (read) read = read_path_table(*table, context.robot.unit_m, goal);
     if (!read) reader.problem("path", read.error().message);
 }
 

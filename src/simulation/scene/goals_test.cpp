@@ -93,6 +93,31 @@ TEST_CASE("a path is read from a table, in the unit that its columns name") {
     CHECK(test::holds(flat.error().message, "there is no column \"z\""));
 }
 
+TEST_CASE("a path's times have units, and columns that nothing would read or that stand twice are refused") {
+    const test::Folder folder("goals");
+    const auto read = [&](const std::string& csv) {
+        std::ofstream(folder.path() / "path.csv") << csv;
+        return parse_robot(robot_with_cable + reach + "path = \"path.csv\"\n", folder.path() / "bar.toml");
+    };
+    const auto milliseconds = read("time (ms),x,y,z,middle_x\n500,38,5,9,1\n1000,37,5,11,1\n");
+    REQUIRE_MESSAGE(milliseconds, (milliseconds ? "" : milliseconds.error().message));
+    REQUIRE(milliseconds->goals[0].times.size() == 2);
+    CHECK(milliseconds->goals[0].times[0] == near(0.5, {.relative = 1e-12}));
+    CHECK(milliseconds->goals[0].times[1] == near(1, {.relative = 1e-12}));
+    const auto refused = [&](const std::string& columns, const std::string& why) {
+        const auto robot = read("# drawn\n" + columns + "\n1,38,5,9\n");
+        CAPTURE(columns);
+        REQUIRE_FALSE(robot);
+        CHECK_MESSAGE(test::holds(robot.error().message, "path.csv:2: " + why), robot.error().message);
+    };
+    refused("time (N),x,y,z", "column \"time (N)\": ");
+    refused("time (ms,x,y,z", "column \"time (ms\": its brackets hold no unit");
+    refused("x,x,y,z", "there are two columns \"x\"");
+    refused("x (cm),x (mm),y,z", "there are two columns \"x\"");
+    refused("tiem,x,y,z", "column \"tiem\" has no meaning in a path; did you mean \"time\"?");
+    refused("effort,x,y,z", "column \"effort\" has no meaning in a path; possible are time, x, y, z, tip_x");
+}
+
 TEST_CASE("mistakes in goals and ranges are named, with their line") {
     check_problem(robot_with_cable + "[[goal]]\nname = \"a\"\nmarker = \"tipp\"\npoint = [1, 2, 3]\n",
                   "bar.toml:32: goal[0].marker: there is no marker \"tipp\"; there is \"tip\" and \"middle\"");
