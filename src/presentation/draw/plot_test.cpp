@@ -64,7 +64,8 @@ TEST_CASE("the legend stands where it covers least of the curves") {
         return std::ranges::max_element(dark) - dark.begin();
     };
     using Points = std::vector<Point2>;
-    const Points falling{{0, 1}, {0.5, 1}, {0.5, 0}, {1, 0}}, rising{{0, 0}, {0.5, 0}, {0.5, 1}, {1, 1}};
+    const Points falling{{0, 0.95}, {0.5, 0.95}, {0.5, 0.05}, {1, 0.05}},
+        rising{{0, 0.05}, {0.5, 0.05}, {0.5, 0.95}, {1, 0.95}};
     const auto plot_of = [](const Points& points) { return Plot{"title", "x", "y", {{"a legend", points, false}}}; };
     CHECK(corner_of_legend(plot_of(rising)) == 0);
     CHECK(corner_of_legend(plot_of(falling)) == 1);

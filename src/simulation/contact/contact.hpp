@@ -13,6 +13,7 @@
 // give the same bits on any number of threads.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -142,6 +143,9 @@ public:
     [[nodiscard]] Friction freeze(const Pairs& pairs, std::span<const double> frozen,
                                   std::span<const double> step_start, const Friction* before = nullptr) const;
 
+    /// What touches what in these pairs, each once, ascending: 0 is the robot, k + 1 rigid part k, -k - 1 obstacle k.
+    [[nodiscard]] std::vector<std::array<int, 2>> partners(const Pairs& pairs) const;
+
     /// Between two with a coefficient the larger applies; if equal, the obstacle's. `nodes` of a pair, and its obstacle
     /// or -1.
     [[nodiscard]] FrictionOwner friction_owner(std::span<const int> nodes, int obstacle) const;
@@ -213,7 +217,12 @@ private:
     void number_parts(std::vector<RigidPart> rigid);
     [[nodiscard]] Status check_parts_at_rest() const;
     [[nodiscard]] double reach(int obstacle, double apart_m) const;
-    [[nodiscard]] std::optional<int> obstacle_touched_at_rest() const;
+    /// An obstacle and what touches it at rest.
+    struct Touched {
+        int obstacle, part;  ///< part_of()
+    };
+    [[nodiscard]] std::optional<Touched> obstacle_touched_at_rest() const;
+    [[nodiscard]] std::string part_name(int part) const;
     [[nodiscard]] std::optional<Crossing> first_crossing(std::span<const double> x, bool self, bool at_rest) const;
     [[nodiscard]] bool edge_and_triangle_belong_together(std::span<const int, 5> nodes) const;
     [[nodiscard]] Pair make_pair(bool edges, std::span<const int> nodes, double reach_m, double area_m2) const;

@@ -111,8 +111,9 @@ Result<Contact> Contact::create(Surface robot, std::vector<Obstacle> obstacles, 
     contact.make_sides(robot);
     contact.add_obstacles();
     if (const auto touched = contact.obstacle_touched_at_rest())
-        return input_error("obstacle \"{}\" touches or crosses the robot at rest: leave a gap, or hold the robot there",
-                           contact.obstacles_[*touched].name);
+        return input_error("obstacle \"{}\" touches or crosses {} at rest: leave a gap{}",
+                           contact.obstacles_[touched->obstacle].name, contact.part_name(touched->part),
+                           touched->part == 0 ? ", or hold the robot there" : "");
     if (!contact.rigid_.empty())
         if (auto status = contact.check_parts_at_rest(); !status) return tl::unexpected(status.error());
     contact.draw_in_obstacles();

@@ -466,6 +466,20 @@ Pairs Contact::find_near(std::span<const double> x, double within_m) const {
     return pairs;
 }
 
+std::vector<std::array<int, 2>> Contact::partners(const Pairs& pairs) const {
+    std::vector<std::array<int, 2>> all;
+    for (const Pair& pair : pairs) {
+        const auto owner = [&](int node) {
+            return obstacle_of_node_[node] >= 0 ? -obstacle_of_node_[node] - 1 : part_of(node);
+        };
+        const auto [low, high] = std::minmax(owner(pair.nodes.front()), owner(pair.nodes.back()));
+        all.push_back({low, high});
+    }
+    std::ranges::sort(all);
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
+}
+
 int Contact::obstacle_of(std::span<const int> nodes) const {
     return std::max(obstacle_of_node_[nodes[0]], obstacle_of_node_[nodes[3]]);
 }
@@ -627,32 +641,36 @@ std::optional<Crossing> Contact::crossing_at_rest() const {
     return found && found->obstacle < 0 ? found : std::nullopt;
 }
 
-std::optional<int> Contact::obstacle_touched_at_rest() const {
-    int touched = -1;
+std::optional<Contact::Touched> Contact::obstacle_touched_at_rest() const {
+    std::optional<Touched> touched;
     visit_moving_sides([&](const Side& side) {
         for (const Plane& plane : planes_)
             for (const int point : side.surface.points)
                 if (dot(plane.normal, node_at(rest_, point) - node_at(rest_, plane.node)) < -touching_m_)
-                    touched = plane.obstacle;
+                    touched = {plane.obstacle, part_of(point)};
     });
     const Search search(*this, rest_, {}, touching_m_, Search::What::pairs, false);
-    const auto test = [&](const Search::Candidate& c, int& found) {
-        if (std::sqrt(c.squared_distance(rest_)) <= touching_m_) found = obstacle_of(c.nodes);
+    const auto moving = [&](int a, int b) { return part_of(obstacle_of_node_[a] < 0 ? a : b); };
+    const auto test = [&](const Search::Candidate& c, std::optional<Touched>& found) {
+        const int obstacle = obstacle_of(c.nodes);
+        if (obstacle >= 0 && std::sqrt(c.squared_distance(rest_)) <= touching_m_)
+            found = {obstacle, moving(c.nodes[0], c.nodes[3])};
     };
-    for (const int piece : search.run(-1, test)) touched = std::max(touched, piece);
+    for (const auto& piece : search.run(std::optional<Touched>(), test)) touched = piece ? piece : touched;
     const auto crossed = first_crossing(rest_, false, true);
-    if (crossed && crossed->obstacle >= 0) touched = crossed->obstacle;
-    return touched < 0 ? std::nullopt : std::optional<int>(touched);
+    if (crossed && crossed->obstacle >= 0)
+        touched = {crossed->obstacle, moving(crossed->edge[0], crossed->triangle[0])};
+    return touched;
+}
+
+std::string Contact::part_name(int part) const {
+    return part == 0 ? "the robot" : "object \"" + rigid_[static_cast<std::size_t>(part) - 1].name + "\"";
 }
 
 Status Contact::check_parts_at_rest() const {
-    const auto name = [&](int part) {
-        return part == 0 ? std::string("the robot")
-                         : "object \"" + rigid_[static_cast<std::size_t>(part) - 1].name + "\"";
-    };
     const auto refused = [&](int a, int b) {
-        return input_error("{} touches or crosses {} at rest: leave a gap", name(std::max(part_of(a), part_of(b))),
-                           name(std::min(part_of(a), part_of(b))));
+        return input_error("{} touches or crosses {} at rest: leave a gap", part_name(std::max(part_of(a), part_of(b))),
+                           part_name(std::min(part_of(a), part_of(b))));
     };
     using Found = std::optional<std::array<int, 2>>;
     const Search search(*this, rest_, {}, touching_m_, Search::What::pairs, false);

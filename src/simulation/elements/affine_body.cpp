@@ -89,11 +89,42 @@ void AffineBody::add_rest_weights(std::span<const double> x, std::span<const dou
 void AffineBody::add_hessian(std::span<const double> x, const std::vector<int>& index,
                              const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const {
     const Matrix3 A = deformation(x);
+    add_blocks([&](const Matrix3& dA) { return stress_change(A, dA); }, index, pattern, values, project);
+}
+
+Matrix3 AffineBody::mean_stress(std::span<const double> start, std::span<const double> x) const {
+    const Matrix3 A = deformation(x), begin = deformation(start);
+    return stiffness_ * (0.5 * (A.transpose() * A + begin.transpose() * begin) - Matrix3::Identity());
+}
+
+double AffineBody::mean_energy(std::span<const double> start, std::span<const double> x, const Matrix3& stress) const {
+    const Matrix3 change = deformation(x) - deformation(start);
+    return mean_stress(start, x).squaredNorm() / (2 * stiffness_) - 0.25 * change.cwiseProduct(change * stress).sum();
+}
+
+void AffineBody::add_mean_gradient(std::span<const double> start, std::span<const double> x, const Matrix3& stress,
+                                   std::span<double> forces) const {
+    const Matrix3 A = deformation(x);
+    add(A * mean_stress(start, x) - 0.5 * (A - deformation(start)) * stress, forces);
+}
+
+void AffineBody::add_mean_hessian(std::span<const double> start, std::span<const double> x, const Matrix3& stress,
+                                  const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
+                                  std::span<double> values, bool project) const {
+    const Matrix3 A = deformation(x), mean = mean_stress(start, x);
+    const auto change = [&](const Matrix3& dA) -> Matrix3 {
+        return dA * mean + 0.5 * stiffness_ * A * (dA.transpose() * A + A.transpose() * dA) - 0.5 * dA * stress;
+    };
+    add_blocks(change, index, pattern, values, project);
+}
+
+void AffineBody::add_blocks(const std::function<Matrix3(const Matrix3&)>& change, const std::vector<int>& index,
+                            const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const {
     Matrix9 H;
     for (int k = 0; k < 9; ++k) {
         Matrix3 dA = Matrix3::Zero();
         dA(k % 3, k / 3) = 1;
-        const Matrix3 dP = stress_change(A, dA);
+        const Matrix3 dP = change(dA);
         H.col(k) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(dP.data());
     }
     if (project) H = linalg::project_to_positive(H);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -31,6 +32,24 @@ public:
     void add_hessian(std::span<const double> x, const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
                      std::span<double> values, bool project) const;
     void append_clique(const std::vector<int>& index, linalg::Lists& cliques) const;
+
+    // An energy-conserving step from `start` (3n) to x: with G = AᵀA − 1, Δ = A − A_start and the mean stress
+    // S = k (G + G_start) / 2, the gradient (A + A_start)/2 · S does the work E(x) − E(start) along Δ, and a rotation
+    // does not stretch the body, unlike the mean of the gradients along a straight path (Simo and Tarnow 1992, "The
+    // discrete energy-momentum method"). For a minimum S is held fixed at `stress`, that of a state nearby, in
+    //     k/8 ‖G + G_start‖² − ¼ ⟨Δ, Δ S⟩
+
+    /// S, J.
+    [[nodiscard]] linalg::Matrix3 mean_stress(std::span<const double> start, std::span<const double> x) const;
+    /// As energy(), add_gradient() and add_hessian(), for such a step.
+    [[nodiscard]] double mean_energy(std::span<const double> start, std::span<const double> x,
+                                     const linalg::Matrix3& stress) const;
+    void add_mean_gradient(std::span<const double> start, std::span<const double> x, const linalg::Matrix3& stress,
+                           std::span<double> forces) const;
+    void add_mean_hessian(std::span<const double> start, std::span<const double> x, const linalg::Matrix3& stress,
+                          const std::vector<int>& index, const linalg::SymmetricPattern& pattern,
+                          std::span<double> values, bool project) const;
+
     /// forces (3n) += change of the gradient with a motion (3n) of the rest positions: k scales with the volume, and
     /// the surface moves along, so that the weights of its points are unchanged.
     void add_rest_product(std::span<const double> x, std::span<const double> motion, std::span<double> forces) const;
@@ -55,6 +74,9 @@ private:
     /// dE/dA, J, and its derivative with respect to A.
     [[nodiscard]] linalg::Matrix3 stress(const linalg::Matrix3& A) const;
     [[nodiscard]] linalg::Matrix3 stress_change(const linalg::Matrix3& A, const linalg::Matrix3& dA) const;
+    /// The blocks of the nodes for the derivative of the stress: change(dA) for a change of A.
+    void add_blocks(const std::function<linalg::Matrix3(const linalg::Matrix3&)>& change, const std::vector<int>& index,
+                    const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const;
     void add(const linalg::Matrix3& per_gradient, std::span<double> forces) const;
 
     std::array<int, 4> nodes_;

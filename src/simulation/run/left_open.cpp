@@ -141,11 +141,11 @@ private:
     }
 
     /// In a rotation, points move on arcs rather than straight lines: second-order displacements towards the axis,
-    /// along which forces do work. External forces balance the body's own elastic ones.
+    /// along which forces do work. External forces balance the body's own elastic ones. Those of objects, whose own
+    /// stiffness is part of the tangent, are in it already: their energy does not change in a rotation.
     void add_turning_forces(Eigen::MatrixXd& stiffness) const {
         Eigen::VectorXd own = Eigen::VectorXd::Zero(state_.x.size());
         system_.model().elements().evaluate(view(state_.x), view(own));
-        for (const AffineBody& object : system_.objects()) object.add_gradient(view(state_.x), view(own));
         for (std::size_t b = 0; b < bodies_.size(); ++b) {
             const Body& body = bodies_[b];
             Eigen::Matrix3d virial = Eigen::Matrix3d::Zero();

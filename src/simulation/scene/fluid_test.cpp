@@ -71,6 +71,19 @@ const std::string down = "gravity = [0, 0, -9.81]\n";
 
 }  // namespace
 
+TEST_CASE("an object that floats stably is open in yaw and drift only, and its equilibrium is called stable") {
+    const sim::Trajectory result =
+        run_text(fluid_world("density = \"1000 kg/m^3\"\nlevel = 0",
+                             "geometry = { box = [[-20, -20, -8], [20, 20, 12]] }\ndensity = \"400 kg/m^3\"",
+                             "steps = 3\ngravity = [0, 0, -9.81]\n"));
+    REQUIRE(result.converged);
+    std::string said;
+    for (const std::string& line : result.warnings) said += line + "\n";
+    CHECK_MESSAGE(said.find("object \"it\" can slide in 2 directions and turn or roll in 1 way") != std::string::npos,
+                  said);
+    CHECK_MESSAGE(said.find("unstable") == std::string::npos, said);
+}
+
 TEST_CASE("a floating block displaces water of its weight, at equilibrium and in dynamics") {
     // 600/1000 of 20 mm; pressed together by a thousandth of that by the water.
     const sim::Trajectory still = run_text(block("density = \"1000 kg/m^3\"\nlevel = 10\n", "steps = 5\n" + down));
@@ -185,7 +198,7 @@ TEST_CASE("mistakes in a fluid give one line each") {
     check_problem(block("level = 10\n", "steps = 1\n" + down), "density");
     check_problem(block("density = \"0 kg/m^3\"\n", "steps = 1\n" + down), "density: must be above zero");
     check_problem(block("density = \"1 g/cm^3\"\ndrag_normal = -1\n", "steps = 1\n" + down),
-                  "drag_normal: is a coefficient: 0 or more");
+                  "drag_normal: -1 is not possible; a coefficient from 0 to 1000");
     check_problem(block("density = \"1 g/cm^3\"\nlevel = 10\n", "steps = 1\n"),
                   "has a level, and nothing says where up is");
     check_problem(block("density = \"1 g/cm^3\"\ndrag = 1\n", "steps = 1\n" + down), "drag: unknown key");

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <string_view>
 
 #include "base/core/near.hpp"
+#include "base/core/test_text.hpp"
 #include "simulation/scene/test_run.hpp"
 
 using namespace pliant;
@@ -104,6 +106,47 @@ TEST_CASE("a bouncing ball comes to rest and stays there") {
     }
 }
 
+TEST_CASE("nothing rebounds higher than it fell, and a collision adds no energy, with any integrator") {
+    const std::string block = "name = \"block\"\ngeometry = { box = [[0, 0, 20], [20, 20, 40]] }\nmass = \"100 g\"\n";
+    for (const char* integrator : {"bdf2", "energy-conserving"}) {
+        const std::string program =
+            fmt::format("duration = \"0.3 s\"\ntime_step = \"2 ms\"\nintegrator = \"{}\"\n", integrator);
+        const sim::Trajectory fall = run_text(impact_world(block, program));
+        const double fallen = 0.1 * g * 20e-3;
+        double after_impact = 0;
+        bool landed = false;
+        for (const sim::Step& step : fall.steps) {
+            CHECK(energy(step) < energy(fall.steps[0]) + 0.01 * fallen);
+            landed = landed || norm(step.objects[0].force_N) > 0;
+            if (landed) after_impact = std::max(after_impact, height(step));
+        }
+        CHECK(landed);
+        CHECK(after_impact < 29e-3);
+
+        // Onto another that stands on the ground already, so that something is in contact all the time.
+        const sim::Trajectory onto = run_text(
+            impact_world(block + "[[object]]\nname = \"step\"\ngeometry = { box = [[-5, -5, 0.5], [25, 25, 15]] }\n"
+                                 "mass = \"300 g\"\n",
+                         program));
+        for (const sim::Step& step : onto.steps)
+            CHECK(energy(step) < energy(onto.steps[0]) + 0.02 * 0.1 * g * 5e-3 + 0.01 * 0.3 * g * 0.5e-3);
+
+        const sim::Trajectory collision = run_text(impact_world(
+            "name = \"a\"\ngeometry = { box = [[0, 0, 500], [20, 20, 520]] }\nmass = \"100 g\"\nvelocity = [1, 0, 0]\n"
+            "[[object]]\nname = \"b\"\ngeometry = { box = [[25, 0, 500], [45, 20, 520]] }\nmass = \"300 g\"\n",
+            fmt::format("duration = \"0.03 s\"\ntime_step = \"1 ms\"\nintegrator = \"{}\"\n", integrator)));
+        // Both fall alike: what is left is the motion along x.
+        const auto speed = [&](std::size_t object) {
+            const auto& last = collision.steps.back().objects[object].position_m;
+            return (last.x - collision.steps[collision.steps.size() - 2].objects[object].position_m.x) / 1e-3;
+        };
+        const double momentum = 0.1 * speed(0) + 0.3 * speed(1);
+        CHECK(momentum == near(0.1, {.relative = 1e-6}));
+        CHECK(speed(1) > 0.2);
+        CHECK(0.5 * (0.1 * speed(0) * speed(0) + 0.3 * speed(1) * speed(1)) < 0.0505);
+    }
+}
+
 TEST_CASE("energy never grows while a block bounces, tumbles and slides with energy-conserving steps") {
     const char* wanted = std::getenv("PLIANT_BOUNCING_STEPS");
     const std::size_t steps = wanted != nullptr ? std::strtoul(wanted, nullptr, 10) : 600;
@@ -135,6 +178,26 @@ TEST_CASE("a freely spinning object keeps its energy, and its centre falls on a 
         CHECK(energy(step) == near(energy(result.steps[0]), {.absolute = 1e-4 * scale}));
     const double T = 0.3;
     CHECK(height(result.steps.back()) == near(605e-3 + T - 0.5 * g * T * T, {.absolute = 1e-6}));
+}
+
+TEST_CASE("an object that rotates about a principal axis keeps its angular velocity, whatever the stiffest body is") {
+    for (const char* integrator : {"bdf2", "energy-conserving"}) {
+        for (const char* modulus : {"1 kPa", "1 MPa", "1 GPa"}) {
+            std::string text = impact_world(
+                "name = \"top\"\ngeometry = { box = [[-5, -10, 600], [5, 10, 640]] }\nmass = \"100 g\"\n"
+                "angular_velocity = [0, 0, 10]\n",
+                fmt::format("duration = \"0.3 s\"\ntime_step = \"5 ms\"\nintegrator = \"{}\"\n", integrator));
+            text = test::replaced(text, "youngs_modulus = \"1 MPa\"", fmt::format("youngs_modulus = \"{}\"", modulus));
+            text = test::replaced(text, "gravity = [0, 0, -9.81]\n", "");
+            const sim::Trajectory result = run_text(text);
+            const sim::Step& last = result.steps.back();
+            const bool conserves = std::string_view(integrator) == "energy-conserving";
+            const auto& q = last.objects[0].rotation;
+            CHECK(2 * std::atan2(q[3], q[0]) == near(3, {.relative = conserves ? 1e-3 : 1e-2}));
+            CHECK(last.kinetic_energy_J ==
+                  near(0.5 * 0.1 / 12 * (0.01 * 0.01 + 0.02 * 0.02) * 100, {.relative = conserves ? 1e-3 : 2e-2}));
+        }
+    }
 }
 
 TEST_CASE("mistakes in time steps give one line each") {

@@ -124,7 +124,8 @@ TEST_CASE("shape-blend computes R_omega from two moduli, by the name of a map") 
                            "gives R_omega 0.5");
     check_material_problem(soft + "shape_parameter = \"thesis\"\nstiffest = \"45 MPa\"\nshape_curve = [0, 0, 1]",
                            "goes with shape_parameter = \"calibrated\"");
-    check_material_problem("[material.soft]\nyoungs_modulus = \"1 MPa\"\nstiffest = \"45 MPa\"", "unknown key");
+    check_material_problem("[material.soft]\nyoungs_modulus = \"1 MPa\"\nstiffest = \"45 MPa\"",
+                           "is a constant of shape-blend");
 }
 
 TEST_CASE("constants that do not fit their law are refused") {

@@ -266,9 +266,8 @@ double Equilibrium::gas_compliance(const Drive& drive, double multiplier) const 
 
 Evaluation Equilibrium::evaluate(const State& state, const Controls& controls) const {
     Balance balance;
-    const bool of_mean = controls.inertia && !controls.inertia->means().empty();
-    Evaluation e = of_mean ? evaluate_mean(state, controls, balance)
-                           : evaluate_at(state, controls, controls.inertia.get(), balance);
+    Evaluation e = controls.of_means() ? evaluate_mean(state, controls, balance)
+                                       : evaluate_at(state, controls, controls.inertia.get(), balance);
     if (e.possible()) fill_residual(balance, e);
     return e;
 }
@@ -290,9 +289,20 @@ Evaluation Equilibrium::evaluate_mean(const State& state, const Controls& contro
         balance.internal += at.weight * here.internal;
         balance.driving += at.weight * here.driving;
     }
+    for (std::size_t k = 0; k < objects().size(); ++k) {
+        const Eigen::VectorXd& start = inertia.start().x;
+        mean.energy_J += objects()[k].mean_energy(view(start), view(state.x), controls.object_stress[k]);
+        objects()[k].add_mean_gradient(view(start), view(state.x), controls.object_stress[k], view(balance.internal));
+    }
     mean.energy_J += inertia.evaluate(state.x, balance.internal);
     if (fluid_) add_drag(state.x, controls, inertia, balance.internal, mean.energy_J);
     return mean;
+}
+
+std::vector<linalg::Matrix3> Equilibrium::object_stress(const Eigen::VectorXd& start, const Eigen::VectorXd& x) const {
+    std::vector<linalg::Matrix3> stress;
+    for (const AffineBody& object : objects()) stress.push_back(object.mean_stress(view(start), view(x)));
+    return stress;
 }
 
 Evaluation Equilibrium::evaluate_at(const State& state, const Controls& controls, const Inertia* inertia,
@@ -313,9 +323,11 @@ Evaluation Equilibrium::evaluate_at(const State& state, const Controls& controls
         e.energy_J += plate.energy(view(state.x));
         plate.add_gradient(view(state.x), view(internal));
     }
-    for (const AffineBody& object : objects()) {
-        e.energy_J += object.energy(view(state.x));
-        object.add_gradient(view(state.x), view(internal));
+    if (!controls.of_means()) {  // else theirs is not a mean along the path
+        for (const AffineBody& object : objects()) {
+            e.energy_J += object.energy(view(state.x));
+            object.add_gradient(view(state.x), view(internal));
+        }
     }
     for (std::size_t j = 0; j < joints_.size(); ++j) {
         e.energy_J += joints_[j].energy(view(state.x), joint_drive(controls, j));

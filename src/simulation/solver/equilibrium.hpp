@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -37,6 +38,11 @@ struct Controls {
     std::vector<double> joint_start;   ///< (joints) their coordinates at the start of the step; empty: all zero
     bool met = false;                  ///< self-contact, if deferred, is active
     std::shared_ptr<const Inertia> inertia = nullptr;  ///< of a step in time; null in a quasi-static step
+    /// (objects) of an energy-conserving step: their mean stress at a state near its end, AffineBody::mean_stress(), J.
+    std::vector<linalg::Matrix3> object_stress = {};
+
+    /// Forces are means along the path of the step.
+    [[nodiscard]] bool of_means() const { return inertia && !inertia->means().empty(); }
 };
 
 /// The unknowns of the solver: node positions and the multiplier of every actuator.
@@ -155,7 +161,12 @@ public:
     /// True if there is any friction.
     [[nodiscard]] bool has_friction() const;
     /// True if surfaces are within contact range.
+    /// (objects) Controls::object_stress for a step from `start` (3n) to x.
+    [[nodiscard]] std::vector<linalg::Matrix3> object_stress(const Eigen::VectorXd& start,
+                                                             const Eigen::VectorXd& x) const;
     [[nodiscard]] bool touches(const State& state, const Controls& controls) const;
+    /// What touches what, as contact::Contact::partners(); empty without contact.
+    [[nodiscard]] std::vector<std::array<int, 2>> contact_partners(const State& state, const Controls& controls) const;
     /// If self-contact is deferred: true if the surfaces come so close on the straight path between two states that it
     /// must become active. `now`: the controls of `state`.
     [[nodiscard]] bool meets_itself(const State& state, const Controls& now, const State& next,

@@ -153,6 +153,12 @@ bool Equilibrium::touches(const State& state, const Controls& controls) const {
     return contact != nullptr && !contact->find(with_obstacles(state.x, controls.obstacles)).empty();
 }
 
+std::vector<std::array<int, 2>> Equilibrium::contact_partners(const State& state, const Controls& controls) const {
+    const contact::Contact* contact = this->contact(controls);
+    if (contact == nullptr) return {};
+    return contact->partners(contact->find(with_obstacles(state.x, controls.obstacles)));
+}
+
 bool Equilibrium::meets_itself(const State& state, const Controls& now, const State& next, const Controls& then) const {
     if (then.met || model_->contact(true) == model_->contact(false)) return false;
     const contact::Contact& contact = *model_->contact(true);

@@ -67,7 +67,7 @@ void Equilibrium::add_tangent_at(const State& state, const Controls& controls, c
 void Equilibrium::add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                               std::span<double> values, bool project, TangentParts parts) const {
     const Inertia* inertia = controls.inertia.get();
-    if (inertia != nullptr && !inertia->means().empty()) {
+    if (controls.of_means()) {
         for (const Inertia::Mean& at : inertia->means()) {
             std::vector<double> there(values.size(), 0.0);
             add_tangent_at({inertia->on_path(state.x, at.share), state.multiplier}, controls, layout, there, project,
@@ -76,6 +76,11 @@ void Equilibrium::add_tangent(const State& state, const Controls& controls, cons
         }
     } else {
         add_tangent_at(state, controls, layout, values, project, parts);
+    }
+    if (controls.of_means()) {
+        for (std::size_t k = 0; k < objects().size(); ++k)
+            objects()[k].add_mean_hessian(view(inertia->start().x), view(state.x), controls.object_stress[k],
+                                          index_of(layout.nodes), layout.pattern, values, project);
     }
     if (inertia != nullptr) {
         inertia->add_hessian(layout.element_sums, index_of(layout.nodes), layout.pattern, values);
@@ -89,7 +94,9 @@ void Equilibrium::add_tangent_beside_tets(const State& state, const Controls& co
     const linalg::SymmetricPattern& pattern = layout.pattern;
     const std::vector<int>& index = index_of(layout.nodes);
     for (const Plate& plate : plates_) plate.add_hessian(view(state.x), index, pattern, values);
-    for (const AffineBody& object : objects()) object.add_hessian(view(state.x), index, pattern, values, project);
+    if (!controls.of_means()) {
+        for (const AffineBody& object : objects()) object.add_hessian(view(state.x), index, pattern, values, project);
+    }
     for (const SpringPath& spring : springs_) spring.add_hessian(view(state.x), index, pattern, values, project);
     for (std::size_t j = 0; j < joints_.size(); ++j)
         joints_[j].add_hessian(view(state.x), joint_drive(controls, j), index, pattern, values, project);

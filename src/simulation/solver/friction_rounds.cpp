@@ -50,6 +50,7 @@ StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, con
                             std::optional<Evaluation> known) {
     const std::vector<Drive> wanted = controls.drives;
     const bool cables_drag = system.has_cable_friction(), rubs = cables_drag || system.has_friction();
+    const bool in_rounds = rubs || !controls.object_stress.empty();
     if (cables_drag) system.freeze_cable_friction(next.x, wanted, start.drives, controls);
     controls.friction = system.freeze_friction(start.state, start.state, start.controls, start.controls);
     if (rubs) known.reset();
@@ -65,10 +66,11 @@ StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, con
         outcome.iterations += total.iterations;
         outcome.history.insert(outcome.history.begin(), total.history.begin(), total.history.end());
         total = std::move(outcome);
-        if (!total.converged || !rubs) break;
+        if (!total.converged || !in_rounds) break;
         const bool held = constraints_hold(total.evaluation, settings.tolerance);
         controls.friction = system.freeze_friction(next, start.state, controls, start.controls);
         if (cables_drag) system.freeze_cable_friction(next.x, wanted, start.drives, controls);
+        if (!controls.object_stress.empty()) controls.object_stress = system.object_stress(start.state.x, next.x);
         total.evaluation = system.evaluate(next, controls);
         const Misfit misfit{total.evaluation.residual, system.cable_friction_error(next, wanted)};
         if (held && misfit.within(settings.tolerance, 1, cable_share)) break;

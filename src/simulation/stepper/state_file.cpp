@@ -523,6 +523,8 @@ Result<RobotState> state_from_bytes(const Stepper& stepper, std::string_view byt
     StateReader reader(stepper);
     RobotState robot = reader.robot(json);
     if (!reader.status()) return tl::unexpected(reader.status().error());
+    if (robot.controls.of_means())
+        robot.controls.object_stress = stepper.system().object_stress(robot.controls.inertia->start().x, robot.x());
     if (Status status = check_possible(stepper, robot); !status) return tl::unexpected(status.error());
     robot.evaluation = stepper.system().evaluate(robot.now.state, robot.controls);
     return robot;

@@ -19,6 +19,11 @@ constexpr double smallest_share = 1.0 / 64;  // of a step by inputs
 constexpr int friction_rounds = 30;
 constexpr int most_in_vain = 3000;  // iterations: as many as quasi-newton may take for one attempt
 
+/// Positions a step ago; at the start of a motion those of now.
+const Eigen::VectorXd& a_step_ago(const History& history) {
+    return history.dt_before > 0 ? history.x_before : history.x;
+}
+
 void note(const std::vector<IterationRecord>& history, double along, StepReport& report) {
     for (IterationRecord record : history) {
         record.time = along;
@@ -281,13 +286,22 @@ StepOutcome Stepper::go(RobotState& robot, const Target& target, StepReport& rep
 
 /// True if the formula of a step depends on what happens in it.
 bool Stepper::chooses_scheme() const {
-    return options_.dynamics && (is_adaptive() || options_.dynamics->integrator != Integrator::bdf2);
+    return options_.dynamics &&
+           (is_adaptive() || options_.dynamics->integrator != Integrator::bdf2 || model_.contact(true) != nullptr);
+}
+
+bool Stepper::meets_anew(const RobotState& robot, const State& next, const Controls& controls) const {
+    const auto partners = system_.contact_partners(next, controls);
+    if (partners.empty()) return false;
+    return !std::ranges::includes(
+        robot.partners ? *robot.partners : system_.contact_partners(robot.now.state, robot.controls), partners);
 }
 
 /// Parts in contact use formulas that dissipate unresolved motion, as in an impact. The step in which contact begins,
 /// and the next, do not use earlier states.
 Scheme Stepper::scheme(const RobotState& robot, const Controls& controls) const {
     if (robot.history.touching == 1) return Scheme::euler;
+    if (!is_adaptive() && options_.dynamics->integrator == Integrator::bdf2) return Scheme::even;
     if (robot.history.touching > 1 || options_.dynamics->integrator == Integrator::bdf2) return Scheme::bdf2;
     // A prescribed length, volume or angle refers to the end of the step, not to the mean; a damped joint, to its loss
     // by then.
@@ -319,8 +333,9 @@ double Stepper::time_error_m(const Controls& controls, const State& next) const 
     return mass > 0 ? std::sqrt(std::max(0.0, off.dot(controls.inertia->mass_times(off))) / mass) : 0;
 }
 
-/// If a step ends in contact though it began without, or does not converge because of it, it is repeated with a scheme
-/// that may dissipate energy.
+/// If parts come into contact in a step, or it does not converge because of that, it is repeated with a scheme that may
+/// dissipate energy: BDF2 would carry the velocity from before the impact into the next steps, and throw bodies higher
+/// than they fell.
 StepOutcome Stepper::attempt_in_time(const RobotState& robot, const Target& target, Controls& controls, State& next,
                                      const Progress& progress) {
     const Controls wanted = controls;
@@ -328,7 +343,8 @@ StepOutcome Stepper::attempt_in_time(const RobotState& robot, const Target& targ
     if (first == Scheme::conserving) take_mean_inputs(robot, controls);
     StepOutcome outcome = attempt(robot, target, first, controls, next, progress);
     const bool stuck = !outcome.converged && first == Scheme::conserving && !progress.cancelled();
-    if (stuck || (outcome.converged && robot.history.touching == 0 && system_.touches(next, controls))) {
+    const bool impact = outcome.converged && first != Scheme::euler && meets_anew(robot, next, controls);
+    if (stuck || impact) {
         Controls again = wanted;
         State there;
         StepOutcome lossy = attempt(robot, target, Scheme::euler, again, there, progress);
@@ -366,6 +382,8 @@ StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Sche
                              State& next, const Progress& progress) {
     if (options_.dynamics) controls.inertia = motion_->inertia(robot.history, target.along - robot.now.along, scheme);
     if (tether_dt_s_ > 0) controls.inertia = motion_->inertia(MotionInTime::still(robot.x()), tether_dt_s_);
+    controls.object_stress.clear();
+    if (controls.of_means()) controls.object_stress = system_.object_stress(a_step_ago(robot.history), robot.x());
     controls.joint_start = system_.joint_coordinates(robot.x(), robot.controls);
     const std::optional<double> along = target.onward ? std::optional(target.along) : std::nullopt;
     std::optional<Prediction> expected;
@@ -390,9 +408,12 @@ StepOutcome Stepper::settle(const RobotState& from, Controls& controls, State& n
 
 void Stepper::accept(RobotState& robot, const Target& target, Controls controls, State next, StepOutcome outcome) {
     if (options_.dynamics) {
-        const int touching = robot.history.touching;
+        const int touching = chooses_scheme() && meets_anew(robot, next, controls) ? 0 : robot.history.touching;
         robot.history = MotionInTime::after(*controls.inertia, next.x);
-        if (chooses_scheme() && system_.touches(next, controls)) robot.history.touching = touching + 1;
+        if (chooses_scheme()) {
+            robot.partners = system_.contact_partners(next, controls);
+            if (!robot.partners->empty()) robot.history.touching = touching + 1;
+        }
     }
     robot.past.push_back({robot.now.along, std::make_shared<const State>(std::move(robot.now.state))});
     if (robot.past.size() > options_.most_past) robot.past.pop_front();
@@ -420,6 +441,7 @@ StepReport Stepper::settle_beside(RobotState& robot, State guess, const Progress
     note(outcome.history, robot.now.along, report);
     if (outcome.converged) {
         robot.now.state = std::move(guess);
+        robot.partners.reset();
         robot.controls = std::move(controls);
         robot.evaluation = std::move(outcome.evaluation);
         robot.past.clear();  // they belong to the old path

@@ -117,6 +117,8 @@ private:
     [[nodiscard]] StepOutcome attempt_in_time(const RobotState& robot, const Target& target, Controls& controls,
                                               State& next, const Progress& progress);
     [[nodiscard]] bool chooses_scheme() const;
+    /// True if parts are in contact at `next` that are not at the robot's present state.
+    [[nodiscard]] bool meets_anew(const RobotState& robot, const State& next, const Controls& controls) const;
     [[nodiscard]] Scheme scheme(const RobotState& robot, const Controls& controls) const;
     void take_mean_inputs(const RobotState& robot, Controls& controls) const;
     [[nodiscard]] double time_error_m(const Controls& controls, const State& next) const;
