@@ -28,10 +28,14 @@ Result<std::string> read_file(const fs::path& path, std::uintmax_t limit_bytes) 
 
 namespace {
 
+/// A device or a pipe; or a name in /dev, /dev/fd or /proc, which is a way to an open file (/dev/stdout). What lies
+/// deeper in /dev, as in /dev/shm, is a file as any other.
 bool is_special(const fs::path& path, fs::file_type type) {
-    const auto absolute = path.lexically_normal().string();
-    return (type != fs::file_type::not_found && type != fs::file_type::regular && type != fs::file_type::directory) ||
-           absolute.starts_with("/dev/") || absolute.starts_with("/proc/");
+    if (type != fs::file_type::not_found && type != fs::file_type::regular && type != fs::file_type::directory)
+        return true;
+    std::error_code code;
+    const fs::path absolute = fs::absolute(path, code).lexically_normal(), folder = absolute.parent_path();
+    return folder == "/dev" || folder == "/dev/fd" || absolute.string().starts_with("/proc/");
 }
 
 /// `shown`: name for the error.

@@ -19,8 +19,8 @@ namespace pliant {
 /// there. Errors: a folder, a device or a pipe, which a rename would destroy.
 [[nodiscard]] Result<std::filesystem::path> replaceable_file(const std::filesystem::path& path);
 
-/// Writes `PATH.partial`, then renames it to the file that is replaced. Devices, pipes and what /dev and /proc name are
-/// written to directly.
+/// Writes `PATH.partial`, then renames it to the file that is replaced. Devices, pipes and the names of open files
+/// (/dev/stdout, /proc/self/fd) are written to directly.
 [[nodiscard]] Status write_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// True if `folder` does not exist, is empty, or contains a file named `marker`, so that no foreign folder is ever

@@ -8,6 +8,7 @@
 
 #include "base/core/test_folder.hpp"
 #include "base/core/test_text.hpp"
+#include "base/core/test_variable.hpp"
 
 using namespace pliant;
 using test::holds;
@@ -53,6 +54,27 @@ TEST_CASE("a symbolic link keeps pointing to the file that is written; devices a
     fs::create_symlink("/dev/full", scratch / "full");
     CHECK_FALSE(write_file(scratch / "full", "too much"));
     CHECK(fs::is_symlink(scratch / "full"));
+}
+
+TEST_CASE("a file in /dev/shm is replaced as a whole, like any other; one that is open is written to") {
+    if (!fs::is_directory("/dev/shm")) return;
+    const test::Variable memory("TMPDIR", "/dev/shm");
+    const test::Folder scratch("files");
+    REQUIRE(scratch.path().string().starts_with("/dev/shm/"));
+    REQUIRE(write_file(scratch / "a.txt", "old"));
+    fs::create_hard_link(scratch / "a.txt", scratch / "kept.txt");
+    REQUIRE(write_file(scratch / "a.txt", "new"));
+    CHECK(*read_file(scratch / "a.txt") == "new");
+    CHECK(*read_file(scratch / "kept.txt") == "old");  // written to directly, it would be "new"
+    CHECK(*replaceable_file("/dev/shm/../shm/x.zip") == "/dev/shm/../shm/x.zip");
+
+    const int file = ::open((scratch / "open.txt").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    REQUIRE(file >= 0);
+    CHECK(write_file("/dev/fd/" + std::to_string(file), "through"));
+    char there[8] = {};
+    CHECK(::pread(file, there, sizeof there, 0) == 7);
+    ::close(file);
+    CHECK(std::string(there) == "through");
 }
 
 TEST_CASE("a folder that cannot be replaced keeps its old results, and the new ones are named") {
