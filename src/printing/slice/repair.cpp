@@ -1,5 +1,6 @@
 #include "printing/slice/repair.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/core/counted.hpp"
@@ -15,10 +16,19 @@ int layer_at(std::int32_t z, const Layers& layers) {
     return k > 0 && std::int64_t{layers.top_um(k - 1)} * grid_per_um > z ? k - 1 : k;
 }
 
-std::string hole_warning(const Holes& holes, const std::string& label, const Layers& layers) {
+/// The uppermost layer of the surface: a layer is printed where its middle is inside.
+int last_layer(const GridSurface& surface, const Layers& layers) {
+    std::int32_t top = surface.points.front().z;
+    for (const GridPoint& point : surface.points) top = std::max(top, point.z);
+    return std::max(0, layers.middles_up_to(top, grid_per_um) - 1);
+}
+
+/// A hole reaches into the layers below its highest point, not into the one that begins there.
+std::string hole_warning(const Holes& holes, const std::string& label, int last, const Layers& layers) {
+    const int low = std::min(last, layer_at(holes.z_low, layers));
+    const int high = std::min(last, layer_at(std::max(holes.z_low, holes.z_high - 1), layers));
     return fmt::format("{}: {} hole{} ({} open edges, {:.3g} mm^2) closed in layers {} to {}", label, holes.count,
-                       holes.count == 1 ? "" : "s", holes.edges, holes.area_mm2, layer_at(holes.z_low, layers),
-                       layer_at(holes.z_high, layers));
+                       holes.count == 1 ? "" : "s", holes.edges, holes.area_mm2, low, high);
 }
 
 std::string join_warning(std::size_t points, const std::string& label, double join_um) {
@@ -38,7 +48,7 @@ Status close_surface(GridSurface& surface, const std::string& label, const Layer
         return input_error(
             "{}: the surface is open: {:.4g} mm^2 are missing beside {:.4g} mm^2; a closed surface is needed", label,
             holes.area_mm2, area);
-    if (holes.count > 0) warnings.push_back(hole_warning(holes, label, layers));
+    if (holes.count > 0) warnings.push_back(hole_warning(holes, label, last_layer(surface, layers), layers));
     return {};
 }
 

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "base/core/near.hpp"
 #include "printing/slice/holes.hpp"
 #include "printing/slice/shells.hpp"
@@ -50,6 +52,23 @@ TEST_CASE("a good cube is welded and otherwise not changed") {
     CHECK(r.warnings.empty());
 }
 
+TEST_CASE("a hole in the top is in the uppermost layer, not in one that the part does not have") {
+    TriMesh open = cube;
+    const auto in_top = [&](const auto& triangle) {
+        return std::all_of(triangle.begin(), triangle.end(), [&](int p) { return cube.points[p].z == 1000; });
+    };
+    open.triangles.erase(std::find_if(open.triangles.begin(), open.triangles.end(), in_top));
+    const auto warning = [&](const Layers& layers) {
+        const auto repaired = repair(open, "b", layers);
+        REQUIRE_MESSAGE(repaired, (repaired ? "" : repaired.error().message));
+        REQUIRE(repaired->warnings.size() == 1);
+        return repaired->warnings.front();
+    };
+    CHECK(warning(50).ends_with("closed in layers 19 to 19"));  // 20 layers
+    CHECK(warning(300).ends_with("closed in layers 2 to 2"));   // 900 um: the middle of a fourth would be at 1050
+    CHECK(warning(2500).ends_with("closed in layers 0 to 0"));  // thinner than half a layer
+}
+
 TEST_CASE("any missing triangle is filled in, with a warning that names body and layers") {
     for (std::size_t i = 0; i < cube.triangles.size(); ++i) {
         TriMesh open = cube;
@@ -63,7 +82,7 @@ TEST_CASE("any missing triangle is filled in, with a warning that names body and
     no_side.triangles.resize(10);  // the last side, both triangles: a square hole from z = 0 to 1000
     const Repaired r = repaired(no_side);
     CHECK(volume_um3(r.surface) == near(1e9, {.relative = 1e-9}));
-    CHECK(r.warnings[0] == "body 'b' (soft): 1 hole (4 open edges, 1 mm^2) closed in layers 0 to 20");
+    CHECK(r.warnings[0] == "body 'b' (soft): 1 hole (4 open edges, 1 mm^2) closed in layers 0 to 19");
 }
 
 TEST_CASE("a T-junction is closed without a warning") {
