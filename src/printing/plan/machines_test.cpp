@@ -10,6 +10,7 @@
 #include "base/core/test_text.hpp"
 #include "printing/plan/check.hpp"
 #include "printing/plan/plan.hpp"
+#include "printing/plan/proof.hpp"
 #include "printing/plan/swap.hpp"
 #include "printing/plan/test_jobs.hpp"
 
@@ -96,6 +97,19 @@ TEST_CASE("the planned time is that of the commands, to the microsecond, on ever
             CHECK(sum.expose == near(plan.seconds.expose, {.relative = 1e-12}));
             CHECK(sum.total < plan.seconds.total);
         }
+    }
+}
+
+TEST_CASE("with a lift higher than the vat the program is proved, on every machine") {
+    std::mt19937 random(7);
+    for (machine::Printer printer : plan::test::machines()) {
+        INFO(printer.name);
+        printer.platform.lift_um = printer.clear_um(0) + 20'000;
+        const job::Manifest job = random_job(printer, random);
+        const Plan plan = make_plan(job, printer).value();
+        const Status proved = prove_program(write_gcode(plan, job, printer), plan, job, printer);
+        CHECK_MESSAGE(proved, (proved ? "" : proved.error().message));
+        CHECK(plan.seconds.total == near(program_seconds(plan, job, printer).total, {.relative = 1e-9}));
     }
 }
 

@@ -46,6 +46,16 @@ void loosen(Sequence& s, int z_um) {
     s.move(Axis::platform, z_um + p.platform.lift_um, p.platform.lift_speed_mm_s);
 }
 
+/// Stores the vat. With a lift higher than the vat the platform came down for that: over a vat that stays it rises
+/// slowly as far as it does after a layer, since that way is within the lift.
+void put_away(Sequence& s, int slot, int part_um) {
+    const Printer& p = s.printer();
+    store_vat(s, slot);
+    const int lifted_um = part_um + p.platform.lift_um;
+    if (!p.has_carriage() && s.position()[Axis::platform] < lifted_um)
+        s.move(Axis::platform, lifted_um, p.platform.lift_speed_mm_s);
+}
+
 /// The parts of a print, in order. `Steps` executes them or computes their duration.
 template <class Steps>
 void walk(const Plan& plan, const job::Manifest& job, const Printer& p, Steps& steps) {
@@ -107,7 +117,7 @@ struct Writing {
     void store(int slot, int part_um) const {
         s.comment(fmt::format("store slot {}", slot));
         s.move(Axis::platform, s.printer().push_um(part_um));
-        store_vat(s, slot);
+        put_away(s, slot, part_um);
     }
 };
 
@@ -159,7 +169,7 @@ public:
     }
     void store(int slot, int part_um) {
         rise_over(part_um);
-        take([&](Sequence& s) { store_vat(s, slot); });
+        take([&](Sequence& s) { put_away(s, slot, part_um); });
     }
     PrintTimes finish() {
         take([&](Sequence& s) { s.move(Axis::platform, p_.axis(Axis::platform).home_um()); });
