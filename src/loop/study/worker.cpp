@@ -14,6 +14,7 @@
 
 #include "base/core/file_handle.hpp"
 #include "base/core/stopwatch.hpp"
+#include "loop/study/failure.hpp"
 #include "loop/study/json_path.hpp"
 #include "loop/study/wire.hpp"
 
@@ -35,40 +36,28 @@ double cpu_s() {
     return sum;
 }
 
-/// The last non-empty line: errors come last.
-std::string last_line(const std::string& text) {
-    const std::size_t end = text.find_last_not_of(" \r\n");
-    if (end == std::string::npos) return "";
-    const std::size_t before = text.find_last_of("\r\n", end);
-    return text.substr(before == std::string::npos ? 0 : before + 1,
-                       end - (before == std::string::npos ? 0 : before + 1) + 1);
-}
-
 /// Extracts the wanted numbers from a command's output; null if missing.
 class Reading {
 public:
     explicit Reading(const std::vector<JsonPath>& paths) : paths_(paths), values(nlohmann::json::array()) {}
 
     void read(const std::string& output) {
-        const auto json = nlohmann::json::parse(output, nullptr, false);
+        json = nlohmann::json::parse(output, nullptr, false);
         readable = !json.is_discarded();
         for (const JsonPath& path : paths_) {
             const Result<double> number = readable ? path.number_in(json) : Result<double>(0.0);
             values.push_back(readable && number ? nlohmann::json(*number) : nlohmann::json(nullptr));
             if (readable && !number && missing.empty()) missing = number.error().message;
         }
-        if (readable && json.is_object() && json.contains("error") && json["error"].is_string())
-            error = last_line(json["error"].get<std::string>());
     }
 
 private:
     const std::vector<JsonPath>& paths_;
 
 public:
-    nlohmann::json values;
+    nlohmann::json json, values;
     bool readable = false;
     std::string missing;  ///< error message of the first missing path
-    std::string error;    ///< the command's own error message
 };
 
 nlohmann::json run_row(const std::vector<std::string>& words, const std::vector<JsonPath>& paths,
@@ -81,8 +70,7 @@ nlohmann::json run_row(const std::vector<std::string>& words, const std::vector<
     std::string reason;
     bool missing_path = false;
     if (outcome.exit_status != 0) {
-        reason = !reading.error.empty() ? reading.error : last_line(outcome.errors);
-        if (reason.empty()) reason = "exit status " + std::to_string(outcome.exit_status);
+        reason = reason_of_failure(reading.json, outcome.errors, outcome.exit_status);
     } else if (!reading.readable) {
         reason = "the command printed no JSON";
     } else if (!reading.missing.empty()) {
