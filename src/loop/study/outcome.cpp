@@ -30,10 +30,6 @@ std::string number_cell(double number) {
     return std::isfinite(number) ? number_text(number) : "";
 }
 
-std::string column(const Key& key) {
-    return key.unit.empty() ? key.name : fmt::format("{} ({})", key.name, key.unit);
-}
-
 /// A result of every row; NaN if missing.
 std::vector<double> result_of(const Plan& plan, const Collected& rows, std::size_t result) {
     std::vector<double> values(plan.rows.size(), std::nan(""));
@@ -150,6 +146,10 @@ Status write_npz(const Plan& plan, const fs::path& path, const Collected& rows) 
 
 }  // namespace
 
+std::string column_of(const Key& key) {
+    return key.unit.empty() ? key.name : fmt::format("{} ({})", key.name, key.unit);
+}
+
 std::vector<ResultFigures> figures_of(const Plan& plan, const Collected& rows) {
     std::vector<ResultFigures> all;
     for (std::size_t k = 0; k < plan.results.size(); ++k) {
@@ -162,7 +162,7 @@ std::vector<ResultFigures> figures_of(const Plan& plan, const Collected& rows) {
 
 std::string results_csv(const Plan& plan, const Collected& rows) {
     std::string text = "row";
-    for (const Key& key : plan.keys) text += "," + cell(column(key));
+    for (const Key& key : plan.keys) text += "," + cell(column_of(key));
     for (const Wanted& wanted : plan.results) text += "," + cell(wanted.name);
     text += ",status,reason\n";
     for (std::size_t row = 0; row < plan.rows.size(); ++row) {

@@ -23,6 +23,8 @@ struct ResultFigures {
 
 [[nodiscard]] std::vector<ResultFigures> figures_of(const Plan& plan, const Collected& rows);
 
+/// Title of the column of a key: "modulus (MPa)".
+[[nodiscard]] std::string column_of(const Key& key);
 /// One line per row: keys with their units, results, status and reason; the same bytes wherever the rows ran.
 [[nodiscard]] std::string results_csv(const Plan& plan, const Collected& rows);
 /// Wall and processor time of each row.

@@ -8,6 +8,7 @@
 #include "base/core/digest.hpp"
 #include "base/core/files.hpp"
 #include "base/core/text.hpp"
+#include "loop/study/clashes.hpp"
 #include "loop/study/design.hpp"
 #include "loop/study/json_path.hpp"
 #include "loop/study/sobol.hpp"
@@ -318,6 +319,19 @@ Status add_rows(Draft& draft, Reader& root, const std::string& table_text) {
     return {};
 }
 
+/// A table's column has no place in the study file.
+void report_clashes(const Plan& plan, Reader& root) {
+    const bool by_table = plan.design == Design::table;
+    for (const Clash& clash : clashes(plan)) {
+        Reader owner = root.table(clash.where.substr(0, clash.where.find('.')), false);
+        const std::string name = clash.where.substr(clash.where.find('.') + 1);
+        if (!by_table || owner.has(name))
+            owner.problem(name, clash.message);
+        else
+            root.problem("table", fmt::format("column \"{}\" {}", name, clash.message));
+    }
+}
+
 }  // namespace
 
 Result<Plan> parse_study(std::string_view text, const fs::path& file, const StudyContext& context) {
@@ -340,6 +354,7 @@ Result<Plan> parse_study(std::string_view text, const fs::path& file, const Stud
         table_text = std::move(*read);
     }
     if (Status status = add_rows(draft, root, table_text); !status) return tl::unexpected(status.error());
+    report_clashes(plan, root);
     if (Status status = problems.status(); !status) return tl::unexpected(status.error());
     plan.fingerprint = fingerprint_of(text, table_text, plan);
     const std::size_t usual = usual_rows_per_chunk(plan.rows.size());

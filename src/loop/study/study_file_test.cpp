@@ -141,10 +141,27 @@ TEST_CASE("a mistake in a study file gives one line: where, and what would be ri
               .find("a key is expected at letter 8") != std::string::npos);
 }
 
+TEST_CASE("names that would be one column, and keys that set the same thing, are refused with their line") {
+    CHECK(mistake(head + "plan = \"grid\"\n" + modulus + "result.modulus = \"cables.flexor.tension_N\"\n") ==
+          "s.toml:4: result.modulus: is the name of key.modulus too; in results.csv every column needs a name of its "
+          "own");
+    CHECK(mistake(head + "plan = \"sobol\"\nsamples = 4\n" + modulus + tension +
+                  "key.stiff = { set = \"material.soft.youngs_modulus\", range = [\"1 MPa\", \"2 MPa\"] }\n") ==
+          "s.toml:6: key.stiff: sets \"material.soft.youngs_modulus\", as key.modulus does; only one of them may");
+    const pliant::test::Folder folder("study");
+    REQUIRE(write_file(folder / "designs.csv", "status,mesh.order\n5,1\n"));
+    const auto table = parsed(head + "plan = \"table\"\ntable = \"designs.csv\"\n" + tension, folder / "s.toml");
+    REQUIRE_FALSE(table);
+    CHECK(
+        table.error().message.ends_with("s.toml:3: table: column \"status\" is the name of a column that every "
+                                        "results.csv has; every column needs a name of its own"));
+}
+
 TEST_CASE("a grid that is too big is refused before it is built") {
     std::string text = head + "plan = \"grid\"\n" + tension;
     for (int k = 0; k < 10; ++k)
-        text += "key.k" + std::to_string(k) + " = { set = \"a\", range = [0, 1], levels = 100 }\n";
+        text +=
+            "key.k" + std::to_string(k) + " = { set = \"a" + std::to_string(k) + "\", range = [0, 1], levels = 100 }\n";
     CHECK(mistake(text) ==
           "s.toml:2: plan: the grid has over 1000000 rows; take fewer levels, or plan = \"sobol\" with samples");
 }
