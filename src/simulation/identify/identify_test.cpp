@@ -124,6 +124,14 @@ TEST_CASE("the offset of a cable's zero length is identified") {
                 {"tip_x_mm", "tip_z_mm", "flexor_tension_N"}, {0.1, 0.5, 1});
 }
 
+TEST_CASE("the free length of a spring is identified, though the file does not give it") {
+    check_found(Bar(R"(
+        spring = [{ name = "band", points = [[0, 5, 9], [30, 5, 9], [60, 5, 9]], stiffness = "200 N/m" }]
+        program = { steps = 2 }
+    )"),
+                {"spring.band.free_length"}, {0.05}, {"tip_x_mm", "tip_z_mm", "band_force_N"}, {1});
+}
+
 TEST_CASE("modulus and damping are identified from a swinging bar") {
     const Bar bar(R"(
         program = { duration = "120 ms", time_step = "6 ms", gravity = [0, 0, -9.81], stiffness_damping = 0.002 }

@@ -126,6 +126,13 @@ void add_chamber(const robot::ChamberSpec& chamber, Collector& to) {
     to.any(target + "offset", pressure ? "Pa" : "m^3", t.offset, pressure ? std::max(1e3, share) : 1e-7);
 }
 
+/// In length units: the free length of a spring for which the file gives none.
+double drawn_length(const robot::SpringSpec& spring) {
+    double length = 0;
+    for (std::size_t k = 1; k < spring.points.size(); ++k) length += norm(spring.points[k] - spring.points[k - 1]);
+    return length;
+}
+
 void add_contact(const robot::Robot& robot, Collector& to) {
     if (robot.contact) {
         to.positive("contact.friction", "", robot.contact->friction, 10);
@@ -223,8 +230,8 @@ std::vector<Unknown> possible_unknowns(const robot::Robot& robot) {
     for (const auto& chamber : robot.chambers) add_chamber(chamber, to);
     for (const auto& spring : robot.springs) {
         to.positive("spring." + spring.name + ".stiffness", "N/m", spring.stiffness_N_m);
-        if (spring.free_length)
-            to.positive("spring." + spring.name + ".free_length", "m", robot.unit_m * *spring.free_length);
+        to.positive("spring." + spring.name + ".free_length", "m",
+                    robot.unit_m * spring.free_length.value_or(drawn_length(spring)));
     }
     for (const auto& load : robot.loads) {
         if (load.pressure_Pa) {

@@ -17,7 +17,8 @@ namespace {
 const std::string many_parameters = R"(
     cable = [{ name = "flexor", points = [[0, 5, 9], [60, 5, 9]], target.length_ratio = 0.9 },
              { name = "rope", points = [[0, 5, 1], [60, 5, 1]], friction = 0.2, target.tension = "2 N" }]
-    spring = [{ name = "band", points = [[0, 1, 9], [60, 1, 9]], stiffness = "10 N/m", free_length = "40 mm" }]
+    spring = [{ name = "band", points = [[0, 1, 9], [60, 1, 9]], stiffness = "10 N/m", free_length = "40 mm" },
+              { name = "bow", points = [[0, 1, 9], [60, 1, 9], [60, 9, 3]], stiffness = "10 N/m" }]
     chamber = [{ name = "air", region = "air", target.volume_change = "1 ml" }]
     load = [{ name = "gust", box = [[0, 0, 10], [60, 10, 10]], pressure = "-1 kPa" },
             { name = "weight", box = [[60, 0, 0], [60, 10, 10]], force = ["0 N", "0 N", "-1 N"] }]
@@ -36,7 +37,7 @@ std::string unknown_problem(const Bar& bar, const std::string& text) {
 TEST_CASE("every number that a robot offers as unknown can be set with --set") {
     const Bar bar(many_parameters);
     const auto all = possible_unknowns(bar.robot());
-    CHECK(all.size() == 25);
+    CHECK(all.size() == 27);
     for (const Unknown& unknown : all) {
         CAPTURE(unknown.key);
         const double value = unknown.value_at(unknown.coordinate(unknown.value > 0 ? unknown.value : 0.1) + 0.01);
@@ -47,6 +48,12 @@ TEST_CASE("every number that a robot offers as unknown can be set with --set") {
         REQUIRE(found != again.end());
         CHECK(found->value == near(value, {.relative = 1e-14}));
     }
+}
+
+TEST_CASE("the free length of a spring begins at its path as drawn where the file gives none") {
+    const Bar bar(many_parameters);
+    CHECK(find_unknown(bar.robot(), "spring.bow.free_length")->value == near(0.07, {.relative = 1e-12}));
+    CHECK(find_unknown(bar.robot(), "spring.band.free_length")->value == near(0.04, {.relative = 1e-12}));
 }
 
 TEST_CASE("coordinates of unknowns and their derivatives") {
