@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -77,7 +78,7 @@ public:
     /// True from one percent on; which percentage is shown first depends on the speed of the computer.
     bool has_converged_steps() {
         listen();
-        static const std::regex bar(R"(simulate \[[= ]*\] +[1-9][0-9]? %)");
+        static const std::regex bar(R"((simulate|inverse) \[[= ]*\] +[1-9][0-9]? %)");
         return std::regex_search(said_, bar);
     }
     /// Whether it has started the program of this name.
@@ -144,6 +145,38 @@ TEST_CASE("an interrupted simulation writes complete results of the steps that c
         CHECK_FALSE(fs::exists(out / "pictures"));
         CHECK_FALSE(fs::exists(folder / "out.partial"));
     }
+}
+
+TEST_CASE("an interrupted search for inputs replaces older results by the waypoints found so far") {
+    const test::Folder folder("interrupt");
+    const std::string arm = "examples/inverse/writing_arm/robot.toml";
+    const fs::path out = folder / "out";
+    fs::create_directories(out);
+    REQUIRE(write_file(out / "summary.json", "older"));
+    const std::string word = read_file("examples/inverse/writing_arm/word.csv").value();
+    const std::string points = word.substr(word.find('\n') + 1);
+    std::string table = "x,y,z\n";
+    for (int k = 0; k < 40; ++k) table += points;
+    REQUIRE(write_file(folder / "long.csv", table));
+    const auto wanted = std::count(table.begin(), table.end(), '\n') - 1;
+    Program program(
+        {"inverse", arm, "-o", out, "--set", fmt::format("goal.word.path=\"{}\"", (folder / "long.csv").string())});
+    REQUIRE(wait_for([&] { return program.has_converged_steps(); }));
+    program.send(SIGINT);
+    CHECK(program.exit_status() == 1);
+    const auto found = nlohmann::json::parse(read_file(out / "inverse.json").value());
+    const auto& waypoints = found["waypoints"];
+    const auto reached =
+        std::count_if(waypoints.begin(), waypoints.end(), [](const auto& at) { return at["reached"] == true; });
+    CHECK(reached > 0);
+    CHECK(reached < wanted);
+    CHECK(found["message"] == fmt::format("cancelled at waypoint {} of {}", reached + 1, wanted));
+    CHECK(program.last_line() == fmt::format("{}: cancelled at waypoint {} of {}", arm, reached + 1, wanted));
+    if (!waypoints.back()["reached"])
+        CHECK(waypoints.back()["reasons"] == nlohmann::json{"the search was cancelled here"});
+    CHECK(summary_in(out)["steps"].size() == static_cast<std::size_t>(reached));
+    CHECK_FALSE(fs::exists(out / "pictures"));
+    CHECK_FALSE(fs::exists(folder / "out.partial"));
 }
 
 TEST_CASE("interrupted while meshing, a command writes nothing and prints one line") {

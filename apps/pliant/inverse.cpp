@@ -6,6 +6,8 @@
 #include <CLI/App.hpp>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/core/counted.hpp"
@@ -26,10 +28,50 @@ struct InverseArguments {
     Output output;
 };
 
-void print_text(const InverseArguments& options, const Model& model, const InverseResult& result) {
+struct FoundProgram {
+    std::vector<std::string> warnings;
+    bool written = false, all_drawn = true;
+};
+
+void print_found(const InverseArguments& options, const Model& model, const InverseResult& result, bool written) {
     fmt::print("{}, {}\n{}", counted(model.node_count(), "node"),
                counted(model.tet_count(), model.order() == 2 ? "quadratic tet" : "linear tet"), result.text());
-    if (!options.folder.empty()) fmt::print("results: {}, open report.html there\n", options.folder);
+    if (written) fmt::print("results: {}, open report.html there\n", options.folder);
+}
+
+/// While files are written, the first signal, or an earlier one, skips the pictures; only the second cancels.
+FoundProgram write_found(const InverseArguments& options, const InverseResult& result, Progress& progress) {
+    FoundProgram found{result.notes()};
+    found.written = !options.folder.empty() && result.waypoint_count() > 0;
+    if (!found.written) return found;
+    on_signal(OnSignal::ask_twice);
+    const auto watch = [&](std::string_view stage, double share) {
+        progress.advance(stage, share);
+        return !interrupted_again();
+    };
+    const auto enough_pictures = [&] {
+        found.all_drawn = !interrupted();
+        return !found.all_drawn;
+    };
+    for (std::string& warning : result.write(options.folder, watch, enough_pictures))
+        found.warnings.push_back(std::move(warning));
+    return found;
+}
+
+/// Prints the results, and returns the exit status.
+int tell_found(const InverseArguments& options, const Model& model, const InverseResult& result,
+               const FoundProgram& found) {
+    if (options.output.json)
+        fmt::print("{}", result.json());
+    else if (!options.output.quiet)
+        print_found(options, model, result, found.written);
+    for (const std::string& warning : found.warnings) fmt::print(stderr, "{}: warning: {}\n", options.robot, warning);
+    if (!result.message().empty())
+        fmt::print(stderr, "{}: {}\n", options.robot, result.message());
+    else if (!found.all_drawn)
+        fmt::print(stderr, "{}: cancelled before all pictures were drawn; the other results are written\n",
+                   options.robot);
+    return result.reached() && found.all_drawn ? exit_done : exit_failed;
 }
 
 Result<int> inverse(const InverseArguments& options) {
@@ -38,19 +80,9 @@ Result<int> inverse(const InverseArguments& options) {
     const Watch watch = watch_of(*progress);
     const Model model = load_model(options.robot, options.assignments, watch);
     const InverseResult result = pliant::inverse(model, options.search, watch);
-    std::vector<std::string> warnings = result.notes();
-    if (!options.folder.empty() && result.waypoint_count() > 0 && !interrupted()) {
-        const std::vector<std::string> more = result.write(options.folder, watch);
-        warnings.insert(warnings.end(), more.begin(), more.end());
-    }
+    const FoundProgram found = write_found(options, result, *progress);
     progress.reset();
-    if (options.output.json)
-        fmt::print("{}", result.json());
-    else if (!options.output.quiet)
-        print_text(options, model, result);
-    for (const std::string& warning : warnings) fmt::print(stderr, "{}: warning: {}\n", options.robot, warning);
-    if (!result.message().empty()) fmt::print(stderr, "{}: {}\n", options.robot, result.message());
-    return result.reached() ? exit_done : exit_failed;
+    return tell_found(options, model, result, found);
 }
 
 }  // namespace

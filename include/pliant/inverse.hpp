@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,7 +45,7 @@ struct Waypoint {
     double time = 0;                  ///< program time, which sets everything that is not steered
     std::vector<GoalResult> goals;    ///< in the order of the robot file
     std::vector<double> inputs;       ///< (InverseResult::inputs()) SI
-    std::vector<std::string> limits;  ///< if not reached: the limits that prevent it, one sentence each
+    std::vector<std::string> limits;  ///< if not reached: the limits that prevent it, or that it was cancelled
     StepResult result;                ///< of the equilibrium
     Observation observed;             ///< measurable quantities of the state
     std::vector<Point> positions;     ///< (nodes) m
@@ -77,9 +78,12 @@ public:
 
     /// Writes the folder that `pliant inverse -o` writes, whole or not at all, replacing an older one: program.toml,
     /// which leads through the waypoints, the results of that program, inverse.json and waypoints.csv; also robot.toml
-    /// if the robot was given as text. Returns warnings if the program, run from rest, ends up elsewhere.
+    /// if the robot was given as text. The program of a search that was cancelled leads through the waypoints that were
+    /// finished. `enough_pictures` is polled while drawing; true leaves out all pictures. Returns warnings if the
+    /// program, run from rest, ends up elsewhere.
     /// @throws Failure if there is no waypoint, the program fails, or a file cannot be written; or when cancelled.
-    std::vector<std::string> write(const std::filesystem::path& folder, const Watch& watch = {}) const;
+    std::vector<std::string> write(const std::filesystem::path& folder, const Watch& watch = {},
+                                   const std::function<bool()>& enough_pictures = {}) const;
 
     /// @cond
     struct Data;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
 #include <utility>
 
 #include "library/base/calls.hpp"
@@ -99,9 +98,7 @@ std::string InverseResult::text() const {
     for (std::size_t k = 0; k < waypoint_count(); ++k) {
         const sim::inverse::Waypoint& at = data_->result.waypoints[k];
         lines += report::waypoint_line(data_->report(), k) + "\n";
-        for (const sim::inverse::Limit& limit : at.limits)
-            fmt::format_to(std::back_inserter(lines), "  {}\n", sim::inverse::text(limit));
-        if (!at.reached && at.limits.empty()) lines += "  the actuators move the robot in other directions only\n";
+        for (const std::string& reason : sim::inverse::reasons(at)) lines += "  " + reason + "\n";
     }
     return lines;
 }

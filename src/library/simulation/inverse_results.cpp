@@ -7,6 +7,7 @@
 
 #include "base/core/files.hpp"
 #include "library/base/calls.hpp"
+#include "library/simulation/drawing.hpp"
 #include "library/simulation/inverse_data.hpp"
 #include "presentation/report/results.hpp"
 #include "robot/file/program_writer.hpp"
@@ -43,6 +44,7 @@ struct ProgramFiles {
 ProgramFiles program_files(const InverseResult::Data& found, const fs::path& folder, int steps_each) {
     std::vector<robot::ProgramPoint> points;
     for (const sim::inverse::Waypoint& at : found.result.waypoints) {
+        if (at.is_unfinished()) continue;
         robot::ProgramPoint point{at.state.time, {}};
         for (std::size_t i = 0; i < at.values.size(); ++i)
             point.values.emplace_back(found.task.inputs[i].name, at.values[i]);
@@ -91,7 +93,7 @@ std::vector<std::string> departures(const InverseResult::Data& found, const sim:
 /// Writes the program, runs it from its file, and writes all results. Returns the warnings of departures(), and one if
 /// nothing could be drawn.
 std::vector<std::string> fill(const InverseResult::Data& found, const fs::path& folder, const fs::path& final_folder,
-                              Progress& progress) {
+                              Progress& progress, Progress& drawing) {
     const int steps_each = steps_per_waypoint(found);
     const ProgramFiles files = program_files(found, final_folder, steps_each);
     if (!files.robot.empty()) library::check(write_file(folder / robot_name, files.robot));
@@ -102,8 +104,8 @@ std::vector<std::string> fill(const InverseResult::Data& found, const fs::path& 
     report::Simulation simulation = report::simulation_of(scene.robot, scene.model, run);
     simulation.measured = report::wanted_paths(found.report());
     simulation.measured_as = "wanted";
-    const auto written = library::value_of(report::write_results(folder, simulation, {}, progress, progress));
-    if (written.drawing_stopped) library::check(cancelled());
+    const auto written = library::value_of(report::write_results(folder, simulation, {}, progress, drawing));
+    if (progress.cancelled()) library::check(cancelled());
     library::check(write_file(folder / "inverse.json", report::inverse_json(found.report())));
     library::check(write_file(folder / "waypoints.csv", report::waypoints_csv(found.report())));
     std::vector<std::string> warnings = departures(found, run, steps_each);
@@ -113,15 +115,17 @@ std::vector<std::string> fill(const InverseResult::Data& found, const fs::path& 
 
 }  // namespace
 
-std::vector<std::string> InverseResult::write(const fs::path& folder, const Watch& watch) const {
+std::vector<std::string> InverseResult::write(const fs::path& folder, const Watch& watch,
+                                              const std::function<bool()>& enough_pictures) const {
     if (data_->result.waypoints.empty())
         throw Failure(Failure::Kind::failed, "there is nothing to write: " + message());
     library::WatchedProgress progress(watch);
+    library::Drawing drawing(progress, enough_pictures);
     std::vector<std::string> warnings;
     std::exception_ptr thrown;
     const Status status = write_folder(folder, "summary.json", [&](const fs::path& aside) -> Status {
         try {
-            warnings = fill(*data_, aside, folder, progress);
+            warnings = fill(*data_, aside, folder, progress, drawing);
         } catch (...) {
             thrown = std::current_exception();
             return cancelled();

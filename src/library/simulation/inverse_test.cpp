@@ -91,6 +91,26 @@ TEST_CASE("the results of a robot given as text include its robot file, and the 
     CHECK_FALSE(fs::exists(folder / "none"));
 }
 
+TEST_CASE("the program of a cancelled search leads through the waypoints that were finished") {
+    const Model model(
+        bar("goal = [{ name = \"reach\", marker = \"tip\", tolerance = \"1 mm\", "
+            "path = [[60, 5, 5], [59, 5, 8], [57, 5, 12]] }]\n"));
+    const InverseResult result = inverse(model, {}, [](std::string_view, double share) { return share < 0.3; });
+    CHECK_FALSE(result.reached());
+    CHECK(result.message() == "cancelled at waypoint 2 of 3");
+    REQUIRE(result.waypoint_count() == 2);
+    CHECK(result.waypoint(0).reached);
+    CHECK(result.waypoint(1).limits == std::vector<std::string>{"the search was cancelled here"});
+    CHECK(result.text().ends_with("\n  the search was cancelled here\n"));
+    const test::Folder folder;
+    (void)result.write(folder / "out", {}, [] { return true; });
+    CHECK_FALSE(fs::exists(folder / "out/pictures"));
+    const std::string program = read_file(folder / "out/program.toml").value();
+    const std::size_t first = program.find("[[program.key]]");
+    CHECK(first != std::string::npos);
+    CHECK(program.find("[[program.key]]", first + 1) == std::string::npos);
+}
+
 TEST_CASE("a cancelled workspace search resumes from its checkpoint to the same samples") {
     const test::Folder folder;
     const Model model(with_goal(reachable));

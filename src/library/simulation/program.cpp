@@ -9,6 +9,7 @@
 #include "base/core/files.hpp"
 #include "library/base/calls.hpp"
 #include "library/simulation/data.hpp"
+#include "library/simulation/drawing.hpp"
 #include "presentation/report/measured.hpp"
 #include "presentation/report/results.hpp"
 #include "presentation/report/summary.hpp"
@@ -101,18 +102,6 @@ report::PictureChoice picture_choice(const ResultsOptions& options) {
     return choice;
 }
 
-/// Drawing stops early once the caller has enough pictures.
-class Drawing final : public Progress {
-public:
-    Drawing(Progress& shown, const std::function<bool()>& enough) : shown_(shown), enough_(enough) {}
-    void advance(std::string_view stage, double fraction) override { shown_.advance(stage, fraction); }
-    [[nodiscard]] bool cancelled() const override { return (enough_ && enough_()) || shown_.cancelled(); }
-
-private:
-    Progress& shown_;
-    const std::function<bool()>& enough_;
-};
-
 }  // namespace
 
 ProgramResult run(const Model& model, const RunOptions& options, const Watch& watch) {
@@ -182,7 +171,7 @@ std::string ProgramResult::summary_json() const {
 bool ProgramResult::write(const std::filesystem::path& folder, const ResultsOptions& options, const Watch& watch) {
     const report::PictureChoice choice = picture_choice(options);
     library::WatchedProgress writing(watch);
-    Drawing drawing(writing, options.enough_pictures);
+    library::Drawing drawing(writing, options.enough_pictures);
     bool stopped = false;
     const Status status = write_folder(folder, "summary.json", [&](const std::filesystem::path& path) -> Status {
         const auto written = report::write_results(path, *data_->report, choice, writing, drawing);

@@ -70,7 +70,7 @@ Json waypoint_json(const InverseReport& r, std::size_t k) {
     const Waypoint& at = r.result.waypoints[k];
     Json out = {{"index", k + 1}, {"time", at.state.time}, {"reached", at.reached}};
     double error_m = -1;
-    Json goals = Json::object(), inputs = Json::object(), limits = Json::array(), reasons = Json::array();
+    Json goals = Json::object(), inputs = Json::object(), limits = Json::array();
     for (std::size_t g = 0; g < r.task.goals.size(); ++g) {
         const Goal& goal = r.task.goals[g];
         if (unit_of_goal(goal).name == "mm") error_m = std::max(error_m, at.goals[g].error);
@@ -81,12 +81,11 @@ Json waypoint_json(const InverseReport& r, std::size_t k) {
         inputs[r.task.inputs[i].name] = report::unit_of(r.model, r.task.inputs[i]).factor * at.values[i];
     for (const sim::inverse::Limit& limit : at.limits) {
         if (!limit.input.empty()) limits.push_back(limit.input);
-        reasons.push_back(text(limit));
     }
     out["goals"] = std::move(goals);
     out["inputs"] = std::move(inputs);
     out["limits"] = std::move(limits);
-    out["reasons"] = std::move(reasons);
+    out["reasons"] = reasons(at);
     for (const auto& cable : at.state.cables) out["tensions_N"][cable.name] = cable.tension_N;
     for (const auto& chamber : at.state.chambers) out["pressures_kPa"][chamber.name] = 1e-3 * chamber.pressure_Pa;
     for (const auto& marker : at.state.markers) {

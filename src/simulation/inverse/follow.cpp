@@ -146,10 +146,23 @@ std::string text(const Limit& limit) {
             return limit.input + " is slack, and would have to push";
         case Limit::Kind::goals:
             return "goals " + limit.reason + " contradict each other: what brings one nearer takes the other away";
+        case Limit::Kind::cancelled:
+            return "the search was cancelled here";
         case Limit::Kind::no_state:
             break;
     }
     return "no equilibrium was found further on: " + limit.reason;
+}
+
+bool Waypoint::is_unfinished() const {
+    return std::ranges::any_of(limits, [](const Limit& limit) { return limit.kind == Limit::Kind::cancelled; });
+}
+
+std::vector<std::string> reasons(const Waypoint& waypoint) {
+    std::vector<std::string> lines;
+    for (const Limit& limit : waypoint.limits) lines.push_back(text(limit));
+    if (!waypoint.reached && lines.empty()) lines.emplace_back("the actuators move the robot in other directions only");
+    return lines;
 }
 
 Eigen::VectorXd spread_point(int n, Eigen::Index size) {

@@ -22,6 +22,9 @@ struct Waypoint {
     Step state;                    ///< index 1, 2, ...; program time
     Work work;
     double wall_s = 0;
+
+    /// The search was cancelled here before the goals were reached; only the last waypoint of a result can be so.
+    [[nodiscard]] bool is_unfinished() const;
 };
 
 struct InverseResult {
@@ -44,6 +47,8 @@ struct FollowOptions {
 
 /// As a sentence: `flexor is at the lower end of its range`.
 [[nodiscard]] std::string text(const Limit& limit);
+/// Why the waypoint was not reached, one sentence each; empty if it was.
+[[nodiscard]] std::vector<std::string> reasons(const Waypoint& waypoint);
 
 /// (size) the n-th point, from 0, of a low-discrepancy sequence in the unit cube (Halton 1960).
 [[nodiscard]] Eigen::VectorXd spread_point(int n, Eigen::Index size);

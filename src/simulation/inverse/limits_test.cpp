@@ -74,6 +74,7 @@ TEST_CASE("a cable that would have to push is named; actuators that act in other
     const Waypoint aside = solve(model, task).waypoints.at(0);
     CHECK_FALSE(aside.reached);
     CHECK(aside.limits.empty());
+    CHECK(reasons(aside) == std::vector<std::string>{"the actuators move the robot in other directions only"});
     CHECK(aside.goals[0].error == near(0.01, {.absolute = 2e-5}));
 }
 

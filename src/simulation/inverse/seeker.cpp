@@ -109,7 +109,7 @@ Found Seeker::seek(const Point& start, const Point& before, std::size_t waypoint
     found.reached = all_reached();
     found.cost = search.cost;
     if (!found.reached)
-        found.limits = limits(search);
+        found.limits = search.cancelled ? std::vector<Limit>{{Limit::Kind::cancelled, "", ""}} : limits(search);
     else if (rows_.has_prices() && !search.cancelled) {
         lower_price(search, progress);
         found.reached = all_reached();

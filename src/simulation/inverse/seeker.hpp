@@ -37,9 +37,10 @@ struct Limit {
         slack,     ///< the cable is slack: it would have to push
         goals,     ///< goals contradict each other
         no_state,  ///< no equilibrium was found beyond this
+        cancelled  ///< nothing: the search was cancelled
     };
     Kind kind = Kind::lower;
-    std::string input;   ///< which input; empty for goals and no_state
+    std::string input;   ///< which input; empty for goals, no_state and cancelled
     std::string reason;  ///< for no_state; for goals their names
 };
 
