@@ -88,6 +88,7 @@ Reader::Reader(const Value& table, Problems& problems, std::string path)
     if (!std::holds_alternative<Table>(table.data)) {
         problems.add(table.line, path_, fmt::format("is {}, a table is needed", shown(table)));
         table_ = &empty;
+        missing_ = true;
     }
 }
 
@@ -111,8 +112,29 @@ std::vector<std::string> Reader::keys() const {
     return names;
 }
 
-void Reader::problem(std::string_view key, std::string_view text) {
+void Reader::add(std::string_view key, std::string_view text) {
     if (!missing_) problems_->add(line_of(key), key_path(key), text);
+}
+
+void Reader::problem(std::string_view key, std::string_view text) {
+    if (has(key)) (void)find(key);
+    if (!unreadable(key)) add(key, text);
+}
+
+bool Reader::unreadable(std::string_view key) const {
+    return std::find(marks_->unreadable.begin(), marks_->unreadable.end(), key) != marks_->unreadable.end();
+}
+
+void Reader::mark_unreadable(std::string_view key) {
+    marks_->unreadable.emplace_back(key);
+    for (const Marks* marks = marks_.get(); marks->above != nullptr; marks = marks->above.get())
+        marks->above->unreadable.push_back(marks->key);
+}
+
+/// The first thing that is wrong with an unreadable value is enough.
+void Reader::refuse(std::string_view key, std::string_view text) {
+    problem(key, text);
+    mark_unreadable(key);
 }
 
 const Value* Reader::find(std::string_view key) {
@@ -124,7 +146,10 @@ const Value* Reader::find(std::string_view key) {
 
 const Value* Reader::find_required(std::string_view key, std::string_view what) {
     const Value* value = find(key);
-    if (value == nullptr) problem("", fmt::format("\"{}\" is missing; it is {}", key, what));
+    if (value == nullptr) {
+        problem("", fmt::format("\"{}\" is missing; it is {}", key, what));
+        mark_unreadable(key);
+    }
     return value;
 }
 
@@ -140,7 +165,7 @@ std::string Reader::text(std::string_view key, std::string_view fallback) {
     const Value* value = find(key);
     if (value == nullptr) return std::string(fallback);
     if (const auto* string = std::get_if<std::string>(&value->data)) return *string;
-    problem(key, fmt::format("is {}, a text in quotes is needed", shown(*value)));
+    refuse(key, fmt::format("is {}, a text in quotes is needed", shown(*value)));
     return std::string(fallback);
 }
 
@@ -152,7 +177,7 @@ double Reader::number(std::string_view key, double fallback) {
     const Value* value = find(key);
     if (value == nullptr) return fallback;
     if (const auto found = as_number(*value)) return *found;
-    problem(key, fmt::format("is {}, a finite number is needed", shown(*value)));
+    refuse(key, fmt::format("is {}, a finite number is needed", shown(*value)));
     return fallback;
 }
 
@@ -168,7 +193,7 @@ std::int64_t Reader::integer(std::string_view key, std::int64_t fallback) {
     if (const auto real = as_number(*value); real && *real == std::floor(*real) && std::fabs(*real) < 1e15) {
         return static_cast<std::int64_t>(*real);
     }
-    problem(key, fmt::format("is {}, a whole number is needed", shown(*value)));
+    refuse(key, fmt::format("is {}, a whole number is needed", shown(*value)));
     return fallback;
 }
 
@@ -176,7 +201,7 @@ bool Reader::boolean(std::string_view key, bool fallback) {
     const Value* value = find(key);
     if (value == nullptr) return fallback;
     if (const auto* flag = std::get_if<bool>(&value->data)) return *flag;
-    problem(key, fmt::format("is {}, true or false is needed", shown(*value)));
+    refuse(key, fmt::format("is {}, true or false is needed", shown(*value)));
     return fallback;
 }
 
@@ -190,13 +215,13 @@ double Reader::quantity(std::string_view key, Dimension dimension, double fallba
     if (const auto* string = std::get_if<std::string>(&value->data)) {
         const Result<double> parsed = parse_quantity(*string, dimension);
         if (parsed) return *parsed;
-        problem(key, parsed.error().message);
+        refuse(key, parsed.error().message);
         return fallback;
     }
     if (const auto bare = as_number(*value)) {
-        problem(key, fmt::format("{} has no unit; write {}", *bare, describe(dimension)));
+        refuse(key, fmt::format("{} has no unit; write {}", *bare, describe(dimension)));
     } else {
-        problem(key, fmt::format("is {}; write {}", shown(*value), describe(dimension)));
+        refuse(key, fmt::format("is {}; write {}", shown(*value), describe(dimension)));
     }
     return fallback;
 }
@@ -207,18 +232,19 @@ std::vector<double> Reader::quantities(std::string_view key, Dimension dimension
     if (value == nullptr) return values;
     const auto* list = std::get_if<Array>(&value->data);
     if (list == nullptr || list->size() != count) {
-        problem(key, fmt::format("needs a list of {} values, each {}", count, describe(dimension)));
+        refuse(key, fmt::format("needs a list of {} values, each {}", count, describe(dimension)));
         return values;
     }
     for (std::size_t i = 0; i < count; ++i) {
         const auto* string = std::get_if<std::string>(&(*list)[i].data);
         const Result<double> parsed =
-            string != nullptr ? parse_quantity(*string, dimension)
-                              : Result<double>(input_error("entry {} has no unit; write {}", i + 1, describe(dimension)));
+            string != nullptr
+                ? parse_quantity(*string, dimension)
+                : Result<double>(input_error("entry {} has no unit; write {}", i + 1, describe(dimension)));
         if (parsed)
             values[i] = *parsed;
         else
-            problem(key, parsed.error().message);
+            refuse(key, parsed.error().message);
     }
     return values;
 }
@@ -228,8 +254,8 @@ std::vector<double> Reader::numbers(std::string_view key, std::size_t count) {
     if (value == nullptr) return std::vector<double>(count, 0.0);
     auto list = as_numbers(*value);
     if (list && (count == 0 || list->size() == count)) return *list;
-    problem(key, count == 0 ? std::string("needs a list of finite numbers")
-                            : fmt::format("needs a list of {} finite numbers", count));
+    refuse(key, count == 0 ? std::string("needs a list of finite numbers")
+                           : fmt::format("needs a list of {} finite numbers", count));
     return std::vector<double>(count, 0.0);
 }
 
@@ -239,14 +265,14 @@ std::vector<std::string> Reader::texts(std::string_view key) {
     if (value == nullptr) return list;
     const auto* items = std::get_if<Array>(&value->data);
     if (items == nullptr) {
-        problem(key, "needs a list of texts");
+        refuse(key, "needs a list of texts");
         return list;
     }
     for (const Value& item : *items) {
         if (const auto* string = std::get_if<std::string>(&item.data))
             list.push_back(*string);
         else
-            problem(key, fmt::format("holds {}, only texts are allowed", shown(item)));
+            refuse(key, fmt::format("holds {}, only texts are allowed", shown(item)));
     }
     return list;
 }
@@ -259,7 +285,7 @@ Vec3 Reader::vector(std::string_view key, const Vec3& fallback) {
     const Value* value = find(key);
     if (value == nullptr) return fallback;
     if (const auto vector = as_vector(*value)) return *vector;
-    problem(key, "needs three finite numbers [x, y, z]");
+    refuse(key, "needs three finite numbers [x, y, z]");
     return fallback;
 }
 
@@ -269,14 +295,14 @@ std::vector<Vec3> Reader::vectors(std::string_view key) {
     if (value == nullptr) return points;
     const auto* list = std::get_if<Array>(&value->data);
     if (list == nullptr) {
-        problem(key, "needs a list of points [[x, y, z], ...]");
+        refuse(key, "needs a list of points [[x, y, z], ...]");
         return points;
     }
     for (std::size_t i = 0; i < list->size(); ++i) {
         if (const auto point = as_vector((*list)[i]))
             points.push_back(*point);
         else
-            problem(key, fmt::format("entry {} is not a point [x, y, z] of finite numbers", i + 1));
+            refuse(key, fmt::format("entry {} is not a point [x, y, z] of finite numbers", i + 1));
     }
     return points;
 }
@@ -287,8 +313,8 @@ std::string Reader::choice(std::string_view key, const std::vector<std::string>&
     const Value* value = find_entry(*table_, key);
     if (value != nullptr && std::holds_alternative<std::string>(value->data)) {
         const std::string near = nearest_name(found, choices);
-        problem(key, fmt::format("\"{}\" is not known{}; choose from {}", found,
-                                 near.empty() ? "" : fmt::format(", did you mean \"{}\"?", near), join_names(choices)));
+        refuse(key, fmt::format("\"{}\" is not known{}; choose from {}", found,
+                                near.empty() ? "" : fmt::format(", did you mean \"{}\"?", near), join_names(choices)));
     }
     return fallback.empty() ? choices.front() : std::string(fallback);
 }
@@ -297,7 +323,10 @@ Reader Reader::table(std::string_view key, bool required) {
     static const Value empty{};
     const Value* value = required ? find_required(key, "a table") : find(key);
     Reader reader(value != nullptr ? *value : empty, *problems_, key_path(key));
-    reader.missing_ = missing_ || (value == nullptr && required);
+    reader.missing_ = reader.missing_ || missing_ || (value == nullptr && required);
+    reader.marks_->above = marks_;
+    reader.marks_->key = key;
+    if (value != nullptr && !std::holds_alternative<Table>(value->data)) mark_unreadable(key);
     return reader;
 }
 
@@ -307,11 +336,13 @@ std::vector<Reader> Reader::tables(std::string_view key) {
     if (value == nullptr) return readers;
     const auto* list = std::get_if<Array>(&value->data);
     if (list == nullptr) {
-        problem(key, fmt::format("is {}; write [[{}]] for each", shown(*value), key_path(key)));
+        refuse(key, fmt::format("is {}; write [[{}]] for each", shown(*value), key_path(key)));
         return readers;
     }
     for (std::size_t i = 0; i < list->size(); ++i) {
         readers.emplace_back((*list)[i], *problems_, fmt::format("{}[{}]", key_path(key), i));
+        readers.back().marks_->above = marks_;
+        readers.back().marks_->key = key;
     }
     return readers;
 }
@@ -322,7 +353,7 @@ std::vector<std::pair<std::string, Reader>> Reader::named_tables(std::string_vie
     if (value == nullptr) return readers;
     const auto* table = std::get_if<Table>(&value->data);
     if (table == nullptr) {
-        problem(key, fmt::format("is {}; write [{}.NAME] for each", shown(*value), key_path(key)));
+        refuse(key, fmt::format("is {}; write [{}.NAME] for each", shown(*value), key_path(key)));
         return readers;
     }
     for (const auto& [name, entry] : *table) {
@@ -335,8 +366,8 @@ void Reader::finish() {
     for (const auto& [name, value] : std::get<Table>(table_->data)) {
         if (std::find(marks_->asked.begin(), marks_->asked.end(), name) != marks_->asked.end()) continue;
         const std::string near = nearest_name(name, marks_->asked);
-        problem(name, near.empty() ? "unknown key; known here: " + join_names(marks_->asked)
-                                   : fmt::format("unknown key; did you mean \"{}\"?", near));
+        add(name, near.empty() ? "unknown key; known here: " + join_names(marks_->asked)
+                               : fmt::format("unknown key; did you mean \"{}\"?", near));
     }
 }
 

@@ -67,8 +67,8 @@ private:
 };
 
 /// A table being read. Every accessor marks its key as read; a wrong type or a missing required key becomes a problem,
-/// and the accessor returns a harmless value, so that reading code needs no branches. Copies share the record of read
-/// keys.
+/// and the accessor returns a harmless value, so that reading code needs no branches: what that code then says against
+/// the harmless value is left out. Copies share the record of read keys.
 class Reader {
 public:
     Reader(const Value& table, Problems& problems, std::string path = "");
@@ -109,22 +109,32 @@ public:
     /// The raw value, for structures that Reader has no accessor for; marks the key as read.
     [[nodiscard]] const Value* raw(std::string_view key);
 
+    /// Reports what is wrong with the value of `key`, and marks it as read; left out if the value is unreadable().
     void problem(std::string_view key, std::string_view text);
+    /// True if an accessor could not read the value of `key`, or of a key in that table, or found a required one
+    /// missing: a harmless value stands for it, from which nothing follows.
+    [[nodiscard]] bool unreadable(std::string_view key) const;
     /// Reports every key that was not read, with the nearest known key.
     void finish();
 
 private:
     const Value* find(std::string_view key);
     const Value* find_required(std::string_view key, std::string_view what);
+    void refuse(std::string_view key, std::string_view text);
+    void add(std::string_view key, std::string_view text);
+    void mark_unreadable(std::string_view key);
     [[nodiscard]] std::string key_path(std::string_view key) const;
 
     struct Marks {
-        std::vector<std::string> asked;  ///< every key that an accessor asked for, present or not
+        std::vector<std::string> asked;       ///< every key that an accessor asked for, present or not
+        std::vector<std::string> unreadable;  ///< see unreadable()
+        std::shared_ptr<Marks> above;  ///< of the table in which this one stands under `key`, if it was read there
+        std::string key;
     };
     const Value* table_;
     Problems* problems_;
     std::string path_;
-    bool missing_ = false;  ///< stands for a missing required table, which is reported once; its keys are not
+    bool missing_ = false;  ///< stands for a table that is missing or none, which is reported once; its keys are not
     std::shared_ptr<Marks> marks_;
 };
 

@@ -89,6 +89,47 @@ sides = ["1 mm", 2]
           "test.toml:9: sides: entry 2 has no unit; write a length such as \"2.5 mm\"");
 }
 
+TEST_CASE("a value that cannot be read gives one message: nothing is said of what stands for it") {
+    const Document document = document_of(R"(
+mass = "1 mg"
+limits = ["a", "b"]
+sides = [1, 2]
+place = 7
+move = { by = "far" }
+odd = 3
+)");
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    if (!(root.quantity("mass", Dimension::mass) > 0)) root.problem("mass", "must be above zero");
+    if (root.numbers("limits", 2)[0] == 0) root.problem("limits", "are empty");
+    (void)root.quantities("sides", Dimension::length, 2);
+    if (root.numbers("curve", 3)[0] == 0) root.problem("curve", "must rise");
+    (void)root.table("place").vector("point");
+    if (root.table("move").number("by") == 0) root.problem("move", "must not be zero");
+    root.problem("odd", "goes with even");
+    for (const char* key : {"mass", "limits", "sides", "curve", "place", "move"}) CHECK(root.unreadable(key));
+    CHECK_FALSE(root.unreadable("odd"));
+    root.finish();
+    CHECK(message(problems) ==
+          "test.toml:1: \"curve\" is missing; it is a list of numbers\n"
+          "test.toml:2: mass: unknown unit \"mg\"; here the units are kg, g\n"
+          "test.toml:3: limits: needs a list of 2 finite numbers\n"
+          "test.toml:4: sides: entry 1 has no unit; write a length such as \"2.5 mm\"\n"
+          "test.toml:5: place: is 7, a table is needed\n"
+          "test.toml:6: move.by: is \"far\", a finite number is needed\n"
+          "test.toml:7: odd: goes with even");
+}
+
+TEST_CASE("two things that are wrong with a value that was read are both said") {
+    const Document document = document_of("limits = [3, 1]\n");
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    (void)root.numbers("limits", 2);
+    root.problem("limits", "the lower one stands first");
+    root.problem("limits", "must hold 0");
+    CHECK(message(problems) == "test.toml:1: limits: the lower one stands first\ntest.toml:1: limits: must hold 0");
+}
+
 TEST_CASE("an unread key is an error that names the line and the nearest key") {
     const Document document = document_of("name = \"x\"\n\ngeometri = 3\n");
     Problems problems("test.toml");

@@ -340,6 +340,7 @@ struct Robot {
     Curve gravity_share = ramp(0, 1);
     double ambient_pressure_Pa = 101325;
     Program program;
+    std::vector<std::string> notes;  ///< what is not quite as the file says, one sentence each
 };
 
 /// True if unsupported pieces are allowed: the robot moves in time, or something may hold them by contact.

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -17,13 +15,6 @@ namespace {
 
 using config::Reader;
 
-bool is_number(Reader& reader, std::string_view key) {
-    const config::Value* value = reader.raw(key);
-    if (value == nullptr) return false;
-    const auto* real = std::get_if<double>(&value->data);
-    return real != nullptr ? std::isfinite(*real) : std::holds_alternative<std::int64_t>(value->data);
-}
-
 CableTarget read_target(Reader& cable) {
     using Kind = CableTarget::Kind;
     Reader reader = cable.table("target", !cable.has("range"));  // default: the rest value
@@ -33,8 +24,7 @@ CableTarget read_target(Reader& cable) {
     if (reader.has("length_ratio")) {
         target = {Kind::length_ratio, reader.number("length_ratio")};
         const TargetLimits limits = target_limits(target.kind, false);
-        // A value that is no finite number has been reported.
-        if (is_number(reader, "length_ratio") && !(target.value > 0 && target.value <= limits.high))
+        if (!(target.value > 0 && target.value <= limits.high))
             reader.problem("length_ratio", fmt::format("{} is not possible: {}", target.value, limits.words));
     }
     if (reader.has("shortening")) target = {Kind::shortening_m, reader.quantity("shortening", Dimension::length)};
@@ -110,7 +100,9 @@ void read_cable(Reader& reader, Context& context, CableSpec& cable) {
     if (cable.eyelet_radius < 0) reader.problem("eyelet_radius", "must not be negative");
     cable.friction = reader.number("friction", 0);
     if (!(cable.friction >= 0 && cable.friction <= 10))
-        reader.problem("friction", "is a coefficient: 0 or more, a cord in a plastic tube has 0.1 to 0.3");
+        reader.problem("friction", fmt::format("{} is not possible; a coefficient from 0 to 10, a cord in a plastic "
+                                               "tube has 0.1 to 0.3",
+                                               cable.friction));
     cable.target = read_target(reader);
     cable.steering = read_steering(reader, steered_by(cable.target, cable.gap_elements));
     if (reader.has("weight") && !cable.gap_elements)
@@ -141,6 +133,12 @@ void read_spring(Reader& reader, Context& context, SpringSpec& spring) {
     spring.only_pulls = reader.boolean("only_pulls", false);
 }
 
+double read_ratio(Reader& reader, std::string_view key) {
+    const double ratio = reader.number(key);
+    if (!(ratio > 0)) reader.problem(key, fmt::format("a ratio of {} is not possible; it must be above zero", ratio));
+    return ratio;
+}
+
 ChamberTarget read_chamber_target(Reader& chamber) {
     using Kind = ChamberTarget::Kind;
     constexpr std::array<std::string_view, 4> kinds = {"volume_ratio", "volume_change", "pressure", "gas_ratio"};
@@ -149,13 +147,11 @@ ChamberTarget read_chamber_target(Reader& chamber) {
     if (chamber.has("target") && given != 1)
         reader.problem("", "takes one of volume_ratio, volume_change, pressure and gas_ratio");
     ChamberTarget target;
-    if (reader.has("volume_ratio")) target = {Kind::volume_ratio, reader.number("volume_ratio")};
+    if (reader.has("volume_ratio")) target = {Kind::volume_ratio, read_ratio(reader, "volume_ratio")};
     if (reader.has("volume_change"))
         target = {Kind::volume_change_m3, reader.quantity("volume_change", Dimension::volume)};
     if (reader.has("pressure")) target = {Kind::pressure_Pa, reader.quantity("pressure", Dimension::pressure)};
-    if (reader.has("gas_ratio")) target = {Kind::gas_ratio, reader.number("gas_ratio")};
-    if ((target.kind == Kind::volume_ratio || target.kind == Kind::gas_ratio) && !(target.value > 0))
-        reader.problem("", fmt::format("a ratio of {} is not possible; it must be above zero", target.value));
+    if (reader.has("gas_ratio")) target = {Kind::gas_ratio, read_ratio(reader, "gas_ratio")};
     for (const auto kind : kinds) (void)reader.raw(kind);
     const bool volume = target.kind == Kind::volume_ratio || target.kind == Kind::volume_change_m3;
     if (target.kind != Kind::gas_ratio)

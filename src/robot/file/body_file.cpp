@@ -76,7 +76,8 @@ void read_point_reach(Reader& reader, Context& context) {
         return;
     }
     const double reach = reader.quantity("point_reach", Dimension::length, 0) / context.robot.unit_m;
-    if (!(reach >= 0)) reader.problem("point_reach", "must not be below zero; \"0 mm\" takes no point outside");
+    if (!(reach >= 0))
+        reader.problem("point_reach", "must not be below zero; \"0 mm\" still allows a thousandth of the robot's size");
     context.robot.mesh.point_reach = reach;
 }
 
@@ -174,7 +175,14 @@ Geometry read_geometry(Reader& reader, Context& context) {
     const bool has_mesh_file = context.robot.mesh.file.has_value();
     if (reader.has("region")) {
         const std::string region = reader.text("region");
-        if (!has_mesh_file) reader.problem("region", "needs a tet mesh; add file = \"...\" to [mesh]");
+        if (reader.has("geometry"))
+            reader.problem("region",
+                           "stands beside geometry; region is for a body of a mesh file ([mesh] file = "
+                           "\"...\"), geometry for any other");
+        else if (!has_mesh_file)
+            reader.problem("region", "needs a tet mesh; add file = \"...\" to [mesh]");
+        (void)reader.raw("geometry");
+        if (reader.has("place")) reader.problem("place", "is for a file of one body; that of a mesh file is in [mesh]");
         if (reader.has("box")) return MeshRegion{region, read_box(reader)};
         return MeshRegion{region, {}};
     }

@@ -1,5 +1,7 @@
 #include "robot/file/contact_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace pliant::robot {
@@ -10,7 +12,8 @@ using config::Reader;
 double read_friction(Reader& reader) {
     const double friction = reader.number("friction", 0);
     if (!(friction >= 0 && friction <= 10))
-        reader.problem("friction", "is a coefficient: 0 or more, rubber has 0.5 to 1");
+        reader.problem("friction",
+                       fmt::format("{} is not possible; a coefficient from 0 to 10, rubber has 0.5 to 1", friction));
     return friction;
 }
 
@@ -74,7 +77,9 @@ FluidSpec read_fluid_table(Reader reader) {
     for (const auto& [key, drag] :
          {std::pair{"drag_normal", &fluid.drag_normal}, std::pair{"drag_tangential", &fluid.drag_tangential}}) {
         *drag = reader.number(key, 0);
-        if (!(*drag >= 0 && *drag <= 1000)) reader.problem(key, "is a coefficient: 0 or more, a plate has about 1");
+        if (!(*drag >= 0 && *drag <= 1000))
+            reader.problem(key,
+                           fmt::format("{} is not possible; a coefficient from 0 to 1000, a plate has about 1", *drag));
     }
     if (reader.has("level")) fluid.level = reader.number("level");
     (void)reader.raw("level");

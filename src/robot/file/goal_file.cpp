@@ -6,6 +6,7 @@
 #include <array>
 #include <numbers>
 
+#include "base/core/counted.hpp"
 #include "base/core/csv.hpp"
 #include "base/core/files.hpp"
 #include "base/core/text.hpp"
@@ -228,12 +229,12 @@ void read_goal_times(Reader& reader, GoalSpec& goal) {
     if (reader.has("times")) {
         if (!goal.times.empty()) reader.problem("times", "stand in the CSV already");
         goal.times = reader.numbers("times");
-        if (goal.times.size() == 1 && goal.wanted.size() > 1) goal.times.assign(goal.wanted.size(), goal.times[0]);
     }
     (void)reader.raw("times");
     if (!goal.times.empty() && goal.wanted.size() == 1) goal.wanted.resize(goal.times.size(), goal.wanted.front());
     if (!goal.times.empty() && goal.times.size() != goal.wanted.size())
-        reader.problem("times", fmt::format("gives {} times for {} waypoints", goal.times.size(), goal.wanted.size()));
+        reader.problem("times", fmt::format("gives {} for {}", counted(goal.times.size(), "time"),
+                                            counted(goal.wanted.size(), "waypoint")));
     for (std::size_t k = 0; k < goal.times.size(); ++k) {
         if (goal.times[k] >= 0 && (k == 0 || goal.times[k] >= goal.times[k - 1])) continue;
         reader.problem("times", "are seconds of the program: not below zero, and in their order");
@@ -303,6 +304,17 @@ void check_together(Reader& root, Robot& robot) {
 }
 
 }  // namespace
+
+void check_goal_times(Reader& root, const Robot& robot) {
+    const double end = robot.program.duration;
+    if (root.unreadable("program")) return;
+    for (const GoalSpec& goal : robot.goals) {
+        if (goal.times.empty() || goal.times.back() <= end * (1 + 1e-9)) continue;
+        root.problem("goal", fmt::format("\"{}\" has a time of {:g} s, and the program ends at {:g} s; give "
+                                         "program.duration",
+                                         goal.name, goal.times.back(), end));
+    }
+}
 
 void read_goals(Reader& root, Context& context) {
     read_each(root, context, "goal", "goals", context.robot.goals, read_goal);

@@ -21,4 +21,7 @@ struct SteeredBy {
 /// Precondition: markers, supports, obstacles and actuators have been read.
 void read_goals(config::Reader& root, Context& context);
 
+/// Precondition: the program has been read as well.
+void check_goal_times(config::Reader& root, const Robot& robot);
+
 }  // namespace pliant::robot

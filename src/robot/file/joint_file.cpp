@@ -100,6 +100,7 @@ void read_joint(Reader& reader, Context& context, JointSpec& joint) {
     if (found != kinds.end()) joint.kind = static_cast<JointKind>(found - kinds.begin());
     read_between(reader, context.robot, joint);
     joint.point = reader.vector("point");
+    if (reader.unreadable("kind")) return skip_keys(reader);
     if (has_axis(joint.kind)) {
         joint.axis = reader.vector("axis");
         if (reader.has("axis") && norm(joint.axis) == 0) reader.problem("axis", "must not be zero");

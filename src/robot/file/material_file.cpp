@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/core/text.hpp"
+#include "robot/file/reading.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -63,6 +64,7 @@ material::ShapeBlend read_named_blend(Reader& reader, double E) {
         return {1, 1};
     }
     const double stiffest = reader.quantity("stiffest", Dimension::pressure, E);
+    if (reader.unreadable("youngs_modulus") || reader.unreadable("stiffest")) return {1, 1};
     if (!(stiffest >= E)) {
         reader.problem("stiffest", "is below youngs_modulus; the stiffest material counts as rigid");
         return {1, 1};
@@ -79,15 +81,16 @@ material::ShapeBlend read_named_blend(Reader& reader, double E) {
 
 material::Law read_shape_blend(Reader& reader, MaterialSpec& material) {
     const double nu = material.poisson_ratio;
-    if (nu < 0) reader.problem("poisson_ratio", "the shape blend has no negative Poisson ratio");
     const config::Value* given = reader.raw("shape_parameter");
     if (given != nullptr && std::holds_alternative<std::string>(given->data)) {
+        if (reader.has("poisson_ratio"))
+            reader.problem("poisson_ratio", "stands beside a shape_parameter by name, from which it follows");
         const material::ShapeBlend blend = read_named_blend(reader, material.youngs_modulus_Pa);
         material.poisson_ratio = material::poisson_ratio(material::moduli(blend));
         return blend;
     }
+    if (nu < 0) reader.problem("poisson_ratio", "the shape blend has no negative Poisson ratio");
     if (reader.has("stiffest")) {
-        (void)reader.raw("stiffest");
         reader.problem("stiffest",
                        "goes with a shape_parameter by name: \"thesis\", \"small-strain\" or \"calibrated\"");
     }
@@ -132,10 +135,8 @@ double read_bulk(Reader& reader, double shear_Pa) {
         const double nu = reader.number("poisson_ratio", 0.45);
         return check_poisson_ratio(reader, nu) ? material::bulk_modulus(shear_Pa, nu) : shear_Pa;
     }
-    if (reader.has("poisson_ratio")) {
-        (void)reader.raw("poisson_ratio");
+    if (reader.has("poisson_ratio"))
         reader.problem("poisson_ratio", "stands beside bulk_modulus; one of the two determines the other");
-    }
     const double K = reader.quantity("bulk_modulus", Dimension::pressure, shear_Pa);
     if (!(K > 0)) reader.problem("bulk_modulus", "must be above zero");
     return K > 0 ? K : shear_Pa;
@@ -145,22 +146,22 @@ double pressure(Reader& reader, std::string_view key) {
     return reader.quantity(key, Dimension::pressure);
 }
 
-material::Ogden read_ogden(Reader& reader) {
+std::optional<material::Ogden> read_ogden(Reader& reader) {
     material::Ogden law{};
     const std::vector<std::string> mu = reader.texts("mu");
     const std::vector<double> alpha = reader.numbers("alpha");
     if (!reader.has("mu")) reader.problem("", "\"mu\" is missing; it is a list of pressures such as [\"1.2 MPa\"]");
     if (mu.empty() || mu.size() != alpha.size() || mu.size() > material::Ogden::most_terms) {
-        if (reader.has("mu") && reader.has("alpha"))
+        if (!reader.unreadable("alpha"))
             reader.problem("mu", fmt::format("has {} values and alpha {}; as many of each, 1 to {}", mu.size(),
                                              alpha.size(), material::Ogden::most_terms));
-        return law;
+        return std::nullopt;
     }
     law.terms = static_cast<int>(mu.size());
     for (std::size_t k = 0; k < mu.size(); ++k) {
         const Result<double> value = parse_quantity(mu[k], Dimension::pressure);
-        if (!value) reader.problem("mu", value.error().message);
-        law.mu_Pa[k] = value.value_or(0);
+        if (!value) return reader.problem("mu", value.error().message), std::nullopt;
+        law.mu_Pa[k] = *value;
         law.alpha[k] = alpha[k];
         if (alpha[k] == 0 || !(std::fabs(alpha[k]) <= 100))
             reader.problem("alpha", fmt::format("{} is not possible; between -100 and 100, and not zero", alpha[k]));
@@ -168,12 +169,18 @@ material::Ogden read_ogden(Reader& reader) {
     return law;
 }
 
-/// The constants only, with the bulk modulus still zero.
-material::Law read_constants(Reader& reader, const std::string& law) {
-    if (law == "mooney-rivlin") return material::MooneyRivlin{pressure(reader, "c10"), pressure(reader, "c01"), 0};
-    if (law == "ogden") return read_ogden(reader);
-    return material::Yeoh{pressure(reader, "c10"), reader.quantity("c20", Dimension::pressure, 0),
-                          reader.quantity("c30", Dimension::pressure, 0), 0};
+/// The constants only, with the bulk modulus still zero. Empty if one of them could not be read.
+std::optional<material::Law> read_constants(Reader& reader, const std::string& law) {
+    std::optional<material::Law> constants;
+    if (law == "mooney-rivlin") constants = material::MooneyRivlin{pressure(reader, "c10"), pressure(reader, "c01"), 0};
+    if (law == "ogden") constants = read_ogden(reader);
+    if (law == "yeoh")
+        constants = material::Yeoh{pressure(reader, "c10"), reader.quantity("c20", Dimension::pressure, 0),
+                                   reader.quantity("c30", Dimension::pressure, 0), 0};
+    for (const char* key : {"c10", "c01", "c20", "c30", "mu", "alpha"}) {
+        if (reader.unreadable(key)) return std::nullopt;
+    }
+    return constants;
 }
 
 std::string_view shear_formula(const std::string& law) {
@@ -184,7 +191,6 @@ std::string_view shear_formula(const std::string& law) {
 /// The laws with constants of their own.
 void read_hyperelastic(Reader& reader, const std::string& law, MaterialSpec& material) {
     if (reader.has("youngs_modulus")) {
-        (void)reader.raw("youngs_modulus");
         reader.problem("youngs_modulus",
                        fmt::format("does not determine the constants of \"{}\"; give them, its initial shear modulus "
                                    "is {}, or take law = \"neo-hookean\"",
@@ -193,22 +199,48 @@ void read_hyperelastic(Reader& reader, const std::string& law, MaterialSpec& mat
         (void)reader.raw("poisson_ratio");
         return;
     }
-    material::Law elastic = read_constants(reader, law);
-    const double shear = material::moduli(elastic).shear_Pa;
-    if (!(shear > 0)) {
-        const std::string_view key = law == "ogden" ? "mu" : "c10";
-        if (reader.has(key))
-            reader.problem(key, fmt::format("the initial shear modulus, {}, is {:.4g} "
-                                            "MPa; a stable solid needs one above zero",
-                                            shear_formula(law), shear / 1e6));
-    }
+    const std::optional<material::Law> constants = read_constants(reader, law);
+    const double shear = constants ? material::moduli(*constants).shear_Pa : 1;
+    if (!(shear > 0))
+        reader.problem(law == "ogden" ? "mu" : "c10", fmt::format("the initial shear modulus, {}, is {:.4g} "
+                                                                  "MPa; a stable solid needs one above zero",
+                                                                  shear_formula(law), shear / 1e6));
     const double K = read_bulk(reader, shear > 0 ? shear : 1);
+    if (!constants) return;
+    material::Law elastic = *constants;
     if (auto* l = std::get_if<material::MooneyRivlin>(&elastic)) l->bulk_Pa = K;
     if (auto* l = std::get_if<material::Yeoh>(&elastic)) l->bulk_Pa = K;
     if (auto* l = std::get_if<material::Ogden>(&elastic)) l->bulk_Pa = K;
     material.law = elastic;
     material.youngs_modulus_Pa = material::youngs_modulus(material::moduli(elastic));
     material.poisson_ratio = material::poisson_ratio(material::moduli(elastic));
+}
+
+struct ConstantOfLaws {
+    std::string_view key;
+    std::vector<std::string> laws;  ///< that have it
+};
+
+/// Reports a constant of another law than the one that is given.
+void check_constants(Reader& reader, const std::string& law) {
+    const std::vector<ConstantOfLaws> constants = {
+        {"bulk_modulus", {"mooney-rivlin", "yeoh", "ogden"}},
+        {"c10", {"mooney-rivlin", "yeoh"}},
+        {"c01", {"mooney-rivlin"}},
+        {"c20", {"yeoh"}},
+        {"c30", {"yeoh"}},
+        {"mu", {"ogden"}},
+        {"alpha", {"ogden"}},
+        {"shape_parameter", {"shape-blend"}},
+        {"stiffest", {"shape-blend"}},
+        {"shape_curve", {"shape-blend"}},
+    };
+    for (const auto& [key, laws] : constants) {
+        const bool fits = std::ranges::find(laws, law) != laws.end();
+        if (fits) (void)reader.raw(key);  // known, even if what stands before it in the table was wrong
+        if (!fits && reader.has(key))
+            reader.problem(key, fmt::format("is a constant of {}; the law here is {}", join_names(laws), law));
+    }
 }
 
 /// Larger numbers overflow when they are multiplied; no material comes near them.
@@ -230,6 +262,15 @@ void check_size(Reader& reader, const std::string& law, const MaterialSpec& mate
         reader.problem("bulk_modulus", fmt::format("is not possible; at most {:.0e} Pa are taken", most_Pa));
 }
 
+void read_elastic(Reader& reader, const std::string& law, MaterialSpec& material) {
+    if (law == "mooney-rivlin" || law == "yeoh" || law == "ogden")
+        read_hyperelastic(reader, law, material);
+    else
+        read_two_moduli(reader, law, material);
+    check_constants(reader, law);
+    check_size(reader, law, material);
+}
+
 }  // namespace
 
 double read_exposure(Reader& reader, std::string_view key) {
@@ -247,11 +288,10 @@ MaterialSpec read_material(Reader& reader, const std::string& name) {
         "law",
         {"neo-hookean", "mooney-rivlin", "yeoh", "ogden", "corotated", "st-venant-kirchhoff", "linear", "shape-blend"},
         "neo-hookean");
-    if (law == "mooney-rivlin" || law == "yeoh" || law == "ogden")
-        read_hyperelastic(reader, law, material);
+    if (reader.unreadable("law"))
+        skip_keys(reader);  // which of them are right depends on the law
     else
-        read_two_moduli(reader, law, material);
-    check_size(reader, law, material);
+        read_elastic(reader, law, material);
     material.density_kg_m3 = reader.quantity("density", Dimension::density, 1000);
     if (material.density_kg_m3 < 0) reader.problem("density", "must not be negative");
     if (!(material.density_kg_m3 <= most_density_kg_m3))

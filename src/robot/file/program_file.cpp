@@ -192,16 +192,28 @@ void read_dynamics(Reader& program, Robot& robot) {
                                           tolerance > 0 ? tolerance : 0};
 }
 
-/// Divides the duration into steps of `time_step`.
+/// Divides the duration into steps of `time_step`, or of the length next to it that fits a whole number of times.
 void spread_steps(Reader& program, Robot& robot) {
+    constexpr double most_steps = 1e6, rounding = 1e-9;
     const double step = program.quantity("time_step", Dimension::time);
     if (program.has("steps")) program.problem("steps", "follows from time_step and duration; give one of them");
-    const double steps = step > 0 ? std::round(robot.program.duration / step) : 0;
-    if (!(steps >= 1 && steps <= 1e6)) {
-        program.problem("time_step", "must be above zero, and fit 1 to 1000000 times into the duration");
-        return;
+    for (const char* key : {"duration", "time_step", "key"}) {
+        if (program.unreadable(key)) return;
     }
+    const double duration = robot.program.duration, fits = step > 0 ? duration / step : 0;
+    if (!(step > 0)) return program.problem("time_step", "must be above zero");
+    if (fits < 1 - rounding)
+        return program.problem("time_step", fmt::format("is longer than the duration, {:.6g} s", duration));
+    if (fits > most_steps)
+        return program.problem("time_step", fmt::format("makes {:.3g} steps in {:.6g} s; at most {:.0f} are possible",
+                                                        fits, duration, most_steps));
+    const double steps = std::round(fits);
     robot.program.steps = static_cast<int>(steps);
+    if (std::fabs(fits - steps) > rounding * steps)
+        robot.notes.push_back(
+            fmt::format("program.time_step is {:.6g} s instead of {:.6g} s, so that {:.0f} steps fill "
+                        "the duration of {:.6g} s",
+                        duration / steps, step, steps, duration));
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ mesh::RigidMotion read_motion(Reader& reader) {
     motion.angle_rad = rotate.number("angle") * std::numbers::pi / 180;
     motion.axis = rotate.vector("axis");
     if (norm(motion.axis) == 0) {
-        if (rotate.has("axis")) rotate.problem("axis", "must not be zero");
+        rotate.problem("axis", "must not be zero");
         motion.axis = {0, 0, 1};
     }
     motion.center = rotate.vector("center", Vec3{});
@@ -82,7 +82,8 @@ void read_copies(Reader& place, mesh::Placement& placement) {
         repeat.problem("count", fmt::format("{} copies; 1 to {} are possible", count, most_copies));
     placement.count = static_cast<int>(std::clamp<std::int64_t>(count, 1, most_copies));
     placement.step = read_motion(repeat);
-    if (placement.step.angle_rad == 0 && norm(placement.step.shift) == 0)
+    const bool still = placement.step.angle_rad == 0 && norm(placement.step.shift) == 0;
+    if (still && !repeat.unreadable("move") && !repeat.unreadable("rotate"))
         repeat.problem("", "needs move or rotate: from each copy to the next");
     repeat.finish();
 }
@@ -103,6 +104,10 @@ mesh::Placement read_placement(Reader& reader, std::string_view key) {
     read_copies(place, placement);
     place.finish();
     return placement;
+}
+
+void skip_keys(Reader& reader) {
+    for (const std::string& key : reader.keys()) (void)reader.raw(key);
 }
 
 mesh::Solid read_shape(Reader& reader, Context& context) {

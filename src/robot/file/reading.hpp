@@ -40,6 +40,9 @@ struct Context {
 /// `geometry`, written as a shape. Precondition: the key is there.
 [[nodiscard]] mesh::Solid read_shape(config::Reader& reader, Context& context);
 
+/// Marks every key as read, where none can be judged.
+void skip_keys(config::Reader& reader);
+
 /// Reads every [[key]] of `root` into `list`: its line, its name, which is unique among its kind, and by
 /// `read(reader, context, spec)` what else it says.
 template <typename Spec, typename Read>

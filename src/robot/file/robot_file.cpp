@@ -64,6 +64,7 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
     read_sensors(root, context);
     read_goals(root, context);
     read_program(root, robot);
+    check_goal_times(root, robot);
     if (robot.fluid && robot.fluid->level && robot.gravity_m_s2 == Vec3{})
         root.problem("fluid", "has a level, and nothing says where up is; give program.gravity");
     if (robot.fixed.empty() && !may_be_free(robot))

@@ -105,7 +105,9 @@ MotionSensorSpec read_motion_sensor(Reader& reader, const Context& context) {
 void read_sensor(Reader& reader, Context& context, SensorSpec& sensor) {
     const std::string kind =
         reader.choice("kind", {"strain", "backbone", "contact", "tension", "volume", "pressure", "distance", "motion"});
-    if (kind == "strain") {
+    if (reader.unreadable("kind")) {
+        skip_keys(reader);
+    } else if (kind == "strain") {
         sensor.what = StrainSensorSpec{read_line(reader, 2)};
     } else if (kind == "backbone") {
         BackboneSensorSpec backbone{read_line(reader, 3)};

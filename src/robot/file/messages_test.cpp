@@ -1,0 +1,157 @@
+// Robot files with one mistake: one message, at the key, that the value does not satisfy.
+#include <doctest/doctest.h>
+
+#include <string>
+#include <vector>
+
+#include "robot/file/robot_file.hpp"
+
+using namespace pliant;
+using namespace pliant::robot;
+
+namespace {
+
+const std::string head = "name = \"bar\"\nlength_unit = \"mm\"\n";
+const std::string body =
+    "[[body]]\nname = \"bar\"\nmaterial = \"soft\"\ngeometry = { box = [[0, 0, 0], [40, 10, 10]] }\n"
+    "[[fixed]]\nname = \"clamp\"\nbox = [[0, 0, 0], [0, 10, 10]]\n";
+const std::string neo = "[material.soft]\nyoungs_modulus = \"1 MPa\"\n";
+const std::string blend = "[material.soft]\nlaw = \"shape-blend\"\nyoungs_modulus = \"12 MPa\"\n";
+const std::string cable = "[[cable]]\nname = \"flexor\"\npoints = [[0, 5, 8], [40, 5, 8]]\n";
+const std::string marker = "[[marker]]\nname = \"tip\"\npoint = [40, 5, 5]\n";
+
+std::string message(const std::string& text) {
+    const Result<Robot> robot = parse_robot(text, "bar.toml");
+    return robot ? "" : robot.error().message;
+}
+
+/// Of a robot with this material and these tables.
+std::string problem(const std::string& material, const std::string& tables) {
+    return message(head + material + body + tables);
+}
+
+/// The only message, without file and line.
+std::string only(const std::string& material, const std::string& tables = "") {
+    const std::string text = problem(material, tables);
+    CHECK_MESSAGE(text.find('\n') == std::string::npos, text);
+    const std::size_t at = text.find(": ");
+    return at == std::string::npos ? text : text.substr(at + 2);
+}
+
+Robot robot_with(const std::string& tables) {
+    Result<Robot> robot = parse_robot(head + neo + body + tables, "bar.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    return std::move(*robot);
+}
+
+}  // namespace
+
+TEST_CASE("a value that cannot be read gives one message") {
+    const std::string curve = "stiffest = \"45 MPa\"\nshape_parameter = \"calibrated\"\n";
+    CHECK(only(blend + curve) == "material.soft: \"shape_curve\" is missing; it is a list of numbers");
+    CHECK(only("[material.soft]\nlaw = \"ogden\"\nmu = [\"1 MPa\", \"2 MPa\"]\nalpha = [1.3]\n") ==
+          "material.soft.mu: has 2 values and alpha 1; as many of each, 1 to 6");
+    CHECK(only("[material.soft]\nlaw = \"ogden\"\nmu = [\"1 MPa\", \"2 mm\"]\nalpha = [1, 2]\n").find("unknown unit") !=
+          std::string::npos);
+    CHECK(only("[material.soft]\nlaw = \"ogden\"\nmu = [\"1 MPa\"]\nalpha = \"2\"\n") ==
+          "material.soft.alpha: needs a list of finite numbers");
+    CHECK(only("[material.soft]\nlaw = \"mooney-rivlin\"\nc10 = \"-1 kPa\"\nc01 = 1\n") ==
+          "material.soft.c01: 1 has no unit; write a pressure such as \"12 MPa\"");
+    CHECK(only("[material.soft]\nlaw = \"shape-blend\"\nyoungs_modulus = 12\nstiffest = \"45 MPa\"\n"
+               "shape_parameter = \"thesis\"\n") ==
+          "material.soft.youngs_modulus: 12 has no unit; write a pressure such as \"12 MPa\"");
+    CHECK(only("[material.soft]\nlaw = \"neohooke\"\nc10 = \"1 MPa\"\n").starts_with("material.soft.law: "));
+    CHECK(only(blend + "poisson_ratio = 0.5\nshape_parameter = 7\n").starts_with("material.soft.poisson_ratio: "));
+    CHECK(only(neo, "[[spring]]\nname = \"s\"\npoints = [[0, 5, 5], [40, 5, 5]]\nstiffness = \"1 kN/m\"\n")
+              .starts_with("spring[0].stiffness: unknown unit"));
+    CHECK(only(neo, "[[mass]]\nname = \"m\"\npoint = [1, 1, 1]\nmass = \"1 mg\"\n")
+              .starts_with("mass[0].mass: unknown unit"));
+    CHECK(only(neo, "[program]\ntime_step = \"10 ms\"\ntime_tolerance = 0.01\n")
+              .starts_with("program.time_tolerance: 0.01 has no unit"));
+    CHECK(
+        only(neo, "[program]\ntime_step = \"10 s\"\nduration = 20\n").starts_with("program.duration: 20 has no unit"));
+    CHECK(only(neo, cable + "target = { tension = \"1 N\" }\nrange = [0.7, 1]\n")
+              .starts_with("cable[0].range: entry 1 has no unit"));
+    CHECK(only(neo, cable + "target = { length_ratio = 0.9 }\n[[program.key]]\ntime = \"1 s\"\nflexor = \"0.9\"\n") ==
+          "program.key[0].flexor: is \"0.9\", a finite number is needed");
+    CHECK(only(neo, "[[chamber]]\nname = \"air\"\ninside = [5, 5, 5]\ntarget = { gas_ratio = \"2\" }\n") ==
+          "chamber[0].target.gas_ratio: is \"2\", a finite number is needed");
+}
+
+TEST_CASE("a key that belongs to another kind of joint is not called unknown, and an unknown kind judges none") {
+    const std::string joint = "[[joint]]\nname = \"j\"\nbetween = [\"bar\", \"world\"]\npoint = [0, 5, 5]\n";
+    CHECK(only(neo, joint + "kind = \"ball\"\nlimits = [-10, 10]\n") ==
+          "joint[0].limits: are those of a hinge, motor or slider");
+    CHECK(only(neo, joint + "kind = \"hinch\"\naxis = [0, 0, 1]\n").starts_with("joint[0].kind: "));
+}
+
+TEST_CASE("constants of another law are told whose they are") {
+    CHECK(only(neo + "bulk_modulus = \"1 GPa\"\n") ==
+          "material.soft.bulk_modulus: is a constant of mooney-rivlin, yeoh and ogden; the law here is neo-hookean");
+    CHECK(only(neo + "stiffest = \"45 MPa\"\n") ==
+          "material.soft.stiffest: is a constant of shape-blend; the law here is neo-hookean");
+    CHECK(only("[material.soft]\nlaw = \"yeoh\"\nc10 = \"1 MPa\"\nc01 = \"1 MPa\"\n") ==
+          "material.soft.c01: is a constant of mooney-rivlin; the law here is yeoh");
+}
+
+TEST_CASE("a Poisson ratio beside a shape parameter by name is refused, since it follows from it") {
+    const std::string by_name = blend + "stiffest = \"45 MPa\"\nshape_parameter = \"thesis\"\n";
+    CHECK(only(by_name).empty());
+    CHECK(only(by_name + "poisson_ratio = 0.3\n") ==
+          "material.soft.poisson_ratio: stands beside a shape_parameter by name, from which it follows");
+    CHECK(only(blend + "shape_parameter = 7\npoisson_ratio = 0.3\n").empty());
+}
+
+TEST_CASE("a body has a region or a geometry, and the advice does not contradict itself") {
+    const std::string text = problem(neo,
+                                     "[[body]]\nname = \"two\"\nmaterial = \"soft\"\nregion = \"all\"\n"
+                                     "geometry = { box = [[40, 0, 0], [50, 10, 10]] }\n");
+    CHECK(text ==
+          "bar.toml:15: body[1].region: stands beside geometry; region is for a body of a mesh file ([mesh] "
+          "file = \"...\"), geometry for any other");
+}
+
+TEST_CASE("messages say the limit that the value exceeds") {
+    const std::string target = "target = { length_ratio = 0.9 }\n";
+    CHECK(only(neo, cable + target + "friction = 10.1\n").find("10.1 is not possible; a coefficient from 0 to 10") !=
+          std::string::npos);
+    CHECK(only(neo, "[contact]\nfriction = 20\n").find("20 is not possible; a coefficient from 0 to 10") !=
+          std::string::npos);
+    const std::string plane = "plane = { point = [0, 0, -1], normal = [0, 0, 1] }\n";
+    CHECK(only(neo, "[[obstacle]]\nname = \"floor\"\n" + plane + "friction = 11\n").find("11 is not possible") !=
+          std::string::npos);
+    CHECK(only(neo, "[fluid]\ndensity = \"1 g/cm^3\"\ndrag_normal = 1000.1\n").find("from 0 to 1000,") !=
+          std::string::npos);
+    CHECK(only(neo, "[mesh]\npoint_reach = \"-1 mm\"\n").find("\"0 mm\" still allows a thousandth") !=
+          std::string::npos);
+}
+
+TEST_CASE("a time step that does not divide the duration is rounded, with a note; one beyond it is refused") {
+    const auto program = [](const std::string& step, const std::string& duration) {
+        return "[program]\ntime_step = \"" + step + "\"\nduration = \"" + duration + "\"\n";
+    };
+    const Robot whole = robot_with(program("0.1 s", "0.3 s"));  // 0.3 / 0.1 is not quite 3
+    CHECK(whole.program.steps == 3);
+    CHECK(whole.notes.empty());
+    const Robot rounded = robot_with(program("0.3 s", "1 s"));
+    CHECK(rounded.program.steps == 3);
+    CHECK(rounded.notes == std::vector<std::string>{"program.time_step is 0.333333 s instead of 0.3 s, so that 3 steps "
+                                                    "fill the duration of 1 s"});
+    CHECK(robot_with(program("1 s", "1 s")).program.steps == 1);
+    CHECK(robot_with(program("0.001 ms", "1 s")).program.steps == 1000000);
+    CHECK(only(neo, program("2 s", "1 s")) == "program.time_step: is longer than the duration, 1 s");
+    CHECK(only(neo, program("0.001 ms", "2 s")) ==
+          "program.time_step: makes 2e+06 steps in 2 s; at most 1000000 are possible");
+    CHECK(only(neo, program("0 s", "1 s")) == "program.time_step: must be above zero");
+}
+
+TEST_CASE("a goal has a time for every waypoint, none after the end of the program") {
+    const std::string ranged = cable + "range = [0.8, 1]\n" + marker + "[[goal]]\nname = \"reach\"\nmarker = \"tip\"\n";
+    const std::string path = "path = [[38, 5, 9], [37, 5, 11]]\n";
+    CHECK(only(neo, ranged + path + "times = [0.5, 1]\n").empty());
+    CHECK(only(neo, ranged + "point = [38, 5, 9]\ntimes = [0.5, 1]\n").empty());  // held there
+    CHECK(only(neo, ranged + path + "times = [0.5]\n") == "goal[0].times: gives 1 time for 2 waypoints");
+    CHECK(only(neo, ranged + path + "times = [0.5, 3]\n") ==
+          "goal: \"reach\" has a time of 3 s, and the program ends at 1 s; give program.duration");
+    CHECK(only(neo, ranged + path + "times = [0.5, 3]\n[program]\nduration = \"3 s\"\n").empty());
+}
