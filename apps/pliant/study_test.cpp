@@ -172,6 +172,28 @@ TEST_CASE("a row that fails is kept with its reason, and the other rows are run"
     CHECK(summary["failures"][0]["row"] == 1);
 }
 
+TEST_CASE("a row of inverse that misses its goal says where and why, one with a wrong option what is wrong") {
+    const Place place(
+        "command = [\"inverse\", \"reach.toml\"]\nplan = \"grid\"\n"
+        "key.starts = { option = \"--starts\", values = [0, 2000] }\n"
+        "result.ratio = \"waypoints[-1].inputs.pull\"\n");
+    REQUIRE(write_file(place / "reach.toml", R"(name = "reach"
+length_unit = "mm"
+material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.45 }
+body = [{ name = "bar", material = "soft", geometry = { box = [[0, 0, 0], [40, 10, 10]] } }]
+mesh = { size = "10 mm", order = 1 }
+marker = [{ name = "tip", point = [40, 5, 5] }]
+fixed = [{ name = "clamp", box = [[0, 0, 0], [0, 10, 10]] }]
+cable = [{ name = "pull", points = [[0, 5, 5], [40, 5, 5]], range = [0.95, 1.0] }]
+goal = [{ name = "back", marker = "tip", point = [20, 5, 5] }]
+)"));
+    CHECK(place.run().status == 1);
+    const auto failures = place.summary()["failures"];
+    REQUIRE(failures.size() == 2);
+    CHECK(failures[0]["reason"] == "waypoint 1 of 1 is not reached: pull is at the lower end of its range");
+    CHECK(failures[1]["reason"].get<std::string>().starts_with("--starts: Value 2000 not in range"));
+}
+
 TEST_CASE("a study killed at any time resumes to the results of a study that was never stopped") {
     const Place place(head + "plan = \"sobol\"\nsamples = 60\n" + modulus + " }\n" + force);
     int kills = 0;
