@@ -190,3 +190,34 @@ TEST_CASE("a virtual print that is killed or cancelled leaves no file") {
         CHECK(names() == before);
     }
 }
+
+TEST_CASE("a virtual print replaces neither the journal of an interrupted print nor the job") {
+    const Bench b("tower");
+    REQUIRE(b.shell("$PLIANT print halves.zip --twin --journal journal --fault reset:60", "said") == 1);
+    const std::string interrupted = b.text("journal"), job = b.text("halves.zip");
+    REQUIRE(interrupted.size() > 1000);
+    for (const std::string how : {"", " --speed 200"}) {
+        CAPTURE(how);
+        CHECK(b.shell("$PLIANT print halves.zip --twin --journal journal" + how, "said") == 2);
+        CHECK(test::holds(b.text("said"), "a print that was interrupted"));
+        CHECK(b.text("journal") == interrupted);
+    }
+    // Held by a host, as by `flock`, which locks as a journal does.
+    CHECK(b.shell("flock held -c \"$PLIANT print halves.zip --twin --journal held\"", "said") == 2);
+    CHECK(test::holds(b.text("said"), "another host"));
+    CHECK(b.text("held").empty());
+    for (const std::string option : {"--report halves.zip", "-o halves.zip", "--journal halves.zip"}) {
+        CAPTURE(option);
+        CHECK(b.shell("$PLIANT print halves.zip --twin " + option, "said") == 2);
+        CHECK(b.text("halves.zip") == job);
+    }
+    CHECK(b.shell("cp halves.zip job.json; $PLIANT print job.json --twin -o ./job.json", "said") == 2);
+    CHECK(test::holds(b.text("said"), "is the job itself"));
+    CHECK(b.text("job.json") == job);
+}
+
+TEST_CASE("-o writes the verdict of a virtual print, in real time too") {
+    const Bench b("tower");
+    REQUIRE(b.shell("$PLIANT print halves.zip --twin -q --speed 200 -o verdict.json", "said") == 0);
+    CHECK(test::holds(b.text("verdict.json"), "\"passed\": true"));
+}

@@ -2,11 +2,14 @@
 // and images.
 #include <fmt/core.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <utility>
 
 #include "base/core/files.hpp"
 #include "command.hpp"
+#include "inputs.hpp"
 #include "presentation/print_report/print_report.hpp"
 #include "print_live.hpp"
 #include "print_virtual.hpp"
@@ -18,12 +21,26 @@ namespace {
 
 struct PrintOptions {
     LiveOptions live;
-    std::string report_file;
     std::vector<std::string> accepted, faults;
     bool twin = false;
     bool list_ports = false;
     bool given_speed = false;
 };
+
+/// Every result has a name of its kind, and none that of the job, which is only read.
+Status check_outputs(const LiveOptions& live) {
+    Status named = check_ending("--report", live.report, "a page about a print", ".html");
+    if (named) named = check_ending("-o", live.verdict, "the report of a virtual print", ".json");
+    if (!named) return named;
+    const std::pair<const char*, const std::string&> outputs[] = {
+        {"--report", live.report}, {"-o", live.verdict}, {"--journal", live.journal}};
+    for (const auto& [option, file] : outputs) {
+        std::error_code none;
+        if (!file.empty() && std::filesystem::equivalent(file, live.job, none))
+            return input_error("{} {}: is the job itself; give another name", option, file);
+    }
+    return {};
+}
 
 /// The report of a print from its journal, whoever printed it.
 Result<int> report_on_journal(const LiveOptions& live) {
@@ -49,6 +66,7 @@ int list_ports(const Output& output) {
 Result<int> print(PrintOptions& options) {
     if (options.list_ports) return list_ports(options.live.output);
     if (options.live.job.empty()) return input_error("name the job to print, such as gripper.zip");
+    if (Status outputs = check_outputs(options.live); !outputs) return tl::unexpected(outputs.error());
     if (!options.twin && options.live.port.empty() && !options.live.report.empty())
         return report_on_journal(options.live);
     if (options.twin == !options.live.port.empty())
@@ -69,7 +87,7 @@ Result<int> print(PrintOptions& options) {
         return input_error("--resume needs --port DEVICE; the virtual printer of --twin ends with its command");
     if (!options.twin && options.live.projector.empty())
         return input_error("say where the light comes from: --projector DISPLAY or FOLDER");
-    if (options.twin && !options.given_speed) return print_virtual(options.live, options.report_file);
+    if (options.twin && !options.given_speed) return print_virtual(options.live);
     return print_live(options.live);
 }
 
@@ -113,7 +131,7 @@ void add_print(CLI::App& app, int& status) {
     CLI::Option* speed =
         command->add_option("--speed", live.speed, "speed-up factor, for virtual printers; 1 is real time");
     command->add_option("--clock", live.clock_file, "clock of the virtual printer (twin --clock FILE)");
-    command->add_option("-o,--output", options->report_file, "file for the report of --twin (.json)");
+    command->add_option("-o,--output", live.verdict, "file for the report of --twin (.json)");
     add_output_options(*command, live.output, true);
     command->footer(
         "Keys: space pauses and resumes, c cancels, e is the emergency stop; Ctrl-C parks, --resume continues.\n"

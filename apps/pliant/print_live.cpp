@@ -16,6 +16,7 @@
 #include "presentation/print_report/print_report.hpp"
 #include "print_vats.hpp"
 #include "printing/host/control.hpp"
+#include "printing/host/replace_journal.hpp"
 #include "printing/operate/job_file.hpp"
 #include "printing/operate/layer_command.hpp"
 #include "printing/operate/port_station.hpp"
@@ -192,10 +193,14 @@ Status write_report(const LiveOptions& options, const operate::ReadyJob& ready, 
     return write_file(options.report, *page);
 }
 
-/// Prints the findings of the virtual printer, and returns the exit status.
-int verdict(const LiveOptions& options, const twin::Report& report, int status) {
+/// Tells and writes the findings of the virtual printer, and returns the exit status.
+Result<int> verdict(const LiveOptions& options, const twin::Report& report, int status) {
+    const std::string json = twin::report_json(report);
+    if (!options.verdict.empty()) {
+        if (Status written = write_file(options.verdict, json + "\n"); !written) return tl::unexpected(written.error());
+    }
     if (options.output.json)
-        fmt::print("{}\n", twin::report_json(report));
+        fmt::print("{}\n", json);
     else if (!options.output.quiet)
         fmt::print("{}", twin::report_text(report));
     return report.passed ? status : static_cast<int>(exit_failed);
@@ -210,7 +215,7 @@ Result<int> judge(const LiveOptions& options, const operate::ReadyJob& ready, co
     constexpr double wall_clock_s = 0.05;  // allowed delay on a busy computer
     const twin::Judgement judgement{options.accepted, wall_clock_s * std::max(1.0, options.speed), true};
     if (options.report.empty())
-        return twin::inspect(twin, manifest, images, judgement).map([&](const twin::Report& report) {
+        return twin::inspect(twin, manifest, images, judgement).and_then([&](const twin::Report& report) {
             return verdict(options, report, ended.status);
         });
     Result<report::CuredBlock> made = report::cured_block(twin, manifest, images, judgement);
@@ -222,6 +227,9 @@ Result<int> judge(const LiveOptions& options, const operate::ReadyJob& ready, co
 }
 
 Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& ready, host::Clock& clock) {
+    if (!options.journal.empty()) {
+        if (Status may = host::may_replace_journal(options.journal); !may) return tl::unexpected(may.error());
+    }
     Result<twin::Pty> pty = twin::Pty::open();
     if (!pty) return tl::unexpected(pty.error());
     twin::Options wanted;
@@ -245,7 +253,7 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
     if (!ended) return tl::unexpected(ended.error());
     if (!options.journal.empty()) {
         const Status kept = read_file(journal->path()).and_then([&](const std::string& text) {
-            return write_file(options.journal, text);
+            return host::replace_journal(options.journal, text);
         });
         if (!kept) return tl::unexpected(kept.error());
     }

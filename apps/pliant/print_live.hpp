@@ -21,6 +21,7 @@ struct LiveOptions {
     std::string after_layer;
     std::string emergency_line;  ///< "": that of the printer file
     std::string report;          ///< file for the HTML report of the print; "": none
+    std::string verdict;         ///< file for the verdict on the virtual printer's part, as JSON; "": none
     bool resume = false;
     std::optional<double> assume_lit_s;
     bool assume_vats_untouched = false;

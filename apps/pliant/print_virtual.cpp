@@ -9,6 +9,7 @@
 #include "inputs.hpp"
 #include "presentation/print_report/print_report.hpp"
 #include "print_vats.hpp"
+#include "printing/host/replace_journal.hpp"
 #include "printing/operate/print_job.hpp"
 #include "printing/rehearse/rehearsal.hpp"
 
@@ -35,16 +36,19 @@ Status write_records(const LiveOptions& options, rehearse::Rehearsal& rehearsal,
     if (!options.journal.empty()) {
         const Result<std::string> journal = rehearsal.print().journal();
         if (!journal) return tl::unexpected(journal.error());
-        if (Status written = write_file(options.journal, *journal); !written) return written;
+        if (Status written = host::replace_journal(options.journal, *journal); !written) return written;
     }
     return options.report.empty() ? Status{} : write_page(options.report, rehearsal, judgement);
 }
 
 }  // namespace
 
-Result<int> print_virtual(const LiveOptions& options, const std::string& report_file) {
+Result<int> print_virtual(const LiveOptions& options) {
     auto progress = terminal_progress(options.output);
     if (Status is_job = expect(FileKind::job, options.job); !is_job) return tl::unexpected(is_job.error());
+    if (!options.journal.empty()) {
+        if (Status may = host::may_replace_journal(options.journal); !may) return tl::unexpected(may.error());
+    }
     Result<operate::ReadyJob> ready = operate::load_job(options.job);
     if (!ready) return tl::unexpected(ready.error());
     show_vats(ready->plan, ready->warnings, options.output);
@@ -64,8 +68,8 @@ Result<int> print_virtual(const LiveOptions& options, const std::string& report_
     const Result<twin::Report> report = rehearsal->inspect(judgement);
     if (!report) return tl::unexpected(report.error());
     const std::string json = twin::report_json(*report);
-    if (!report_file.empty()) {
-        if (Status written = write_file(report_file, json + "\n"); !written) return tl::unexpected(written.error());
+    if (!options.verdict.empty()) {
+        if (Status written = write_file(options.verdict, json + "\n"); !written) return tl::unexpected(written.error());
     }
     progress.reset();
     if (options.output.json)
