@@ -97,10 +97,13 @@ private:
     const Judgement& judgement_;
 };
 
+/// Showing an image with `grey` or a mask rounds its pixels to whole values: less than this share of a material.
+constexpr double shown_rounding = 0.01;
+
 void judge_material(MaterialReport& m, bool exact_images, Verdict& verdict) {
     using Kind = Finding::Kind;
-    // Showing rounds grey to integers; a larger difference means a job for another projector.
-    if (!exact_images && std::abs(m.wanted_mm3 - m.asked_mm3) > 0.01 * m.asked_mm3)
+    // A larger difference means a job for another projector.
+    if (!exact_images && std::abs(m.wanted_mm3 - m.asked_mm3) > shown_rounding * m.asked_mm3)
         verdict.add(Kind::image, fmt::format("{}: on this projector the images hold "
                                              "{:.3f} mm^3, the job says {:.3f} (grey, mask)",
                                              m.name, m.wanted_mm3, m.asked_mm3));
@@ -121,9 +124,10 @@ void judge_materials(Report& report, const job::Manifest& job, const ImageKind& 
     for (std::size_t i = 0; i < job.materials.size(); ++i) {
         MaterialReport& m = report.materials[i];
         if (job.compensated) m.model_mm3 = m.asked_mm3;
-        constexpr double rounding = 1e-9;
-        m.tolerance_mm3 =
-            rounding * m.model_mm3 + volume_tolerance_mm3(job.materials[i].model_area_mm2, border_um, layer_um);
+        // Layer images have no drawn surface that explains a difference: only their rounding does.
+        const double area_mm2 = job.materials[i].model_area_mm2;
+        const double rounding = images.exact || area_mm2 > 0 ? 1e-9 : shown_rounding;
+        m.tolerance_mm3 = rounding * m.model_mm3 + volume_tolerance_mm3(area_mm2, border_um, layer_um);
         judge_material(m, images.exact, verdict);
     }
 }

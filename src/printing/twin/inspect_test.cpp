@@ -200,6 +200,31 @@ TEST_CASE("a missing image is an error") {
     CHECK_FALSE(inspect(twin, half_job(), [](int, int) -> Result<job::Image> { return input_error("gone"); }));
 }
 
+TEST_CASE("layer images, which have no drawn surface, may differ by what showing them with grey rounds") {
+    machine::Printer printer = small_tower();
+    printer.projector.grey = {0, 0.8, 1};
+    // A pixel covered by 201 / 255 is to get the light 0.8 + 0.4 (201 / 255 - 0.5), 233.4 / 255: shown are 233, for
+    // 200.
+    const job::Image shown{4, 2, {255, 233, 0, 0, 255, 255, 0, 0}};
+    job::Manifest job = half_job();
+    const double area_mm2 = (3 * 255 + 201) / 255.0;
+    for (job::Layer& layer : job.layers) layer.images[0].area_mm2 = area_mm2;
+    const auto verdict = [&](double model_mm3, double model_area_mm2) {
+        job.materials[0].model_volume_mm3 = model_mm3;
+        job.materials[0].model_area_mm2 = model_area_mm2;
+        Twin twin(printer);
+        print(twin, {0.05, 0.1}, 2.5, shown);
+        return inspect(twin, job, ImageSource([&](int, int) -> Result<job::Image> { return shown; })).value();
+    };
+    const Report good = verdict(area_mm2 / 10, 0);
+    CHECK_MESSAGE(good.passed, (good.reasons.empty() ? "" : good.reasons.front()));
+    CHECK(good.materials[0].cured_mm3 - area_mm2 / 10 == near(-1.0 / 255 / 10, {.relative = 1e-9}));
+    CHECK(good.materials[0].tolerance_mm3 == near(0.01 * area_mm2 / 10, {.relative = 1e-12}));
+    CHECK_FALSE(verdict(area_mm2 / 10 * 1.011, 0).passed);
+    // What is drawn has the tolerance of its surface alone.
+    CHECK_FALSE(verdict(area_mm2 / 10, 1e-6).passed);
+}
+
 TEST_CASE("the inspection accounts for the projector's grey and mask") {
     machine::Printer printer = small_tower();
     printer.projector.grey = {0, 0.8, 1};
