@@ -318,6 +318,28 @@ TEST_CASE("an exported job can be imported again, from zip files and from folder
     CHECK(after.warnings.empty());
 }
 
+TEST_CASE("a stack has the volume of its layers, also of a first one that is thicker; grey that is applied is told") {
+    const pliant::test::Folder folder("export");
+    fs::create_directories(folder / "x");
+    slice::RunImage image(64, 48);
+    image.append(10, 0, 50, 255);
+    for (const char* name : {"x/l1.png", "x/l2.png"}) REQUIRE(write_file(folder / name, encode_png(image)));
+    std::vector<MaterialStack> stacks;
+    stacks.push_back({"soft", ImageStack::open(folder / "x").value()});
+    JobSettings s = settings();
+    s.slicing.tops_um = {300, 350};
+    s.light.grey = slice::grey_values(std::vector<double>{0, 0.8, 1});
+    auto writer = Writer::create(folder / "job.zip");
+    Progress progress;
+    const auto made = stacks_to_job(stacks, s, *writer, progress);
+    REQUIRE_MESSAGE(made, (made ? "" : made.error().message));
+    CHECK(made->manifest.layers.at(0).z_um == 300);
+    CHECK(made->manifest.layers.at(1).z_um == 350);
+    CHECK(made->manifest.materials.at(0).model_volume_mm3 == near(50 * 0.01 * 0.35, {.relative = 1e-12}));
+    REQUIRE(made->manifest.warnings.size() == 1);
+    CHECK(made->manifest.warnings[0].find("the printer file's grey is applied to the layer images") == 0);
+}
+
 TEST_CASE("pixels lit in two stacks go to one of them, with a warning") {
     const pliant::test::Folder folder("export");
     fs::create_directories(folder / "x");

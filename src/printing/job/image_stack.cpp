@@ -86,7 +86,7 @@ struct ImageStack::State {
     std::optional<ZipReader> zip;
     std::vector<StackImage> entries;
     PngSize size;
-    std::optional<double> layer_um;
+    std::optional<double> layer_um, first_layer_um;
     std::optional<PixelSize> pixel;
 
     [[nodiscard]] Result<std::string> read(const std::string& name, std::uint64_t most) const {
@@ -117,6 +117,9 @@ Result<ImageStack> ImageStack::open(const fs::path& path) {
     const auto layer_um = stated_layer_um(*names, side_text);
     if (!layer_um) return input_error("{}: {}", path.string(), layer_um.error().message);
     state->layer_um = *layer_um;
+    const auto first_layer_um = stated_first_layer_um(*names, side_text);
+    if (!first_layer_um) return input_error("{}: {}", path.string(), first_layer_um.error().message);
+    state->first_layer_um = *first_layer_um;
     const auto pixel = stated_pixel(*names, side_text);
     if (!pixel) return input_error("{}: {}", path.string(), pixel.error().message);
     state->pixel = *pixel;
@@ -142,6 +145,10 @@ int ImageStack::height_px() const {
 
 std::optional<double> ImageStack::layer_um() const {
     return state_->layer_um;
+}
+
+std::optional<double> ImageStack::first_layer_um() const {
+    return state_->first_layer_um;
 }
 
 std::optional<PixelSize> ImageStack::pixel() const {

@@ -29,6 +29,8 @@ public:
     [[nodiscard]] int height_px() const;
     /// From the files beside the images; nullopt if they do not say.
     [[nodiscard]] std::optional<double> layer_um() const;
+    /// Likewise; of the first layer, where it is given.
+    [[nodiscard]] std::optional<double> first_layer_um() const;
     /// Likewise.
     [[nodiscard]] std::optional<PixelSize> pixel() const;
     /// The image as grey, whatever kind of PNG the file holds. Errors: what libpng rejects.

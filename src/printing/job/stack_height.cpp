@@ -86,28 +86,39 @@ Result<double> height_um(const std::string& value, const Source& source, const s
     return um;
 }
 
+/// nullopt: there is no such file, or it does not have the key.
+Result<std::optional<double>> height_from(const Source& source, const std::vector<std::string>& names,
+                                          const SideText& text) {
+    const auto file =
+        std::find_if(names.begin(), names.end(), [&](const std::string& n) { return is_named(n, source.file); });
+    if (file == names.end()) return std::nullopt;
+    const Result<std::string> content = text(*file);
+    if (!content) return tl::unexpected(content.error());
+    std::optional<double> found;
+    for (const std::string& value : source.values(*content, source.key)) {
+        const Result<double> um = height_um(value, source, *file);
+        if (!um) return tl::unexpected(um.error());
+        constexpr double same_um = 1e-3;
+        if (found && std::fabs(*found - *um) > same_um)
+            return input_error("{}: {} is {:g} um and {:g} um: layers of one height are needed", *file, source.key,
+                               *found, *um);
+        found = *um;
+    }
+    return found;
+}
+
 }  // namespace
 
 Result<std::optional<double>> stated_layer_um(const std::vector<std::string>& names, const SideText& text) {
     for (const Source& source : sources) {
-        const auto file =
-            std::find_if(names.begin(), names.end(), [&](const std::string& n) { return is_named(n, source.file); });
-        if (file == names.end()) continue;
-        const Result<std::string> content = text(*file);
-        if (!content) return tl::unexpected(content.error());
-        std::optional<double> found;
-        for (const std::string& value : source.values(*content, source.key)) {
-            const Result<double> um = height_um(value, source, *file);
-            if (!um) return tl::unexpected(um.error());
-            constexpr double same_um = 1e-3;
-            if (found && std::fabs(*found - *um) > same_um)
-                return input_error("{}: {} is {:g} um and {:g} um: layers of one height are needed", *file, source.key,
-                                   *found, *um);
-            found = *um;
-        }
-        if (found) return found;
+        Result<std::optional<double>> found = height_from(source, names, text);
+        if (!found || *found) return found;
     }
     return std::nullopt;
+}
+
+Result<std::optional<double>> stated_first_layer_um(const std::vector<std::string>& names, const SideText& text) {
+    return height_from({"prusaslicer.ini", "initial_layer_height", ini_values, um_per_mm}, names, text);
 }
 
 namespace {

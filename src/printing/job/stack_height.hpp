@@ -20,6 +20,11 @@ using SideText = std::function<Result<std::string>(const std::string&)>;
 [[nodiscard]] Result<std::optional<double>> stated_layer_um(const std::vector<std::string>& names,
                                                             const SideText& text);
 
+/// The height of the first layer where the files give one of its own: initial_layer_height of prusaslicer.ini. nullopt:
+/// they do not. Errors as above.
+[[nodiscard]] Result<std::optional<double>> stated_first_layer_um(const std::vector<std::string>& names,
+                                                                  const SideText& text);
+
 /// Edges of a pixel, in micrometres.
 struct PixelSize {
     double x_um = 0, y_um = 0;

@@ -52,6 +52,21 @@ TEST_CASE("the layer height is read from every format, with its own key and unit
     CHECK(um({{"config.ini", "nothing"}, {"prusaslicer.ini", "layer_height = 0.05"}}) == near(50, {.relative = 1e-12}));
 }
 
+TEST_CASE("the first layer has its own height where PrusaSlicer says so") {
+    const auto first = [](const Files& files) {
+        std::vector<std::string> names;
+        for (const auto& [name, text] : files) names.push_back(name);
+        return stated_first_layer_um(names,
+                                     [&](const std::string& name) -> Result<std::string> { return files.at(name); });
+    };
+    CHECK(first({{"prusaslicer.ini", "initial_layer_height = 0.1\nlayer_height=0.025\n"}})->value() ==
+          near(100, {.relative = 1e-12}));
+    CHECK_FALSE(first({{"prusaslicer.ini", "layer_height = 0.05\n"}})->has_value());
+    CHECK_FALSE(first({{"config.ini", "layerHeight = 0.05\ninitial_layer_height = 0.1\n"}})->has_value());
+    CHECK(first({{"prusaslicer.ini", "initial_layer_height = thick\n"}}).error().message ==
+          "prusaslicer.ini: initial_layer_height = \"thick\": a layer height above 0 and below 10 mm is needed");
+}
+
 TEST_CASE("files without a layer height give none") {
     CHECK(um({}) == -1);
     CHECK(um({{"old_config.ini", "layerHeight = 0.05"}}) == -1);

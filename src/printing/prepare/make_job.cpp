@@ -233,6 +233,16 @@ Status keep_findings(const slice::Findings& findings, const std::vector<slice::T
     return add_pictures(manifest.findings, raster, source.layer, writer);
 }
 
+/// Layer images may be corrected already: nobody can see it in them.
+void note_light(const slice::LightCorrection& light, Manifest& manifest) {
+    if (light.none()) return;
+    const char* const what = !light.mask ? "grey is" : light.grey ? "grey and mask are" : "mask is";
+    manifest.warnings.push_back(
+        fmt::format("the printer file's {} applied to the layer images; images exported from a job for this "
+                    "printer are corrected already, and would be corrected twice",
+                    what));
+}
+
 Manifest empty_manifest(const JobSettings& settings, std::vector<Material> materials) {
     const slice::Settings& slicing = settings.slicing;
     const slice::Raster& raster = slicing.raster;
@@ -379,22 +389,25 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
     MadeJob job{empty_manifest(settings, std::move(printed.materials)), {}};
     slice::Inspector inspector(settings.slicing.layers());
     std::vector<slice::ThinSpot> thin;
-    std::vector<double> lost_px(stacks.size(), 0.0), lit(stacks.size(), 0.0);
-    const Status made = make_layers(source, settings, job.manifest, writer, progress, [&](int, Prepared& prepared) {
+    const double pixel_um = settings.slicing.raster.pixel_um;
+    const slice::Layers heights = settings.slicing.layers();
+    const auto voxel_mm3 = [&](int k) { return pixel_um * pixel_um * heights.thickness_um(k) / 1e9; };
+    std::vector<double> lost_mm3(stacks.size(), 0.0), lit_mm3(stacks.size(), 0.0);
+    const Status made = make_layers(source, settings, job.manifest, writer, progress, [&](int k, Prepared& prepared) {
         inspector.add(std::move(prepared.shape));
         thin.insert(thin.end(), prepared.thin.begin(), prepared.thin.end());
-        for (std::size_t i = 0; i < lost_px.size(); ++i) lost_px[i] += prepared.sliced.lost_px[i];
-        for (const auto& [drawn, sum] : prepared.drawn_sums) lit[drawn] += static_cast<double>(sum) / 255;
+        for (std::size_t i = 0; i < stacks.size(); ++i) lost_mm3[i] += prepared.sliced.lost_px[i] * voxel_mm3(k);
+        for (const auto& [drawn, sum] : prepared.drawn_sums)
+            lit_mm3[drawn] += static_cast<double>(sum) / 255 * voxel_mm3(k);
     });
     if (!made) return tl::unexpected(made.error());
-    const double pixel_um = settings.slicing.raster.pixel_um;
-    const double voxel_mm3 = pixel_um * pixel_um * settings.slicing.layer_um / 1e9;
+    note_light(settings.light, job.manifest);
     for (std::size_t i = 0; i < stacks.size(); ++i) {
-        add_drawn(stacks[i].material, lit[i] * voxel_mm3, 0, job.manifest.materials);
-        if (lost_px[i] * voxel_mm3 > voxel_mm3)
+        add_drawn(stacks[i].material, lit_mm3[i], 0, job.manifest.materials);
+        if (lost_mm3[i] > voxel_mm3(source.count))  // more than a pixel of a layer
             job.manifest.warnings.push_back(
                 fmt::format("images of \"{}\": {:.4g} mm^3 are exposed by other materials too, which keep them",
-                            stacks[i].material, lost_px[i] * voxel_mm3));
+                            stacks[i].material, lost_mm3[i]));
     }
     job.summary.layer_count = source.count;
     if (auto status = keep_findings(inspector.finish(), thin, source, settings, job.manifest, writer); !status)

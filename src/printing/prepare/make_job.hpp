@@ -57,7 +57,7 @@ struct MaterialStack {
     ImageStack stack;
 };
 
-/// The same from existing images: layers of settings.slicing.layer_um, each material once. Volumes are those of the
+/// The same from existing images: layers as settings.slicing says, each material once. Volumes are those of the
 /// images. A pixel shared by materials goes entirely to the brighter one, on a tie to the later one, and a warning says
 /// how much was shared. Errors: a material without settings, images whose size differs from the raster, unreadable
 /// images.

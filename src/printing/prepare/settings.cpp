@@ -316,6 +316,25 @@ Result<int> layer_of(const Order& order, const machine::Printer& printer, Drawin
     return static_cast<int>(um);
 }
 
+/// The tops of the first layers of stacks whose first layer has a height of its own, as PrusaSlicer writes them; empty
+/// where it is as high as the others.
+Result<std::vector<int>> stacked_tops_um(const Drawing& drawing, int layer_um) {
+    std::optional<int> first_um;
+    for (const job::MaterialStack& s : drawing.stacks) {
+        const double stated_um = s.stack.first_layer_um().value_or(layer_um), um = std::round(stated_um);
+        if (std::fabs(um - stated_um) > 1e-3 || um < 1 || um > 1000)
+            return input_error(
+                "the first layer of \"{}\" is {} high: a whole number of micrometres from 1 to 1000 is needed",
+                s.material, um_text(stated_um));
+        if (first_um && *first_um != static_cast<int>(um))
+            return input_error("the first layer of \"{}\" is {} high, that of another stack {}: slice them alike",
+                               s.material, um_text(um), um_text(*first_um));
+        first_um = static_cast<int>(um);
+    }
+    if (first_um.value_or(layer_um) == layer_um) return std::vector<int>{};
+    return std::vector<int>{*first_um, *first_um + layer_um};
+}
+
 /// Names of materials and resins go to terminals, and into comments of programs.
 Status check_names(const Drawing& drawing) {
     for (const auto& [material, resin] : drawing.resin_of_material) {
@@ -350,6 +369,9 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
     const Result<int> layer_um = layer_of(order, printer, drawing);
     if (!layer_um) return tl::unexpected(layer_um.error());
     settings.slicing.layer_um = *layer_um;
+    Result<std::vector<int>> tops_um = stacked_tops_um(drawing, *layer_um);
+    if (!tops_um) return tl::unexpected(tops_um.error());
+    settings.slicing.tops_um = std::move(*tops_um);
     settings.materials = with_exposures(drawing, printer);
     if (!order.any_vat) {
         if (Status status = check_resins(drawing, settings.materials, printer); !status)
@@ -379,7 +401,7 @@ job::Request request_of(const Order& order, const job::JobSettings& settings) {
     job::Request request{order.inputs, order.assignments, order.turn, order.spacing};
     request.scale = order.scale;
     request.at_mm = order.at;
-    if (!settings.slicing.tops_um.empty()) {
+    if (!order.least_layer.empty() && !settings.slicing.tops_um.empty()) {
         const Result<int> least = layer_height_um("--least-layer", order.least_layer);
         request.least_layer_um = least.value_or(0);
     }

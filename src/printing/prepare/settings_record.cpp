@@ -64,7 +64,7 @@ std::string settings_json(const JobSettings& settings, const Request& request) {
               {"assignments", request.assignments}};
     for (const std::string& input : request.inputs) root["inputs"].push_back(without_folder(input));
     root["layer_um"] = slicing.layer_um;
-    if (!slicing.tops_um.empty()) root["least_layer_um"] = request.least_layer_um;
+    if (!slicing.tops_um.empty() && request.least_layer_um > 0) root["least_layer_um"] = request.least_layer_um;
     root["bottom_layers"] = settings.bottom_layers;
     root["raster"] = raster_json(slicing.raster);
     root["anti_alias"] = slicing.rules.anti_alias;

@@ -89,6 +89,25 @@ TEST_CASE("layer images are printed at the height they were sliced at") {
     CHECK(layer_or_error("", stacks(folder, "1.5")).find("layer images are for layers of 1500 um") == 0);
 }
 
+TEST_CASE("the first of the layer images is printed at the height that it was sliced at") {
+    const pliant::test::Folder folder("first_layer");
+    const auto tops = [&](const std::string& first_mm) -> Result<std::vector<int>> {
+        const std::filesystem::path at = folder / first_mm;
+        write_stack(at, "0.05");
+        REQUIRE(write_file(at / "prusaslicer.ini", "layer_height = 0.05\ninitial_layer_height = " + first_mm + "\n"));
+        Progress silent;
+        Drawing drawing = read_drawing({"soft=" + at.string()}, {}, silent).value();
+        const auto settings = job_settings(Order{}, printer(), {}, drawing);
+        if (!settings) return tl::unexpected(settings.error());
+        const slice::Layers layers = settings->slicing.layers();
+        return std::vector<int>{layers.top_um(0), layers.top_um(1), layers.top_um(2)};
+    };
+    CHECK(tops("0.3").value() == std::vector<int>{300, 350, 400});
+    CHECK(tops("0.05").value() == std::vector<int>{50, 100, 150});
+    CHECK(tops("0.0125").error().message ==
+          "the first layer of \"soft\" is 12.5 um high: a whole number of micrometres from 1 to 1000 is needed");
+}
+
 TEST_CASE("layer images for pixels of another size are refused") {
     const pliant::test::Folder folder("stack_pixels");
     const auto with = [&](double x_mm, double y_mm) {
