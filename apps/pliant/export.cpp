@@ -3,10 +3,14 @@
 
 #include <fmt/core.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "command.hpp"
 #include "inputs.hpp"
+#include "interrupt.hpp"
 
 namespace pliant::app {
 namespace {
@@ -16,20 +20,42 @@ struct ExportOptions {
     Output output;
 };
 
+/// What the images were corrected by, which no format can say; "": by nothing.
+std::string correction_note(const machine::Projector& projector) {
+    if (projector.grey.empty() && projector.mask.empty()) return "";
+    return fmt::format(
+        "the images hold what this projector must show: the printer file's {} applied, and pliant slice "
+        "would apply {} again",
+        projector.mask.empty()   ? "grey is"
+        : projector.grey.empty() ? "mask is"
+                                 : "grey and mask are",
+        projector.mask.empty() || projector.grey.empty() ? "it" : "them");
+}
+
+void tell_files(const ExportOptions& options, const std::vector<std::filesystem::path>& written,
+                const std::string& note) {
+    if (options.output.json) {
+        nlohmann::json root{{"files", nlohmann::json::array()}};
+        for (const auto& path : written) root["files"].push_back(path.string());
+        if (!note.empty()) root["notes"] = {note};
+        fmt::print("{}\n", root.dump(1));
+    } else if (!options.output.quiet) {
+        for (const auto& path : written) fmt::print("{}\n", path.string());
+        if (!note.empty()) fmt::print("  note: {}\n", note);
+    }
+}
+
 Status export_robot(const ExportOptions& options) {
     const Result<job::Format> format = job::format_from(options.format);
     if (!format) return input_error("--as: {}", format.error().message);
-    const Result<job::Archive> archive = read_archive(options.job);
-    if (!archive) return tl::unexpected(archive.error());
-    const auto written = job::export_job(*archive, *format, options.folder);
+    auto progress = terminal_progress(options.output);
+    on_signal(OnSignal::ask_twice);  // a partial file must be removed
+    const Result<operate::OpenJob> job = read_job(options.job);
+    if (!job) return tl::unexpected(job.error());
+    const auto written = job::export_job(job->archive, *format, options.folder, *progress);
+    progress.reset();
     if (!written) return tl::unexpected(written.error());
-    if (options.output.json) {
-        nlohmann::json files = nlohmann::json::array();
-        for (const auto& path : *written) files.push_back(path.string());
-        fmt::print("{}\n", nlohmann::json{{"files", files}}.dump(1));
-    } else if (!options.output.quiet) {
-        for (const auto& path : *written) fmt::print("{}\n", path.string());
-    }
+    tell_files(options, *written, correction_note(job->printer.projector));
     return {};
 }
 

@@ -9,6 +9,8 @@
 #include <ctime>
 #include <string_view>
 
+#include "base/core/files.hpp"
+
 namespace pliant::app {
 namespace {
 
@@ -62,6 +64,13 @@ void on_signal(OnSignal what) {
     wanted = what;
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, what == OnSignal::end ? SIG_DFL : handle);
     if (what == OnSignal::leave && interrupted()) leave();
+}
+
+Status write_file_and_leave(const std::filesystem::path& path, std::string_view bytes) {
+    on_signal(OnSignal::ask_twice);
+    Status written = write_file(path, bytes);
+    on_signal(OnSignal::leave);
+    return written;
 }
 
 bool interrupted() {

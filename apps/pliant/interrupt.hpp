@@ -1,6 +1,11 @@
 // Handling of Ctrl-C (SIGINT) and termination requests (SIGTERM) in a command.
 #pragma once
 
+#include <filesystem>
+#include <string_view>
+
+#include "base/core/error.hpp"
+
 namespace pliant::app {
 
 /// Effect of a signal. A second one only counts if it comes over 30 ms after the first: some programs, such as
@@ -14,6 +19,9 @@ enum class OnSignal {
 
 /// Applies from now on; a signal received earlier still counts. Main thread only.
 void on_signal(OnSignal what);
+
+/// Writes a file of a command that `leave`s: a signal has its effect once the file is whole.
+[[nodiscard]] Status write_file_and_leave(const std::filesystem::path& path, std::string_view bytes);
 
 [[nodiscard]] bool interrupted();
 [[nodiscard]] bool interrupted_again();

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -80,6 +81,17 @@ public:
         listen();
         static const std::regex bar(R"((simulate|inverse) \[[= ]*\] +[1-9][0-9]? %)");
         return std::regex_search(said_, bar);
+    }
+    /// Whether it has begun (before, it is a copy of this test) and has a handler for this signal, which would end it.
+    [[nodiscard]] bool handles(int signal) const {
+        std::ifstream file(fmt::format("/proc/{}/status", process_));
+        bool begun = false;
+        for (std::string line; std::getline(file, line);) {
+            if (line == "Name:\tpliant") begun = true;
+            if (line.rfind("SigCgt:", 0) != 0) continue;
+            return begun && (std::stoull(line.substr(7), nullptr, 16) >> (signal - 1) & 1) != 0;
+        }
+        return false;
     }
     /// Whether it has started the program of this name.
     [[nodiscard]] bool has_child(const std::string& name) const { return !test::children_of(process_, name).empty(); }
@@ -243,5 +255,28 @@ TEST_CASE("interrupted slicing leaves neither a job nor a partial file") {
         CHECK(program.exit_status() == 1);
         CHECK(program.last_line() == "cancelled");
         CHECK(fs::is_empty(folder.path()));
+    }
+}
+
+TEST_CASE("interrupted while it plans or exports, a command writes nothing and prints one line") {
+    const test::Folder folder("interrupt");
+    const std::string job = folder / "job.zip";
+    Program slice({"slice", "semi-flex=examples/gripper_picks_up/egg.stl", "--printer", "tower", "-o", job, "-q"});
+    REQUIRE(slice.exit_status() == 0);
+    for (const int signal : {SIGINT, SIGTERM}) {
+        CAPTURE(signal);
+        Program plan({"plan", job, "--optimise-spray", "0.95", "-o", folder / "plan.png"});
+        REQUIRE(wait_for([&] { return plan.handles(signal); }));
+        plan.send(signal);
+        CHECK(plan.exit_status() == 1);
+        CHECK(plan.last_line() == "cancelled");
+        Program vats({"export", job, "--as", "vats", "-o", folder / "vats"});
+        REQUIRE(wait_for([&] { return vats.handles(signal); }));
+        vats.send(signal);
+        CHECK(vats.exit_status() == 1);
+        CHECK(vats.last_line() == "cancelled");
+        std::vector<std::string> left;
+        for (const auto& entry : fs::directory_iterator(folder.path())) left.push_back(entry.path().filename());
+        CHECK(left == std::vector<std::string>{"job.zip"});
     }
 }

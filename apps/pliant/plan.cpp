@@ -3,9 +3,9 @@
 
 #include <fmt/core.h>
 
-#include "base/core/files.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
+#include "interrupt.hpp"
 #include "overcure.hpp"
 #include "presentation/print_report/plan_picture.hpp"
 #include "printing/operate/job_file.hpp"
@@ -28,6 +28,7 @@ Status make_plan(const PlanOptions& options) {
     if (Status named = check_ending("-o", options.picture_file, "a picture", ".png"); !named) return named;
     if (Status named = check_ending("--spray-picture", options.spray.picture_file, "a picture", ".png"); !named)
         return named;
+    on_signal(OnSignal::leave);
     Result<operate::OpenJob> job = read_job(options.job);
     if (!job) return tl::unexpected(job.error());
     if (!options.printer.empty()) {
@@ -49,7 +50,7 @@ Status make_plan(const PlanOptions& options) {
     if (!options.picture_file.empty()) {
         const Result<std::string> png = report::plan_picture(*plan, plan::longest_swap(*plan, job->printer));
         if (!png) return tl::unexpected(png.error());
-        if (Status status = write_file(options.picture_file, *png); !status) return status;
+        if (Status status = write_file_and_leave(options.picture_file, *png); !status) return status;
     }
     if (options.output.json)
         fmt::print("{}\n", with_spray(plan::plan_json(*plan), *spray));

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/core/files.hpp"
+#include "interrupt.hpp"
 #include "presentation/print_report/wash_picture.hpp"
 #include "printing/twin/runs.hpp"
 #include "printing/twin/wet_part.hpp"
@@ -67,7 +67,8 @@ Result<std::optional<SprayResult>> look_at_spray(const SprayOrder& order, const 
     if (!order.picture_file.empty()) {
         const Result<std::string> png = report::wash_picture(archive.manifest().name, *part, faces, c);
         if (!png) return tl::unexpected(png.error());
-        if (Status status = write_file(order.picture_file, *png); !status) return tl::unexpected(status.error());
+        if (Status status = write_file_and_leave(order.picture_file, *png); !status)
+            return tl::unexpected(status.error());
     }
     return result;
 }

@@ -24,10 +24,15 @@ std::string file_word(const std::string& text) {
 }
 
 /// Calls `put(layer, png)` for every layer of a material, including blank ones.
-Status each_layer(const Archive& archive, int material, const std::function<Status(std::size_t, std::string)>& put) {
+Status each_layer(const Archive& archive, int material, Progress& progress,
+                  const std::function<Status(std::size_t, std::string)>& put) {
     const Manifest& m = archive.manifest();
+    const double parts = static_cast<double>(m.materials.size() * m.layers.size());
     const std::string blank = encode_png(slice::RunImage(m.width_px, m.height_px));
     for (std::size_t k = 0; k < m.layers.size(); ++k) {
+        if (progress.cancelled()) return cancelled();
+        progress.advance("export",
+                         static_cast<double>(static_cast<std::size_t>(material) * m.layers.size() + k) / parts);
         Result<std::string> png = blank;
         for (const LayerImage& image : m.layers[k].images) {
             if (image.material == material) png = archive.file(image.file);
@@ -44,10 +49,11 @@ std::string image_name(Format format, const std::string& prefix, std::size_t lay
 }
 
 /// The areas of every layer image of a material.
-Result<std::vector<ImageAreas>> layer_areas(const Archive& archive, int material) {
+Result<std::vector<ImageAreas>> layer_areas(const Archive& archive, int material, const Progress& progress) {
     const Manifest& m = archive.manifest();
     std::vector<ImageAreas> areas(m.layers.size());
     for (std::size_t k = 0; k < m.layers.size(); ++k) {
+        if (progress.cancelled()) return cancelled();
         for (const LayerImage& layer : m.layers[k].images) {
             if (layer.material != material) continue;
             const Result<Image> image = archive.image(layer.file);
@@ -64,19 +70,19 @@ bool is_even(const Manifest& m) {
 }
 
 /// The files beside the images.
-Result<std::vector<NamedText>> texts_of(const Archive& archive, int material, Format format,
-                                        const std::string& prefix) {
+Result<std::vector<NamedText>> texts_of(const Archive& archive, int material, Format format, const std::string& prefix,
+                                        const Progress& progress) {
     const StackFacts facts = facts_of(archive.manifest(), material, prefix);
     if (format == Format::sl1) return sl1_texts(facts);
     if (format == Format::zip) return is_even(archive.manifest()) ? zip_texts(facts) : std::vector<NamedText>{};
-    const Result<std::vector<ImageAreas>> areas = layer_areas(archive, material);
+    const Result<std::vector<ImageAreas>> areas = layer_areas(archive, material, progress);
     if (!areas) return tl::unexpected(areas.error());
     return nanodlp_texts(facts, *areas);
 }
 
-Status fill_stack(const Archive& archive, int material, Format format, ZipWriter& zip) {
+Status fill_stack(const Archive& archive, int material, Format format, ZipWriter& zip, Progress& progress) {
     const std::string prefix = file_word(archive.manifest().name);
-    const Result<std::vector<NamedText>> texts = texts_of(archive, material, format, prefix);
+    const Result<std::vector<NamedText>> texts = texts_of(archive, material, format, prefix, progress);
     if (!texts) return tl::unexpected(texts.error());
     for (const auto& [name, text] : *texts) {
         if (auto status = zip.add(name, text, ZipWriter::Method::deflate); !status) return status;
@@ -87,18 +93,18 @@ Status fill_stack(const Archive& archive, int material, Format format, ZipWriter
         if (auto status = zip.add("thumbnail/thumbnail400x400.png", *picture, ZipWriter::Method::store); !status)
             return status;
     }
-    const Status images = each_layer(archive, material, [&](std::size_t k, std::string png) {
+    const Status images = each_layer(archive, material, progress, [&](std::size_t k, std::string png) {
         return zip.add(image_name(format, prefix, k), std::move(png), ZipWriter::Method::store);
     });
     return images ? zip.close() : images;
 }
 
-Status write_stack(const Archive& archive, int material, Format format, const fs::path& path) {
+Status write_stack(const Archive& archive, int material, Format format, const fs::path& path, Progress& progress) {
     auto zip = ZipWriter::create(path);
-    return zip ? fill_stack(archive, material, format, *zip) : tl::unexpected(zip.error());
+    return zip ? fill_stack(archive, material, format, *zip, progress) : tl::unexpected(zip.error());
 }
 
-Status write_vats(const Archive& archive, const fs::path& folder) {
+Status write_vats(const Archive& archive, const fs::path& folder, Progress& progress) {
     const auto count = archive.manifest().materials.size();
     if (count > 26) return input_error("{} materials: vats have the letters a to z", count);
     return write_folder(folder, "vats.txt", [&](const fs::path& inside) -> Status {
@@ -110,9 +116,10 @@ Status write_vats(const Archive& archive, const fs::path& folder) {
             const fs::path vat = inside / fmt::format("vat_{}", letter);
             std::error_code code;
             fs::create_directory(vat, code);
-            const Status images = each_layer(archive, static_cast<int>(m), [&](std::size_t k, const std::string& png) {
-                return write_file(vat / fmt::format("vat{}_layer_{:04}.png", letter, k), png);
-            });
+            const Status images =
+                each_layer(archive, static_cast<int>(m), progress, [&](std::size_t k, const std::string& png) {
+                    return write_file(vat / fmt::format("vat{}_layer_{:04}.png", letter, k), png);
+                });
             if (!images) return images;
         }
         return write_file(inside / "vats.txt", list);
@@ -140,10 +147,11 @@ Result<Format> format_from(const std::string& name) {
     return input_error("format \"{}\": must be sl1, nanodlp, zip or vats", name);
 }
 
-Result<std::vector<fs::path>> export_job(const Archive& archive, Format format, const fs::path& folder) {
+Result<std::vector<fs::path>> export_job(const Archive& archive, Format format, const fs::path& folder,
+                                         Progress& progress) {
     if (auto status = check_alike(archive.manifest(), format); !status) return tl::unexpected(status.error());
     if (format == Format::vats) {
-        if (auto status = write_vats(archive, folder); !status) return tl::unexpected(status.error());
+        if (auto status = write_vats(archive, folder, progress); !status) return tl::unexpected(status.error());
         return std::vector<fs::path>{folder};
     }
     std::error_code code;
@@ -157,7 +165,7 @@ Result<std::vector<fs::path>> export_job(const Archive& archive, Format format, 
         fs::path path = folder / fmt::format("{}.{}", stem, extension);
         if (std::find(written.begin(), written.end(), path) != written.end())
             path = folder / fmt::format("{}_{}.{}", stem, m, extension);
-        if (auto status = write_stack(archive, static_cast<int>(m), format, path); !status)
+        if (auto status = write_stack(archive, static_cast<int>(m), format, path, progress); !status)
             return tl::unexpected(status.error());
         written.push_back(path);
     }

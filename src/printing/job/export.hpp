@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/core/progress.hpp"
 #include "printing/job/job.hpp"
 
 namespace pliant::job {
@@ -21,8 +22,10 @@ enum class Format {
 
 /// Writes into `folder`, which is created if missing: NAME_MATERIAL.sl1, .nanodlp or .zip for each material; `vats`
 /// instead replaces `folder` itself by the vat folders (only if it is empty or an earlier export). Returns the files
-/// written. Equal jobs give equal bytes. Errors: the job's images, more than 26 materials (vats), the disk.
+/// written. Equal jobs give equal bytes. Errors: the job's images, more than 26 materials (vats), the disk,
+/// cancellation; then no file is partial, and those of earlier materials stay.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> export_job(const Archive& archive, Format format,
-                                                                    const std::filesystem::path& folder);
+                                                                    const std::filesystem::path& folder,
+                                                                    Progress& progress);
 
 }  // namespace pliant::job

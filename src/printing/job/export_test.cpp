@@ -27,6 +27,22 @@ JobSettings settings() {
     return s;
 }
 
+Result<std::vector<fs::path>> export_job(const Archive& archive, Format format, const fs::path& folder) {
+    Progress silent;
+    return job::export_job(archive, format, folder, silent);
+}
+
+/// Cancels in the layer of this number, counted over all materials.
+class CancelAt final : public Progress {
+public:
+    explicit CancelAt(int layer) : left_(layer) {}
+    void advance(std::string_view, double) override { --left_; }
+    [[nodiscard]] bool cancelled() const override { return left_ <= 0; }
+
+private:
+    int left_;
+};
+
 /// Soft in layers 0 to 3, rigid in 4 to 9.
 Archive make(const fs::path& path) {
     const std::vector<slice::Body> bodies{{"soft", box({-1000, -1000, 0}, {1000, 1000, 200}), ""},
@@ -284,6 +300,26 @@ TEST_CASE("layers of different heights are exported only to formats that allow t
     CHECK(refused.error().message ==
           "layer 1 is 100 um thick, layer 0 50 um: this format knows layers of one thickness only");
     CHECK(export_job(archive, Format::vats, folder / "b").has_value());
+}
+
+TEST_CASE("an export that is cancelled leaves no partial file, and an earlier export as it was") {
+    const pliant::test::Folder folder("export");
+    const Archive archive = make(folder / "two.zip");
+    for (const Format format : {Format::sl1, Format::nanodlp, Format::zip, Format::vats}) {
+        CAPTURE(static_cast<int>(format));
+        const fs::path out = folder / fmt::format("f{}", static_cast<int>(format));
+        CancelAt third(3), in_second(13);
+        CHECK(job::export_job(archive, format, out, third).error().cause == Cause::cancelled);
+        CHECK_FALSE(fs::exists(out.string() + ".partial"));
+        CHECK((!fs::exists(out) || fs::is_empty(out)));
+        CHECK_FALSE(job::export_job(archive, format, out, in_second));
+        for (const auto& entry : fs::recursive_directory_iterator(folder.path()))
+            CHECK_FALSE(entry.path().string().ends_with(".partial"));
+    }
+    REQUIRE(export_job(archive, Format::vats, folder / "c"));
+    CancelAt third(3);
+    CHECK_FALSE(job::export_job(archive, Format::vats, folder / "c", third));
+    CHECK(fs::exists(folder / "c/vat_b/vatb_layer_0009.png"));
 }
 
 TEST_CASE("equal jobs give equal bytes") {
