@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "base/core/files.hpp"
@@ -133,6 +134,7 @@ struct TensileCommand : Files {
     std::string name;
     std::string law = "neo-hookean";
     calibrate::FitOptions options;
+    std::optional<int> terms;
     double most_stretch = 0;
 };
 
@@ -180,6 +182,9 @@ Status run_tensile(TensileCommand& command) {
                                                 {"yeoh", FitLaw::yeoh},
                                                 {"ogden", FitLaw::ogden}};
     command.options.law = laws.at(command.law);
+    if (command.terms && command.options.law != FitLaw::ogden)
+        return input_error("--terms {}: is the number of terms of Ogden's law; add --law ogden", *command.terms);
+    command.options.terms = command.terms.value_or(command.options.terms);
     const Result<std::string> text = read_file(command.file);
     if (!text) return tl::unexpected(text.error());
     const auto all = calibrate::parse_tensile_csv(*text, command.file);
@@ -306,9 +311,8 @@ void add_tensile(CLI::App& parent, int& status) {
     command->add_option("--law", c->law, "elastic law")
         ->check(CLI::IsMember({"neo-hookean", "mooney-rivlin", "yeoh", "ogden"}))
         ->capture_default_str();
-    command->add_option("--terms", c->options.terms, "number of terms of Ogden's law")
-        ->check(CLI::Range(1, 3))
-        ->capture_default_str();
+    command->add_option("--terms", c->terms, "number of terms of Ogden's law, with --law ogden (default 1)")
+        ->check(CLI::Range(1, 3));
     command->add_option("--max-stretch", c->most_stretch, "ignore rows beyond this stretch")
         ->check(CLI::Range(1.0, 100.0));
     command

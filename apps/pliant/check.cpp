@@ -37,6 +37,7 @@ struct CheckOptions {
     std::string port;
     bool firmware = false;
     int cancel_after = -1;
+    std::vector<std::string> assignments;
     Output output;
 };
 
@@ -45,8 +46,9 @@ std::string bodies(std::size_t count) {
 }
 
 /// A robot is meshed for the check: overlaps, cables outside, empty selectors only show then.
-Result<std::string> check_robot(const std::string& file, Progress& progress) {
-    Result<robot::Robot> read = read_robot(file, {});
+Result<std::string> check_robot(const std::string& file, const std::vector<std::string>& assignments,
+                                Progress& progress) {
+    Result<robot::Robot> read = read_robot(file, assignments);
     if (!read) return tl::unexpected(read.error());
     const Result<robot::Scene> scene = robot::build_scene(std::move(*read), progress);
     if (!scene) return tl::unexpected(scene.error());
@@ -54,6 +56,7 @@ Result<std::string> check_robot(const std::string& file, Progress& progress) {
     std::string text = fmt::format("robot \"{}\": {}, {}, {}, {}", robot.name, bodies(robot.bodies.size()),
                                    counted(robot.materials.size(), "material"), counted(robot.cables.size(), "cable"),
                                    counted(scene->model.mesh().tet_count(), "tet"));
+    for (const std::string& note : robot.notes) text += "\n  note: " + note;
     for (const std::string& note : robot::unused_materials(robot)) text += "\n  note: " + note;
     for (const std::string& note : scene->mesh_notes) text += "\n  note: " + note;
     return text;
@@ -67,14 +70,21 @@ Result<std::string> check_printer(const std::string& file) {
                        counted(printer->vats.size(), "vat"), printer->projector.width_px, printer->projector.height_px);
 }
 
+tl::unexpected<Error> no_assignments(const std::string& file) {
+    return input_error("{}: is no robot file; --set changes the keys of one", file);
+}
+
 /// Robot and printer files are distinguished by keys that only one of them has.
-Result<std::string> check_toml(const std::string& file, Progress& progress) {
+Result<std::string> check_toml(const std::string& file, const CheckOptions& options, Progress& progress) {
     const Result<config::Document> document = config::load(file);
     if (!document) return tl::unexpected(document.error());
     for (const auto& [key, value] : std::get<config::Table>(document->root.data)) {
-        if (key == "axis" || key == "projector" || key == "vat" || key == "tower") return check_printer(file);
+        if (key == "axis" || key == "projector" || key == "vat" || key == "tower") {
+            if (!options.assignments.empty()) return no_assignments(file);
+            return check_printer(file);
+        }
     }
-    return check_robot(file, progress);
+    return check_robot(file, options.assignments, progress);
 }
 
 Result<std::string> check_job(const std::string& file, const CheckOptions& options) {
@@ -138,13 +148,26 @@ Result<std::string> check_boards(const std::string& file, const CheckOptions& op
     return check_firmware(file, read_file(file, 1 << 20), *printer);
 }
 
+/// Any bytes could begin a binary STL file, whose message would say nothing of a file of another kind.
+Result<std::string> check_geometry(const std::string& file) {
+    Result<std::string> text = mesh::describe_mesh_file(file);
+    std::error_code ignored;
+    if (text || kind_of(file) != FileKind::unknown || !std::filesystem::is_regular_file(file, ignored)) return text;
+    return input_error(
+        "{}: is not recognised; pliant check reads robot and printer files (.toml), jobs (.zip), G-code (.gcode), and "
+        "by "
+        "content STL, OBJ, PLY, OFF, STEP, 3MF and tet meshes",
+        file);
+}
+
 Result<std::string> check(const std::string& file, const CheckOptions& options, Progress& progress) {
     if (options.firmware) return check_boards(file, options);
     const std::string extension = std::filesystem::path(file).extension().string();
-    if (extension == ".toml") return check_toml(file, progress);
+    if (extension == ".toml") return check_toml(file, options, progress);
+    if (!options.assignments.empty()) return no_assignments(file);
     if (extension == ".zip") return check_job(file, options);
     if (extension == ".gcode" || extension == ".g" || extension == ".gco") return check_program(file, options);
-    return mesh::describe_mesh_file(file);
+    return check_geometry(file);
 }
 
 nlohmann::json result_json(const std::string& file, const Result<std::string>& text) {
@@ -159,12 +182,15 @@ void add_check(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand("check", "validate robot, printer, job, G-code and mesh files");
     command->add_option("files", options->files, "files to check");
     command->add_flag("--firmware", options->firmware,
-                      "check how the board at --port was built; files: its answers to M115, M503, M119, M113");
+                      "check how the board at --port was built; files: its answers to M115, M503, M211, M119, M113");
     command->add_option("--port", options->port, "serial port of the board, such as /dev/ttyACM0");
     command->add_option("--printer", options->printer,
                         "printer that G-code files are checked against, and jobs in place of their own");
     command->add_option("--cancel-after", options->cancel_after,
                         "line of a G-code program to stop after: print the commands that do so safely");
+    command->add_option("--set", options->assignments, "KEY=VALUE: change any key of the robot files")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
     add_output_options(*command, options->output, true);
     command->footer("Example: pliant check examples/cable_gripper/gripper.toml examples/printers/tower.toml");
     command->callback([options, &status] {

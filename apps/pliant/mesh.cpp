@@ -141,6 +141,7 @@ Status mesh_file(const MeshOptions& options) {
         (!options.output_file.empty() || !options.picture_file.empty() || options.output.json))
         return input_error("-o, --picture and --json need exactly one robot or mesh file");
     if (!options.output_file.empty()) return is_robot_file(options.files.front()) ? build(options) : convert(options);
+    if (options.text) return input_error("--text is the encoding of a mesh that is written; name it with -o");
     for (const std::string& file : options.files) {
         if (is_robot_file(file))
             return input_error("{}: name the mesh to write with -o: FILE{}", file, mesh::tet_writer_list);

@@ -29,7 +29,7 @@ struct TwinOptions {
     std::string projector;
     std::string clock;
     double speed = 1;
-    double seconds = 0;
+    std::optional<double> seconds;
     std::vector<std::string> faults;
     std::string release;
     bool homes_first = false;
@@ -118,6 +118,8 @@ void print_end_json(twin::Twin& twin) {
 Status run_twin(const TwinOptions& options) {
     if (!(options.speed > 0 && options.speed <= 1e6))
         return input_error("--speed {}: must be above 0, at most 1e6", options.speed);
+    if (options.seconds && !(*options.seconds > 0))
+        return input_error("--seconds {}: must be above 0; without it the twin runs until Ctrl-C", *options.seconds);
     const Result<machine::Printer> printer = read_printer(options.printer);
     if (!printer) return tl::unexpected(printer.error());
     Result<twin::Options> wanted = twin_options(options);
@@ -137,7 +139,7 @@ Status run_twin(const TwinOptions& options) {
     on_signal(OnSignal::ask);
     twin::ServeOptions serve;
     serve.speed = options.speed;
-    serve.stop = [&] { return interrupted() || (options.seconds > 0 && twin.now() > options.seconds); };
+    serve.stop = [&] { return interrupted() || (options.seconds && twin.now() > *options.seconds); };
     FolderProjector projector(std::filesystem::path(options.projector) / "shown.png");
     if (!options.projector.empty()) serve.lights = [&](twin::Twin& t) { return projector.look(t); };
     std::optional<operate::ClockFile> clock;

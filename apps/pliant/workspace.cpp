@@ -4,10 +4,15 @@
 #include <fmt/core.h>
 
 #include <CLI/App.hpp>
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/core/counted.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
 #include "output_option.hpp"
@@ -20,6 +25,7 @@ struct WorkspaceArguments {
     std::string robot;
     std::string folder;
     WorkspaceOptions search;
+    std::optional<int> between;
     std::vector<std::string> assignments;
     Output output;
 };
@@ -27,6 +33,7 @@ struct WorkspaceArguments {
 /// Completed pieces are stored beside the results until these are written.
 Result<WorkspaceOptions> search_options(const WorkspaceArguments& options) {
     WorkspaceOptions search = options.search;
+    search.between = options.between.value_or(search.between);
     if (options.folder.empty() && search.resume)
         return input_error("--resume needs --output: the checkpoint is kept next to that folder");
     if (!options.folder.empty()) search.checkpoint = options.folder + ".checkpoint";
@@ -39,6 +46,43 @@ int tell_cancelled(const WorkspaceArguments& options, const WorkspaceOptions& se
                    ? ""
                    : fmt::format("; the same command with --resume continues from {}", search.checkpoint.string()));
     return exit_failed;
+}
+
+/// The box that a marker has reached, in mm.
+struct Reach {
+    std::array<double, 3> low, high;
+};
+
+Reach reach_of(const std::vector<Point>& points) {
+    constexpr double far = std::numeric_limits<double>::infinity();
+    Reach reach{{far, far, far}, {-far, -far, -far}};
+    for (const Point& p : points) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            reach.low[axis] = std::min(reach.low[axis], 1e3 * p[axis]);
+            reach.high[axis] = std::max(reach.high[axis], 1e3 * p[axis]);
+        }
+    }
+    return reach;
+}
+
+void print_workspace(const WorkspaceArguments& options, const Model& model, const Workspace& found) {
+    const std::vector<std::string> markers = model.markers();
+    std::vector<std::vector<Point>> positions(markers.size());
+    std::size_t solved = 0;
+    for (std::size_t k = 0; k < found.sample_count(); ++k) {
+        const WorkspaceSample sample = found.sample(k);
+        solved += sample.found ? 1 : 0;
+        for (std::size_t m = 0; m < sample.markers.size(); ++m) positions[m].push_back(sample.markers[m]);
+    }
+    fmt::print("{}, {}\n{} of {} solved, over the ranges of {}\n", counted(model.node_count(), "node"),
+               counted(model.tet_count(), model.order() == 2 ? "quadratic tet" : "linear tet"), solved,
+               counted(found.sample_count(), "sample"), counted(found.inputs().size(), "actuator"));
+    for (std::size_t m = 0; solved > 0 && m < markers.size(); ++m) {
+        const auto [low, high] = reach_of(positions[m]);
+        fmt::print("marker {}: x from {:.3f} to {:.3f}, y from {:.3f} to {:.3f}, z from {:.3f} to {:.3f} mm\n",
+                   markers[m], low[0], high[0], low[1], high[1], low[2], high[2]);
+    }
+    if (!options.folder.empty()) fmt::print("results: {}\n", options.folder);
 }
 
 Result<int> workspace(const WorkspaceArguments& options) {
@@ -55,7 +99,13 @@ Result<int> workspace(const WorkspaceArguments& options) {
             found.remove_checkpoint();
         }
         progress.reset();
-        if (!options.output.quiet || options.output.json) fmt::print("{}", found.json());
+        if (options.output.json)
+            fmt::print("{}", found.json());
+        else if (!options.output.quiet)
+            print_workspace(options, model, found);
+        if (options.between && found.inputs().size() == 1)
+            fmt::print(stderr, "{}: note: --between is for two actuators or more; --side gives the samples of one\n",
+                       options.robot);
     } catch (const Failure& failure) {
         if (failure.kind() != Failure::Kind::cancelled) throw;
         progress.reset();
@@ -73,14 +123,15 @@ void add_workspace(CLI::App& app, int& status) {
     command->add_option("robot", options->robot, "robot file (TOML) with ranges of actuators")->required();
     add_output_path(*command, options->folder, "folder for table, surfaces and picture");
     command
-        ->add_option("--side", options->search.side, "samples along each input of a sheet, over which two inputs vary")
+        ->add_option("--side", options->search.side,
+                     "samples along each input of a sheet, over which two inputs vary, or of the only one")
         ->check(CLI::Range(2, 1000))
         ->capture_default_str();
     command
-        ->add_option("--between", options->search.between,
-                     "samples spread over the ranges, besides those of the sheets")
-        ->check(CLI::Range(0, 1000000))
-        ->capture_default_str();
+        ->add_option("--between", options->between,
+                     "samples spread over the ranges of two actuators or more, besides those of the sheets (default "
+                     "100)")
+        ->check(CLI::Range(0, 1000000));
     command->add_flag("--resume", options->search.resume,
                       "resume from FOLDER.checkpoint; the results are the same as without a stop");
     command->add_option("--set", options->assignments, "KEY=VALUE: change any key, as in cable.flexor.range=[0.8, 1]")
