@@ -315,9 +315,10 @@ TEST_CASE("impossible scenes give one line each") {
     check_problem(object("geometry = { box = [[0, 0, 0], [1, 1, 1]] }"), "takes one of density and mass");
     check_problem(object("density = \"1 g/cm^3\""), "takes one of geometry (a shape) and surface (a file)");
     check_problem(object("geometry = { box = [[0, 0, 0], [1, 1, 1]] }\nmass = \"0 g\""), "must be above zero");
-    check_problem(
-        world("[[object]]\nname = \"it\"\ngeometry = { box = [[0, 0, -2], [1, 1, 1]] }\nmass = \"1 g\"", still),
-        "touches or crosses object \"it\" at rest: leave a gap");
+    check_problem(world("[[obstacle]]\nname = \"floor\"\nplane = { point = [0, 0, 0], normal = [0, 0, 1] "
+                        "}\n[[object]]\nname = \"it\"\ngeometry = { box = [[0, 0, -2], [1, 1, 1]] }\nmass = \"1 g\"",
+                        still),
+                  "touches or crosses object \"it\" at rest: leave a gap");
     check_problem(object("geometry = { box = [[-295, 0, 0], [1, 1, 30]] }\nmass = \"1 g\""),
                   "object \"it\" touches or crosses the robot at rest: leave a gap");
     check_problem(object("geometry = { box = [[0, 0, 0], [1, 1, 1]] }\nmass = \"1 g\"\n"
