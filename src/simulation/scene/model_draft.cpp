@@ -76,8 +76,8 @@ ModelDraft::ModelDraft(const Robot& the_robot, mesh::TetMesh mesh) : robot(the_r
     tolerance = surface_share * box.diagonal();
     point_reach = std::max(
         tolerance, robot.mesh.point_reach ? robot.unit_m * *robot.mesh.point_reach : reach_share * mean_edge(bodies));
-    // Files with single precision or six digits: a node on the side of a box may lie just beside it.
-    box_margin = 1e-6 * box.diagonal();
+    // The nodes of a mesh file are the user's own numbers, taken exactly; those of our mesher have rounding errors.
+    box_margin = robot.mesh.file ? 0 : 1e-9 * box.diagonal();
 }
 
 void ModelDraft::problem(int line, std::string_view kind, std::string_view name, const std::string& text) {

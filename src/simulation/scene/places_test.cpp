@@ -130,26 +130,6 @@ TEST_CASE("mesh and surface files can be scaled, mirrored, rotated, moved and re
               .find("a shape is placed by translate, rotate and repeat") != std::string::npos);
 }
 
-TEST_CASE("a box catches the nodes on its sides, also from a mesh file in single precision") {
-    const test::Folder folder("rounded");
-    mesh::TetMesh block = mesh::scaled(build_text(eighth).model.mesh(), 1000);
-    std::size_t on_top = 0;
-    for (Vec3& p : block.points) {
-        p += Vec3{0.1, 0.1, 0.1};
-        on_top += std::fabs(p.z - 10.1) < 1e-6 ? 1 : 0;
-        p = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-    }
-    REQUIRE(on_top > 9);
-    block.region_names = {"block"};
-    REQUIRE(mesh::write_tet_mesh(folder.path() / "block.vtk", block));
-    const std::string text = block_head + R"(mesh = { file = "block.vtk", order = 1 }
-body = [{ name = "block", material = "soft", region = "all" }]
-fixed = [{ name = "top", box = [[0.1, 0.1, 10.1], [10.1, 10.1, 10.1]] }]
-)";
-    const Built built = testing::build(parse_robot(text, folder.path() / "block.toml"));
-    CHECK(built.model.description().supports.at(0).nodes.size() == on_top);
-}
-
 TEST_CASE("surfaces of chambers and obstacles can be placed too") {
     const test::Folder folder("placed");
     REQUIRE(mesh::write_stl(folder.path() / "cube.stl", mesh::test::cube()));
