@@ -83,8 +83,7 @@ material::Law read_shape_blend(Reader& reader, MaterialSpec& material) {
     const double nu = material.poisson_ratio;
     const config::Value* given = reader.raw("shape_parameter");
     if (given != nullptr && std::holds_alternative<std::string>(given->data)) {
-        if (reader.has("poisson_ratio"))
-            reader.problem("poisson_ratio", "stands beside a shape_parameter by name, from which it follows");
+        // A poisson_ratio of the file is not used: with --set a law can be changed, but no key be taken away.
         const material::ShapeBlend blend = read_named_blend(reader, material.youngs_modulus_Pa);
         material.poisson_ratio = material::poisson_ratio(material::moduli(blend));
         return blend;
