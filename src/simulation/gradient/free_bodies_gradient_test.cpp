@@ -108,7 +108,7 @@ double value_of(const Description& d, const Steps& as, const Objective& objectiv
         controls.met = was.met;
         controls.inertia =
             std::make_shared<const Inertia>(c.model.elements(), c.model.free_index(), history, was.inertia->dt(),
-                                            damping.value_or(was.inertia->damping()), nullptr);
+                                            damping.value_or(was.inertia->damping()), nullptr, was.inertia->scheme());
         if (was.friction) {
             const contact::Contact& contact = *c.model.contact(was.met);
             const Parameter none{Parameter::Kind::gravity, 0, "", ""};
