@@ -286,8 +286,7 @@ StepOutcome Stepper::go(RobotState& robot, const Target& target, StepReport& rep
 
 /// True if the formula of a step depends on what happens in it.
 bool Stepper::chooses_scheme() const {
-    return options_.dynamics &&
-           (is_adaptive() || options_.dynamics->integrator != Integrator::bdf2 || model_.contact(true) != nullptr);
+    return options_.dynamics && (is_adaptive() || options_.dynamics->integrator != Integrator::bdf2);
 }
 
 bool Stepper::meets_anew(const RobotState& robot, const State& next, const Controls& controls) const {
@@ -301,7 +300,6 @@ bool Stepper::meets_anew(const RobotState& robot, const State& next, const Contr
 /// and the next, do not use earlier states.
 Scheme Stepper::scheme(const RobotState& robot, const Controls& controls) const {
     if (robot.history.touching == 1) return Scheme::euler;
-    if (!is_adaptive() && options_.dynamics->integrator == Integrator::bdf2) return Scheme::even;
     if (robot.history.touching > 1 || options_.dynamics->integrator == Integrator::bdf2) return Scheme::bdf2;
     // A prescribed length, volume or angle refers to the end of the step, not to the mean; a damped joint, to its loss
     // by then.
