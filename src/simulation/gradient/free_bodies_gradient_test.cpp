@@ -93,9 +93,10 @@ Steps steps_of_program(const Description& d, const Program& program) {
     return all;
 }
 
-/// The objective after the same steps of a robot that differs by `change` of a number, or in its initial state.
+/// The objective after the same steps of a robot that differs by `change` of a number, or in its initial state. `terms`
+/// receives the sum of the magnitudes of its terms, which may largely cancel.
 double value_of(const Description& d, const Steps& as, const Objective& objective, const Parameter* p = nullptr,
-                double change = 0, std::optional<Damping> damping = std::nullopt) {
+                double change = 0, std::optional<Damping> damping = std::nullopt, double* terms = nullptr) {
     Case c(d);
     const Inertia& first = *as.controls[0].inertia;
     const MotionInTime motion(c.model, {});
@@ -126,14 +127,19 @@ double value_of(const Description& d, const Steps& as, const Objective& objectiv
     }
     std::vector<double> values;
     for (const Measure& measure : objective.measures) values.push_back(slope(c.system, now, before, measure).value);
-    return objective.judge(static_cast<int>(as.states.size()), values).value;
+    const Judgement judged = objective.judge(static_cast<int>(as.states.size()), values);
+    for (std::size_t k = 0; terms != nullptr && k < values.size(); ++k)
+        *terms += std::fabs(judged.slopes[k] * values[k]);
+    return judged.value;
 }
 
-double floored_error(double told, double size, const std::function<double(double change)>& value) {
+/// Relative to the derivative or, where rounding hides that, to the change of the objective (`scale`) if the number
+/// changed by its full size, as in gradient_error().
+double floored_error(double told, double size, double scale, const std::function<double(double change)>& value) {
     return best_error(0.02 * size, [&](double h) {
         const double found = (8 * (value(h) - value(-h)) - (value(2 * h) - value(-2 * h))) / (12 * h);
         if (!std::isfinite(found)) return std::numeric_limits<double>::infinity();
-        return std::fabs(told - found) / std::max(std::fabs(found), 1e-5 / size);
+        return std::fabs(told - found) / std::max(std::fabs(found), 1e-5 * scale / size);
     });
 }
 
@@ -160,10 +166,11 @@ NamedError worst_gradient(const Description& d, const Program& program, bool by_
     auto found = program_gradient(c.model, program, objective, {.by = {.rest = by_place}}, silent);
     REQUIRE_MESSAGE(found, found.error().message);
     const Steps as = steps_of_program(d, program);
-    CHECK(found->value == near(value_of(d, as, objective), {.relative = 1e-6}));
+    double scale = 0;
+    CHECK(found->value == near(value_of(d, as, objective, nullptr, 0, {}, &scale), {.relative = 1e-6}));
     NamedError worst;
     const auto note = [&](const std::string& name, double told, double size, const auto& value) {
-        const double error = floored_error(told, size, value);
+        const double error = floored_error(told, size, scale, value);
         INFO(name);
         INFO(told);
         CHECK(error < 1e-6);

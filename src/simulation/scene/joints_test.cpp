@@ -148,6 +148,29 @@ TEST_CASE("a hinge with a spring turns until its torque balances the weight, and
     CHECK(stopped.joint().coordinate == near(5 * pi / 180, {.absolute = 1e-3}));
 }
 
+TEST_CASE("a bar that falls against the limit of its hinge gains no energy, and comes to rest there") {
+    for (const char* integrator : {"bdf2", "energy-conserving"}) {
+        CAPTURE(std::string(integrator));
+        const JointedRun r = run_jointed(
+            jointed_world(bar("bar", false) + joint("hinge", "world", "bar", 0, 0, about_y + "\nlimits = [-10, 40]"),
+                          in_time(0.5, 0.004) + fmt::format("integrator = \"{}\"\n", integrator)));
+        const double limit = 40 * pi / 180, fallen_J = bar_kg * g * bar_m / 2 * std::sin(limit);
+        const auto energy = [](const sim::Step& step) { return step.energy_J + step.kinetic_energy_J; };
+        bool stopped = false;
+        double back = limit;  // the highest place after the impact
+        for (const sim::Step& step : r.result.steps) {
+            CHECK(energy(step) < energy(r.result.steps[0]) + 0.02 * fallen_J);
+            stopped = stopped || step.joints[0].coordinate > limit;
+            if (stopped) back = std::min(back, step.joints[0].coordinate);
+        }
+        MESSAGE(integrator, ": back to ", back * 180 / pi, " degrees");
+        CHECK(stopped);
+        CHECK(back > 0.5 * limit);
+        CHECK(r.joint().coordinate == near(limit, {.absolute = 0.01}));
+        CHECK(r.last().kinetic_energy_J < 0.01 * fallen_J);
+    }
+}
+
 TEST_CASE("a slider sinks on its spring, transmits torque, and is moved by a force") {
     const double stiffness = 100;
     const JointedRun r = run_jointed(jointed_world(

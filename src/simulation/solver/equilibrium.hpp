@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <memory>
@@ -49,6 +50,16 @@ struct Controls {
 struct State {
     Eigen::VectorXd x;           ///< (3n) metres
     Eigen::VectorXd multiplier;  ///< (actuators) tension of cables, N, never negative; minus the pressure of air, Pa
+};
+
+/// What presses on what at a state, each once, ascending.
+struct Touching {
+    std::vector<std::array<int, 2>> surfaces;  ///< contact::Contact::partners()
+    std::vector<std::array<int, 2>> stops;     ///< joint, and which of its limits it is at: 0 the lower, 1 the upper
+    [[nodiscard]] bool none() const { return surfaces.empty() && stops.empty(); }
+    [[nodiscard]] bool is_part_of(const Touching& other) const {
+        return std::ranges::includes(other.surfaces, surfaces) && std::ranges::includes(other.stops, stops);
+    }
 };
 
 /// Results of evaluating a state at given controls.
@@ -160,13 +171,12 @@ public:
                                                                            const Controls& start_controls) const;
     /// True if there is any friction.
     [[nodiscard]] bool has_friction() const;
-    /// True if surfaces are within contact range.
     /// (objects) Controls::object_stress for a step from `start` (3n) to x.
     [[nodiscard]] std::vector<linalg::Matrix3> object_stress(const Eigen::VectorXd& start,
                                                              const Eigen::VectorXd& x) const;
+    /// True if surfaces are within contact range.
     [[nodiscard]] bool touches(const State& state, const Controls& controls) const;
-    /// What touches what, as contact::Contact::partners(); empty without contact.
-    [[nodiscard]] std::vector<std::array<int, 2>> contact_partners(const State& state, const Controls& controls) const;
+    [[nodiscard]] Touching touching(const State& state, const Controls& controls) const;
     /// If self-contact is deferred: true if the surfaces come so close on the straight path between two states that it
     /// must become active. `now`: the controls of `state`.
     [[nodiscard]] bool meets_itself(const State& state, const Controls& now, const State& next,

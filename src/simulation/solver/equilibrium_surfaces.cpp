@@ -153,10 +153,17 @@ bool Equilibrium::touches(const State& state, const Controls& controls) const {
     return contact != nullptr && !contact->find(with_obstacles(state.x, controls.obstacles)).empty();
 }
 
-std::vector<std::array<int, 2>> Equilibrium::contact_partners(const State& state, const Controls& controls) const {
-    const contact::Contact* contact = this->contact(controls);
-    if (contact == nullptr) return {};
-    return contact->partners(contact->find(with_obstacles(state.x, controls.obstacles)));
+Touching Equilibrium::touching(const State& state, const Controls& controls) const {
+    Touching found;
+    if (const contact::Contact* contact = this->contact(controls))
+        found.surfaces = contact->partners(contact->find(with_obstacles(state.x, controls.obstacles)));
+    const std::vector<double> places = joint_coordinates(state.x, controls);
+    for (std::size_t j = 0; j < places.size(); ++j) {
+        const JointLaw& law = model_->description().joints[j].law;
+        if (places[j] < law.low) found.stops.push_back({static_cast<int>(j), 0});
+        if (places[j] > law.high) found.stops.push_back({static_cast<int>(j), 1});
+    }
+    return found;
 }
 
 bool Equilibrium::meets_itself(const State& state, const Controls& now, const State& next, const Controls& then) const {

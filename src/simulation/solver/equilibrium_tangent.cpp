@@ -2,7 +2,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/core/parallel.hpp"
 #include "base/linalg/vectors.hpp"
@@ -138,10 +137,11 @@ void Equilibrium::add_skew(const State& state, const Controls& controls, const T
                                 values);
     model_->elements().add_skew(view(state.x), index, layout.pattern, values);
     std::vector<std::size_t> patches = skew_;
-    if (layout.nodes == TangentNodes::all) {  // if its rim is held, it affects the forces on other nodes
+    if (layout.nodes == TangentNodes::all) {  // where a rim is held, it affects the forces on other nodes
+        patches.clear();
         const std::size_t first = cable_count() + model_->description().chambers.size();
-        patches.resize(actuators_.size() - first);
-        std::iota(patches.begin(), patches.end(), first);
+        for (std::size_t a = 0; a < actuators_.size(); ++a)
+            if (a >= first || actuators_[a].has_mouths()) patches.push_back(a);
     }
     for (const std::size_t a : patches)
         actuators_[a].add_skew(view(state.x), state.multiplier[static_cast<Eigen::Index>(a)], index, layout.pattern,

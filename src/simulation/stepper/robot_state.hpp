@@ -1,7 +1,6 @@
 // The complete state of a robot at one instant, as a value.
 #pragma once
 
-#include <array>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -39,9 +38,7 @@ struct RobotState {
     Evaluation evaluation;  ///< of all this; derived from it
     /// Previous states, the latest last: used to predict the next one.
     std::deque<PastMoment> past;
-    History history;  ///< positions and velocities, for a motion in time
-    /// Equilibrium::contact_partners() of a motion in time; derived from it, null: not yet.
-    std::optional<std::vector<std::array<int, 2>>> partners;
+    History history;                             ///< positions and velocities, for a motion in time
     std::shared_ptr<const SolverMemory> memory;  ///< null: the solver starts anew
 
     [[nodiscard]] const Eigen::VectorXd& x() const { return now.state.x; }

@@ -262,7 +262,8 @@ StepOutcome Stepper::go(RobotState& robot, const Target& target, StepReport& rep
         Controls controls = target.controls;
         controls.met = robot.controls.met;
         State next;
-        outcome = chooses_scheme() ? attempt_in_time(robot, target, controls, next, progress)
+        int touching = 0;
+        outcome = chooses_scheme() ? attempt_in_time(robot, target, controls, next, touching, progress)
                                    : attempt(robot, target, Scheme::even, controls, next, progress);
         iterations += outcome.iterations;
         note(outcome.history, target.along, report);
@@ -279,27 +280,33 @@ StepOutcome Stepper::go(RobotState& robot, const Target& target, StepReport& rep
             report.loose = true;
             report.reason = outcome.reason;
         }
-        accept(robot, target, std::move(controls), std::move(next), outcome);
+        accept(robot, target, std::move(controls), std::move(next), touching, outcome);
         return outcome;
     }
 }
 
 /// True if the formula of a step depends on what happens in it.
 bool Stepper::chooses_scheme() const {
-    return options_.dynamics && (is_adaptive() || options_.dynamics->integrator != Integrator::bdf2);
+    if (!options_.dynamics) return false;
+    const auto has_stop = [](const Joint& joint) {
+        return std::isfinite(joint.law.low) || std::isfinite(joint.law.high);
+    };
+    return is_adaptive() || options_.dynamics->integrator != Integrator::bdf2 || model_.contact(true) != nullptr ||
+           std::ranges::any_of(model_.description().joints, has_stop);
 }
 
-bool Stepper::meets_anew(const RobotState& robot, const State& next, const Controls& controls) const {
-    const auto partners = system_.contact_partners(next, controls);
-    if (partners.empty()) return false;
-    return !std::ranges::includes(
-        robot.partners ? *robot.partners : system_.contact_partners(robot.now.state, robot.controls), partners);
+int Stepper::touching_after(const RobotState& robot, const State& next, const Controls& controls) const {
+    const Touching there = system_.touching(next, controls);
+    if (there.none()) return 0;
+    const bool as_before = there.is_part_of(system_.touching(robot.now.state, robot.controls));
+    return as_before ? std::max(robot.history.touching, 1) + 1 : 1;
 }
 
-/// Parts in contact use formulas that dissipate unresolved motion, as in an impact. The step in which contact begins,
-/// and the next, do not use earlier states.
+/// Things that touch use formulas that dissipate unresolved motion, as in an impact. The step in which that begins, and
+/// the next, do not use earlier states.
 Scheme Stepper::scheme(const RobotState& robot, const Controls& controls) const {
     if (robot.history.touching == 1) return Scheme::euler;
+    if (!is_adaptive() && options_.dynamics->integrator == Integrator::bdf2) return Scheme::even;
     if (robot.history.touching > 1 || options_.dynamics->integrator == Integrator::bdf2) return Scheme::bdf2;
     // A prescribed length, volume or angle refers to the end of the step, not to the mean; a damped joint, to its loss
     // by then.
@@ -331,29 +338,32 @@ double Stepper::time_error_m(const Controls& controls, const State& next) const 
     return mass > 0 ? std::sqrt(std::max(0.0, off.dot(controls.inertia->mass_times(off))) / mass) : 0;
 }
 
-/// If parts come into contact in a step, or it does not converge because of that, it is repeated with a scheme that may
-/// dissipate energy: BDF2 would carry the velocity from before the impact into the next steps, and throw bodies higher
-/// than they fell.
+/// If things that were apart touch at the end of a step, or it does not converge because of that, it is repeated with a
+/// scheme that may dissipate energy: BDF2 would carry the velocity from before the impact into the next steps, and
+/// throw bodies higher than they fell.
 StepOutcome Stepper::attempt_in_time(const RobotState& robot, const Target& target, Controls& controls, State& next,
-                                     const Progress& progress) {
+                                     int& touching, const Progress& progress) {
     const Controls wanted = controls;
     const Scheme first = scheme(robot, controls);
     if (first == Scheme::conserving) take_mean_inputs(robot, controls);
     StepOutcome outcome = attempt(robot, target, first, controls, next, progress);
     const bool stuck = !outcome.converged && first == Scheme::conserving && !progress.cancelled();
-    const bool impact = outcome.converged && first != Scheme::euler && meets_anew(robot, next, controls);
+    if (outcome.converged) touching = touching_after(robot, next, controls);
+    const bool impact = outcome.converged && first != Scheme::euler && touching == 1;
     if (stuck || impact) {
         Controls again = wanted;
         State there;
         StepOutcome lossy = attempt(robot, target, Scheme::euler, again, there, progress);
         outcome.iterations += lossy.iterations;
         outcome.history.insert(outcome.history.end(), lossy.history.begin(), lossy.history.end());
-        if (!stuck || (lossy.converged && system_.touches(there, again))) {
+        const int touching_there = lossy.converged ? touching_after(robot, there, again) : 0;
+        if (impact || touching_there > 0) {
             lossy.iterations = outcome.iterations;
             lossy.history = std::move(outcome.history);
             outcome = std::move(lossy);
             controls = std::move(again);
             next = std::move(there);
+            touching = touching_there;
         }
     }
     if (!outcome.converged) return outcome;
@@ -404,14 +414,11 @@ StepOutcome Stepper::settle(const RobotState& from, Controls& controls, State& n
                            {from.now.state, from.controls, from.drives}, controls, next, progress, std::move(known));
 }
 
-void Stepper::accept(RobotState& robot, const Target& target, Controls controls, State next, StepOutcome outcome) {
+void Stepper::accept(RobotState& robot, const Target& target, Controls controls, State next, int touching,
+                     StepOutcome outcome) {
     if (options_.dynamics) {
-        const int touching = chooses_scheme() && meets_anew(robot, next, controls) ? 0 : robot.history.touching;
         robot.history = MotionInTime::after(*controls.inertia, next.x);
-        if (chooses_scheme()) {
-            robot.partners = system_.contact_partners(next, controls);
-            if (!robot.partners->empty()) robot.history.touching = touching + 1;
-        }
+        robot.history.touching = touching;
     }
     robot.past.push_back({robot.now.along, std::make_shared<const State>(std::move(robot.now.state))});
     if (robot.past.size() > options_.most_past) robot.past.pop_front();
@@ -439,7 +446,6 @@ StepReport Stepper::settle_beside(RobotState& robot, State guess, const Progress
     note(outcome.history, robot.now.along, report);
     if (outcome.converged) {
         robot.now.state = std::move(guess);
-        robot.partners.reset();
         robot.controls = std::move(controls);
         robot.evaluation = std::move(outcome.evaluation);
         robot.past.clear();  // they belong to the old path

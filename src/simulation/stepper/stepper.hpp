@@ -114,18 +114,20 @@ private:
     [[nodiscard]] StepOutcome go(RobotState& robot, const Target& target, StepReport& report, const Progress& progress);
     [[nodiscard]] StepOutcome attempt(const RobotState& robot, const Target& target, Scheme scheme, Controls& controls,
                                       State& next, const Progress& progress);
+    /// `touching` receives History::touching of the end.
     [[nodiscard]] StepOutcome attempt_in_time(const RobotState& robot, const Target& target, Controls& controls,
-                                              State& next, const Progress& progress);
+                                              State& next, int& touching, const Progress& progress);
     [[nodiscard]] bool chooses_scheme() const;
-    /// True if parts are in contact at `next` that are not at the robot's present state.
-    [[nodiscard]] bool meets_anew(const RobotState& robot, const State& next, const Controls& controls) const;
+    /// History::touching if a step ends at `next`: 1 if things touch there that do not at its start.
+    [[nodiscard]] int touching_after(const RobotState& robot, const State& next, const Controls& controls) const;
     [[nodiscard]] Scheme scheme(const RobotState& robot, const Controls& controls) const;
     void take_mean_inputs(const RobotState& robot, Controls& controls) const;
     [[nodiscard]] double time_error_m(const Controls& controls, const State& next) const;
     [[nodiscard]] StepReport step_by_error(RobotState& robot, const Way& way, const Progress& progress);
     [[nodiscard]] StepOutcome settle(const RobotState& from, Controls& controls, State& next, const Progress& progress,
                                      std::optional<Evaluation> known);
-    void accept(RobotState& robot, const Target& target, Controls controls, State next, StepOutcome outcome);
+    void accept(RobotState& robot, const Target& target, Controls controls, State next, int touching,
+                StepOutcome outcome);
     void recall(const RobotState& robot);
     void remember(RobotState& robot);
 
