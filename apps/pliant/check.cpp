@@ -155,8 +155,7 @@ Result<std::string> check_geometry(const std::string& file) {
     if (text || kind_of(file) != FileKind::unknown || !std::filesystem::is_regular_file(file, ignored)) return text;
     return input_error(
         "{}: is not recognised; pliant check reads robot and printer files (.toml), jobs (.zip), G-code (.gcode), and "
-        "by "
-        "content STL, OBJ, PLY, OFF, STEP, 3MF and tet meshes",
+        "by content STL, OBJ, PLY, OFF, STEP, 3MF and tet meshes",
         file);
 }
 

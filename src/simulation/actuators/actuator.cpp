@@ -18,6 +18,7 @@ double Actuator::measure(std::span<const double> x, std::span<const double> shar
 void Actuator::add_gradient(std::span<const double> x, double factor, std::span<double> forces,
                             std::span<const double> shares) const {
     if (gaps_) return gaps_->add_pull(x, factor, forces);
+    if (const auto* surface = std::get_if<ChamberSurface>(&geometry_)) return surface->add_force(x, factor, forces);
     add_measure_gradient(x, factor, forces, shares);
 }
 

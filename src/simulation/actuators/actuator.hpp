@@ -32,7 +32,7 @@ public:
     /// forces (3n) += factor * dg/dx.
     void add_measure_gradient(std::span<const double> x, double factor, std::span<double> forces,
                               std::span<const double> shares = {}) const;
-    /// forces (3n) += factor * (force per unit m): dg/dx, except for gap elements.
+    /// forces (3n) += factor * (force per unit m): dg/dx, except for gap elements and at the mouths of chambers.
     void add_gradient(std::span<const double> x, double factor, std::span<double> forces,
                       std::span<const double> shares = {}) const;
     /// values += the derivative of that force at m = factor (with the elastic energy of gap elements), for a pattern
@@ -41,8 +41,8 @@ public:
     void add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
                      const linalg::SymmetricPattern& pattern, std::span<double> values, bool project,
                      std::span<const double> shares = {}) const;
-    /// result (3n) += factor * (skew part of the derivative of the gradient) * v. Only a pressure patch with a free rim
-    /// has such a part: its force is not the gradient of g.
+    /// result (3n) += factor * (skew part of the derivative of the force) * v. Only a pressure patch and a chamber with
+    /// mouths have such a part, at the nodes of their rims: their force is not the gradient of g.
     void apply_skew(std::span<const double> x, double factor, std::span<const double> v,
                     std::span<double> result) const;
     /// The same part as a matrix: adds factor * S, S^T = -S, blocks at and below the diagonal of a pattern of block 3
@@ -51,6 +51,10 @@ public:
                   const linalg::SymmetricPattern& pattern, std::span<double> values) const;
     void append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const;
 
+    [[nodiscard]] bool has_mouths() const {
+        const auto* surface = std::get_if<ChamberSurface>(&geometry_);
+        return surface != nullptr && surface->has_mouths();
+    }
     [[nodiscard]] const CablePath& cable() const { return std::get<CablePath>(geometry_); }
 
 private:

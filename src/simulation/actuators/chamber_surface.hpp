@@ -28,11 +28,15 @@ public:
     [[nodiscard]] double volume(std::span<const double> x) const;
     /// forces (3n) += factor * dV/dx.
     void add_gradient(std::span<const double> x, double factor, std::span<double> forces) const;
+    /// The same without the mouths: the force on the robot. It differs only at nodes that the support of a mouth holds,
+    /// along its normal; so does its derivative, which the following functions add.
+    void add_force(std::span<const double> x, double factor, std::span<double> forces) const;
     /// values += factor * second gradient, for a pattern over free nodes (block 3) that holds cliques(). With
     /// `project`, each face adds the nearest positive semi-definite matrix instead.
     void add_hessian(std::span<const double> x, double factor, const std::vector<int>& free_index,
                      const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const;
-    /// result (3n) += factor * (the skew part that symmetrising the second gradient drops) * v; zero for closed walls.
+    /// result (3n) += factor * (the skew part that symmetrising the second gradient drops) * v; zero for closed walls
+    /// without mouths.
     void apply_skew(std::span<const double> x, double factor, std::span<const double> v,
                     std::span<double> result) const;
     /// The same part as a matrix: values += its blocks at and below the diagonal; those above are minus their
@@ -40,9 +44,15 @@ public:
     void add_skew(std::span<const double> x, double factor, const std::vector<int>& index,
                   const linalg::SymmetricPattern& pattern, std::span<double> values) const;
     void append_cliques(const std::vector<int>& free_index, linalg::Lists& cliques) const;
+    [[nodiscard]] bool has_mouths() const { return wall_.mouth_faces > 0; }
 
 private:
     [[nodiscard]] std::vector<Vec3> points_at(std::span<const double> x) const;
+    [[nodiscard]] std::span<const WallFace> faces_of_bodies() const {
+        return std::span(wall_.faces).first(wall_.faces.size() - wall_.mouth_faces);
+    }
+    void add_gradient_of(std::span<const WallFace> faces, std::span<const double> x, double factor,
+                         std::span<double> forces) const;
     void spread(std::span<const Vec3> on_points, std::span<double> on_nodes) const;
     /// Distributes the block of two wall points to the nodes that carry them.
     void add_pair(int first, int second, const linalg::Matrix3& block, const std::vector<int>& free_index,

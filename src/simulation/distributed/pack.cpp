@@ -119,7 +119,7 @@ void members(Archive& a, Load& v) {
 }
 template <class Archive>
 void members(Archive& a, Wall& v) {
-    a(v.points, v.faces);
+    a(v.points, v.faces, v.mouth_faces);
 }
 template <class Archive>
 void members(Archive& a, PressureLoad& v) {

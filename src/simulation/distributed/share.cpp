@@ -149,7 +149,9 @@ void ShareBuilder::localise(Attachment& point, Share& share) {
 Wall ShareBuilder::part_of(const Wall& wall, int rank, Share& share) {
     Wall part;
     std::vector<int> index(wall.points.size(), -1);
-    for (const WallFace& face : wall.faces) {
+    const std::size_t first_mouth = wall.faces.size() - wall.mouth_faces;
+    for (std::size_t f = 0; f < wall.faces.size(); ++f) {
+        const WallFace& face = wall.faces[f];
         int face_rank = 0;  // if all points are fixed in space
         for (std::size_t i = 3; i-- > 0;)
             if (const int r = rank_of(wall.points[static_cast<std::size_t>(face[i])]); r >= 0) face_rank = r;
@@ -166,6 +168,7 @@ Wall ShareBuilder::part_of(const Wall& wall, int rank, Share& share) {
             point = there;
         }
         part.faces.push_back(own);
+        if (f >= first_mouth) ++part.mouth_faces;
     }
     return part;
 }

@@ -83,22 +83,16 @@ std::vector<Quantity> contact_gradients(const Linearisation& at, const Goal& goa
     return all;
 }
 
-/// Likewise with the nodes that a support holds.
 std::vector<Quantity> support_gradients(Linearisation& at, const Goal& goal) {
     const Equilibrium& system = at.system();
     std::vector<Quantity> all;
     for (Eigen::Index axis = 0; axis < dimensions; ++axis) {
-        Eigen::VectorXd motion = Eigen::VectorXd::Zero(at.state().x.size());
-        for (const int node : system.model().description().supports[goal.on].nodes) motion[3 * node + axis] = 1;
-        Quantity quantity{at.change_of(at.equations_of_motion(motion)).positions,
-                          Eigen::VectorXd::Zero(at.state().multiplier.size())};
-        for (std::size_t a = 0; a < system.actuators().size(); ++a) {
-            Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
-            system.actuators()[a].add_gradient(linalg::view(at.state().x), 1, linalg::view(force),
-                                               at.controls().shares[a]);
-            quantity.by_multipliers[static_cast<Eigen::Index>(a)] = force.dot(motion);
-        }
-        all.push_back(std::move(quantity));
+        Quantity force{Eigen::VectorXd::Zero(at.state().x.size()), Eigen::VectorXd::Zero(at.state().multiplier.size())};
+        force.by_forces = system.model().held().motion([&](std::size_t support, int) -> Eigen::Vector3d {
+            return (support == goal.on ? 1.0 : 0.0) * Eigen::Vector3d::Unit(axis);
+        });
+        Quantity moved = at.with_forces(force);
+        all.push_back({std::move(moved.by_positions), std::move(moved.by_multipliers)});
     }
     return all;
 }

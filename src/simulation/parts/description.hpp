@@ -97,6 +97,9 @@ using WallFace = std::array<int, 6>;
 struct Wall {
     std::vector<Attachment> points;
     std::vector<WallFace> faces;
+    /// The last so many faces are mouths of a chamber: no body has them, a support closes the chamber there. They bound
+    /// the volume, but the air presses on the support, not on the robot.
+    std::size_t mouth_faces = 0;
 };
 
 /// A pressure that follows the surface as it deforms: share * pressure, towards the solid.

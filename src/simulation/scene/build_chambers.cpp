@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <utility>
+#include <vector>
 
 #include "geometry/files/surface_file.hpp"
 #include "geometry/repair/cavity.hpp"
 #include "geometry/repair/surface_check.hpp"
+#include "simulation/actuators/chamber_surface.hpp"
 #include "simulation/scene/build_places.hpp"
 #include "simulation/scene/chamber_mouths.hpp"
 
@@ -20,8 +22,11 @@ constexpr double wall_reach = 0.03;
 /// The boundary of a meshed chamber. A mouth not covered by a body must be inside a support.
 sim::Wall wall_of_region(ModelDraft& draft, const ChamberSpec& spec) {
     const int region = static_cast<int>(draft.region_of(Region::Use::chamber, spec.name));
-    const std::vector<mesh::Face> faces = mesh::region_faces(draft.whole, region);
+    std::vector<mesh::Face> faces = mesh::region_faces(draft.whole, region);
+    // Where the air has elements, they carry the nodes of a mouth.
+    const std::size_t mouth_faces = spec.elements ? 0 : put_mouths_last(draft, faces);
     sim::Wall wall = sim::wall_of_faces(draft.whole, faces, draft.node_of_whole);
+    wall.mouth_faces = mouth_faces;
     if (faces.empty()) {
         draft.problem(spec.line, "chamber", spec.name, "is empty");
         return {};
@@ -71,6 +76,19 @@ sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const C
     return wall;
 }
 
+/// A chamber cannot lose more air than it holds.
+void check_volume_change(ModelDraft& draft, const ChamberSpec& spec, const sim::Wall& wall) {
+    if (spec.target.kind != sim::ChamberTarget::Kind::volume_change_m3) return;
+    std::vector<double> rest;
+    for (const Vec3& p : draft.description.mesh.points) rest.insert(rest.end(), {p.x, p.y, p.z});
+    constexpr double ml_per_m3 = 1e6;
+    const double volume = sim::ChamberSurface(wall, rest).volume(rest);
+    if (-spec.target.value >= volume)
+        draft.problem(spec.line, "chamber", spec.name,
+                      fmt::format("cannot lose {:.4g} ml, it holds {:.4g} ml", -ml_per_m3 * spec.target.value,
+                                  ml_per_m3 * volume));
+}
+
 void add_chamber(ModelDraft& draft, const sim::Attacher& attacher, const ChamberSpec& spec) {
     sim::Chamber chamber{spec.name, {}, spec.target};
     if (const auto* file = std::get_if<SurfaceFile>(&spec.air))
@@ -80,6 +98,7 @@ void add_chamber(ModelDraft& draft, const sim::Attacher& attacher, const Chamber
     else
         chamber.wall = wall_of_region(draft, spec);
     if (chamber.wall.faces.empty()) return;
+    check_volume_change(draft, spec, chamber.wall);
     if (spec.elements) {
         const std::size_t region = draft.region_of(Region::Use::chamber, spec.name);
         const auto actuator = static_cast<int>(draft.description.cables.size() + draft.description.chambers.size());

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 
 #include "base/core/disjoint_sets.hpp"
 
@@ -47,9 +48,6 @@ public:
     Mouths(const ModelDraft& draft, const sim::Wall& wall)
         : draft_(draft), wall_(wall), held_(held_directions(draft.description)) {}
 
-    [[nodiscard]] bool belongs_to_no_body(const sim::WallFace& face) const {
-        return std::ranges::any_of(face, [&](int point) { return point >= 0 && node_of(point) < 0; });
-    }
     /// Every point stays in the plane of the face, so that the mouth remains flat and the volume well defined.
     [[nodiscard]] bool stays_in_plane(const sim::WallFace& face) const {
         const Vec3 normal = unit(cross(at(face[1]) - at(face[0]), at(face[2]) - at(face[0])));
@@ -98,10 +96,36 @@ private:
     Held held_;
 };
 
-std::array<int, 3> corners_of(const mesh::Face& face) {
-    std::array corners = {face.nodes[0], face.nodes[1], face.nodes[2]};
+std::array<int, 3> ascending(std::array<int, 3> corners) {
     std::ranges::sort(corners);
     return corners;
+}
+
+std::array<int, 3> corners_of(const mesh::Face& face) {
+    return ascending({face.nodes[0], face.nodes[1], face.nodes[2]});
+}
+
+/// Of these faces (corners ascending) of `draft.whole` those of elements: of bodies, or of gaps.
+std::set<std::array<int, 3>> faces_of_elements(const ModelDraft& draft, const std::set<std::array<int, 3>>& faces) {
+    const mesh::TetMesh& elements = draft.description.mesh;
+    std::vector<int> whole_of_node(elements.points.size(), -1);  // for nodes on these faces
+    for (const auto& corners : faces) {
+        for (const int node : corners) {
+            const int own = draft.node_of_whole[static_cast<std::size_t>(node)];
+            if (own >= 0) whole_of_node[static_cast<std::size_t>(own)] = node;
+        }
+    }
+    constexpr std::array<std::array<std::size_t, 3>, 4> faces_of_tet = {{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
+    std::set<std::array<int, 3>> found;
+    for (std::size_t t = 0; t < elements.tet_count(); ++t) {
+        const std::span<const int> nodes = elements.tet(t);
+        const auto whole = [&](std::size_t corner) { return whole_of_node[static_cast<std::size_t>(nodes[corner])]; };
+        for (const auto& [a, b, c] : faces_of_tet) {
+            const std::array<int, 3> corners = ascending({whole(a), whole(b), whole(c)});
+            if (corners[0] >= 0 && faces.contains(corners)) found.insert(corners);
+        }
+    }
+    return found;
 }
 
 /// Where the bounding boxes of two drawn chambers overlap, as text; "" if that cannot be told.
@@ -136,13 +160,21 @@ const ChamberSpec* neighbour_at(const ModelDraft& draft, const ChamberSpec& spec
 
 }  // namespace
 
+std::size_t put_mouths_last(const ModelDraft& draft, std::vector<mesh::Face>& faces) {
+    std::set<std::array<int, 3>> all;
+    for (const mesh::Face& face : faces) all.insert(corners_of(face));
+    const std::set<std::array<int, 3>> closed = faces_of_elements(draft, all);
+    const auto mouths = std::stable_partition(
+        faces.begin(), faces.end(), [&](const mesh::Face& face) { return closed.contains(corners_of(face)); });
+    return static_cast<std::size_t>(faces.end() - mouths);
+}
+
 std::string open_mouth(const ModelDraft& draft, const ChamberSpec& spec, const std::vector<mesh::Face>& faces,
                        const sim::Wall& wall) {
     const Mouths mouths(draft, wall);
     std::set<std::array<int, 3>> loose;
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        const sim::WallFace& face = wall.faces[f];
-        if (mouths.belongs_to_no_body(face) && !mouths.stays_in_plane(face)) loose.insert(corners_of(faces[f]));
+    for (std::size_t f = faces.size() - wall.mouth_faces; f < faces.size(); ++f) {
+        if (!mouths.stays_in_plane(wall.faces[f])) loose.insert(corners_of(faces[f]));
     }
     if (mouths.lies_outside())
         return fmt::format("lies outside every body, at least in part; draw its air where a body surrounds it; {}",
