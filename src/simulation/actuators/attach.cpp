@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t largest_patch = 64;
 constexpr double reach_beyond = 1.05;  // times the distance of the farthest node of the tet that contains the point
+constexpr double on_plane = 1e-6;      // of the reach: nearer to a plane counts as on it
 
 /// Keeps the nearest nodes and an even sample of the others.
 void thin_out(std::vector<int>& nodes, const std::vector<Vec3>& points, const Vec3& center) {
@@ -58,10 +59,10 @@ std::vector<double> weights_beyond(int order, const std::array<double, 4>& b, co
 /// o_i = (X_i - point) / reach.
 class MovingLeastSquares {
 public:
-    MovingLeastSquares(const std::vector<int>& nodes, const std::vector<Vec3>& points, const Vec3& point, double reach)
-        : reach_(reach), moments_(static_cast<Eigen::Index>(nodes.size()), 4), kernel_(moments_.rows()) {
+    MovingLeastSquares(const std::vector<Vec3>& points, const Vec3& point, double reach)
+        : reach_(reach), moments_(static_cast<Eigen::Index>(points.size()), 4), kernel_(moments_.rows()) {
         for (Eigen::Index i = 0; i < kernel_.size(); ++i) {
-            const Vec3 offset = (points[static_cast<std::size_t>(nodes[static_cast<std::size_t>(i)])] - point) / reach;
+            const Vec3 offset = (points[static_cast<std::size_t>(i)] - point) / reach;
             moments_.row(i) << 1, offset.x, offset.y, offset.z;
             const double fall = 1 - dot(offset, offset);
             kernel_[i] = fall * fall;
@@ -211,14 +212,66 @@ Attacher::Patch Attacher::patch_at(int tet, const Vec3& point, double radius) co
     return patch;
 }
 
-Result<Attachment> Attacher::spread(const Vec3& point, double radius, double tolerance) const {
+Eigen::VectorXd Attacher::Images::gathered(const Eigen::VectorXd& values) const {
+    Eigen::VectorXd sums = Eigen::VectorXd::Zero(of.empty() ? 0 : 1 + *std::max_element(of.begin(), of.end()));
+    for (std::size_t k = 0; k < of.size(); ++k) sums[of[k]] += values[static_cast<Eigen::Index>(k)];
+    return sums;
+}
+
+/// True if the point lies on the plane, and its patch on one side of it, held wherever it touches it.
+bool Attacher::mirrors(const SymmetryPlane& plane, const Patch& patch, const Vec3& point) const {
+    const double near = on_plane * patch.reach;
+    if (std::fabs(dot(plane.normal, point - plane.point)) > near) return false;
+    double lowest = 0, highest = 0;
+    for (const int node : patch.nodes) {
+        const double height = dot(plane.normal, mesh_->points[static_cast<std::size_t>(node)] - plane.point);
+        if (std::fabs(height) <= near && !plane.holds[static_cast<std::size_t>(node)]) return false;
+        lowest = std::min(lowest, height);
+        highest = std::max(highest, height);
+    }
+    return std::min(-lowest, highest) <= near;
+}
+
+Attacher::Images Attacher::images_of(const Patch& patch, const Vec3& point,
+                                     std::span<const SymmetryPlane> planes) const {
+    Images images;
+    for (std::size_t k = 0; k < patch.nodes.size(); ++k) {
+        images.places.push_back(mesh_->points[static_cast<std::size_t>(patch.nodes[k])]);
+        images.of.push_back(static_cast<int>(k));
+    }
+    for (const SymmetryPlane& plane : planes) {
+        const auto at_right_angles = [&](const Vec3& normal) {
+            return std::fabs(dot(normal, plane.normal)) < on_plane;
+        };
+        if (!mirrors(plane, patch, point) || !std::ranges::all_of(images.normals, at_right_angles)) continue;
+        images.normals.push_back(plane.normal);
+        const std::size_t count = images.places.size();
+        for (std::size_t k = 0; k < count; ++k) {
+            const double height = dot(plane.normal, images.places[k] - plane.point);
+            if (std::fabs(height) <= on_plane * patch.reach) continue;  // its own image
+            images.places.push_back(images.places[k] - 2 * height * plane.normal);
+            images.of.push_back(images.of[k]);
+        }
+    }
+    return images;
+}
+
+Result<Attachment> Attacher::spread(const Vec3& point, double radius, double tolerance,
+                                    std::span<const SymmetryPlane> planes) const {
     if (radius <= 0) return carried_by_tet(point, tolerance);
     const auto location = locate(point, tolerance);
     if (!location) return tl::unexpected(location.error());
     Patch patch = patch_at(location->tet, point, radius);
-    const MovingLeastSquares fit(patch.nodes, mesh_->points, point, patch.reach);
+    const Images images = images_of(patch, point, planes);
+    const MovingLeastSquares fit(images.places, point, patch.reach);
     if (!fit.good()) return carried_by_tet(point, tolerance);
-    return Attachment{std::move(patch.nodes), {fit.weights().data(), fit.weights().data() + fit.weights().size()}, {}};
+    const Eigen::VectorXd weights = images.gathered(fit.weights());
+    Attachment attachment{std::move(patch.nodes), {weights.data(), weights.data() + weights.size()}, {}};
+    Vec3 mean;
+    for (std::size_t k = 0; k < attachment.nodes.size(); ++k)
+        mean += attachment.weights[k] * mesh_->points[static_cast<std::size_t>(attachment.nodes[k])];
+    for (const Vec3& normal : images.normals) attachment.fixed += dot(normal, point - mean) * normal;
+    return attachment;
 }
 
 Result<AffinePatch> Attacher::patch(const Vec3& point, double radius, double tolerance) const {
@@ -239,7 +292,9 @@ Result<AttachedFrame> Attacher::frame(const Vec3& point, double radius, double t
     const auto location = locate(point, tolerance);
     if (!location) return tl::unexpected(location.error());
     Patch patch = patch_at(location->tet, point, radius);
-    const MovingLeastSquares fit(patch.nodes, mesh_->points, point, patch.reach);
+    std::vector<Vec3> places;
+    for (const int node : patch.nodes) places.push_back(mesh_->points[static_cast<std::size_t>(node)]);
+    const MovingLeastSquares fit(places, point, patch.reach);
     AttachedFrame frame;
     if (fit.good() && fit.good_slope()) {
         const Eigen::MatrixXd gradients = fit.gradients();
@@ -261,19 +316,22 @@ Result<AttachedFrame> Attacher::frame(const Vec3& point, double radius, double t
     return frame;
 }
 
-Result<AttachmentSlope> Attacher::slope(const Vec3& point, double radius, double tolerance) const {
+Result<AttachmentSlope> Attacher::slope(const Vec3& point, double radius, double tolerance,
+                                        std::span<const SymmetryPlane> planes) const {
     const auto location = locate(point, tolerance);
     if (!location) return tl::unexpected(location.error());
     if (radius <= 0) return slope_in_tet(*location);
     Patch patch = patch_at(location->tet, point, radius);
-    const MovingLeastSquares fit(patch.nodes, mesh_->points, point, patch.reach);
+    const Images images = images_of(patch, point, planes);
+    const MovingLeastSquares fit(images.places, point, patch.reach);
     if (!fit.good()) return slope_in_tet(*location);
     Vec3 of_reach;
     if (patch.farthest >= 0)
         of_reach = reach_beyond * unit(point - mesh_->points[static_cast<std::size_t>(patch.farthest)]);
     AttachmentSlope slope{std::move(patch.nodes), {}};
-    const std::array<Eigen::VectorXd, 3> by = {fit.change({1, 0, 0}, of_reach.x), fit.change({0, 1, 0}, of_reach.y),
-                                               fit.change({0, 0, 1}, of_reach.z)};
+    const std::array<Eigen::VectorXd, 3> by = {images.gathered(fit.change({1, 0, 0}, of_reach.x)),
+                                               images.gathered(fit.change({0, 1, 0}, of_reach.y)),
+                                               images.gathered(fit.change({0, 0, 1}, of_reach.z))};
     for (Eigen::Index i = 0; i < by[0].size(); ++i) slope.weights.push_back({by[0][i], by[1][i], by[2][i]});
     return slope;
 }

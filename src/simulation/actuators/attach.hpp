@@ -1,6 +1,7 @@
 // Attaches points of space to the mesh that carries them.
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,6 +35,14 @@ struct AffinePatch {
 [[nodiscard]] std::optional<AffinePatch> fitted_patch(std::vector<int> nodes, std::span<const double> importance,
                                                       const std::vector<Vec3>& points, const Vec3& center);
 
+/// A plane on which a support holds nodes along its normal only: the mesh may be half of a robot, whose other half is
+/// its mirror image.
+struct SymmetryPlane {
+    Vec3 point;
+    Vec3 normal;              ///< of length 1
+    std::vector<bool> holds;  ///< (nodes)
+};
+
 /// Built once per mesh, which must outlive it. Lengths are in the mesh's unit.
 class Attacher {
 public:
@@ -51,8 +60,10 @@ public:
     /// The point's motion is the mean motion of the material within `radius`, and a force on it spreads over that
     /// patch: a moving-least-squares weight that reproduces every affine motion exactly (Lancaster and Salkauskas
     /// 1981). The patch stays on the point's side of a gap, is at least as large as the tet that holds the point, and
-    /// uses at most 64 nodes.
-    [[nodiscard]] Result<Attachment> spread(const Vec3& point, double radius, double tolerance) const;
+    /// uses at most 64 nodes. On a plane of symmetry it includes the mirror images of its nodes, as in the whole robot;
+    /// each node then has the weights of all its images, and the point stays in the plane.
+    [[nodiscard]] Result<Attachment> spread(const Vec3& point, double radius, double tolerance,
+                                            std::span<const SymmetryPlane> planes = {}) const;
 
     /// The material within `radius` of a point, chosen as in spread(). Errors: those of spread(), and nodes in one
     /// plane.
@@ -64,7 +75,8 @@ public:
 
     /// Derivative of the attachment from spread() with respect to the point, valid as long as the nodes of its patch,
     /// or the tet that contains the point, stay the same. Errors: those of spread().
-    [[nodiscard]] Result<AttachmentSlope> slope(const Vec3& point, double radius, double tolerance) const;
+    [[nodiscard]] Result<AttachmentSlope> slope(const Vec3& point, double radius, double tolerance,
+                                                std::span<const SymmetryPlane> planes = {}) const;
 
 private:
     struct Patch {
@@ -72,7 +84,17 @@ private:
         double reach = 0;
         int farthest = -1;  ///< node of the tet that limits the reach; -1: the radius does
     };
+    /// The nodes of a patch and their mirror images.
+    struct Images {
+        std::vector<Vec3> places;   ///< first those of the nodes
+        std::vector<int> of;        ///< (places) index of the node in the patch
+        std::vector<Vec3> normals;  ///< of the planes of symmetry that the point lies on
+        /// (nodes) <- the sum over the images of each, from (places).
+        [[nodiscard]] Eigen::VectorXd gathered(const Eigen::VectorXd& values) const;
+    };
     [[nodiscard]] Patch patch_at(int tet, const Vec3& point, double radius) const;
+    [[nodiscard]] Images images_of(const Patch& patch, const Vec3& point, std::span<const SymmetryPlane> planes) const;
+    [[nodiscard]] bool mirrors(const SymmetryPlane& plane, const Patch& patch, const Vec3& point) const;
     [[nodiscard]] AttachmentSlope slope_in_tet(const mesh::TetLocator::Location& at) const;
     [[nodiscard]] Result<mesh::TetLocator::Location> locate(const Vec3& point, double tolerance) const;
     [[nodiscard]] std::vector<int> connected_nodes_within(int tet, const Vec3& point, double radius) const;

@@ -19,8 +19,7 @@ CablePath::CablePath(std::span<const Attachment> points, std::span<const double>
             segment.nodes.push_back(node);
             segment.weights.push_back(w);
         }
-        if (to.nodes.empty()) segment.offset += to.fixed;
-        if (from.nodes.empty()) segment.offset -= from.fixed;
+        segment.offset = to.fixed - from.fixed;
         segments_.push_back(std::move(segment));
     }
     const double total = length(rest);

@@ -203,15 +203,15 @@ void ChamberSurface::add_pair(int first, int second, const linalg::Matrix3& bloc
 void ChamberSurface::apply_skew(std::span<const double> x, double factor, std::span<const double> v,
                                 std::span<double> result) const {
     const std::vector<Vec3> points = points_at(x);
-    std::vector<Vec3> motion;  // v is a motion: zero for points fixed in space
-    for (const Attachment& point : wall_.points) motion.push_back(point.nodes.empty() ? Vec3{} : position(point, v));
+    std::vector<Vec3> motions;
+    for (const Attachment& point : wall_.points) motions.push_back(motion(point, v));
     std::vector<Vec3> on_points(points.size());
     for (const WallFace& face : faces_of_bodies()) {
         const FaceMatrix between = second_gradient(face, 0.5 * factor, points);
         for (std::size_t i = 0; i < points_of(face); ++i) {
             Eigen::Vector3d sum = Eigen::Vector3d::Zero();
             for (std::size_t j = 0; j < points_of(face); ++j) {
-                const Vec3& m = motion[static_cast<std::size_t>(face[j])];
+                const Vec3& m = motions[static_cast<std::size_t>(face[j])];
                 sum += (between[i][j] - between[j][i].transpose()) * Eigen::Vector3d(m.x, m.y, m.z);
             }
             on_points[static_cast<std::size_t>(face[i])] += Vec3{sum[0], sum[1], sum[2]};

@@ -70,7 +70,7 @@ JointForce::JointForce(const Joint& joint)
     const auto add = [&](const Attachment& point, double factor, Eigen::Index row, Eigen::MatrixXd& weights,
                          Vectors& fixed) {
         if (factor == 0) return;
-        if (point.nodes.empty()) fixed.col(row) += factor * linalg::vector(point.fixed);
+        fixed.col(row) += factor * linalg::vector(point.fixed);
         for (std::size_t k = 0; k < point.nodes.size(); ++k)
             weights(row, place_in(nodes_, point.nodes[k])) += factor * point.weights[k];
     };

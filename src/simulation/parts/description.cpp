@@ -23,10 +23,13 @@ Vec3 Support::velocity(const Vec3& rest, double share_now) const {
 }
 
 Vec3 position(const Attachment& point, std::span<const double> x) {
-    if (point.nodes.empty()) return point.fixed;
+    return point.fixed + motion(point, x);
+}
+
+Vec3 motion(const Attachment& point, std::span<const double> v) {
     Vec3 sum;
     for (std::size_t i = 0; i < point.nodes.size(); ++i) {
-        const double* p = x.data() + 3 * static_cast<std::size_t>(point.nodes[i]);
+        const double* p = v.data() + 3 * static_cast<std::size_t>(point.nodes[i]);
         sum += point.weights[i] * Vec3{p[0], p[1], p[2]};
     }
     return sum;

@@ -20,11 +20,11 @@
 
 namespace pliant::sim {
 
-/// A point that rides on the mesh: sum of weights[i] * x[nodes[i]]. Without nodes it is fixed in space at `fixed`.
+/// A point that rides on the mesh: sum of weights[i] * x[nodes[i]] + fixed. Without nodes it is fixed in space.
 struct Attachment {
     std::vector<int> nodes;
     std::vector<double> weights;  ///< sum 1
-    Vec3 fixed;                   ///< metres
+    Vec3 fixed;                   ///< metres; with nodes zero, except on a plane of symmetry (Attacher::spread)
 };
 
 /// The affine motion of the material near a point: the weight of each node in the motion of the point, and the gradient
@@ -303,5 +303,7 @@ struct Description {
 
 /// Position of an attachment for node positions `x` (3n).
 [[nodiscard]] Vec3 position(const Attachment& point, std::span<const double> x);
+/// Motion of an attachment for a motion `v` (3n) of the nodes; zero where it is fixed in space.
+[[nodiscard]] Vec3 motion(const Attachment& point, std::span<const double> v);
 
 }  // namespace pliant::sim

@@ -211,7 +211,7 @@ private:
             anchors_.push_back(nodes_);
             return nodes_;
         }
-        Vec3 rest;
+        Vec3 rest = point.fixed;
         for (std::size_t k = 0; k < point.nodes.size(); ++k)
             rest += point.weights[k] * d_.mesh.points[static_cast<std::size_t>(point.nodes[k])];
         node(rest);

@@ -7,6 +7,7 @@
 
 #include "robot/bodies/passage.hpp"
 #include "simulation/scene/object_points.hpp"
+#include "simulation/scene/symmetry_planes.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -89,6 +90,7 @@ template <class Spec>
 std::vector<sim::Attachment> attach_path(ModelDraft& draft, const sim::Attacher& attacher, const Spec& spec,
                                          const std::vector<Vec3>& points, std::string_view kind,
                                          std::string_view point) {
+    const std::vector<sim::SymmetryPlane> planes = planes_of_path(draft.description, points);
     std::vector<sim::Attachment> attached;
     for (std::size_t k = 0; k < points.size(); ++k) {
         const bool anchored =
@@ -102,7 +104,7 @@ std::vector<sim::Attachment> attach_path(ModelDraft& draft, const sim::Attacher&
             continue;
         }
         Result<sim::Attachment> attachment =
-            attacher.spread(points[k], draft.robot.unit_m * spec.eyelet_radius, draft.point_reach);
+            attacher.spread(points[k], draft.robot.unit_m * spec.eyelet_radius, draft.point_reach, planes);
         if (!attachment) {
             const bool end = k == 0 || k + 1 == points.size();
             draft.problem(spec.line, kind, spec.name,

@@ -15,6 +15,7 @@
 #include "geometry/mesh/mass_properties.hpp"
 #include "simulation/actuators/loads.hpp"
 #include "simulation/scene/object_points.hpp"
+#include "simulation/scene/symmetry_planes.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -182,7 +183,7 @@ void add_load_at_points(ModelDraft& draft, const sim::Attacher& attacher, const 
                         const LoadPoints& place) {
     std::vector<sim::Attachment> points;
     for (const Vec3& point : place.points) {
-        const Place where{"load", "loads", load.name, load.line, place.radius * draft.robot.unit_m};
+        const Place where{"load", "loads", load.name, load.line, place.radius * draft.robot.unit_m, load.force_N};
         auto on = carried(draft, attacher, point, where);
         if (!on) return;
         points.push_back(*std::move(on));
@@ -313,7 +314,8 @@ std::optional<sim::Attachment> carried(ModelDraft& draft, const sim::Attacher& a
                                        const Place& what) {
     const Vec3 place = draft.robot.unit_m * point;
     if (auto on_object = carried_by_object(draft, attacher, place)) return on_object;
-    Result<sim::Attachment> attachment = attacher.spread(place, what.radius_m, draft.point_reach);
+    const auto planes = planes_of_force(draft.description, place, what.force_N);
+    Result<sim::Attachment> attachment = attacher.spread(place, what.radius_m, draft.point_reach, planes);
     const double distance = attacher.distance_outside(place);
     if (!attachment) {
         draft.problem(what.line, what.kind, what.name,

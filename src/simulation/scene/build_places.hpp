@@ -28,6 +28,7 @@ struct Place {
     const std::string& name;
     int line;
     double radius_m;  ///< of the material that carries it; 0: the tet that contains it
+    Vec3 force_N{};   ///< that acts on it: on a plane of symmetry along which it acts, the mirror image carries it too
 };
 /// Attaches a point, in length units; empty if it lies outside every body, which is reported as a problem.
 [[nodiscard]] std::optional<sim::Attachment> carried(ModelDraft& draft, const sim::Attacher& attacher,

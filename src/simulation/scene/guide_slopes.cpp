@@ -9,6 +9,7 @@
 
 #include "simulation/scene/model_draft.hpp"
 #include "simulation/scene/object_points.hpp"
+#include "simulation/scene/symmetry_planes.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -28,16 +29,19 @@ std::optional<std::size_t> object_of(const sim::Description& d, const sim::Attac
 Status add_path(const sim::Description& d, const sim::Attacher& attacher, std::span<const double> rest,
                 std::span<const sim::Attachment> points, double radius_m, const GuideSlope& from,
                 std::vector<GuideSlope>& sum) {
+    std::vector<Vec3> at_rest;
+    for (const sim::Attachment& point : points) at_rest.push_back(position(point, rest));
+    const std::vector<sim::SymmetryPlane> planes = planes_of_path(d, at_rest);
     for (std::size_t k = 0; k < points.size(); ++k) {
         GuideSlope guide = from;
         guide.name = fmt::format("{}: point {}", from.name, k + 1);
         guide.point = k;
-        guide.rest_m = position(points[k], rest);
+        guide.rest_m = at_rest[k];
         if (const auto object = object_of(d, points[k])) {
             sim::AffinePatch patch = patch_of_object(d, *object, guide.rest_m);
             guide.slope = {std::move(patch.nodes), std::move(patch.slopes)};
         } else if (!points[k].nodes.empty()) {
-            Result<sim::AttachmentSlope> slope = attacher.slope(guide.rest_m, radius_m, anywhere);
+            Result<sim::AttachmentSlope> slope = attacher.slope(guide.rest_m, radius_m, anywhere, planes);
             if (!slope) return tl::unexpected(slope.error());
             guide.slope = std::move(*slope);
         }
