@@ -27,7 +27,10 @@ constexpr int layers = 4;
 /// Exposure that was not journaled did not take place.
 class NoLight final : public host::Guard {
 public:
-    void announced(long light) override { last_ = light; }
+    Status announced(long light) override {
+        last_ = light;
+        return {};
+    }
     void lit(double) override {}
     void dark(double) override {}
     [[nodiscard]] std::optional<double> lit_s(long light) override {

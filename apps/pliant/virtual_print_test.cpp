@@ -197,14 +197,14 @@ TEST_CASE("the guard is told of every exposure, and knows how long it lasted if 
     machine::Printer printer = machine::load_printer("examples/printers/tower.toml").value();
     twin::Twin twin(printer);
     rehearse::TwinGuard guard(twin);
-    guard.announced(7);
+    REQUIRE(guard.announced(7));
     guard.lit(twin.now());
     twin.advance_to(1.5);
     CHECK_FALSE(guard.lit_s(7));  // the host is alive
     guard.host_died();
     CHECK(guard.lit_s(7).value() == near(1.5, {.relative = 1e-12}));
     CHECK_FALSE(guard.lit_s(8));
-    guard.announced(9);
+    REQUIRE(guard.announced(9));
     guard.host_died();
     CHECK(guard.lit_s(9).value() == 0);
 }

@@ -75,8 +75,10 @@ std::optional<Number> parsed(std::string_view text) {
 
 /// "1.5D-3" is Fortran notation.
 std::optional<double> parsed_real(std::string_view text) {
+    constexpr std::size_t longest = 64;
     if (text.empty()) return 0.0;
-    std::string plain(text.substr(0, 64));
+    if (text.size() > longest) return std::nullopt;
+    std::string plain(text);
     for (char& c : plain) c = c == 'D' || c == 'd' ? 'e' : c;
     const auto value = parsed<double>(plain);
     return value && std::isfinite(*value) ? value : std::nullopt;

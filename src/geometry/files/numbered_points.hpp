@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -18,7 +19,7 @@ public:
     [[nodiscard]] bool add(std::int64_t number, const Vec3& point) {
         const auto place = static_cast<std::int64_t>(points_.size());
         if (points_.empty()) first_ = number;
-        const bool in_row = number - first_ == place && scattered_.empty();
+        const bool in_row = from_first(number) == place && scattered_.empty();
         if (!in_row && scattered_.empty()) scatter();
         if (!in_row && !scattered_.try_emplace(number, place).second) return false;
         points_.push_back(point);
@@ -28,8 +29,8 @@ public:
     /// Index in the list, or -1.
     [[nodiscard]] std::int64_t find(std::int64_t number) const {
         if (scattered_.empty()) {
-            const bool held = number >= first_ && static_cast<std::uint64_t>(number - first_) < points_.size();
-            return held ? number - first_ : -1;
+            const std::int64_t place = from_first(number);
+            return place >= 0 && static_cast<std::uint64_t>(place) < points_.size() ? place : -1;
         }
         const auto found = scattered_.find(number);
         return found == scattered_.end() ? -1 : found->second;
@@ -40,6 +41,13 @@ public:
     [[nodiscard]] std::vector<Vec3> take() { return std::exchange(points_, {}); }
 
 private:
+    /// Distance from the first number; -1 where that is below zero or too large.
+    [[nodiscard]] std::int64_t from_first(std::int64_t number) const {
+        const std::uint64_t distance = static_cast<std::uint64_t>(number) - static_cast<std::uint64_t>(first_);
+        return number < first_ || distance > std::numeric_limits<std::int64_t>::max()
+                   ? -1
+                   : static_cast<std::int64_t>(distance);
+    }
     /// Consecutive numbers need no table; the first gap creates one.
     void scatter() {
         for (std::size_t i = 0; i < points_.size(); ++i)

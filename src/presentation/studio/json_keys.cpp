@@ -3,7 +3,7 @@
 namespace pliant::studio {
 namespace {
 
-/// The parser is recursive: the nesting depth is checked first.
+/// A parsed value is copied and freed recursively: the nesting depth is checked first.
 bool nested_too_deep(std::string_view text) {
     constexpr int deepest = 8;
     int depth = 0;

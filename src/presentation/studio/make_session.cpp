@@ -72,25 +72,19 @@ Status MakeSession::save(const std::filesystem::path& file) {
     const Result<std::string> bytes = read_file(job->file);
     if (!bytes) return tl::unexpected(bytes.error());
     if (Status written = write_file(file, *bytes); !written) return written;
-    std::shared_ptr<OpenJob> before;  // saving under another name does not make it another job
-    {
-        const std::lock_guard lock(mutex_);
-        before = before_;
-    }
-    Status adopted = adopt(file, {job->origin.source, job->origin.colours, nullptr}, job->key);
-    const std::lock_guard lock(mutex_);
-    before_ = before;
-    return adopted;
+    return adopt(file, {job->origin.source, job->origin.colours, nullptr}, job->key, job);
 }
 
-Status MakeSession::adopt(const std::filesystem::path& file, JobOrigin origin, const std::string& key) {
+Status MakeSession::adopt(const std::filesystem::path& file, JobOrigin origin, const std::string& key,
+                          const std::shared_ptr<OpenJob>& saved) {
     Result<operate::OpenJob> open = operate::open_job(file);
     if (!open) return tl::unexpected(open.error());
     if (origin.colours.empty()) origin.colours = colours_of(open->archive.manifest());
     std::string news;
     {
         const std::lock_guard lock(mutex_);
-        if (job_ && job_->file != file) before_ = job_;
+        if (saved && job_ != saved) return {};                     // another one has become the job since
+        if (job_ && job_->file != file && !saved) before_ = job_;  // under another name it is the same job
         job_ = std::make_shared<OpenJob>(std::move(open->archive), std::move(open->printer), file, ++revision_);
         job_->origin = std::move(origin);
         if (!key.empty()) job_->key = key;

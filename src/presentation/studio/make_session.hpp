@@ -88,7 +88,9 @@ public:
 
 private:
     class Watch;
-    [[nodiscard]] Status adopt(const std::filesystem::path& file, JobOrigin origin, const std::string& key = {});
+    /// `saved`: the job that the file is a copy of; null: a new job.
+    [[nodiscard]] Status adopt(const std::filesystem::path& file, JobOrigin origin, const std::string& key = {},
+                               const std::shared_ptr<OpenJob>& saved = nullptr);
     void work(const SliceOrder& order);
 
     std::function<void(const std::string& json)> tell_;

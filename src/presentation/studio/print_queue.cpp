@@ -76,10 +76,15 @@ Status PrintQueue::set(std::vector<std::string> jobs) {
     }
     {
         const std::lock_guard lock(mutex_);
-        if (Status written = write(jobs); !written) return written;
-        jobs_ = std::move(jobs);
+        if (Status put = replace(std::move(jobs)); !put) return put;
     }
     tell_(news().front());
+    return {};
+}
+
+Status PrintQueue::replace(std::vector<std::string> jobs) {
+    if (Status written = write(jobs); !written) return written;
+    jobs_ = std::move(jobs);
     return {};
 }
 
@@ -88,11 +93,15 @@ Status PrintQueue::write(const std::vector<std::string>& jobs) const {
 }
 
 void PrintQueue::begun(const std::string& job) {
-    std::vector<std::string> rest = jobs();
-    const auto found = std::find(rest.begin(), rest.end(), job);
-    if (found == rest.end()) return;
-    rest.erase(found);
-    (void)set(std::move(rest));  // if writing fails, it is asked for again
+    {
+        const std::lock_guard lock(mutex_);
+        std::vector<std::string> rest = jobs_;
+        const auto found = std::find(rest.begin(), rest.end(), job);
+        if (found == rest.end()) return;
+        rest.erase(found);
+        if (!replace(std::move(rest))) return;  // it is asked for again
+    }
+    tell_(news().front());
 }
 
 std::string PrintQueue::json() const {

@@ -31,6 +31,8 @@ public:
     static constexpr const char* file_name = "print_queue.json";
 
 private:
+    /// In the file and here; call it with the lock.
+    [[nodiscard]] Status replace(std::vector<std::string> jobs);
     [[nodiscard]] Status write(const std::vector<std::string>& jobs) const;
     void read();
 

@@ -115,7 +115,10 @@ std::string command_of(std::string_view body) {
 /// when the twin was restored.
 class RecalledGuard final : public host::Guard {
 public:
-    void announced(long light) override { last_ = light; }
+    Status announced(long light) override {
+        last_ = light;
+        return {};
+    }
     void lit(double) override {}
     void dark(double) override {}
     [[nodiscard]] std::optional<double> lit_s(long light) override {

@@ -47,9 +47,11 @@ bool is_printing(State state) {
     return state == State::printing || state == State::pausing || state == State::paused || state == State::cancelling;
 }
 
-Status only_when_idle(const Snapshot& s) {
-    if (s.state == State::idle) return {};
-    return failure("not possible now: the printer is {}", state_text(s.state));
+std::function<Status(const Snapshot&)> only_when(std::vector<State> states) {
+    return [states = std::move(states)](const Snapshot& s) -> Status {
+        if (std::ranges::find(states, s.state) != states.end()) return {};
+        return failure("not possible now: the printer is {}", state_text(s.state));
+    };
 }
 
 // Requests.
@@ -60,11 +62,9 @@ Status Control::Private::ask_for(std::optional<State> next, const std::function<
                                  std::function<void()> task, bool for_machine) {
     const long stops = desk.stops();
     const bool stopping = for_machine && desk.stopped();
-    Status status;
-    desk.update([&](Snapshot& s) {
-        status = stopping && s.state != State::offline && s.state != State::halted ? failure(after_emergency_stop)
-                                                                                   : allowed(s);
-        if (status && next) s.state = *next;
+    const Status status = desk.ask(next, [&](const Snapshot& s) -> Status {
+        if (stopping && s.state != State::offline && s.state != State::halted) return failure(after_emergency_stop);
+        return allowed(s);
     });
     if (!status) return status;
     if (next) desk.event("state", std::string(state_text(*next)));
@@ -76,37 +76,18 @@ Status Control::Private::ask_for(std::optional<State> next, const std::function<
     return {};
 }
 
-namespace {
-
-Status only_when_printing(const Snapshot& s) {
-    if (is_printing(s.state)) return {};
-    return failure("not possible now: no print is under way");
-}
-
-}  // namespace
-
 Control::Control(ControlSetup setup) : state_(std::make_unique<Private>(std::move(setup))) {}
 
 Control::~Control() = default;
 
 Status Control::connect() {
-    return state_->ask_for(
-        State::connecting,
-        [](const Snapshot& s) -> Status {
-            if (s.state == State::offline || s.state == State::halted) return {};
-            return failure("not possible now: the printer is {}", state_text(s.state));
-        },
-        [this] { state_->do_connect(); });
+    return state_->ask_for(State::connecting, only_when({State::offline, State::halted}),
+                           [this] { state_->do_connect(); });
 }
 
 Status Control::disconnect() {
-    return state_->ask_for(
-        State::offline,
-        [](const Snapshot& s) -> Status {
-            if (!is_printing(s.state) && s.state != State::working) return {};
-            return failure("not possible now: the printer is {}", state_text(s.state));
-        },
-        [this] { state_->close(); });
+    return state_->ask_for(State::offline, only_when({State::offline, State::idle, State::halted}),
+                           [this] { state_->close(); });
 }
 
 Status Control::load(PrintJob job) {
@@ -115,11 +96,7 @@ Status Control::load(PrintJob job) {
     auto times = script_times(*script, state_->setup.printer);
     if (!times) return tl::unexpected(times.error());
     return state_->ask_for(
-        std::nullopt,
-        [](const Snapshot& s) -> Status {
-            if (!is_printing(s.state) && s.state != State::working && s.state != State::connecting) return {};
-            return failure("not possible now: the printer is {}", state_text(s.state));
-        },
+        std::nullopt, only_when({State::offline, State::idle, State::halted}),
         [this, job = std::move(job), script = std::move(*script), times = std::move(*times)]() mutable {
             state_->job = std::move(job);
             state_->script = std::move(script);
@@ -141,45 +118,33 @@ Status Control::load(PrintJob job) {
 }
 
 Status Control::start(const StartOptions& options) {
-    return state_->ask_for(
-        State::printing,
-        [&](const Snapshot& s) -> Status {
-            if (s.state != State::idle && s.state != State::offline && s.state != State::halted)
-                return failure("not possible now: the printer is {}", state_text(s.state));
-            return {};
-        },
-        [this, options] { state_->do_start(options, false); });
+    return state_->ask_for(State::printing, only_when({State::offline, State::idle, State::halted}),
+                           [this, options] { state_->do_start(options, false); });
 }
 
 Status Control::pause(PauseWhen when) {
-    Status status = only_when_printing(snapshot());
-    if (!status) return status;
-    state_->desk.wish([&](Wishes& w) { (when == PauseWhen::now ? w.pause_now : w.pause_after) = true; });
-    return {};
+    return state_->desk.wish([&](Wishes& w) { (when == PauseWhen::now ? w.pause_now : w.pause_after) = true; });
 }
 
 Status Control::resume() {
     const Snapshot now = snapshot();
     if (now.state != State::paused) return failure("not possible now: the print is not paused");
     if (now.door_open.value_or(false)) return failure("not possible now: the door is open; close it first");
-    state_->desk.wish([](Wishes& w) { w.resume = true; });
-    return {};
+    return state_->desk.wish([](Wishes& w) { w.resume = true; });
 }
 
 Status Control::cancel() {
     const Snapshot now = snapshot();
     if (!is_printing(now.state) && now.can_resume && now.state == State::idle) {
-        return state_->ask_for(State::cancelling, only_when_idle, [this] { state_->do_start({true, {}}, true); });
+        return state_->ask_for(State::cancelling, only_when({State::idle}), [this] {
+            state_->do_start({true, {}}, true);
+        });
     }
-    if (Status status = only_when_printing(now); !status) return status;
-    state_->desk.wish([](Wishes& w) { w.cancel = true; });
-    return {};
+    return state_->desk.wish([](Wishes& w) { w.cancel = true; });
 }
 
 Status Control::suspend() {
-    if (Status status = only_when_printing(snapshot()); !status) return status;
-    state_->desk.wish([](Wishes& w) { w.suspend = true; });
-    return {};
+    return state_->desk.wish([](Wishes& w) { w.suspend = true; });
 }
 
 void Control::emergency_stop() {
@@ -212,36 +177,27 @@ Status Control::set_exposure(int material, double seconds) {
         return input_error("the job has no material {}", material);
     if (!(seconds > 0 && seconds <= most_s))
         return input_error("exposure of {:g} s: {} allows up to {:g} s", seconds, state_->setup.printer.name, most_s);
-    if (Status status = only_when_printing(now); !status) return status;
-    state_->desk.change_exposure(material, seconds);
-    return {};
+    return state_->desk.change_exposure(material, seconds);
 }
 
 Status Control::skip_layer(int layer) {
     const Snapshot now = snapshot();
-    if (Status status = only_when_printing(now); !status) return status;
-    if (layer <= now.layer || layer >= now.layers)
+    if (is_printing(now.state) && (layer <= now.layer || layer >= now.layers))
         return input_error("layer {}: only layers {} to {} have not begun", layer, now.layer + 1, now.layers - 1);
-    state_->desk.skip_layer(layer);
-    return {};
+    return state_->desk.skip_layer(layer);
 }
 
 Status Control::reset_controller() {
-    return state_->ask_for(
-        State::connecting,
-        [](const Snapshot& s) -> Status {
-            if (!is_printing(s.state) && s.state != State::working) return {};
-            return failure("not possible now: the printer is {}", state_text(s.state));
-        },
-        [this] {
-            Private& s = *state_;
-            Status status;
-            if (!s.wire) status = s.open_wire();
-            if (status) status = s.wire->reset();
-            s.close();
-            if (!status) return s.fail(status.error());
-            s.do_connect();
-        });
+    return state_->ask_for(State::connecting,
+                           only_when({State::offline, State::connecting, State::idle, State::halted}), [this] {
+                               Private& s = *state_;
+                               Status status;
+                               if (!s.wire) status = s.open_wire();
+                               if (status) status = s.wire->reset();
+                               s.close();
+                               if (!status) return s.fail(status.error());
+                               s.do_connect();
+                           });
 }
 
 // Queries.
@@ -308,8 +264,8 @@ void Control::quit() {
         const std::scoped_lock lock(state_->mutex);
         state_->quitting = true;
     }
-    // In this order: a print that begins resets the wishes first, and looks at `quitting` then.
-    state_->desk.wish([](Wishes& w) { w.suspend = true; });
+    // In this order: a print that begins forgets earlier requests first, and looks at `quitting` then.
+    state_->desk.suspend();
     state_->woken.notify_all();
 }
 

@@ -25,9 +25,8 @@ namespace pliant::host {
 inline constexpr const char* after_emergency_stop =
     "emergency stop: the board is halted; reset it (its button, or its power off and on) before anything else";
 
-[[nodiscard]] bool is_printing(State state);
-/// Errors: the printer is in another state.
-[[nodiscard]] Status only_when_idle(const Snapshot& s);
+/// Errors: the printer is in none of these states.
+[[nodiscard]] std::function<Status(const Snapshot&)> only_when(std::vector<State> states);
 
 /// A request that waits for the working thread.
 struct Control::Task {

@@ -133,6 +133,8 @@ enum class State {
 
 /// "Operational", "Printing", ...: OctoPrint's names.
 [[nodiscard]] std::string_view state_text(State state);
+/// True from the request to print until the print has ended, also while it is paused.
+[[nodiscard]] bool is_printing(State state);
 
 struct Snapshot {
     State state = State::offline;

@@ -50,9 +50,33 @@ void Desk::state(State state, std::string message) {
     });
 }
 
-void Desk::wish(const std::function<void(Wishes&)>& change) {
+Status Desk::ask(std::optional<State> next, const std::function<Status(const Snapshot&)>& allowed) {
     const std::scoped_lock lock(mutex_);
+    if (Status status = allowed(snapshot_); !status || !next) return status;
+    if (is_printing(*next) && !is_printing(snapshot_.state)) {
+        wishes_ = {};
+        changes_.clear();
+        skips_.clear();
+    }
+    snapshot_.state = *next;
+    return {};
+}
+
+Status Desk::only_when_printing() const {
+    if (is_printing(snapshot_.state)) return {};
+    return failure("not possible now: no print is under way");
+}
+
+Status Desk::wish(const std::function<void(Wishes&)>& change) {
+    const std::scoped_lock lock(mutex_);
+    if (Status status = only_when_printing(); !status) return status;
     change(wishes_);
+    return {};
+}
+
+void Desk::suspend() {
+    const std::scoped_lock lock(mutex_);
+    wishes_.suspend = true;
 }
 
 Wishes Desk::wishes() const {
@@ -65,14 +89,18 @@ bool Desk::take_resume() {
     return std::exchange(wishes_.resume, false);
 }
 
-void Desk::change_exposure(int material, double seconds) {
+Status Desk::change_exposure(int material, double seconds) {
     const std::scoped_lock lock(mutex_);
+    if (Status status = only_when_printing(); !status) return status;
     changes_.push_back({material, seconds, 0});
+    return {};
 }
 
-void Desk::skip_layer(int layer) {
+Status Desk::skip_layer(int layer) {
     const std::scoped_lock lock(mutex_);
+    if (Status status = only_when_printing(); !status) return status;
     skips_.push_back(layer);
+    return {};
 }
 
 void Desk::stop_everything() {

@@ -36,9 +36,15 @@ public:
     void update(const std::function<void(Snapshot&)>& change);
     /// Changes the state, with an event.
     void state(State state, std::string message = {});
-    void wish(const std::function<void(Wishes&)>& change);
-    void change_exposure(int material, double seconds);
-    void skip_layer(int layer);
+    /// Changes the state to `next`, if any, where `allowed` by the snapshot. A print that begins so finds no requests
+    /// of an earlier one.
+    [[nodiscard]] Status ask(std::optional<State> next, const std::function<Status(const Snapshot&)>& allowed);
+    /// Of a print that is under way, else an error.
+    [[nodiscard]] Status wish(const std::function<void(Wishes&)>& change);
+    [[nodiscard]] Status change_exposure(int material, double seconds);
+    [[nodiscard]] Status skip_layer(int layer);
+    /// Also of a print that has not begun.
+    void suspend();
     void stop_everything();
 
     // The working thread.
@@ -56,6 +62,8 @@ public:
     [[nodiscard]] std::vector<int> take_skips();
 
 private:
+    [[nodiscard]] Status only_when_printing() const;
+
     Clock& clock_;
     mutable std::mutex mutex_;
     Snapshot snapshot_;

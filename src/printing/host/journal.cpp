@@ -92,6 +92,16 @@ std::optional<JournalRecord> parse_record(std::string_view line) {
     return record;
 }
 
+/// True for what a host that died while it wrote its first record may have left: a part of a checksum and a number.
+bool may_begin_record(std::string_view text) {
+    constexpr std::size_t sum_digits = 8;
+    if (text.find('\n') != std::string_view::npos) return false;
+    const auto is_hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+    const std::string_view sum = text.substr(0, sum_digits), rest = text.substr(sum.size());
+    const std::string_view begin = " 1 ";  // of what follows the checksum
+    return std::ranges::all_of(sum, is_hex) && rest.substr(0, begin.size()) == begin.substr(0, rest.size());
+}
+
 Status write_all(int file, std::string_view bytes) {
     while (!bytes.empty()) {
         const ssize_t put = ::write(file, bytes.data(), bytes.size());
@@ -197,7 +207,7 @@ Status Journal::read_all() {
     }
     auto parsed = parse_journal(text, path_.string());
     if (!parsed) return tl::unexpected(parsed.error());
-    if (parsed->records.empty() && !text.empty() && text.find('\n') != std::string::npos)
+    if (parsed->records.empty() && !text.empty() && !may_begin_record(text))
         return input_error("{}: this is not a journal; give another name with --journal", path_.string());
     if (parsed->good_bytes < text.size() && ::ftruncate(file_.number(), static_cast<off_t>(parsed->good_bytes)) != 0)
         return failure("{}: {}", path_.string(), std::strerror(errno));

@@ -47,10 +47,10 @@ Status Control::Private::by_hand(std::function<Result<std::string>(const machine
         State::working,
         [](const Snapshot& s) -> Status {
             if (s.can_resume) return failure("an interrupted print waits: resume it or cancel it first");
-            return only_when_idle(s);
+            return only_when({State::idle})(s);
         },
         [this, one_move, program = std::move(program)] {
-            if (!machine) return;  // the link has failed since the request
+            if (!machine) return desk.state(State::offline);
             const auto text = program(machine->state());
             untouched_line.reset();
             Status status =
@@ -120,9 +120,9 @@ Status Control::expose_test(job::Image image, double seconds) {
     if (image.width_px != printer.projector.width_px || image.height_px != printer.projector.height_px)
         return input_error("the image has {} x {} pixels, the projector {} x {}", image.width_px, image.height_px,
                            printer.projector.width_px, printer.projector.height_px);
-    return state_->ask_for(State::working, only_when_idle, [this, image = std::move(image), seconds] {
+    return state_->ask_for(State::working, only_when({State::idle}), [this, image = std::move(image), seconds] {
         Private& s = *state_;
-        if (!s.machine) return;  // the link has failed since the request
+        if (!s.machine) return s.desk.state(State::offline);
         if (Status status = s.preflight(); !status) {
             s.desk.event("error", status.error().message);
             return s.desk.state(State::idle, status.error().message);

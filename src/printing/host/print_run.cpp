@@ -171,8 +171,10 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
     if (Status status = run_.machine.light_on(); !status) return status;
     const double left_s = fact.planned_s - fact.lit_s;
     const double noted_s = clock_.now();
-    if (run_.setup.guard != nullptr && run_.journal != nullptr)
-        run_.setup.guard->announced(run_.journal->next_number());
+    if (run_.setup.guard != nullptr && run_.journal != nullptr) {
+        const Status announced = run_.setup.guard->announced(run_.journal->next_number());
+        if (!announced && !std::exchange(without_guard_, true)) run_.desk.event("error", announced.error().message);
+    }
     if (Status status = note("light", {{"step", fmt::format("{}", step)},
                                        {"layer", fmt::format("{}", fact.layer)},
                                        {"material", fmt::format("{}", fact.material)},

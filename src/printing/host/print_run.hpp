@@ -89,6 +89,7 @@ private:
     int hooked_layer_ = -1;    ///< last layer for which after_layer was called
     int refilled_layer_ = -1;  ///< last layer before which a refill was requested
     long last_record_ = 0;
+    bool without_guard_ = false;  ///< it has ended, and that was said
     bool journal_failed_ = false;
 };
 

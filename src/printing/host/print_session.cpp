@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 
+#include "base/core/boot_name.hpp"
 #include "printing/host/control_private.hpp"
 
 namespace pliant::host {
@@ -13,14 +13,6 @@ namespace {
 using machine::Axis;
 
 constexpr int connects_to_halted = 3;  // a halted controller stays silent
-
-/// Identifies the boot of the computer; "" if unknown.
-std::string boot_name() {
-    std::ifstream file("/proc/sys/kernel/random/boot_id");
-    std::string name;
-    std::getline(file, name);
-    return name;
-}
 
 /// The first line number of a session: far from the numbers of other hosts and of recent sessions.
 long new_base(const Clock& clock, long last) {
@@ -166,10 +158,11 @@ Status Control::Private::new_session(Journal* journal, const JournalFacts& facts
     last_base = base;
     machine->stand(standing.state);
     if (journal != nullptr) {
-        const auto noted = journal->append("session", {{"base", fmt::format("{}", base)},
-                                                       {"before", fmt::format("{}", last_line > 0 ? last_line : -1)},
-                                                       {"boot", setup.clock_name ? *setup.clock_name : boot_name()},
-                                                       {"state", write_state(standing.state.state())}});
+        const auto noted =
+            journal->append("session", {{"base", fmt::format("{}", base)},
+                                        {"before", fmt::format("{}", last_line > 0 ? last_line : -1)},
+                                        {"boot", setup.clock_name ? *setup.clock_name : boot_name().value_or("")},
+                                        {"state", write_state(standing.state.state())}});
         if (!noted) return tl::unexpected(noted.error());
     }
     if (Status status = machine->connect(base); !status) return status;
@@ -270,9 +263,6 @@ void Control::Private::do_start(const StartOptions& options, bool abandon) {
     }
     touched = false;
     desk.clear_stop();
-    desk.wish([](Wishes& w) { w = Wishes{}; });
-    (void)desk.take_changes();
-    (void)desk.take_skips();
     desk.update([&](Snapshot& s) {
         s.failed = s.finished = false;
         if (options.resume) return;

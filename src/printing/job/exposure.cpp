@@ -5,15 +5,15 @@
 namespace pliant::job {
 
 Status check(const ExposureRule& rule, const std::string& where) {
-    constexpr double most_s = 3600;
     if (rule.transition_layers < 0 || rule.transition_layers > 10000)
         return input_error("{}: {} transition layers: must be 0 to 10000", where, rule.transition_layers);
     for (const ExposureSpan& span : rule.spans) {
         if (span.first < 0 || span.last < span.first)
             return input_error("{}: exposure of layers {} to {}: they count from 0 upwards", where, span.first,
                                span.last);
-        if (!(span.seconds > 0 && span.seconds <= most_s))
-            return input_error("{}: exposure of {} s: must be above 0 and at most {} s", where, span.seconds, most_s);
+        if (!(span.seconds > 0 && span.seconds <= longest_exposure_s))
+            return input_error("{}: exposure of {} s: must be above 0 and at most {} s", where, span.seconds,
+                               longest_exposure_s);
     }
     return {};
 }

@@ -31,8 +31,10 @@ struct ExposureRule {
     bool operator==(const ExposureRule&) const = default;
 };
 
-/// Errors: transition layers outside 0 to 10000, spans with layers out of order or exposures not in (0, 3600] s. The
-/// message starts with `where`.
+inline constexpr double longest_exposure_s = 3600;
+
+/// Errors: transition layers outside 0 to 10000, spans with layers out of order or exposures not above 0 and at most
+/// the longest. The message starts with `where`.
 [[nodiscard]] Status check(const ExposureRule& rule, const std::string& where);
 
 /// For layer `k` of height `thickness_um`.

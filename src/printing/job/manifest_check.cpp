@@ -3,6 +3,7 @@
 #include <set>
 
 #include "base/core/letters.hpp"
+#include "printing/job/exposure.hpp"
 #include "printing/job/manifest.hpp"
 #include "printing/job/sha256.hpp"
 
@@ -11,7 +12,6 @@ namespace {
 
 constexpr std::size_t max_materials = 255;
 constexpr std::size_t max_layers = 1000000;
-constexpr double most_exposure_s = 3600;
 
 bool is_amount(double value) {
     return std::isfinite(value) && value >= 0;
@@ -79,9 +79,9 @@ Status check_images(const Manifest& manifest, std::size_t k, std::string_view wh
                                image.file);
         if (!is_amount(image.area_mm2))
             return input_error("{}: {}.area_mm2: {} must be 0 or more", where, key, image.area_mm2);
-        if (!(is_amount(image.exposure_s) && image.exposure_s <= most_exposure_s))
+        if (!(is_amount(image.exposure_s) && image.exposure_s <= longest_exposure_s))
             return input_error("{}: {}.exposure_s: {} must be above 0 and at most {}", where, key, image.exposure_s,
-                               most_exposure_s);
+                               longest_exposure_s);
         if (!(is_amount(image.shared_mm2) && image.shared_mm2 <= image.area_mm2 * (1 + 1e-9)))
             return input_error("{}: {}.shared_mm2: {} must be 0 to area_mm2, {}", where, key, image.shared_mm2,
                                image.area_mm2);

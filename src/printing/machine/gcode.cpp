@@ -6,6 +6,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "printing/job/exposure.hpp"
+
 namespace pliant::machine {
 namespace {
 
@@ -234,7 +236,8 @@ Result<Expose> parse_expose(std::string_view rest) {
         bool good = false;
         if (key == "layer") good = parse_whole(value, e.layer) && e.layer >= 0, seen |= 1;
         if (key == "material") good = parse_whole(value, e.material) && e.material >= 0, seen |= 2;
-        if (key == "seconds") good = parse_whole(value, e.seconds) && e.seconds > 0 && e.seconds <= 3600, seen |= 4;
+        if (key == "seconds")
+            good = parse_whole(value, e.seconds) && e.seconds > 0 && e.seconds <= job::longest_exposure_s, seen |= 4;
         if (key == "image") e.image = value, good = !value.empty(), seen |= 8;
         if (!good) return input_error("\"{}\" is not understood in an expose directive", token);
     }

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,6 +16,8 @@
 #include <sstream>
 #include <string>
 #include <utility>
+
+#include "base/core/boot_name.hpp"
 
 namespace pliant::operate {
 namespace {
@@ -33,13 +36,6 @@ struct LastLight {
     double on_s = 0;
 };
 
-std::string boot_name() {
-    std::ifstream file("/proc/sys/kernel/random/boot_id");
-    std::string name;
-    std::getline(file, name);
-    return name.empty() ? "-" : name;
-}
-
 double monotonic_s() {
     timespec now{};
     ::clock_gettime(CLOCK_MONOTONIC, &now);
@@ -57,7 +53,7 @@ void host_died(const ProcessGuard::Options& options, const std::string& boot, co
         if (!options.shown.empty()) ::unlink(options.shown.c_str());
         on_s = now_of(options) - last.lit_at_s;
     }
-    if (last.number == 0) return;
+    if (last.number == 0 || boot.empty()) return;  // without the boot nobody could believe the times
     std::array<char, 160> line{};
     const int length = std::snprintf(line.data(), line.size(), "%s %ld on %.6f\n", boot.c_str(), last.number, on_s);
     const int file = ::open(options.witness.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
@@ -73,13 +69,13 @@ void close_all_but(int kept) {
 }
 
 /// The main loop of the guard. It must not wait for locks: those of other threads stay locked in this process.
-[[noreturn]] void stand_guard(int pipe, const ProcessGuard::Options& options, const std::string& boot) {
+[[noreturn]] void stand_guard(int line, const ProcessGuard::Options& options, const std::string& boot) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_IGN);
     ::setsid();
     LastLight last;
     for (;;) {
         Message message;
-        const ssize_t got = ::read(pipe, &message, sizeof message);
+        const ssize_t got = ::read(line, &message, sizeof message);
         if (got < 0 && errno == EINTR) continue;
         if (got != sizeof message) break;
         if (message.word == GuardWord::farewell) ::_exit(0);
@@ -96,10 +92,11 @@ void close_all_but(int kept) {
 
 Result<ProcessGuard> ProcessGuard::start(const Options& options) {
     std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return failure("no guard: {}", std::strerror(errno));
+    if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
+        return failure("no guard: {}", std::strerror(errno));
     const FileHandle theirs(ends[0]);
     FileHandle ours(ends[1]);
-    const std::string boot = boot_name();
+    const std::string boot = boot_name().value_or("");
     const pid_t process = ::fork();
     if (process < 0) return failure("no guard: {}", std::strerror(errno));
     if (process == 0) {
@@ -110,35 +107,39 @@ Result<ProcessGuard> ProcessGuard::start(const Options& options) {
 }
 
 ProcessGuard::~ProcessGuard() {
-    if (!pipe_.is_open()) return;
-    tell(GuardWord::farewell);
-    pipe_.close();
+    if (!line_.is_open()) return;
+    (void)tell(GuardWord::farewell);
+    line_.close();
     ::waitpid(process_, nullptr, 0);
 }
 
-/// Short enough to be written atomically.
-void ProcessGuard::tell(GuardWord word, long light, double at_s) const {
+/// Each message arrives whole or not at all, and none raises SIGPIPE: the print goes on without a guard that has ended.
+Status ProcessGuard::tell(GuardWord word, long light, double at_s) const {
     const Message message{word, light, at_s};
     ssize_t put = 0;
     do {
-        put = ::write(pipe_.number(), &message, sizeof message);
+        put = ::send(line_.number(), &message, sizeof message, MSG_NOSIGNAL);
     } while (put < 0 && errno == EINTR);
+    if (put == sizeof message) return {};
+    return failure("the guard process has ended ({}): if this program dies now, nothing turns the light off",
+                   std::strerror(errno));
 }
 
-void ProcessGuard::announced(long light) {
-    tell(GuardWord::announced, light);
+Status ProcessGuard::announced(long light) {
+    return tell(GuardWord::announced, light);
 }
 
 void ProcessGuard::lit(double now_s) {
-    tell(GuardWord::lit, 0, now_s);
+    (void)tell(GuardWord::lit, 0, now_s);
 }
 
 void ProcessGuard::dark(double now_s) {
-    tell(GuardWord::dark, 0, now_s);
+    (void)tell(GuardWord::dark, 0, now_s);
 }
 
 std::optional<double> ProcessGuard::lit_s(long light) {
-    const std::string boot = boot_name();
+    const std::optional<std::string> boot = boot_name();
+    if (!boot) return std::nullopt;
     std::ifstream file(options_.witness);
     std::optional<double> found;
     for (std::string line; std::getline(file, line);) {
@@ -147,7 +148,7 @@ std::optional<double> ProcessGuard::lit_s(long light) {
         long seen = 0;
         double on_s = 0;
         const bool whole = words >> when_booted >> seen >> word >> on_s && word == "on";
-        if (whole && when_booted == boot && seen == light) found = on_s;
+        if (whole && when_booted == *boot && seen == light) found = on_s;
     }
     return found;
 }

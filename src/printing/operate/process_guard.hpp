@@ -1,4 +1,4 @@
-// The guard as a process: it reads a pipe from the host and, when the host dies, removes the projector's image and
+// The guard as a process: it hears the host through a socket and, when the host dies, removes the projector's image and
 // records how long the last exposure was on.
 #pragma once
 
@@ -29,17 +29,18 @@ public:
     ProcessGuard& operator=(ProcessGuard&&) = delete;
     ~ProcessGuard() override;  ///< the process ends normally
 
-    void announced(long light) override;
+    [[nodiscard]] Status announced(long light) override;
     void lit(double now_s) override;
     void dark(double now_s) override;
     [[nodiscard]] std::optional<double> lit_s(long light) override;
 
 private:
-    ProcessGuard(FileHandle pipe, int process, Options options)
-        : pipe_(std::move(pipe)), process_(process), options_(std::move(options)) {}
-    void tell(GuardWord word, long light = 0, double at_s = 0) const;
+    ProcessGuard(FileHandle line, int process, Options options)
+        : line_(std::move(line)), process_(process), options_(std::move(options)) {}
+    /// Errors: the process has ended.
+    [[nodiscard]] Status tell(GuardWord word, long light = 0, double at_s = 0) const;
 
-    FileHandle pipe_;  ///< closed in a moved-from guard
+    FileHandle line_;  ///< closed in a moved-from guard
     int process_ = -1;
     Options options_;
 };

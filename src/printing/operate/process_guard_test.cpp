@@ -1,14 +1,18 @@
 #include "printing/operate/process_guard.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <csignal>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
@@ -24,11 +28,22 @@ void run_killed_host(const ProcessGuard::Options& options, const std::function<v
     if (host == 0) {
         auto guard = ProcessGuard::start(options);
         std::ofstream(options.shown) << "light";
-        guard->announced(17);
+        (void)guard->announced(17);
         actions(*guard);
         ::kill(::getpid(), SIGKILL);
     }
     ::waitpid(host, nullptr, 0);
+}
+
+/// The processes that this one has started.
+std::vector<pid_t> children() {
+    std::vector<pid_t> found;
+    for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+        std::ifstream file(entry.path() / "status");
+        for (std::string line; std::getline(file, line);)
+            if (line == fmt::format("PPid:\t{}", ::getpid())) found.push_back(std::stoi(entry.path().filename()));
+    }
+    return found;
 }
 
 double now_s() {
@@ -48,6 +63,23 @@ std::optional<double> recorded_exposure_s(const ProcessGuard::Options& options) 
 }
 
 }  // namespace
+
+TEST_CASE("a host without its guard hears so, and lives on") {
+    const pliant::test::Folder folder;
+    auto guard = ProcessGuard::start({folder.path() / "witness", folder.path() / "shown.png", 1});
+    REQUIRE(guard);
+    CHECK(guard->announced(1));
+    const std::vector<pid_t> processes = children();
+    REQUIRE(processes.size() == 1);
+    ::kill(processes[0], SIGKILL);
+    siginfo_t ended{};
+    ::waitid(P_PID, static_cast<id_t>(processes[0]), &ended, WEXITED | WNOWAIT);
+    const Status told = guard->announced(2);
+    REQUIRE_FALSE(told);
+    CHECK(told.error().message.find("the guard process has ended") == 0);
+    guard->lit(1);
+    guard->dark(2);
+}
 
 TEST_CASE("if the host is killed during an exposure, the guard turns it off and reports its length") {
     const pliant::test::Folder folder;
@@ -90,7 +122,7 @@ TEST_CASE("a host that ends normally leaves no record of the guard") {
     {
         auto guard = ProcessGuard::start(options);
         REQUIRE(guard);
-        guard->announced(3);
+        REQUIRE(guard->announced(3));
         guard->lit(1);
         guard->dark(2);
     }

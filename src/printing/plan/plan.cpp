@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/core/counted.hpp"
+#include "printing/job/exposure.hpp"
 #include "printing/machine/working_curve.hpp"
 #include "printing/plan/assign.hpp"
 #include "printing/plan/least_cost.hpp"
@@ -30,9 +31,12 @@ Status check_projector(const job::Manifest& job, const machine::Projector& proje
 
 Status check_materials(const job::Manifest& job) {
     for (const job::Material& m : job.materials) {
-        const bool good = m.exposure_s > 0 && m.exposure_s <= 3600 && m.bottom_exposure_s <= 3600 &&
+        const bool good = m.exposure_s > 0 && m.exposure_s <= job::longest_exposure_s &&
+                          m.bottom_exposure_s <= job::longest_exposure_s &&
                           (m.bottom_exposure_s > 0 || job.bottom_layers == 0);
-        if (!good) return input_error("{}: material \"{}\" needs exposures from 0 to 3600 s", job.name, m.name);
+        if (!good)
+            return input_error("{}: material \"{}\" needs exposures above 0 s, up to {} s", job.name, m.name,
+                               job::longest_exposure_s);
     }
     return {};
 }

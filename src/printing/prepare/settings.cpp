@@ -7,6 +7,7 @@
 #include "base/core/letters.hpp"
 #include "base/core/text.hpp"
 #include "base/core/units.hpp"
+#include "printing/job/exposure.hpp"
 #include "printing/machine/image_room.hpp"
 #include "printing/machine/working_curve.hpp"
 #include "printing/plan/assign.hpp"
@@ -122,7 +123,7 @@ Status set_pairs(const Order& order, const Drawing& drawing, slice::Settings& sl
 Result<double> seconds_of(const std::string& option, const std::string& text) {
     const Result<double> seconds = parse_quantity(text, Dimension::time);
     if (!seconds) return input_error("--exposure {}: {}", option, seconds.error().message);
-    if (!(*seconds > 0 && *seconds <= 3600))
+    if (!(*seconds > 0 && *seconds <= job::longest_exposure_s))
         return input_error("--exposure {}: must be above 0 s and at most an hour", option);
     return *seconds;
 }

@@ -30,9 +30,10 @@ Status TwinProjector::black() {
     return {};
 }
 
-void TwinGuard::announced(long light) {
+Status TwinGuard::announced(long light) {
     light_ = light;
     on_s_ = 0;
+    return {};
 }
 
 void TwinGuard::lit(double now_s) {

@@ -51,7 +51,7 @@ private:
 class TwinGuard final : public host::Guard {
 public:
     explicit TwinGuard(const twin::Twin& twin) : twin_(twin) {}
-    void announced(long light) override;
+    [[nodiscard]] Status announced(long light) override;
     void lit(double now_s) override;
     void dark(double now_s) override;
     [[nodiscard]] std::optional<double> lit_s(long light) override;

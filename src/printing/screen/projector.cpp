@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <thread>
@@ -47,13 +48,16 @@ Result<Speaker> start(const std::filesystem::path& program, const std::vector<st
     return Speaker{*process, std::move(output)};
 }
 
-/// Reads a program's output until it closes it or, with `line_is_enough`, until the first line.
-std::string hear(int file, bool line_is_enough) {
+/// Reads a program's output until it closes it or, with `line_is_enough`, until the first line. A program that is
+/// silent for too long is ended.
+std::string hear(const Speaker& speaker, bool line_is_enough) {
+    const int file = speaker.output.number();
     std::string heard;
     for (;;) {
         pollfd wait{file, POLLIN, 0};
         const int ready = ::poll(&wait, 1, static_cast<int>(start_s * 1000));
         if (ready < 0 && errno == EINTR) continue;
+        if (ready == 0) ::kill(speaker.process, SIGKILL);
         std::array<char, 1024> bytes;
         const ssize_t got = ready > 0 ? ::read(file, bytes.data(), bytes.size()) : 0;
         if (got <= 0) return heard;
@@ -71,7 +75,7 @@ void reap_later(pid_t process) {
 Status start_screen(const std::filesystem::path& program, const std::vector<std::string>& words) {
     const Result<Speaker> screen = start(program, words);
     if (!screen) return tl::unexpected(screen.error());
-    std::string said = hear(screen->output.number(), true);
+    std::string said = hear(*screen, true);
     reap_later(screen->process);
     while (!said.empty() && said.back() == '\n') said.pop_back();
     if (said == "ready") return {};
@@ -189,9 +193,10 @@ Result<std::optional<Light>> ScreenProjector::finish() {
 Result<std::vector<PanelInfo>> list_displays(const std::filesystem::path& program) {
     const Result<Speaker> lister = start(screen_program(program), {"--list"});
     if (!lister) return tl::unexpected(lister.error());
-    std::string said = hear(lister->output.number(), false);
+    std::string said = hear(*lister, false);
     int how = 0;
     ::waitpid(lister->process, &how, 0);
+    if (WIFSIGNALED(how)) return failure("pliant-screen does not answer");
     if (!WIFEXITED(how) || WEXITSTATUS(how) != 0) return failure("{}", said.substr(0, said.find('\n')));
     std::vector<PanelInfo> panels;
     while (!said.empty()) {

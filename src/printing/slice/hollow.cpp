@@ -107,9 +107,8 @@ public:
         : slicer_(slicer), wanted_(wanted), raster_(slicer.settings().raster), layers_(slicer.layers()) {}
 
     Result<Hollowing> run(Progress& progress) {
-        if (progress.cancelled()) return cancelled();
         lay_cells();
-        fill_solid();
+        if (Status status = fill_solid(progress); !status) return tl::unexpected(status.error());
         mark_hollow();
         Hollowing result;
         std::vector<Drain> drains = find_cavities(result);
@@ -163,22 +162,29 @@ private:
     }
 
     /// A cell is solid if every pixel of every layer in it is.
-    void fill_solid() {
+    Status fill_solid(Progress& progress) {
         const CellGrid& g = cells_.grid;
         solid_.assign(g.size(), 0);
         std::vector<std::vector<int>> layers_of(static_cast<std::size_t>(g.nz));
         for (int k = 0; k < cells_.layer_count; ++k)
             layers_of[static_cast<std::size_t>(cells_.slab_of(layers_, k))].push_back(k);
-        parallel_for(layers_of.size(), 1, [&](std::size_t begin, std::size_t end) {
-            std::vector<int> count(static_cast<std::size_t>(g.nx) * g.ny);
-            for (std::size_t z = begin; z < end; ++z) {
-                std::fill(count.begin(), count.end(), 0);
-                for (const int k : layers_of[z]) count_pixels(k, count);
-                const int all = cells_.edge_px * cells_.edge_px * static_cast<int>(layers_of[z].size());
-                for (std::size_t i = 0; i < count.size(); ++i)
-                    solid_[z * count.size() + i] = all > 0 && count[i] == all ? 1 : 0;
-            }
-        });
+        constexpr std::size_t batch = layers_at_once;
+        for (std::size_t first = 0; first < layers_of.size(); first += batch) {
+            if (progress.cancelled()) return cancelled();
+            progress.advance("hollow", static_cast<double>(first) / static_cast<double>(layers_of.size()));
+            parallel_for(std::min(batch, layers_of.size() - first), 1, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t z = first + begin; z < first + end; ++z) fill_slab(z, layers_of[z]);
+            });
+        }
+        return {};
+    }
+
+    void fill_slab(std::size_t z, const std::vector<int>& layers) {
+        std::vector<int> count(static_cast<std::size_t>(cells_.grid.nx) * static_cast<std::size_t>(cells_.grid.ny));
+        for (const int k : layers) count_pixels(k, count);
+        const int all = cells_.edge_px * cells_.edge_px * static_cast<int>(layers.size());
+        for (std::size_t i = 0; i < count.size(); ++i)
+            solid_[z * count.size() + i] = all > 0 && count[i] == all ? 1 : 0;
     }
 
     void count_pixels(int k, std::vector<int>& count) const {

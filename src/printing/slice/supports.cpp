@@ -119,14 +119,18 @@ private:
         const int count = slicer.layer_count();
         solids_.resize(static_cast<std::size_t>(count));
         shapes_.resize(solids_.size());
-        if (progress.cancelled()) return cancelled();
-        parallel_for(solids_.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const SlicedLayer layer = slicer.layer(static_cast<int>(i));
-                solids_[i] = solid_of(layer, settings_.raster);
-                shapes_[i] = shape_of(layer, settings_.raster.width_px);
-            }
-        });
+        constexpr std::size_t batch = layers_at_once;
+        for (std::size_t first = 0; first < solids_.size(); first += batch) {
+            if (progress.cancelled()) return cancelled();
+            progress.advance("supports", static_cast<double>(first) / static_cast<double>(solids_.size()));
+            parallel_for(std::min(batch, solids_.size() - first), 1, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = first + begin; i < first + end; ++i) {
+                    const SlicedLayer layer = slicer.layer(static_cast<int>(i));
+                    solids_[i] = solid_of(layer, settings_.raster);
+                    shapes_[i] = shape_of(layer, settings_.raster.width_px);
+                }
+            });
+        }
         return {};
     }
 
@@ -237,22 +241,25 @@ private:
             all.insert(all.end(), part_.begin(), part_.end());
             const auto slicer = Slicer::prepare(all, settings_);
             if (!slicer) return tl::unexpected(slicer.error());
-            const std::vector<Island> islands = islands_of(*slicer, supports.volume_mm3);
-            supports.islands_left = static_cast<int>(islands.size());
-            if (islands.empty() || round == support_rounds) return supports;
-            if (progress.cancelled()) return cancelled();
+            const Result<std::vector<Island>> islands = islands_of(*slicer, supports.volume_mm3, progress);
+            if (!islands) return tl::unexpected(islands.error());
+            supports.islands_left = static_cast<int>(islands->size());
+            if (islands->empty() || round == support_rounds) return supports;
             bool more = false;
-            for (const Island& island : islands)
+            for (const Island& island : *islands)
                 more = add_unless_blocked({island.layer, island.row, island.column}) || more;
             if (!more) return supports;
         }
     }
 
-    [[nodiscard]] std::vector<Island> islands_of(const Slicer& slicer, double& filled_mm3) const {
+    [[nodiscard]] Result<std::vector<Island>> islands_of(const Slicer& slicer, double& filled_mm3,
+                                                         Progress& progress) const {
         Tally tally(slicer);
         Inspector inspector;
         constexpr int batch = layers_at_once;
         for (int first = 0; first < slicer.layer_count(); first += batch) {
+            if (progress.cancelled()) return cancelled();
+            progress.advance("supports", static_cast<double>(first) / slicer.layer_count());
             std::vector<SlicedLayer> layers(static_cast<std::size_t>(std::min(batch, slicer.layer_count() - first)));
             std::vector<LayerShape> shapes(static_cast<std::size_t>(std::min(batch, slicer.layer_count() - first)));
             parallel_for(shapes.size(), 1, [&](std::size_t begin, std::size_t end) {

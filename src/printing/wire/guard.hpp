@@ -1,8 +1,10 @@
 // Turns the light off if the host dies during an exposure, and records how long it was on: a separate process that
-// waits for the end of a pipe.
+// notices the end of a connection.
 #pragma once
 
 #include <optional>
+
+#include "base/core/error.hpp"
 
 namespace pliant::host {
 
@@ -10,7 +12,8 @@ class Guard {
 public:
     virtual ~Guard() = default;
     /// Exposure number `light` (of the journal) is about to be recorded; it has not started yet.
-    virtual void announced(long light) = 0;
+    /// Errors: there is no guard any more.
+    [[nodiscard]] virtual Status announced(long light) = 0;
     /// It starts now, on the devices' clock.
     virtual void lit(double now_s) = 0;
     /// It has ended.

@@ -192,7 +192,7 @@ void DistributedEquilibrium::add_tangent(const State& state, const linalg::Symme
 void DistributedEquilibrium::add_skew(const State& state, const linalg::SymmetricPattern& pattern,
                                       std::span<double> values) const {
     elements().add_skew(view(state.x), all_nodes_, pattern, values);
-    const std::size_t first = part().cables.size() + part().chambers.size();
+    const std::size_t first = part().steered_count();
     for (std::size_t k = 0; k < part().pressures.size(); ++k) {
         if (share_->whole.pressure_skews[k] == 0 || !actuators_[first + k]) continue;
         actuators_[first + k]->add_skew(view(state.x), state.multiplier[static_cast<Eigen::Index>(first + k)],

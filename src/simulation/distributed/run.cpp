@@ -41,7 +41,7 @@ void describe(const DistributedEquilibrium& system, const State& state, const Co
     step.min_J = evaluation.min_J;
     step.energy_J = system.potential_energy(state, controls);
     const std::vector<double> measures = system.measures(state.x);
-    for (std::size_t a = 0; a < d.cables.size() + d.chambers.size(); ++a) {
+    for (std::size_t a = 0; a < d.steered_count(); ++a) {
         const double ratio = measures[a] / system.rest_measure(a);
         const double multiplier = evaluation.multiplier[static_cast<Eigen::Index>(a)];
         if (a < d.cables.size())

@@ -72,7 +72,7 @@ std::vector<sim::Variation> variations(const sim::Linearisation& at, const Rates
         const auto column = static_cast<Index>(j);
         all[j].parameters = rates.parameters.col(column);
         all[j].inputs = VectorXd::Zero(static_cast<Index>(inputs.size()));
-        for (std::size_t a = 0; a < d.cables.size() + d.chambers.size(); ++a) {
+        for (std::size_t a = 0; a < d.steered_count(); ++a) {
             const double rate = rates.drives[piece](static_cast<Index>(a), column);
             all[j].inputs[static_cast<Index>(a)] = inputs[a].kind == ParameterKind::pressure ? -rate : rate;
         }

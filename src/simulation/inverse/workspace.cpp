@@ -101,7 +101,7 @@ private:
         const Description& d = stepper_.model().description();
         for (const Marker& marker : d.markers)
             sample.markers.push_back(position(marker.point, linalg::view(std::as_const(now.now.state.x))));
-        for (std::size_t a = 0; a < d.cables.size() + d.chambers.size(); ++a) {
+        for (std::size_t a = 0; a < d.steered_count(); ++a) {
             const double m = now.now.state.multiplier[static_cast<Eigen::Index>(a)];
             if (a < d.cables.size())
                 sample.tensions_N.push_back(m);

@@ -332,7 +332,7 @@ Derivative derivative(Linearisation& at, const Parameter& by) {
         case Kind::load_force:
             return by_force(at, -d.loads[by.index].share.at(time) * spread(at, d.loads[by.index], axis()));
         case Kind::load_pressure: {
-            const std::size_t first = d.cables.size() + d.chambers.size();
+            const std::size_t first = d.steered_count();
             return by_multiplier(at, first + by.index, -d.pressures[by.index].share.at(time));
         }
         case Kind::gravity:

@@ -92,7 +92,7 @@ inline Controls controls_with(const Linearisation& at, const Equilibrium& other,
     const Controls& now = at.controls();
     Controls controls = other.controls(now.time);
     const Description& d = other.model().description();
-    const std::size_t steered = d.cables.size() + d.chambers.size();
+    const std::size_t steered = d.steered_count();
     for (std::size_t a = 0; a < steered; ++a) controls.drives[a] = now.drives[a];
     controls.shares = now.shares;
     controls.met = now.met;

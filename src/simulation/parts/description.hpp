@@ -299,6 +299,9 @@ struct Description {
     /// for all (simulation/reduced).
     std::vector<double> tet_weights{};
     std::vector<std::string> notes{};  ///< remarks for the user, one line each
+
+    /// Number of cables and chambers, which inputs drive; pressure loads follow the program.
+    [[nodiscard]] std::size_t steered_count() const { return cables.size() + chambers.size(); }
 };
 
 /// Position of an attachment for node positions `x` (3n).

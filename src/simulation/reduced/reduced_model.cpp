@@ -13,7 +13,7 @@ namespace {
 /// `rest`: the state of the whole robot.
 Status check_fits(const Model& model, const State& rest, const Reduction& reduction) {
     const Eigen::Index size = rest.x.size(), actuators = rest.multiplier.size();
-    const std::size_t steered = model.description().cables.size() + model.description().chambers.size();
+    const std::size_t steered = model.description().steered_count();
     const auto fits = [&](const Sample& sample) {
         return sample.state.x.size() == size && sample.state.multiplier.size() == actuators &&
                sample.inputs.drives.size() == steered && sample.amplitudes.size() == reduction.used;

@@ -88,7 +88,7 @@ std::vector<Weight> read_tets(Reader& outer, const char* key, const Sizes& sizes
 
 Sizes sizes_of(const Model& model) {
     const Description& d = model.description();
-    const std::size_t drives = d.cables.size() + d.chambers.size();
+    const std::size_t drives = d.steered_count();
     return {3 * static_cast<Eigen::Index>(model.node_count()), static_cast<Eigen::Index>(drives + d.pressures.size()),
             0, drives, model.mesh().tet_count()};
 }

@@ -12,7 +12,7 @@ namespace {
 void describe_actuators(const Model& model, const Equilibrium& system, const State& state, std::span<const double> x,
                         Step& step) {
     const auto& d = model.description();
-    for (std::size_t a = 0; a < d.cables.size() + d.chambers.size(); ++a) {
+    for (std::size_t a = 0; a < d.steered_count(); ++a) {
         const Actuator& actuator = system.actuators()[a];
         const double measure = actuator.measure(x);
         const double ratio = measure / actuator.rest_measure();

@@ -103,7 +103,7 @@ private:
     [[nodiscard]] const Equilibrium& system() const { return stepper_.system(); }
     [[nodiscard]] std::size_t steered() const {
         const Description& d = stepper_.model().description();
-        return d.cables.size() + d.chambers.size();
+        return d.steered_count();
     }
 
     /// Restarts the path if another point is pulled, or an actuator is driven by another kind.

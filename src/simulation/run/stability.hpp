@@ -33,9 +33,6 @@ public:
     /// equilibrium decreases to second order; empty if none is found. States with contact are not checked.
     [[nodiscard]] std::optional<Eigen::VectorXd> falling_motion(const State& state, const Controls& controls);
 
-    /// The smallest ratio at the last check.
-    [[nodiscard]] double smallest_ratio() const { return ratio_; }
-
 private:
     void collect_constraints(const State& state, const Controls& controls);
     [[nodiscard]] bool take_metric(const State& state, const Controls& controls);

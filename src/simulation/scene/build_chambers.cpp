@@ -101,7 +101,7 @@ void add_chamber(ModelDraft& draft, const sim::Attacher& attacher, const Chamber
     check_volume_change(draft, spec, chamber.wall);
     if (spec.elements) {
         const std::size_t region = draft.region_of(Region::Use::chamber, spec.name);
-        const auto actuator = static_cast<int>(draft.description.cables.size() + draft.description.chambers.size());
+        const auto actuator = static_cast<int>(draft.description.steered_count());
         draft.description.growths.push_back(
             {draft.material_of(region), {}, actuator, spec.weight * softest_Pa(draft.robot), 0, {}});
     }

@@ -21,7 +21,8 @@ std::vector<sim::SymmetryPlane> symmetry_planes(const sim::Description& descript
     const double tolerance = flat * diagonal(description);
     std::vector<sim::SymmetryPlane> planes;
     for (const sim::Support& support : description.supports) {
-        if (support.moves() || support.directions.size() != 1 || support.nodes.empty()) continue;
+        constexpr std::size_t least = 3;  // fewer nodes make no plane
+        if (support.moves() || support.directions.size() != 1 || support.nodes.size() < least) continue;
         sim::SymmetryPlane plane{points[static_cast<std::size_t>(support.nodes[0])], unit(support.directions[0]),
                                  std::vector<bool>(points.size(), false)};
         const auto lies_in_it = [&](int node) {

@@ -1,4 +1,5 @@
-// Half and quarter robots against the whole ones.
+// Half and quarter robots against the whole ones, to within what different meshes make; with the material of one side
+// alone tensions were 20 to 24 % too low.
 #include "simulation/scene/symmetry_planes.hpp"
 
 #include <doctest/doctest.h>
@@ -73,8 +74,8 @@ TEST_CASE("a cable on the plane of symmetry of half a bar has half the tension f
             last_step(build_text(part_of_bar(0, -5, half_y + cable(3, by_tension ? "tension = \"0.5 N\"" : target))));
         MESSAGE("tension ", half.cables[0].tension_N, " N of ", whole.cables[0].tension_N, " N; length ",
                 half.cables[0].length_m, " and ", whole.cables[0].length_m);
-        CHECK(2 * half.cables[0].tension_N == near(whole.cables[0].tension_N, {.relative = 0.04}));
-        CHECK(half.markers[0].position_m.z - 5e-3 == near(whole.markers[0].position_m.z - 5e-3, {.relative = 0.04}));
+        CHECK(2 * half.cables[0].tension_N == near(whole.cables[0].tension_N, {.relative = 0.06}));
+        CHECK(half.markers[0].position_m.z - 5e-3 == near(whole.markers[0].position_m.z - 5e-3, {.relative = 0.06}));
     }
 }
 
@@ -83,12 +84,14 @@ TEST_CASE("a cable on the edge of a quarter bar has a quarter of the tension") {
     const sim::Step quarter =
         last_step(build_text(part_of_bar(0, 0, half_y + half_z + cable(0, "length_ratio = 0.97"))));
     MESSAGE("tension ", quarter.cables[0].tension_N, " N of ", whole.cables[0].tension_N, " N");
-    CHECK(4 * quarter.cables[0].tension_N == near(whole.cables[0].tension_N, {.relative = 0.04}));
+    CHECK(4 * quarter.cables[0].tension_N == near(whole.cables[0].tension_N, {.relative = 0.06}));
 }
 
 TEST_CASE("a load on the plane of symmetry is carried by both halves; across the plane it is not") {
     const auto load = [](double force_N) {
-        return fmt::format("[[load]]\nname = \"push\"\npoint = [30, 0, 5]\nradius = 3\nforce = [0, 0, {}]\n", force_N);
+        return fmt::format(
+            "[[load]]\nname = \"push\"\npoint = [30, 0, 5]\nradius = \"3 mm\"\nforce = [\"0 N\", \"0 N\", \"{} N\"]\n",
+            force_N);
     };
     const sim::Step whole = last_step(build_text(part_of_bar(-6, -5, load(-0.04))));
     const sim::Step half = last_step(build_text(part_of_bar(0, -5, half_y + load(-0.02))));

@@ -95,7 +95,7 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
     }
     add_actuators();
     for (std::size_t k = 0; k < d.pressures.size(); ++k) {
-        if (!rim_is_held(d.pressures[k].wall)) skew_.push_back(d.cables.size() + d.chambers.size() + k);
+        if (!rim_is_held(d.pressures[k].wall)) skew_.push_back(d.steered_count() + k);
     }
     const auto by_gaps = [](const Actuator& actuator) { return actuator.gaps() != nullptr; };
     conservative_ = model.elements().has_energy() && skew_.empty() && torques_.empty() &&

@@ -157,7 +157,7 @@ Sizes sizes_of(const Stepper& stepper) {
     return {3 * model.node_count(),
             3 * model.free_count(),
             static_cast<Eigen::Index>(controls.drives.size()),
-            static_cast<Eigen::Index>(d.cables.size() + d.chambers.size()),
+            static_cast<Eigen::Index>(d.steered_count()),
             3 * model.object_points().count(),
             controls.obstacles.size(),
             controls.support_share.size()};

@@ -120,8 +120,7 @@ Inputs Stepper::program(double time) const {
 
 /// Number of cables and chambers; pressure loads follow the program.
 std::size_t Stepper::steered() const {
-    const Description& d = model_.description();
-    return d.cables.size() + d.chambers.size();
+    return model_.description().steered_count();
 }
 
 Controls Stepper::controls(const RobotState& robot, const Inputs& inputs) const {
