@@ -56,7 +56,7 @@ tolerance = 1e-6
                        low_y, low_z, more);
 }
 
-std::string cable(double z, const std::string& target) {
+std::string cable_at(double z, const std::string& target) {
     return fmt::format(
         "[[cable]]\nname = \"c\"\npoints = [[0, 0, {0}], [10, 0, {0}], [20, 0, {0}], [30, 0, {0}], [39, 0, {0}]]\n"
         "eyelet_radius = \"3 mm\"\ntarget = {{ {1} }}\n",
@@ -69,9 +69,9 @@ TEST_CASE("a cable on the plane of symmetry of half a bar has half the tension f
     for (const char* target : {"length_ratio = 0.97", "tension = \"1 N\""}) {
         CAPTURE(std::string(target));
         const bool by_tension = std::string(target).starts_with("tension");
-        const sim::Step whole = last_step(build_text(part_of_bar(-6, -5, cable(3, target))));
-        const sim::Step half =
-            last_step(build_text(part_of_bar(0, -5, half_y + cable(3, by_tension ? "tension = \"0.5 N\"" : target))));
+        const sim::Step whole = last_step(build_text(part_of_bar(-6, -5, cable_at(3, target))));
+        const sim::Step half = last_step(
+            build_text(part_of_bar(0, -5, half_y + cable_at(3, by_tension ? "tension = \"0.5 N\"" : target))));
         MESSAGE("tension ", half.cables[0].tension_N, " N of ", whole.cables[0].tension_N, " N; length ",
                 half.cables[0].length_m, " and ", whole.cables[0].length_m);
         CHECK(2 * half.cables[0].tension_N == near(whole.cables[0].tension_N, {.relative = 0.06}));
@@ -80,9 +80,9 @@ TEST_CASE("a cable on the plane of symmetry of half a bar has half the tension f
 }
 
 TEST_CASE("a cable on the edge of a quarter bar has a quarter of the tension") {
-    const sim::Step whole = last_step(build_text(part_of_bar(-6, -5, cable(0, "length_ratio = 0.97"))));
+    const sim::Step whole = last_step(build_text(part_of_bar(-6, -5, cable_at(0, "length_ratio = 0.97"))));
     const sim::Step quarter =
-        last_step(build_text(part_of_bar(0, 0, half_y + half_z + cable(0, "length_ratio = 0.97"))));
+        last_step(build_text(part_of_bar(0, 0, half_y + half_z + cable_at(0, "length_ratio = 0.97"))));
     MESSAGE("tension ", quarter.cables[0].tension_N, " N of ", whole.cables[0].tension_N, " N");
     CHECK(4 * quarter.cables[0].tension_N == near(whole.cables[0].tension_N, {.relative = 0.06}));
 }
