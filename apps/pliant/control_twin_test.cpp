@@ -821,6 +821,33 @@ TEST_CASE("commands that the current state does not allow are refused") {
     CHECK(b.snapshot().finished);
 }
 
+TEST_CASE("a request that follows the start at once is not lost") {
+    ControlBench b;
+    REQUIRE(b.control->start({}));
+    CHECK(b.control->suspend());
+    b.control->serve_until_idle();
+    CHECK(b.snapshot().state == State::idle);
+    CHECK_FALSE(b.snapshot().finished);
+    CHECK(b.snapshot().can_resume);
+    CHECK(b.lights() == 0);
+    b.must_finish({true, {}});
+}
+
+TEST_CASE("a connection under way cannot be ended; then it can, and nothing moves without one") {
+    ControlBench b;
+    REQUIRE(b.control->connect());
+    CHECK_FALSE(b.control->disconnect());
+    b.control->serve_until_idle();
+    CHECK(b.snapshot().state == State::idle);
+    REQUIRE(b.control->disconnect());
+    b.control->serve_until_idle();
+    CHECK(b.snapshot().state == State::offline);
+    CHECK_FALSE(b.control->home({}));
+    REQUIRE(b.control->connect());
+    b.control->serve_until_idle();
+    CHECK(b.snapshot().state == State::idle);
+}
+
 TEST_CASE("a second host on the same job is refused, and so is starting an interrupted job without --resume") {
     ControlBench b;
     Operator person(b, completion_above(0.3), [&] {
@@ -974,6 +1001,10 @@ TEST_CASE("disk full during an exposure: the light goes off, and resuming needs 
     b.life->at_look = {};
     b.start({true, {}});
     CHECK(b.last_error().find("--assume-lit") != std::string::npos);
+    for (const double impossible_s : {-1.0, 25.0}) {
+        b.start({true, {impossible_s, false}});
+        CHECK(b.last_error().find("the exposure that was in progress lasts from 0 to ") != std::string::npos);
+    }
     b.start({true, {2.5, false}});
     INFO(b.last_error());
     CHECK(b.snapshot().finished);

@@ -56,7 +56,7 @@ Status write_robot(const MeshOptions& options, const robot::Robot& robot, const 
     }
     const Result<sim::Model> model = robot::build_model(robot, mesh_m);
     if (!model) return tl::unexpected(model.error());
-    const Result<std::string> deck = sim::calculix::deck(model->description());
+    const Result<std::string> deck = sim::calculix::deck(model->description(), robot.program.duration);
     if (!deck) return input_error("{}: {}", options.files.front(), deck.error().message);
     return write_file(options.output_file, *deck);
 }

@@ -96,8 +96,8 @@ def gradient(
     Slopes of zero give a gradient of zeros.
 
     Lagged quantities are held constant: the normal forces and tangents of contact friction, the tension shares of
-    cables with friction, the stiffness that damping is proportional to, and contact and joint stiffness that are
-    derived from a material's modulus. The gradient is exact for the problem with these quantities held constant, and
+    cables with friction, contact and joint stiffness that are derived from a material's modulus and, for derivatives by
+    rest positions, areas of contact and each node's share of a load. The gradient is exact for the problem with these quantities held constant, and
     may differ there from finite differences of the whole program.
 
     Args:

@@ -147,8 +147,12 @@ class ReducedModel:
         return cls(owned, _pliant.load_reduced(owned._model, _check.path(file, "file")))
 
     def save(self, file: PathLike) -> None:
-        """Writes the reduced model to a file, whole or not at all."""
-        self._engine.save(_check.new_file(file, "file"))
+        """Writes the reduced model to a file whose name ends in .reduced, whole or not at all."""
+        found = _check.new_file(file, "file")
+        if found.suffix != ".reduced":
+            better = found.with_suffix(".reduced").name
+            raise InputError(f"{found}: the file of a reduced model ends in .reduced, as in {better}", file=str(found))
+        self._engine.save(found)
 
     @property
     def inputs(self) -> list[SteeredInput]:

@@ -7,6 +7,7 @@ import os
 import shutil
 import signal
 import subprocess
+import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -74,7 +75,7 @@ class StudyResult(Value):
     @classmethod
     def load(cls, folder: Union[str, os.PathLike[str]]) -> StudyResult:
         """Reads the folder of a study that was run from Python or on the command line."""
-        path = Path(folder)
+        path = _check.path(folder, "folder")
         try:
             summary = json.loads((path / "summary.json").read_text(encoding="utf-8"))
             with np.load(path / "results.npz") as arrays:
@@ -88,7 +89,7 @@ class StudyResult(Value):
                 summary=summary,
                 folder=path,
             )
-        except (OSError, ValueError, KeyError) as error:
+        except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
             raise InputError(f"{path}: is no folder of a study that has ended: {error}", str(path)) from None
 
 
@@ -209,6 +210,8 @@ def _program() -> Path:
     here = Path(__file__).resolve().parent
     named = os.environ.get("PLIANT_PROGRAM")
     near = [here.parents[1] / "apps" / "pliant" / "pliant"] + [up / "bin" / "pliant" for up in here.parents[:5]]
+    if named and not (Path(named).is_file() and os.access(named, os.X_OK)):
+        raise Failure(f"PLIANT_PROGRAM names {named}, which is no program")
     for candidate in ([Path(named)] if named else []) + near:
         if candidate.is_file() and os.access(candidate, os.X_OK):
             return candidate

@@ -16,6 +16,7 @@ public:
         const auto* bytes = static_cast<const unsigned char*>(data);
         for (std::size_t k = 0; k < size; ++k) hash_ = (hash_ ^ bytes[k]) * 1099511628211ULL;
     }
+    [[nodiscard]] std::uint64_t number() const { return hash_; }
     /// 16 hexadecimal digits.
     [[nodiscard]] std::string text() const { return fmt::format("{:016x}", hash_); }
 

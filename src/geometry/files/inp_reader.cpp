@@ -49,6 +49,11 @@ std::vector<std::string_view> fields(std::string_view line) {
     return out;
 }
 
+std::string_view without_quotes(std::string_view text) {
+    const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+    return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
 Card parse_card(std::string_view line) {
     Card card;
     for (const std::string_view field : fields(line.substr(1))) {
@@ -59,7 +64,7 @@ Card parse_card(std::string_view line) {
             card.parameters.emplace_back(lower_case(field), "");
         else
             card.parameters.emplace_back(lower_case(trimmed(field.substr(0, equals))),
-                                         std::string(trimmed(field.substr(equals + 1))));
+                                         std::string(without_quotes(trimmed(field.substr(equals + 1)))));
     }
     return card;
 }
@@ -104,7 +109,7 @@ public:
             if (line.starts_with("**"))
                 keep_name(line.substr(2));
             else if (line.starts_with('*'))
-                status = begin_card(parse_card(line));
+                status = begin_card(parse_card(with_continuations(line)));
             else if (!line.empty())
                 status = read_data(line);
             if (!status) return tl::unexpected(status.error());
@@ -122,6 +127,13 @@ private:
         return input_error_at(name_, line_, "{}", text);
     }
 
+    /// A keyword's line that ends with a comma goes on in the next one.
+    std::string with_continuations(std::string_view line) {
+        std::string whole(line);
+        while (trimmed(whole).ends_with(',') && !scan_.at_end()) whole += scan_.rest_of_line();
+        return whole;
+    }
+
     /// `** region LABEL "name"`.
     void keep_name(std::string_view comment) {
         TextScanner words(comment, name_);
@@ -137,6 +149,13 @@ private:
         card_ = std::move(card);
         data_ = Data::none;
         if (card_.keyword == "include") return error("*INCLUDE is not followed; put the included lines in its place");
+        constexpr std::array<std::string_view, 7> generators = {"elgen", "ngen",   "elcopy", "ncopy",
+                                                                "nfill", "elfill", "nmap"};
+        if (std::ranges::find(generators, card_.keyword) != generators.end())
+            return error("*" + card_.keyword + " makes nodes or elements that the file does not list; write them out");
+        const std::string system = card_.keyword == "node" ? lower_case(card_.value("system")) : "";
+        if (card_.keyword == "system" || (!system.empty() && system != "r"))
+            return error("nodes in another system of coordinates are not read; write them in x, y and z");
         if (card_.keyword == "instance") return begin_instance();
         if (card_.keyword == "node") data_ = Data::nodes;
         if (card_.keyword == "element") begin_elements();

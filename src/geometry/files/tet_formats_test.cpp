@@ -207,6 +207,16 @@ TEST_CASE("Abaqus: long chains of element sets with sections are followed once; 
     CHECK(far->region_names == std::vector<std::string>{"all"});
 }
 
+TEST_CASE("Abaqus: node numbers at both ends of what a number can hold") {
+    const auto far = parse_inp(
+        "*NODE\n-9223372036854775808, 0, 0, 0\n9223372036854775807, 1, 0, 0\n-9223372036854775807, 0, 1, 0\n7, 0, 0, "
+        "1\n"
+        "*ELEMENT, TYPE=C3D4\n1, -9223372036854775808, 9223372036854775807, -9223372036854775807, 7\n",
+        "a.inp");
+    REQUIRE_MESSAGE(far, (far ? "" : far.error().message));
+    CHECK(volume(*far) == near(1.0 / 6, {.relative = 1e-12}));
+}
+
 TEST_CASE("Abaqus: errors name the line") {
     CHECK(tet_problem(replaced(deck, "20, 2, 3, 4, 9", "20, 2, 3, 4, 5"))
               .find("a:16: element 20 refers to node 5, which does not exist") == 0);
@@ -214,9 +224,17 @@ TEST_CASE("Abaqus: errors name the line") {
     CHECK(tet_problem(replaced(deck, "3, 4\n*ELEMENT", "*ELEMENT")).find("a:14: the nodes of an element are missing") ==
           0);
     CHECK(tet_problem(replaced(deck, "1.D0", "nan")).find("a:8: \"nan\" is not a finite number") == 0);
+    const std::string long_number = "1." + std::string(70, '0') + "e-3";
+    CHECK(tet_problem(replaced(deck, "1.D0", long_number)).find("a:8: \"" + long_number) == 0);
     CHECK(tet_problem(replaced(deck, "9, 1., 1., 1.", "4, 1., 1., 1.")).find("a:9: node 4 comes twice") == 0);
     CHECK(tet_problem(replaced(deck, "*MATERIAL, NAME=M", "*INCLUDE, INPUT=b.inp")).find("*INCLUDE") !=
           std::string::npos);
+    CHECK(tet_problem(replaced(deck, "*MATERIAL, NAME=M", "*ELGEN, ELSET=BOTH")).find("*elgen makes nodes") !=
+          std::string::npos);
+    CHECK(tet_problem(replaced(deck, "*NODE", "*NODE, SYSTEM=C")).find("another system of coordinates") !=
+          std::string::npos);
+    CHECK(tet_problem(replaced(deck, "*NODE", "*NODE, SYSTEM=R")).empty());
+    CHECK(tet_problem(replaced(deck, "TYPE=C3D4", "\n TYPE=C3D4")).empty());
     CHECK(tet_problem(replaced(deck, "10, 20, 10", "10, 20, 0")).find("GENERATE") != std::string::npos);
     CHECK(tet_problem("*HEADING\n").find("holds no tetrahedra") != std::string::npos);
     CHECK(tet_problem(deck.substr(0, deck.find("3, 4\n*ELEM"))).find("ends in the middle") != std::string::npos);

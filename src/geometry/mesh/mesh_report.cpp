@@ -75,10 +75,9 @@ void add_shapes(const TetMesh& mesh, MeshReport& report) {
 void add_regions(const TetMesh& mesh, MeshReport& report) {
     for (const std::string& name : mesh.region_names) report.regions.push_back({name, 0, 0});
     for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
-        const auto n = mesh.tet(t);
         RegionReport& region = report.regions[static_cast<std::size_t>(mesh.region[t])];
         ++region.tets;
-        region.volume += signed_tet_volume(mesh.points[n[0]], mesh.points[n[1]], mesh.points[n[2]], mesh.points[n[3]]);
+        region.volume += curved_volume(mesh, t);
     }
 }
 

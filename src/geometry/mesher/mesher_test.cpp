@@ -227,6 +227,25 @@ TEST_CASE("a thin curved wall is meshed finer than its element size asks for") {
     CHECK(volume(mesh_of({{"tube", tube}}, 8, 2)) == near(exact, {.relative = 0.05}));
 }
 
+TEST_CASE("a thin curved wall of quadratic tets has the volume of its drawing, or a note says by how much it is off") {
+    for (const double inner : {4.8, 4.5, 4.0}) {
+        for (const double size : {2.0, 3.0}) {
+            CAPTURE(inner);
+            CAPTURE(size);
+            const Solid tube = without(solid(CylinderSolid{{0, 0, 0}, {0, 0, 20}, 5}),
+                                       solid(CylinderSolid{{0, 0, -1}, {0, 0, 21}, inner}));
+            const TetMesh mesh = mesh_of({{"tube", tube}}, size, 2);
+            const double exact = 20 * std::numbers::pi * (25 - inner * inner),
+                         found = report_on(mesh).regions[0].volume;
+            MESSAGE(mesh.tet_count(), " tets, volume ", found, " of ", exact);
+            const bool noted = std::ranges::any_of(
+                mesh.notes, [](const std::string& note) { return note.find("thin and curved") != std::string::npos; });
+            CHECK((noted || std::fabs(found / exact - 1) < 0.03));
+            CHECK(std::fabs(found / exact - 1) < 0.06);
+        }
+    }
+}
+
 TEST_CASE("a surface body is meshed anew to the wanted size") {
     const Result<TriMesh> surface = tessellate(notched_bar(3), 0.01);
     REQUIRE(surface);

@@ -516,8 +516,27 @@ tl::unexpected<Error> nothing_left(const NamedSolid& named) {
     return about(named.name, {Cause::input, fmt::format("body \"{}\" is empty: nothing is left of it", named.name)});
 }
 
+/// Where the volume of a mesh differs most from that of the solid, as a share of it.
+struct VolumeError {
+    double share = 0;
+    std::size_t solid = 0;
+};
+
+VolumeError volume_error(const TetMesh& mesh, const std::vector<double>& exact) {
+    std::vector<double> volume(exact.size(), 0.0);
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t)
+        volume[static_cast<std::size_t>(mesh.region[t])] += curved_volume(mesh, t);
+    VolumeError worst;
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+        const double share = exact[i] > 0 ? volume[i] / exact[i] - 1 : 0;
+        if (std::fabs(share) > std::fabs(worst.share)) worst = {share, i};
+    }
+    return worst;
+}
+
+/// `exact` receives the volume of each solid.
 Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at,
-                                double join_within, int refinement) {
+                                double join_within, int refinement, std::vector<double>& exact) {
     return in_session("meshing", [&]() -> Result<TetMesh> {
         std::vector<Entities> volumes;
         double volume = 0;
@@ -538,7 +557,11 @@ Result<TetMesh> try_mesh_solids(std::span<const NamedSolid> solids, double size,
         }
         occ::synchronize();
         Entities joined;
-        for (const auto& [tag, solid] : solid_of_volume) joined.emplace_back(3, tag);
+        exact.assign(solids.size(), 0);
+        for (const auto& [tag, solid] : solid_of_volume) {
+            joined.emplace_back(3, tag);
+            exact[static_cast<std::size_t>(solid)] += occ::get_mass(3, tag);
+        }
         if (Status status = check_tet_count(volume, boundary_area(joined), size); !status)
             return tl::unexpected(status.error());
         set_size(size);
@@ -576,17 +599,36 @@ Status check_tet_count(double volume, double area, double size) {
 
 Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int order, const SizeAt& size_at,
                             double join_within) {
-    Result<TetMesh> mesh = try_mesh_solids(solids, size, order, size_at, join_within, 1);
-    // On a thin round wall the chords of one side may cut through the other: follow the curves more closely.
+    constexpr double most_off = 0.03;
+    constexpr int finest = 8;
+    std::vector<double> exact;
+    const auto attempt = [&](double factor, int refinement) {
+        return try_mesh_solids(solids, factor * size, order, times(size_at, factor), join_within, refinement, exact);
+    };
+    // On a thin round wall the chords of one side may cut through the other, or quadratic tets may have to be straight
+    // on one side and not on the other, which makes it thick: follow the curves more closely.
+    const auto is_too_coarse = [&](const Result<TetMesh>& mesh) {
+        if (!mesh) return mesh.error().cause == Cause::failed;
+        return order == 2 && std::fabs(volume_error(*mesh, exact).share) > most_off;
+    };
     int refinement = 1;
-    while (refinement < 8 && !mesh && mesh.error().cause == Cause::failed) {
+    Result<TetMesh> mesh = attempt(1, refinement);
+    while (refinement < finest && is_too_coarse(mesh)) {
+        Result<TetMesh> finer = attempt(1, 2 * refinement);
+        if (mesh && !finer) break;
         refinement *= 2;
-        mesh = try_mesh_solids(solids, size, order, size_at, join_within, refinement);
+        mesh = std::move(finer);
     }
     if (!mesh) return mesh;
-    return without_slivers(std::move(mesh), [&](double factor) {
-        return try_mesh_solids(solids, factor * size, order, times(size_at, factor), join_within, refinement);
-    });
+    mesh = without_slivers(std::move(mesh), [&](double factor) { return attempt(factor, refinement); });
+    if (!mesh || !is_too_coarse(mesh)) return mesh;
+    const VolumeError off = volume_error(*mesh, exact);
+    mesh->notes.push_back(
+        fmt::format("body \"{}\": its mesh has {:.0f} % {} volume than its drawing, because its walls are thin and "
+                    "curved; a smaller "
+                    "size helps",
+                    solids[off.solid].name, 100 * std::fabs(off.share), off.share > 0 ? "more" : "less"));
+    return mesh;
 }
 
 namespace {

@@ -270,7 +270,7 @@ TEST_CASE("errors are thrown with their kind, line and key") {
     CHECK(message({0, {{Drive::By::volume, 1}}, {}}) == "cable \"flexor\": is driven by length or tension");
     CHECK(message({0, {{Drive::By::length, NAN}}, {}}) == "cable \"flexor\": driven by a number that is not finite");
     CHECK(message({0, {{Drive::By::tension, -1}}, {}}) ==
-          "cable \"flexor\": -1 is not possible: it must not be negative");
+          "cable \"flexor\": a tension of -1 N is not possible: it must not be negative");
     CHECK_THROWS_WITH_AS((void)stepper.state_from("nothing"), doctest::Contains("not a state that Pliant has written"),
                          Failure);
     const Model other(bar());

@@ -35,9 +35,18 @@ sim::Drive drive_for(const Drive& drive, const std::string& name, bool cable) {
     const bool of_cable = drive.by == By::length || drive.by == By::tension;
     if (of_cable != cable) wrong(cable ? "is driven by length or tension" : "is driven by volume, pressure or gas");
     const bool positive = drive.by == By::volume || drive.by == By::gas;
-    if (positive ? !(drive.value > 0) : cable && !(drive.value >= 0))
-        wrong(
-            fmt::format("{:g} is not possible: it must {}", drive.value, positive ? "be above 0" : "not be negative"));
+    if (positive ? !(drive.value > 0) : cable && !(drive.value >= 0)) {
+        const char* what = drive.by == By::length    ? "length"
+                           : drive.by == By::tension ? "tension"
+                           : drive.by == By::volume  ? "volume"
+                                                     : "amount of gas";
+        const char* unit = drive.by == By::length    ? "m"
+                           : drive.by == By::tension ? "N"
+                           : drive.by == By::volume  ? "m^3"
+                                                     : "J";
+        wrong(fmt::format("a {} of {:g} {} is not possible: it must {}", what, drive.value, unit,
+                          positive ? "be above 0" : "not be negative"));
+    }
     if (drive.by == By::length || drive.by == By::volume) return {DriveKind::measure, drive.value};
     if (drive.by == By::gas) return {DriveKind::gas, drive.value};
     return {DriveKind::multiplier, cable ? drive.value : -drive.value};

@@ -88,6 +88,15 @@ TEST_CASE("a file that is not a journal is not changed") {
     REQUIRE(write_file(path, "something else\nof two lines\n"));
     CHECK_FALSE(Journal::open(path, true));
     CHECK(read_file(path).value() == "something else\nof two lines\n");
+    for (const char* one_line : {"a note without an end", "12345678 apples", "deadbeef1"}) {
+        REQUIRE(write_file(path, one_line));
+        CHECK_FALSE(Journal::open(path, true));
+        CHECK(read_file(path).value() == one_line);
+    }
+    for (const char* begun : {"", "12", "12345678", "12345678 1 begin jo"}) {  // what a host that died may have left
+        REQUIRE(write_file(path, begun));
+        CHECK(Journal::open(path, true));
+    }
     CHECK_FALSE(Journal::open(folder.path(), true));
     CHECK_FALSE(Journal::open(folder.path() / "no" / "folder", true));
 }

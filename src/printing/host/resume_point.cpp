@@ -116,9 +116,9 @@ Result<std::optional<OpenLight>> close_open_light(JournalFacts& facts, Guard* gu
         if (seen_s) {
             open.on_s = std::max(0.0, *seen_s);
         } else if (assume.lit_s) {
-            constexpr double rounding_s = 1e-3;  // of a number that was shown and typed
+            constexpr double late = 1.05, late_s = 0.1;  // by which the light may have gone off after its time
             const double left_s = fact.planned_s - fact.lit_s;
-            if (!(*assume.lit_s >= 0 && *assume.lit_s <= left_s + rounding_s))
+            if (!(*assume.lit_s >= 0 && *assume.lit_s <= late * left_s + late_s))
                 return input_error("--assume-lit {:g}: the exposure that was in progress lasts from 0 to {:g} s",
                                    *assume.lit_s, left_s);
             open.on_s = *assume.lit_s;

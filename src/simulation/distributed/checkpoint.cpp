@@ -9,6 +9,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/core/digest.hpp"
 #include "simulation/distributed/h5_file.hpp"
 #include "simulation/run/step_record.hpp"
 
@@ -18,10 +19,34 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* format_name = "pliant-mpi checkpoint";
-constexpr int version = 1;
+constexpr int version = 2;
 
 std::vector<double> numbers_of(const Eigen::VectorXd& v) {
     return {v.data(), v.data() + v.size()};
+}
+
+std::string digest_of(const std::string& run, const std::string& steps) {
+    Digest digest;
+    digest.add(run.data(), run.size());
+    digest.add(steps.data(), steps.size());
+    return digest.text();
+}
+
+/// A checksum of rows of three numbers that does not depend on how they are distributed: the sum, over all rows, of a
+/// digest of each with its place, in pieces that are whole numbers exactly.
+std::vector<double> checksum_of(const Ranks& ranks, const Rows& rows, const std::vector<double>& values) {
+    constexpr int pieces = 4, bits = 16;
+    std::vector<double> sums(pieces, 0.0);
+    for (std::size_t row = 0; 3 * row + 2 < values.size(); ++row) {
+        const std::uint64_t place = static_cast<std::uint64_t>(rows.first) + row;
+        Digest digest;
+        digest.add(&place, sizeof place);
+        digest.add(&values[3 * row], 3 * sizeof(double));
+        for (std::size_t k = 0; k < pieces; ++k)
+            sums[k] += static_cast<double>(digest.number() >> (bits * k) & 0xffffU);
+    }
+    ranks.add_up(sums);
+    return sums;
 }
 
 /// Records in sequence, each preceded by its length.
@@ -123,11 +148,17 @@ Status Checkpoint::keep(const RunState& run) const {
     Result<H5File> out = H5File::create(&system_.ranks(), aside);
     if (!out) return tl::unexpected(out.error());
     const Rows rows{nodes_.total(), nodes_.first(), nodes_.rows()};
-    out->write("x", rows, 3, sorted(run.now.state.x));
-    for (std::size_t k = 0; k < run.past.size(); ++k)
-        out->write(fmt::format("x_before_{}", k), rows, 3, sorted(run.past[k].state.x));
-    out->write_bytes("run", json.dump());
-    out->write_bytes("steps", bytes_of(run.so_far));
+    const auto write = [&](const std::string& name, const Eigen::VectorXd& x) {
+        const std::vector<double> values = sorted(x);
+        out->write(name, rows, 3, values);
+        json["checksums"][name] = checksum_of(system_.ranks(), rows, values);
+    };
+    write("x", run.now.state.x);
+    for (std::size_t k = 0; k < run.past.size(); ++k) write(fmt::format("x_before_{}", k), run.past[k].state.x);
+    const std::string text = json.dump(), steps = bytes_of(run.so_far);
+    out->write_bytes("run", text);
+    out->write_bytes("steps", steps);
+    out->write_bytes("digest", digest_of(text, steps));
     if (Status status = out->close(); !status) return status;
     std::error_code code;
     if (system_.ranks().is_root()) std::filesystem::rename(aside, file(), code);
@@ -146,14 +177,21 @@ Result<RunState> Checkpoint::read(const Program& program) const {
     if (!text) return tl::unexpected(text.error());
     const Result<std::string> steps = in->read_bytes("steps");
     if (!steps) return tl::unexpected(steps.error());
+    const Json json = Json::parse(*text, nullptr, false);
     RunState run;
-    Status status = take(Json::parse(*text, nullptr, false), *steps, origin_, program, system_.actuator_count(), run);
+    Status status = take(json, *steps, origin_, program, system_.actuator_count(), run);
+    if (status) {
+        const Result<std::string> digest = in->read_bytes("digest");
+        if (!digest || *digest != digest_of(*text, *steps)) status = input_error("damaged");
+    }
     if (!status) status = input_error("{}: {}", file().string(), status.error().message);
     if (status = system_.ranks().agree(status); !status) return tl::unexpected(status.error());
     const Rows rows{nodes_.total(), nodes_.first(), nodes_.rows()};
     const auto place = [&](const std::string& name, State& state) -> Status {
         const Result<std::vector<double>> x = in->read(name, rows, 3);
         if (!x) return tl::unexpected(x.error());
+        if (json["checksums"].value(name, Json()) != checksum_of(system_.ranks(), rows, *x))
+            return input_error("{}: damaged", file().string());
         const std::vector<double> own = nodes_.given_back(*x, 3);
         state.x = system_.nodes().with_ghosts(
             Eigen::Map<const Eigen::VectorXd>(own.data(), static_cast<Eigen::Index>(own.size())));

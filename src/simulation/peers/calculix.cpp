@@ -94,7 +94,7 @@ bool installed() {
 }
 
 Result<Solution> solve(const Description& description, const Effort& effort) {
-    const Result<std::string> text = deck(description, effort);
+    const Result<std::string> text = deck(description, 1, effort);
     if (!text) return tl::unexpected(text.error());
     const Scratch scratch;
     if (scratch.folder().empty()) return failure("no temporary folder for ccx");

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <span>
 #include <type_traits>
 
 #include "geometry/files/tet_writer.hpp"
@@ -93,7 +94,8 @@ bool holds(const Support& support, int axis) {
 
 class DeckWriter {
 public:
-    DeckWriter(const Description& description, const Effort& effort) : d_(description), effort_(effort) {}
+    DeckWriter(const Description& description, double end, const Effort& effort)
+        : d_(description), end_(end), effort_(effort) {}
 
     Result<std::string> write() {
         for (const auto part :
@@ -118,14 +120,19 @@ private:
             return input_error("CalculiX: the deck has no contact; leave [contact] and obstacles out");
         if (!d_.growths.empty() || !d_.plates.empty())
             return input_error("CalculiX: the deck has no gap-elements, expanding elements or rigid plates");
-        if (!d_.springs.empty()) return input_error("CalculiX: the deck has no springs");
-        if (!d_.torques.empty()) return input_error("CalculiX: the deck has no torques");
-        if (d_.fluid) return input_error("CalculiX: the deck has no fluid");
+        if (!d_.springs.empty()) return input_error("CalculiX: the deck has no springs; leave [[spring]] out");
+        if (!d_.torques.empty()) return input_error("CalculiX: the deck has no torques; leave torque out of the loads");
+        if (d_.fluid) return input_error("CalculiX: the deck has no fluid; leave [fluid] out");
+        if (!d_.masses.empty()) return input_error("CalculiX: the deck has no masses; leave [[mass]] out");
+        if (!d_.joints.empty()) return input_error("CalculiX: the deck has no joints; leave [[joint]] out");
+        if (!d_.objects.empty()) return input_error("CalculiX: the deck has no objects; leave [[object]] out");
+        if (d_.moves_in_time)
+            return input_error("CalculiX: the deck is an equilibrium, not a motion in time; leave time_step out");
         if (!d_.material_of_tet.empty())
             return input_error(
                 "CalculiX: the deck has no bodies that change from one material to another; leave blend out");
         for (const Support& support : d_.supports) {
-            if (std::fabs(support.turn.angle_rad * support.share.at(1)) > most_turn_rad)
+            if (std::fabs(support.turn.angle_rad * support.share.at(end_)) > most_turn_rad)
                 return input_error("CalculiX: support \"{}\" turns by more than 60 degrees", support.name);
             for (const Vec3& direction : support.directions) {
                 if (axis_of(direction) < 0)
@@ -247,7 +254,7 @@ private:
             }
             line("** cable \"{}\"\n*ELEMENT,TYPE=SPRINGA,ELSET=CABLE{}", d_.cables[c].name, c + 1);
             for (std::size_t s = 1; s < path.size(); ++s) line("{},{},{}", ++element, path[s - 1], path[s]);
-            const double tension = uN_per_N * (d_.cables[c].target.at(1) + d_.cables[c].target.offset);
+            const double tension = uN_per_N * (d_.cables[c].target.at(end_) + d_.cables[c].target.offset);
             line("*SPRING,NONLINEAR,ELSET=CABLE{}", c + 1);
             for (const double share : {0.0, 1.0}) {
                 for (const double elongation : {-spring_range_mm, spring_range_mm})
@@ -271,7 +278,7 @@ private:
         for (const Support& support : d_.supports) {
             for (const int n : support.nodes) {
                 const Vec3& rest = d_.mesh.points[static_cast<std::size_t>(n)];
-                const Vec3 move = mm_per_m * (support.position(rest, support.share.at(1)) - rest);
+                const Vec3 move = mm_per_m * (support.position(rest, support.share.at(end_)) - rest);
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     if (holds(support, static_cast<int>(axis)))
                         line("{0},{1},{1},{2:.12g}", n + 1, axis + 1, move[axis]);
@@ -281,7 +288,7 @@ private:
         if (!d_.loads.empty()) line("*CLOAD");
         for (const Load& load : d_.loads) {
             for (std::size_t k = 0; k < load.nodes.size(); ++k) {
-                const Vec3 f = load.share.at(1) * load.shares[k] * uN_per_N * load.force_N;
+                const Vec3 f = load.share.at(end_) * load.shares[k] * uN_per_N * load.force_N;
                 line("{0},1,{1:.12g}\n{0},2,{2:.12g}\n{0},3,{3:.12g}", load.nodes[k] + 1, f.x, f.y, f.z);
             }
         }
@@ -292,7 +299,7 @@ private:
     }
 
     void weigh() {
-        const Vec3 g = d_.gravity_share.at(1) * mm_per_m * d_.gravity_m_s2;
+        const Vec3 g = d_.gravity_share.at(end_) * mm_per_m * d_.gravity_m_s2;
         const double size = norm(g);
         if (size == 0) return;
         for (std::size_t r = 0; r < d_.material_of_region.size(); ++r)
@@ -312,17 +319,18 @@ private:
         }
         line("*DLOAD");
         for (const Chamber& chamber : d_.chambers) {
-            if (Status done = press(chamber.name, chamber.wall, chamber.target.at(1) + chamber.target.offset); !done)
+            if (Status done = press(chamber.name, chamber.wall, chamber.target.at(end_) + chamber.target.offset); !done)
                 return done;
         }
         for (const PressureLoad& load : d_.pressures) {
-            if (Status done = press(load.name, load.wall, load.pressure_Pa * load.share.at(1)); !done) return done;
+            if (Status done = press(load.name, load.wall, load.pressure_Pa * load.share.at(end_)); !done) return done;
         }
         return {};
     }
 
     Status press(const std::string& name, const Wall& wall, double pressure_Pa) {
-        for (const WallFace& face : wall.faces) {
+        // At a mouth the air presses on the support.
+        for (const WallFace& face : std::span(wall.faces).first(wall.faces.size() - wall.mouth_faces)) {
             std::array<int, 3> corners{};
             for (std::size_t k = 0; k < 3; ++k) {
                 const Attachment& point = wall.points[static_cast<std::size_t>(face[k])];
@@ -338,6 +346,7 @@ private:
     }
 
     const Description& d_;
+    double end_;  ///< of the program, s
     const Effort& effort_;
     std::string text_;
     Out out_ = std::back_inserter(text_);
@@ -349,8 +358,8 @@ private:
 
 }  // namespace
 
-Result<std::string> deck(const Description& description, const Effort& effort) {
-    return DeckWriter(description, effort).write();
+Result<std::string> deck(const Description& description, double duration, const Effort& effort) {
+    return DeckWriter(description, duration, effort).write();
 }
 
 }  // namespace pliant::sim::calculix

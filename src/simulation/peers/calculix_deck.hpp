@@ -22,10 +22,11 @@ struct Effort {
     double tolerance = 1e-5;
 };
 
-/// The input deck at the end of the program (time 1). Regions and supports are named sets. Errors for what CalculiX has
-/// no counterpart of: laws that it lacks, cables that are not driven by tension, chambers that are not driven by
-/// pressure or whose wall is not made of mesh faces, friction, supports that rotate by more than 60 degrees (one step
-/// ramps along the chord), rigid plates, contact, growth. The messages say what to set instead.
-[[nodiscard]] Result<std::string> deck(const Description& description, const Effort& effort = {});
+/// The input deck at the end of a program of `duration` (s). Regions and supports are named sets. Errors for what
+/// CalculiX has no counterpart of: laws that it lacks, cables that are not driven by tension, chambers that are not
+/// driven by pressure or whose wall is not made of mesh faces, friction, supports that rotate by more than 60 degrees
+/// (one step ramps along the chord), rigid plates, contact, growth, springs, torques, masses, joints, objects, a fluid,
+/// a motion in time. The messages say what to set instead.
+[[nodiscard]] Result<std::string> deck(const Description& description, double duration = 1, const Effort& effort = {});
 
 }  // namespace pliant::sim::calculix

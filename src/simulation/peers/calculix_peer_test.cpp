@@ -1,11 +1,13 @@
 // Pliant against CalculiX in the same run: same mesh, same law, same loads, another code.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <cstdlib>
 
 #include "base/core/near.hpp"
 #include "simulation/peers/calculix.hpp"
+#include "simulation/peers/calculix_deck.hpp"
 #include "simulation/peers/comparison_problems.hpp"
 #include "simulation/run/simulate.hpp"
 
@@ -196,8 +198,26 @@ TEST_CASE("exporting names what CalculiX lacks, and what to set instead") {
     d.supports[0].turn.angle_rad = 2;
     CHECK(calculix::deck(d).error().message.find("60 degrees") != std::string::npos);
     d.supports[0].turn.angle_rad = 0;
+    Description other = d;
+    other.moves_in_time = true;
+    CHECK(calculix::deck(other).error().message.find("leave time_step out") != std::string::npos);
+    other = d;
+    other.masses.push_back({"weight", d.cables[0].points.back(), 0.02});
+    CHECK(calculix::deck(other).error().message.find("leave [[mass]] out") != std::string::npos);
     const auto deck = calculix::deck(d);
     REQUIRE(deck);
     CHECK(deck->find("** region R1 \"left half\"\n") != std::string::npos);
     CHECK(deck->find("*SOLID SECTION,ELSET=R1,MATERIAL=M1") != std::string::npos);
+}
+
+TEST_CASE("a deck holds the state at the end of the program, however long it is") {
+    Description d = comparison::cable_finger(1, material::neo_hookean(5e6, 0.45), {CableTarget::Kind::tension_N, 3});
+    d.cables[0].target.keys = Curve{{0, 1, 4}, {0, 3, 2}};
+    const auto tension_at = [&](double end) {
+        const auto deck = calculix::deck(d, end);
+        REQUIRE(deck);
+        return deck->find(fmt::format("{:#.10g},{:#.10g},", end == 4 ? 2e6 : 3e6, -1e5)) != std::string::npos;
+    };
+    CHECK(tension_at(1));
+    CHECK(tension_at(4));
 }

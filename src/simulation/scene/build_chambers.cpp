@@ -76,6 +76,16 @@ sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const C
     return wall;
 }
 
+/// Nothing is below a vacuum.
+void check_pressure(ModelDraft& draft, const ChamberSpec& spec) {
+    const double ambient = draft.robot.ambient_pressure_Pa;
+    if (spec.target.kind == sim::ChamberTarget::Kind::pressure_Pa && spec.target.value < -ambient)
+        draft.problem(spec.line, "chamber", spec.name,
+                      fmt::format("a pressure of {:.6g} kPa is below a vacuum: the air around has {:.6g} kPa "
+                                  "(program.ambient_pressure)",
+                                  1e-3 * spec.target.value, 1e-3 * ambient));
+}
+
 /// A chamber cannot lose more air than it holds.
 void check_volume_change(ModelDraft& draft, const ChamberSpec& spec, const sim::Wall& wall) {
     if (spec.target.kind != sim::ChamberTarget::Kind::volume_change_m3) return;
@@ -98,6 +108,7 @@ void add_chamber(ModelDraft& draft, const sim::Attacher& attacher, const Chamber
     else
         chamber.wall = wall_of_region(draft, spec);
     if (chamber.wall.faces.empty()) return;
+    check_pressure(draft, spec);
     check_volume_change(draft, spec, chamber.wall);
     if (spec.elements) {
         const std::size_t region = draft.region_of(Region::Use::chamber, spec.name);

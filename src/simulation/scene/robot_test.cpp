@@ -368,6 +368,9 @@ TEST_CASE("a chamber takes one of four targets") {
                   "chamber[0].target: takes one of volume_ratio, volume_change, pressure and gas_ratio");
     CHECK(problem(chamber(room, "volume_change = \"-0.1 ml\"")).empty());
     check_problem(chamber(room, "volume_change = \"-0.3 ml\""), "cannot lose 0.3 ml, it holds 0.192 ml");
+    CHECK(problem(chamber(room, "pressure = \"-90 kPa\"")).empty());
+    check_problem(chamber(room, "pressure = \"-200 kPa\""),
+                  "a pressure of -200 kPa is below a vacuum: the air around has 101.325 kPa");
     check_problem(chamber(room, "volume_ratio = 0"), "a ratio of 0 is not possible; it must be above zero");
     check_problem(chamber(room, "pressure = 40"), "40 has no unit; write a pressure such as");
     check_problem(chamber(room, "volume_change = \"5 mm\""), "unknown unit \"mm\"; here the units are ml");

@@ -181,7 +181,7 @@ StepReport Stepper::step_by_error(RobotState& robot, const Way& way, const Progr
     constexpr double first_share = 1.0 / 64, most_growth = 2, most_loss = 0.2, careful = 0.9;
     const double tolerance = options_.dynamics->time_tolerance_m;
     StepReport report;
-    std::string off;  // why the last solved step was rejected
+    std::string off, why;  // why the last solved step was rejected, and the last one of all
     double piece = robot.history.next_dt;
     if (!(piece > 0)) piece = first_share * (way.end - robot.now.along);
     while (robot.now.along < way.end && !progress.cancelled()) {
@@ -206,13 +206,14 @@ StepReport Stepper::step_by_error(RobotState& robot, const Way& way, const Progr
         }
         ++report.refused;
         if (error > tolerance) off = outcome.reason;
-        report.reason = off.empty() || error > tolerance
-                            ? outcome.reason
-                            : fmt::format("{}, and shorter ones are not solved: {}", off, outcome.reason);
+        why = off.empty() || error > tolerance
+                  ? outcome.reason
+                  : fmt::format("{}, and shorter ones are not solved: {}", off, outcome.reason);
         piece = std::min(growth, careful) * dt;
         if (shortest) break;
     }
     report.arrived = !(robot.now.along < way.end);
+    if (!report.arrived) report.reason = why;
     remember(robot);
     return report;
 }
@@ -223,6 +224,7 @@ StepReport Stepper::step(RobotState& robot, const Way& way, const Progress& prog
     StepReport report;
     double piece = way.end - robot.now.along;
     int in_vain = 0;  // iterations of the attempts since the last one that succeeded
+    std::string why;  // the last one that failed did so
     while (robot.now.along < way.end) {
         const double along = robot.now.along + piece;
         const double end = along >= way.end - rounding * way.shortest_piece ? way.end : along;
@@ -233,12 +235,13 @@ StepReport Stepper::step(RobotState& robot, const Way& way, const Progress& prog
             if (way.after_piece) way.after_piece(robot);
             continue;
         }
-        report.reason = outcome.reason;
+        why = outcome.reason;
         piece *= 0.5;
         in_vain += outcome.iterations;
         if (progress.cancelled() || piece < way.shortest_piece || is_hopeless(model_, options_, in_vain)) break;
     }
     report.arrived = !(robot.now.along < way.end);
+    if (!report.arrived) report.reason = why;
     remember(robot);
     return report;
 }
