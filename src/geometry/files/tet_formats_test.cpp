@@ -225,7 +225,7 @@ TEST_CASE("Abaqus: errors name the line") {
           0);
     CHECK(tet_problem(replaced(deck, "1.D0", "nan")).find("a:8: \"nan\" is not a finite number") == 0);
     const std::string long_number = "1." + std::string(70, '0') + "e-3";
-    CHECK(tet_problem(replaced(deck, "1.D0", long_number)).find("a:8: \"" + long_number) == 0);
+    CHECK(tet_problem(replaced(deck, "1.D0", long_number)).find("a:8: \"1.000") == 0);
     CHECK(tet_problem(replaced(deck, "9, 1., 1., 1.", "4, 1., 1., 1.")).find("a:9: node 4 comes twice") == 0);
     CHECK(tet_problem(replaced(deck, "*MATERIAL, NAME=M", "*INCLUDE, INPUT=b.inp")).find("*INCLUDE") !=
           std::string::npos);
