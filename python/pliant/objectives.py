@@ -97,7 +97,7 @@ def gradient(
 
     Lagged quantities are held constant: the normal forces and tangents of contact friction, the tension shares of
     cables with friction, contact and joint stiffness that are derived from a material's modulus and, for derivatives by
-    rest positions, areas of contact and each node's share of a load. The gradient is exact for the problem with these quantities held constant, and
+    rest positions, areas of contact. The gradient is exact for the problem with these quantities held constant, and
     may differ there from finite differences of the whole program.
 
     Args:

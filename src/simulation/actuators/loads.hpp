@@ -17,4 +17,11 @@ struct SurfaceShares {
 };
 [[nodiscard]] SurfaceShares surface_shares(const mesh::TetMesh& mesh, std::span<const mesh::Face> faces);
 
+/// Rate of each share, in their order, for a motion (3n) of the mesh's points.
+[[nodiscard]] std::vector<double> share_rates(const mesh::TetMesh& mesh, std::span<const mesh::Face> faces,
+                                              std::span<const double> motion);
+/// The transpose: gradient (3n) += that of the sum of worth[i] times share i, with respect to the mesh's points.
+void add_share_gradient(const mesh::TetMesh& mesh, std::span<const mesh::Face> faces, std::span<const double> worth,
+                        std::span<double> gradient);
+
 }  // namespace pliant::sim

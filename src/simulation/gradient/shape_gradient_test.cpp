@@ -2,11 +2,13 @@
 // slightly different robots that are converged anew.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "base/core/near.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/actuators/attach.hpp"
+#include "simulation/actuators/loads.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/gradient/test_reconverged.hpp"
 #include "simulation/gradient/variation.hpp"
@@ -24,6 +26,8 @@ Description moved_rest(Description d, const Eigen::VectorXd& motion, double step
     for (std::size_t n = 0; n < d.mesh.points.size(); ++n) {
         for (std::size_t c = 0; c < 3; ++c) d.mesh.points[n][c] += step * motion[static_cast<Eigen::Index>(3 * n + c)];
     }
+    for (Load& load : d.loads)
+        if (!load.faces.empty()) load.shares = surface_shares(d.mesh, load.faces).shares;
     return d;
 }
 
@@ -63,6 +67,13 @@ Description shaped(int order, const CableTarget& cable, const ChamberTarget& cha
     d.cables = {flexor(d.mesh, cable)};
     d.chambers[0].target = chamber;
     d.springs = {{"free", {d.cables[0].points[0], d.cables[0].points[2]}, 30}};
+    std::vector<mesh::Face> top;
+    for (const mesh::Face& face : mesh::boundary_faces(d.mesh)) {
+        const auto is_up = [&](int node) { return d.mesh.points[static_cast<std::size_t>(node)].z > edge - 1e-9; };
+        if (std::all_of(face.nodes.begin(), face.nodes.begin() + 3, is_up)) top.push_back(face);
+    }
+    const SurfaceShares shares = surface_shares(d.mesh, top);
+    d.loads = {{"on top", shares.nodes, shares.shares, {0.1, 0.2, -0.3}, ramp(0, 1), top}};
     d.gravity_m_s2 = {0, 3, -9.81};
     d.supports[0].turn = {0.1, {1, 2, 0}, {0, 0, edge}};
     d.markers = {{"tip", d.cables[0].points.back()}};

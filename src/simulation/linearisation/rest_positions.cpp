@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/linalg/vectors.hpp"
+#include "simulation/actuators/loads.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/linearisation/damping_stiffness.hpp"
 #include "simulation/linearisation/element_derivatives.hpp"
@@ -68,6 +69,14 @@ void visit_free_springs(const Linearisation& at, const Visit& visit) {
         path.add_length_gradient(view(at.state().x), -d.springs[s].stiffness_N_m, view(force));
         path.add_length_gradient(view(rest), 1, view(at_rest));
         visit(force, at_rest);
+    }
+}
+
+/// Calls visit(load, force) for each load that is spread over faces, with its force now.
+template <class Visit>
+void visit_spread_loads(const Linearisation& at, const Visit& visit) {
+    for (const Load& load : at.system().model().description().loads) {
+        if (!load.faces.empty()) visit(load, load.share.at(at.controls().time) * load.force_N);
     }
 }
 
@@ -153,6 +162,11 @@ Derivative derivative_by_rest(Linearisation& at, const Eigen::VectorXd& motion) 
     visit_free_springs(at, [&](const Eigen::VectorXd& by_length, const Eigen::VectorXd& at_rest) {
         force += at_rest.dot(motion) * by_length;
     });
+    visit_spread_loads(at, [&](const Load& load, const Vec3& total) {
+        const std::vector<double> rates = share_rates(system.model().mesh(), load.faces, view(motion));
+        for (std::size_t k = 0; k < rates.size(); ++k)
+            force.segment<3>(3 * load.nodes[k]) -= rates[k] * linalg::vector(total);
+    });
     visit_gaps(at, [&](const GapElements& gaps, double multiplier) {
         gaps.add_rest_product(system.model().elements(), view(at.state().x), multiplier, view(motion), view(force));
     });
@@ -188,6 +202,11 @@ Eigen::VectorXd rest_gradient(Linearisation& at, const Adjoint& adjoint) {
         at, [&](const AffineBody& object) { object.add_rest_weights(view(at.state().x), view(weights), view(sum)); });
     visit_free_springs(at, [&](const Eigen::VectorXd& by_length, const Eigen::VectorXd& at_rest) {
         sum += by_length.dot(weights) * at_rest;
+    });
+    visit_spread_loads(at, [&](const Load& load, const Vec3& total) {
+        std::vector<double> worth;
+        for (const int node : load.nodes) worth.push_back(-weights.segment<3>(3 * node).dot(linalg::vector(total)));
+        add_share_gradient(system.model().mesh(), load.faces, worth, view(sum));
     });
     visit_gaps(at, [&](const GapElements& gaps, double multiplier) {
         gaps.add_rest_weights(system.model().elements(), view(at.state().x), multiplier, view(weights), view(sum));

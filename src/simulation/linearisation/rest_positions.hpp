@@ -8,9 +8,10 @@ namespace pliant::sim {
 /// Derivative of the equations along a motion (3n) of the rest positions of all nodes. Guide points, markers and walls
 /// keep their weights at their nodes; a held node moves along, and rotates with its support; springs without a given
 /// free length adapt it to their path; plates and masses follow. The surface of an object moves along with its four
-/// nodes, and its mass is unchanged. Held fixed are prescribed lengths and volumes (in m and m^3, see
-/// rest_measure_gradient), loads, lagged quantities, the lengths and directions of cables in gaps with gap elements,
-/// and the areas and reaches that contact takes from the rest state.
+/// nodes, and its mass is unchanged; a load on faces stays spread over them evenly per area. Held fixed are prescribed
+/// lengths and volumes (in m and m^3, see rest_measure_gradient), the shares of other loads, lagged quantities, the
+/// lengths and directions of cables in gaps with gap elements, and the areas and reaches that contact takes from the
+/// rest state.
 [[nodiscard]] Derivative derivative_by_rest(Linearisation& at, const Eigen::VectorXd& motion);
 
 /// (3n) dq/dX with respect to the rest positions of all nodes: the transpose of the same.

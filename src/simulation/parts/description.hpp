@@ -78,6 +78,9 @@ struct Load {
     std::vector<double> shares;  ///< (nodes) of the total force, sum 1
     Vec3 force_N;
     Curve share = ramp(0, 1);
+    /// The faces over which it is spread evenly at rest, which `shares` follow from (surface_shares()); empty: they are
+    /// given.
+    std::vector<mesh::Face> faces{};
 };
 
 /// A torque with constant direction, share * torque, on nodes that move as one: those of a plate or object. See

@@ -144,7 +144,7 @@ void add_load_on_faces(ModelDraft& draft, const LoadSpec& load, const Selector& 
     }
     sim::SurfaceShares shares = sim::surface_shares(draft.description.mesh, faces);
     draft.description.loads.push_back(
-        {load.name, std::move(shares.nodes), std::move(shares.shares), load.force_N, load.share});
+        {load.name, std::move(shares.nodes), std::move(shares.shares), load.force_N, load.share, std::move(faces)});
 }
 
 /// Distributes the load equally to the nodes.
