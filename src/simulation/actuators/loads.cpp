@@ -42,7 +42,7 @@ FaceSample quadratic_sample(std::size_t q) {
 }
 
 /// One point on a flat face; three, a rule of degree 2, on one of six nodes, which may be curved.
-const std::vector<FaceSample>& samples(int order) {
+const std::vector<FaceSample>& face_samples(int order) {
     static const std::vector<FaceSample> one = {linear_sample()};
     static const std::vector<FaceSample> three = {quadratic_sample(0), quadratic_sample(1), quadratic_sample(2)};
     return order == 2 ? three : one;
@@ -64,7 +64,7 @@ void visit_samples(const mesh::TetMesh& mesh, std::span<const mesh::Face> faces,
     const std::size_t count = mesh.order == 2 ? 6 : 3;
     const auto at = [&](int node) { return mesh.points[static_cast<std::size_t>(node)]; };
     for (const mesh::Face& face : faces) {
-        for (const FaceSample& s : samples(mesh.order)) {
+        for (const FaceSample& s : face_samples(mesh.order)) {
             const auto [u, v] = tangents(face, s, count, at);
             visit(face, s, count, u, v);
         }
