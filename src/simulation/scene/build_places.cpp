@@ -314,7 +314,8 @@ std::optional<sim::Attachment> carried(ModelDraft& draft, const sim::Attacher& a
                                        const Place& what) {
     const Vec3 place = draft.robot.unit_m * point;
     if (auto on_object = carried_by_object(draft, attacher, place)) return on_object;
-    const auto planes = planes_of_force(draft.description, place, what.force_N);
+    std::vector<sim::SymmetryPlane> planes;  // of no use where one tet carries the point
+    if (what.radius_m > 0) planes = planes_of_force(draft.description, place, what.force_N);
     Result<sim::Attachment> attachment = attacher.spread(place, what.radius_m, draft.point_reach, planes);
     const double distance = attacher.distance_outside(place);
     if (!attachment) {
