@@ -115,12 +115,13 @@ std::set<std::array<int, 3>> faces_of_elements(const ModelDraft& draft, const st
             if (own >= 0) whole_of_node[static_cast<std::size_t>(own)] = node;
         }
     }
-    constexpr std::array<std::array<std::size_t, 3>, 4> faces_of_tet = {{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
     std::set<std::array<int, 3>> found;
     for (std::size_t t = 0; t < elements.tet_count(); ++t) {
         const std::span<const int> nodes = elements.tet(t);
-        const auto whole = [&](std::size_t corner) { return whole_of_node[static_cast<std::size_t>(nodes[corner])]; };
-        for (const auto& [a, b, c] : faces_of_tet) {
+        const auto whole = [&](int corner) {
+            return whole_of_node[static_cast<std::size_t>(nodes[static_cast<std::size_t>(corner)])];
+        };
+        for (const auto& [a, b, c] : mesh::face_corners) {
             const std::array<int, 3> corners = ascending({whole(a), whole(b), whole(c)});
             if (corners[0] >= 0 && faces.contains(corners)) found.insert(corners);
         }
