@@ -108,6 +108,10 @@ void add_chamber(ModelDraft& draft, const sim::Attacher& attacher, const Chamber
     else
         chamber.wall = wall_of_region(draft, spec);
     if (chamber.wall.faces.empty()) return;
+    using Kind = sim::ChamberTarget::Kind;
+    const bool by_volume = spec.target.kind == Kind::volume_ratio || spec.target.kind == Kind::volume_change_m3;
+    if (by_volume && are_held(draft.description, chamber.wall.points))
+        draft.problem(spec.line, "chamber", spec.name, "cannot change its volume: all of its wall is in a [[fixed]]");
     check_pressure(draft, spec);
     check_volume_change(draft, spec, chamber.wall);
     if (spec.elements) {

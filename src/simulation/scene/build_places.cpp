@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "base/core/text.hpp"
 #include "base/linalg/vectors.hpp"
@@ -326,6 +327,15 @@ std::optional<sim::Attachment> carried(ModelDraft& draft, const sim::Attacher& a
     }
     draft.count_point(what.kinds, distance);
     return std::move(*attachment);
+}
+
+bool are_held(const sim::Description& description, std::span<const sim::Attachment> points) {
+    std::set<int> held;
+    for (const sim::Support& support : description.supports)
+        if (support.directions.empty()) held.insert(support.nodes.begin(), support.nodes.end());
+    return std::ranges::all_of(points, [&](const sim::Attachment& point) {
+        return std::ranges::all_of(point.nodes, [&](int node) { return held.contains(node); });
+    });
 }
 
 std::vector<int> caught_nodes(ModelDraft& draft, const Selector& selector, std::string_view kind,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +34,9 @@ struct Place {
 /// Attaches a point, in length units; empty if it lies outside every body, which is reported as a problem.
 [[nodiscard]] std::optional<sim::Attachment> carried(ModelDraft& draft, const sim::Attacher& attacher,
                                                      const Vec3& point, const Place& what);
+/// True if supports hold all of these points in all directions. Precondition: supports have been added.
+[[nodiscard]] bool are_held(const sim::Description& description, std::span<const sim::Attachment> points);
+
 /// The nodes inside a selector; `kind`, `name` and `line` are for messages.
 [[nodiscard]] std::vector<int> caught_nodes(ModelDraft& draft, const Selector& selector, std::string_view kind,
                                             const std::string& name, int line);

@@ -396,6 +396,19 @@ TEST_CASE("targets have an offset in their own unit, which acts from the first i
     check_problem(chamber(room, "volume_ratio = 1.2, offset = \"1 kPa\""), "unknown unit \"kPa\"");
 }
 
+TEST_CASE("what cannot change, because supports hold all of it, is refused") {
+    const std::string held = chamber(room, "volume_ratio = 1.2");
+    const std::string box = "box = [[0, 0, 0], [0, 10, 10]]";
+    REQUIRE(held.find(box) != std::string::npos);
+    const std::string all = pliant::test::replaced(held, box, "box = [[0, 0, 0], [40, 10, 10]]");
+    check_problem(all, "cannot change its volume: all of its wall is in a [[fixed]]");
+    check_problem(all, "cannot change its length: all of its points are fixed in space or in a [[fixed]]");
+    check_problem(pliant::test::replaced(good, box, "box = [[0, 0, 0], [40, 10, 10]]"), "cannot change its length");
+    CHECK(problem(pliant::test::replaced(with("length_ratio = 0.97", "tension = \"1 N\""), box,
+                                         "box = [[0, 0, 0], [40, 10, 10]]"))
+              .empty());
+}
+
 TEST_CASE("chambers without air, or not closed, are refused") {
     check_problem(chamber("", "volume_ratio = 1.2"), "chamber[0]: takes one of geometry");
     check_problem(chamber(room + "\nsurface = \"air.stl\"", "volume_ratio = 1.2"), "takes one of geometry");
