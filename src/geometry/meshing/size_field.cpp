@@ -4,19 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "base/core/segment.hpp"
+
 namespace pliant::mesh {
 namespace {
 
 constexpr double least_share = 1.0 / 8;
 /// Edge length grows by this fraction of the distance from a small-size region.
 constexpr double growth = 0.5;
-
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-    const Vec3 d = b - a;
-    const double squared = dot(d, d);
-    const double t = squared > 0 ? std::clamp(dot(p - a, d) / squared, 0.0, 1.0) : 0;
-    return norm(p - a - t * d);
-}
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "base/core/rotation.hpp"
+#include "base/core/segment.hpp"
 #include "geometry/shapes/flat_faces.hpp"
 
 namespace pliant::mesh {
@@ -12,13 +13,6 @@ namespace {
 
 using Pieces = std::vector<SurfacePiece>;
 using Loop = std::vector<Vec3>;
-
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-    const Vec3 along = b - a;
-    const double length2 = dot(along, along);
-    const double t = length2 > 0 ? std::clamp(dot(p - a, along) / length2, 0.0, 1.0) : 0;
-    return norm(p - a - t * along);
-}
 
 /// Normal of a loop by Newell's method, which also works for non-convex loops.
 Vec3 loop_normal(const Loop& loop) {

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/core/csv.hpp"
+#include "base/core/segment.hpp"
 #include "base/core/text.hpp"
 
 namespace pliant::report {
@@ -69,13 +70,6 @@ Result<std::optional<Vec3>> read_point(const CsvTable& table, const CsvRow& row,
         point[axis] = 1e-3 * *value_mm;
     }
     return point;
-}
-
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-    const Vec3 way = b - a;
-    const double square = dot(way, way);
-    const double t = square > 0 ? std::clamp(dot(p - a, way) / square, 0.0, 1.0) : 0.0;
-    return norm(p - (a + t * way));
 }
 
 double distance_to_way(const Vec3& p, const std::vector<Vec3>& way) {

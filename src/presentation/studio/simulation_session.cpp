@@ -27,14 +27,9 @@ constexpr double quick_s = 0.05;                    // per increment: fast enoug
 constexpr double slow_s = 0.15;
 
 double diagonal(const std::vector<Vec3>& points) {
-    Vec3 low = points.front(), high = points.front();
-    for (const Vec3& p : points) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], p[k]);
-            high[k] = std::max(high[k], p[k]);
-        }
-    }
-    return norm(high - low);
+    Box3 box;
+    for (const Vec3& p : points) box.add(p);
+    return box.diagonal();
 }
 
 /// Only the last value of an actuator counts.

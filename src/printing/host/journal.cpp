@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "base/core/parse_all.hpp"
+
 namespace pliant::host {
 namespace {
 
@@ -67,19 +69,13 @@ std::string_view take_word(std::string_view& text) {
     return word;
 }
 
-template <class Number>
-bool parse_whole(std::string_view text, Number& value, int base = 10) {
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value, base);
-    return code == std::errc() && end == text.data() + text.size() && !text.empty();
-}
-
 /// A line without its end; nullopt if it is invalid.
 std::optional<JournalRecord> parse_record(std::string_view line) {
     std::uint32_t sum = 0;
     const std::string_view written = take_word(line);
-    if (written.size() != 8 || !parse_whole(written, sum, 16) || sum != crc32(line)) return std::nullopt;
+    if (written.size() != 8 || !parse_all(written, sum, 16) || sum != crc32(line)) return std::nullopt;
     JournalRecord record;
-    if (!parse_whole(take_word(line), record.number)) return std::nullopt;
+    if (!parse_all(take_word(line), record.number)) return std::nullopt;
     record.kind = take_word(line);
     while (!line.empty()) {
         const std::string_view pair = take_word(line);
@@ -146,7 +142,7 @@ Result<double> JournalRecord::number_of(std::string_view key) const {
 Result<long> JournalRecord::whole(std::string_view key) const {
     const std::string* value = find(key);
     long result = 0;
-    if (value != nullptr && parse_whole(*value, result) && result > -1'000'000'000'000 && result < 1'000'000'000'000)
+    if (value != nullptr && parse_all(*value, result) && result > -1'000'000'000'000 && result < 1'000'000'000'000)
         return result;
     return input_error("journal record {} ({}): {} is not a whole number", number, kind, key);
 }

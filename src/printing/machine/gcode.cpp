@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "base/core/parse_all.hpp"
 #include "printing/job/exposure.hpp"
 
 namespace pliant::machine {
@@ -31,19 +31,13 @@ std::string_view take_token(std::string_view& rest) {
     return token;
 }
 
-template <class Number>
-bool parse_whole(std::string_view text, Number& value) {
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return code == std::errc() && end == text.data() + text.size() && !text.empty();
-}
-
 Result<Word> parse_word(std::string_view token) {
     Word word;
     word.letter = token.front();
     if (!is_capital(word.letter)) return input_error("\"{}\" does not begin with a capital letter", token);
     if (token.size() == 1) return word;
     double value = 0;
-    const bool readable = parse_whole(token.substr(1), value) && std::abs(value) <= largest_value;
+    const bool readable = parse_all(token.substr(1), value) && std::abs(value) <= largest_value;
     if (readable && token.find_first_of("eE", 1) != std::string_view::npos)
         return input_error("\"{}\" has an exponent, which Marlin does not read: write {}{}", token, word.letter, value);
     if (!readable) return input_error("\"{}\" is not a letter and a number", token);
@@ -80,7 +74,7 @@ Result<Command> parse_command(std::string_view line) {
     std::string_view rest = trim(line);
     const std::string_view head = take_token(rest);
     Command command;
-    if (head.size() < 2 || (head[0] != 'G' && head[0] != 'M') || !parse_whole(head.substr(1), command.number) ||
+    if (head.size() < 2 || (head[0] != 'G' && head[0] != 'M') || !parse_all(head.substr(1), command.number) ||
         command.number < 0 || command.number > 9999) {
         return input_error("\"{}\" is not a command such as G1 or M400", head);
     }
@@ -234,10 +228,10 @@ Result<Expose> parse_expose(std::string_view rest) {
         const std::string_view key = token.substr(0, equals);
         const std::string_view value = token.substr(equals + 1);
         bool good = false;
-        if (key == "layer") good = parse_whole(value, e.layer) && e.layer >= 0, seen |= 1;
-        if (key == "material") good = parse_whole(value, e.material) && e.material >= 0, seen |= 2;
+        if (key == "layer") good = parse_all(value, e.layer) && e.layer >= 0, seen |= 1;
+        if (key == "material") good = parse_all(value, e.material) && e.material >= 0, seen |= 2;
         if (key == "seconds")
-            good = parse_whole(value, e.seconds) && e.seconds > 0 && e.seconds <= job::longest_exposure_s, seen |= 4;
+            good = parse_all(value, e.seconds) && e.seconds > 0 && e.seconds <= job::longest_exposure_s, seen |= 4;
         if (key == "image") e.image = value, good = !value.empty(), seen |= 8;
         if (!good) return input_error("\"{}\" is not understood in an expose directive", token);
     }

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <utility>
 
+#include "base/core/parse_all.hpp"
 #include "printing/machine/switches.hpp"
 
 namespace pliant::twin {
@@ -35,12 +35,6 @@ constexpr std::array<std::pair<std::string_view, FaultKind>, 20> kinds = {
      {"dead-switch", FaultKind::dead_switch},
      {"weak-magnet", FaultKind::weak_magnet},
      {"stuck-fork", FaultKind::stuck_fork}}};
-
-template <class Number>
-bool parse_whole(std::string_view text, Number& value) {
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return code == std::errc() && end == text.data() + text.size();
-}
 
 /// Removes the text up to the next colon from `rest` and returns it.
 std::string_view take_part(std::string_view& rest) {
@@ -106,10 +100,10 @@ Result<Fault> parse_fault(std::string_view text) {
     for (const auto& [name, kind] : kinds) {
         if (name != wanted) continue;
         Fault fault{kind, 1, 0};
-        if (const auto n = take_part(rest); !n.empty() && !(parse_whole(n, fault.n) && fault.n >= 1)) {
+        if (const auto n = take_part(rest); !n.empty() && !(parse_all(n, fault.n) && fault.n >= 1)) {
             return input_error("fault \"{}\": \"{}\" is not a number from 1", text, n);
         }
-        if (!rest.empty() && !(parse_whole(rest, fault.amount) && fault.amount > 0 && fault.amount <= 1e6)) {
+        if (!rest.empty() && !(parse_all(rest, fault.amount) && fault.amount > 0 && fault.amount <= 1e6)) {
             return input_error("fault \"{}\": \"{}\" is not an amount above 0", text, rest);
         }
         return fault;
