@@ -350,7 +350,7 @@ Status PrintRun::halt(const std::string& prompt, const Programs::Make& make_begi
     if (Status status = run_.machine.run(*begin); !status) return status;
     const JournalValues asked = prompt.empty() ? JournalValues{} : JournalValues{{"asked", prompt}};
     if (Status status = note("pause", asked); !status) return status;
-    run_.desk.wish([](Wishes& w) { w.pause_after = w.pause_now = w.resume = false; });
+    (void)run_.desk.wish([](Wishes& w) { w.pause_after = w.pause_now = w.resume = false; });
     run_.desk.update([&](Snapshot& s) { s.prompt = prompt; });
     if (!prompt.empty()) run_.desk.event("prompt", prompt);
     run_.desk.state(State::paused, prompt);

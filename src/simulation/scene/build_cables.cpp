@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "robot/bodies/passage.hpp"
+#include "simulation/scene/build_places.hpp"
 #include "simulation/scene/object_points.hpp"
 #include "simulation/scene/symmetry_planes.hpp"
 
