@@ -25,7 +25,7 @@ std::string_view take_line(std::string_view& text) {
 struct Bench {
     host::test::CountingClock clock;
     host::test::RememberingProjector projector;
-    int lines = 0;  ///< sent to the controller
+    int reads = 0;  ///< from the controller
     Control control{setup()};
 
     Bench() {
@@ -41,13 +41,17 @@ struct Bench {
     ControlSetup setup() {
         return {tower(),
                 [this]() -> Result<std::unique_ptr<Wire>> {
-                    return std::make_unique<host::test::ScriptedWire>(clock, [this](const std::string& line) {
-                        constexpr int enough = 2000;  // nobody resumes a print that a request has paused
-                        if (++lines > enough) (void)control.cancel();
+                    auto wire = std::make_unique<host::test::ScriptedWire>(clock, [](const std::string& line) {
                         if (line.find("M119") != std::string::npos)
                             return std::string("x_min: open\nz_max: open\ny_min: open\nok\n");
                         return host::test::good_answer(line);
                     });
+                    wire->at_read = [this]() -> Status {
+                        constexpr int enough = 2000;  // nobody resumes a print that a request has paused
+                        if (++reads > enough) (void)control.cancel();
+                        return {};
+                    };
+                    return wire;
                 },
                 projector,
                 clock,
