@@ -210,9 +210,11 @@ def _program() -> Path:
     here = Path(__file__).resolve().parent
     named = os.environ.get("PLIANT_PROGRAM")
     near = [here.parents[1] / "apps" / "pliant" / "pliant"] + [up / "bin" / "pliant" for up in here.parents[:5]]
-    if named and not (Path(named).is_file() and os.access(named, os.X_OK)):
-        raise Failure(f"PLIANT_PROGRAM names {named}, which is no program")
-    for candidate in ([Path(named)] if named else []) + near:
+    if named:
+        if not (Path(named).is_file() and os.access(named, os.X_OK)):
+            raise Failure(f"PLIANT_PROGRAM names {named}, which is no program")
+        return Path(named)
+    for candidate in near:
         if candidate.is_file() and os.access(candidate, os.X_OK):
             return candidate
     found = shutil.which("pliant")

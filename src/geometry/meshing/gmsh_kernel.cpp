@@ -625,8 +625,7 @@ Result<TetMesh> mesh_solids(std::span<const NamedSolid> solids, double size, int
     const VolumeError off = volume_error(*mesh, exact);
     mesh->notes.push_back(
         fmt::format("body \"{}\": its mesh has {:.0f} % {} volume than its drawing, because its walls are thin and "
-                    "curved; a smaller "
-                    "size helps",
+                    "curved; a smaller size helps",
                     solids[off.solid].name, 100 * std::fabs(off.share), off.share > 0 ? "more" : "less"));
     return mesh;
 }

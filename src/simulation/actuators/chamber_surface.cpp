@@ -8,51 +8,26 @@
 #include "base/linalg/dense.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/actuators/cross_matrix.hpp"
+#include "simulation/actuators/face_sample.hpp"
 
 namespace pliant::sim {
 namespace {
 
 using linalg::Matrix3;
 
-/// A point of the integration rule: shape functions and their derivatives along the sides u (0 to 1) and v (0 to 2).
-struct Sample {
-    double weight;  ///< sum 1/2, the area of the reference triangle
-    std::array<double, 6> N, Nu, Nv;
-};
-
-Sample sample_linear(double weight, const std::array<double, 3>& b) {
-    return {weight, {b[0], b[1], b[2]}, {-1, 1, 0}, {-1, 0, 1}};
-}
-
-Sample sample_quadratic(double weight, const std::array<double, 3>& b) {
-    constexpr std::array<double, 3> du = {-1, 1, 0};  // of the barycentric coordinates
-    constexpr std::array<double, 3> dv = {-1, 0, 1};
-    Sample s{weight, {}, {}, {}};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t j = (i + 1) % 3;
-        s.N[i] = b[i] * (2 * b[i] - 1);
-        s.Nu[i] = (4 * b[i] - 1) * du[i];
-        s.Nv[i] = (4 * b[i] - 1) * dv[i];
-        s.N[3 + i] = 4 * b[i] * b[j];
-        s.Nu[3 + i] = 4 * (b[i] * du[j] + b[j] * du[i]);
-        s.Nv[3 + i] = 4 * (b[i] * dv[j] + b[j] * dv[i]);
-    }
-    return s;
-}
-
 /// The integrand, position times normal, is of degree 1 on a plane face (one point) and of degree 4 on a curved one
 /// (six points; Dunavant 1985).
-const std::vector<Sample>& samples(bool quadratic) {
-    static const std::vector<Sample> one = {sample_linear(0.5, {1.0 / 3, 1.0 / 3, 1.0 / 3})};
-    static const std::vector<Sample> six = [] {
-        std::vector<Sample> list;
+const std::vector<FaceSample>& samples(bool quadratic) {
+    static const std::vector<FaceSample> one = {linear_sample(0.5, {1.0 / 3, 1.0 / 3, 1.0 / 3})};
+    static const std::vector<FaceSample> six = [] {
+        std::vector<FaceSample> list;
         constexpr std::array<std::array<double, 2>, 2> orbits = {
             {{0.109951743655322, 0.091576213509771}, {0.223381589678011, 0.445948490915965}}};
         for (const auto& [weight, a] : orbits) {
             for (std::size_t i = 0; i < 3; ++i) {
                 std::array<double, 3> b = {a, a, a};
                 b[i] = 1 - 2 * a;
-                list.push_back(sample_quadratic(0.5 * weight, b));
+                list.push_back(quadratic_sample(0.5 * weight, b));
             }
         }
         return list;
@@ -65,7 +40,7 @@ std::size_t points_of(const WallFace& face) {
 }
 
 /// x, x_u and x_v of a face at one sample.
-std::array<Vec3, 3> place(const WallFace& face, const Sample& s, const std::vector<Vec3>& p) {
+std::array<Vec3, 3> place(const WallFace& face, const FaceSample& s, const std::vector<Vec3>& p) {
     std::array<Vec3, 3> sum;
     for (std::size_t i = 0; i < points_of(face); ++i) {
         const Vec3& point = p[static_cast<std::size_t>(face[i])];
@@ -83,7 +58,7 @@ FaceMatrix second_gradient(const WallFace& face, double factor, const std::vecto
     FaceMatrix between;
     const std::size_t count = points_of(face);
     for (std::size_t i = 0; i < count; ++i) std::fill_n(between[i].begin(), count, Matrix3::Zero());
-    for (const Sample& s : samples(count == 6)) {
+    for (const FaceSample& s : samples(count == 6)) {
         const auto [at, u, v] = place(face, s, points);
         const Matrix3 U = factor * s.weight * cross_matrix(linalg::vector(u));
         const Matrix3 V = factor * s.weight * cross_matrix(linalg::vector(v));
@@ -125,7 +100,7 @@ double ChamberSurface::volume(std::span<const double> x) const {
     const std::vector<Vec3> points = points_at(x);
     double sum = 0;
     for (const WallFace& face : wall_.faces) {
-        for (const Sample& s : samples(points_of(face) == 6)) {
+        for (const FaceSample& s : samples(points_of(face) == 6)) {
             const auto [at, u, v] = place(face, s, points);
             sum += s.weight * dot(at - centre_, cross(u, v)) / 3;
         }
@@ -146,7 +121,7 @@ void ChamberSurface::add_gradient_of(std::span<const WallFace> faces, std::span<
     const std::vector<Vec3> points = points_at(x);
     std::vector<Vec3> on_points(points.size());
     for (const WallFace& face : faces) {
-        for (const Sample& s : samples(points_of(face) == 6)) {
+        for (const FaceSample& s : samples(points_of(face) == 6)) {
             const auto [at, u, v] = place(face, s, points);
             const Vec3 n = (factor * s.weight) * cross(u, v);
             for (std::size_t i = 0; i < points_of(face); ++i)

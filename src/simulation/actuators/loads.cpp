@@ -4,47 +4,18 @@
 #include <array>
 #include <map>
 
+#include "simulation/actuators/face_sample.hpp"
+
 namespace pliant::sim {
 namespace {
 
-/// A point of the integration rule on a face, with the shape functions and their derivatives along b1 and b2, where
-/// b0 = 1 - b1 - b2.
-struct FaceSample {
-    double weight;  ///< sum 1/2, the area of the reference triangle
-    std::array<double, 6> N{};
-    std::array<std::array<double, 2>, 6> dN{};
-};
-
-FaceSample linear_sample() {
-    constexpr double third = 1.0 / 3;
-    FaceSample s{0.5};
-    s.N = {third, third, third};
-    s.dN = {{{-1, -1}, {1, 0}, {0, 1}}};
-    return s;
-}
-
-FaceSample quadratic_sample(std::size_t q) {
-    FaceSample s{1.0 / 6};
-    std::array<double, 3> b = {1.0 / 6, 1.0 / 6, 1.0 / 6};
-    b[q] = 2.0 / 3;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t j = (i + 1) % 3;
-        s.N[i] = b[i] * (2 * b[i] - 1);
-        s.N[3 + i] = 4 * b[i] * b[j];
-        for (std::size_t k = 0; k < 2; ++k) {
-            const double di = (i == k + 1 ? 1 : 0) - (i == 0 ? 1 : 0);
-            const double dj = (j == k + 1 ? 1 : 0) - (j == 0 ? 1 : 0);
-            s.dN[i][k] = (4 * b[i] - 1) * di;
-            s.dN[3 + i][k] = 4 * (b[j] * di + b[i] * dj);
-        }
-    }
-    return s;
-}
-
 /// One point on a flat face; three, a rule of degree 2, on one of six nodes, which may be curved.
 const std::vector<FaceSample>& face_samples(int order) {
-    static const std::vector<FaceSample> one = {linear_sample()};
-    static const std::vector<FaceSample> three = {quadratic_sample(0), quadratic_sample(1), quadratic_sample(2)};
+    constexpr double third = 1.0 / 3, sixth = 1.0 / 6;
+    static const std::vector<FaceSample> one = {linear_sample(0.5, {third, third, third})};
+    static const std::vector<FaceSample> three = {quadratic_sample(sixth, {2 * third, sixth, sixth}),
+                                                  quadratic_sample(sixth, {sixth, 2 * third, sixth}),
+                                                  quadratic_sample(sixth, {sixth, sixth, 2 * third})};
     return order == 2 ? three : one;
 }
 
@@ -53,7 +24,8 @@ template <class At>
 std::array<Vec3, 2> tangents(const mesh::Face& face, const FaceSample& s, std::size_t count, const At& at) {
     std::array<Vec3, 2> sum;
     for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t k = 0; k < 2; ++k) sum[k] += s.dN[i][k] * at(face.nodes[i]);
+        sum[0] += s.Nu[i] * at(face.nodes[i]);
+        sum[1] += s.Nv[i] * at(face.nodes[i]);
     }
     return sum;
 }
@@ -126,7 +98,7 @@ void add_share_gradient(const mesh::TetMesh& mesh, std::span<const mesh::Face> f
                       const Vec3 n = unit(cross(u, v));
                       const Vec3 by_u = cross(v, n), by_v = cross(n, u);
                       for (std::size_t i = 0; i < count; ++i) {
-                          const Vec3 g = (s.weight * here / now.area_m2) * (s.dN[i][0] * by_u + s.dN[i][1] * by_v);
+                          const Vec3 g = (s.weight * here / now.area_m2) * (s.Nu[i] * by_u + s.Nv[i] * by_v);
                           double* to = gradient.data() + 3 * static_cast<std::size_t>(face.nodes[i]);
                           for (std::size_t c = 0; c < 3; ++c) to[c] += g[c];
                       }

@@ -178,11 +178,12 @@ Result<RunState> Checkpoint::read(const Program& program) const {
     const Result<std::string> steps = in->read_bytes("steps");
     if (!steps) return tl::unexpected(steps.error());
     const Json json = Json::parse(*text, nullptr, false);
+    const Json checksums = json.is_object() ? json.value("checksums", Json()) : Json();
     RunState run;
     Status status = take(json, *steps, origin_, program, system_.actuator_count(), run);
     if (status) {
         const Result<std::string> digest = in->read_bytes("digest");
-        if (!digest || *digest != digest_of(*text, *steps)) status = input_error("damaged");
+        if (!digest || *digest != digest_of(*text, *steps) || !checksums.is_object()) status = input_error("damaged");
     }
     if (!status) status = input_error("{}: {}", file().string(), status.error().message);
     if (status = system_.ranks().agree(status); !status) return tl::unexpected(status.error());
@@ -190,7 +191,7 @@ Result<RunState> Checkpoint::read(const Program& program) const {
     const auto place = [&](const std::string& name, State& state) -> Status {
         const Result<std::vector<double>> x = in->read(name, rows, 3);
         if (!x) return tl::unexpected(x.error());
-        if (json["checksums"].value(name, Json()) != checksum_of(system_.ranks(), rows, *x))
+        if (checksums.value(name, Json()) != checksum_of(system_.ranks(), rows, *x))
             return input_error("{}: damaged", file().string());
         const std::vector<double> own = nodes_.given_back(*x, 3);
         state.x = system_.nodes().with_ghosts(
