@@ -2,7 +2,7 @@
 import { signal } from '@preact/signals';
 import { useState } from 'preact/hooks';
 import { counted } from '../counted';
-import { ByHand } from '../print/print';
+import { ByHand } from '../print/by_hand';
 import { Safety } from '../print/safety';
 import { flags, host, info, known, maySteer, now } from '../print/state';
 import { mayDrive, post } from '../store';
