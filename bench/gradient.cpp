@@ -88,7 +88,7 @@ void row(const std::string& name, const Description& description, const Program&
         Stepper stepper(*model, stepper_options(program));
         RobotState robot = stepper.rest();
         for (int step = 1; step <= program.steps; ++step) {
-            if (!stepper.step(robot, program_way(stepper, program, robot, step), silent).arrived)
+            if (!stepper.step(robot, program_path(stepper, program, robot, step), silent).arrived)
                 return fmt::print("| {} | did not converge |\n", name);
         }
         forward_s = std::min(forward_s, watch.read_s());

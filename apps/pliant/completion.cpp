@@ -9,12 +9,6 @@
 
 namespace pliant::app {
 
-std::string in_quotes(std::string_view text) {
-    std::string out = "'";
-    for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return out + "'";
-}
-
 std::vector<const CommandEntry*> all_commands(const CommandEntry& program) {
     std::vector<const CommandEntry*> all;
     for (const CommandEntry& entry : program.below) {

@@ -11,9 +11,6 @@ namespace pliant::app {
 [[nodiscard]] std::string zsh_completion(const CommandEntry& program);
 [[nodiscard]] std::string fish_completion(const CommandEntry& program);
 
-/// Text in single quotes, as all three shells read it.
-[[nodiscard]] std::string in_quotes(std::string_view text);
-
 /// Every command except the program itself, including subcommands, in order.
 [[nodiscard]] std::vector<const CommandEntry*> all_commands(const CommandEntry& program);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/core/process.hpp"
 #include "completion.hpp"
 
 namespace pliant::app {
@@ -36,7 +37,7 @@ complete -F _pliant pliant
 )";
 
 std::string words_and_files(const OptionEntry& entry) {
-    return fmt::format("words={} files={}", in_quotes(fmt::format("{}", fmt::join(entry.choices, " "))),
+    return fmt::format("words={} files={}", in_shell_quotes(fmt::format("{}", fmt::join(entry.choices, " "))),
                        takes_files(entry) ? "yes" : "");
 }
 
@@ -61,7 +62,7 @@ std::string names_below(const CommandEntry& entry) {
 
 /// Completions for a command's positional arguments: its subcommands, or words and files of the first argument.
 std::string arguments_of(const CommandEntry& entry) {
-    if (!entry.below.empty()) return fmt::format("words={} files=", in_quotes(names_below(entry)));
+    if (!entry.below.empty()) return fmt::format("words={} files=", in_shell_quotes(names_below(entry)));
     return entry.arguments.empty() ? "words='' files=" : words_and_files(entry.arguments.front());
 }
 
@@ -71,20 +72,22 @@ std::string bash_completion(const CommandEntry& program) {
     std::string text = bash_head;
     for (const CommandEntry* command : all_commands(program)) {
         const auto [above, last] = parted(command->name);
-        text += fmt::format("        {}) command={} ;;\n", in_quotes(above + "/" + last), in_quotes(command->name));
+        text += fmt::format("        {}) command={} ;;\n", in_shell_quotes(above + "/" + last),
+                            in_shell_quotes(command->name));
     }
     text += "        esac\n    done\n    local words files options\n    case $command in\n";
-    text += fmt::format("    '') words={} options={} ;;\n", in_quotes(names_below(program)),
-                        in_quotes(option_names(program)));
+    text += fmt::format("    '') words={} options={} ;;\n", in_shell_quotes(names_below(program)),
+                        in_shell_quotes(option_names(program)));
     for (const CommandEntry* command : all_commands(program))
-        text += fmt::format("    {}) {} options={} ;;\n", in_quotes(command->name), arguments_of(*command),
-                            in_quotes(option_names(*command)));
+        text += fmt::format("    {}) {} options={} ;;\n", in_shell_quotes(command->name), arguments_of(*command),
+                            in_shell_quotes(option_names(*command)));
     text += "    esac\n    case \"$command $before\" in\n";
     for (const CommandEntry* command : all_commands(program)) {
         for (const OptionEntry& option : command->options) {
             if (option.values == 0) continue;
             std::vector<std::string> patterns;
-            for (const std::string& name : option.names) patterns.push_back(in_quotes(command->name + " " + name));
+            for (const std::string& name : option.names)
+                patterns.push_back(in_shell_quotes(command->name + " " + name));
             text += fmt::format("    {}) {} options='' ;;\n", fmt::join(patterns, " | "), words_and_files(option));
         }
     }

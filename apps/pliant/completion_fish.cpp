@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/core/process.hpp"
 #include "completion.hpp"
 
 namespace pliant::app {
@@ -22,11 +23,11 @@ complete -c pliant -f
 )";
 
 std::string at(const std::string& command) {
-    return in_quotes("__pliant_at " + in_quotes(command));
+    return in_shell_quotes("__pliant_at " + in_shell_quotes(command));
 }
 
 std::string words_of(const std::vector<std::string>& words) {
-    return in_quotes(fmt::format("{}", fmt::join(words, " ")));
+    return in_shell_quotes(fmt::format("{}", fmt::join(words, " ")));
 }
 
 std::string option_line(const CommandEntry& command, const OptionEntry& option) {
@@ -37,7 +38,7 @@ std::string option_line(const CommandEntry& command, const OptionEntry& option) 
         line += takes_files(option) ? " -r -F" : " -x";
         if (!option.choices.empty()) line += " -a " + words_of(option.choices);
     }
-    return line + " -d " + in_quotes(option.help) + "\n";
+    return line + " -d " + in_shell_quotes(option.help) + "\n";
 }
 
 std::string command_lines(const CommandEntry& command) {
@@ -45,7 +46,7 @@ std::string command_lines(const CommandEntry& command) {
     for (const OptionEntry& option : command.options) text += option_line(command, option);
     for (const CommandEntry& below : command.below)
         text += fmt::format("complete -c pliant -n {} -a {} -d {}\n", at(command.name),
-                            below.name.substr(below.name.rfind(' ') + 1), in_quotes(below.help));
+                            below.name.substr(below.name.rfind(' ') + 1), in_shell_quotes(below.help));
     for (const OptionEntry& argument : command.arguments) {
         if (!argument.choices.empty())
             text += fmt::format("complete -c pliant -n {} -a {}\n", at(command.name), words_of(argument.choices));
@@ -58,7 +59,7 @@ std::string command_lines(const CommandEntry& command) {
 
 std::string fish_completion(const CommandEntry& program) {
     std::string text = "set -g __pliant_commands";
-    for (const CommandEntry* command : all_commands(program)) text += " " + in_quotes(command->name);
+    for (const CommandEntry* command : all_commands(program)) text += " " + in_shell_quotes(command->name);
     text += "\n";
     text += fish_head + command_lines(program);
     for (const CommandEntry* command : all_commands(program)) text += command_lines(*command);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/core/process.hpp"
 #include "completion.hpp"
 
 namespace pliant::app {
@@ -35,7 +36,7 @@ std::string option_lines(const OptionEntry& option) {
         std::string line = option.repeated ? "*" : fmt::format("({})", fmt::join(option.names, " "));
         line += name + "[" + escaped(option.help) + "]";
         for (int i = 0; i < option.values; ++i) line += ":" + value_of(option, option.value);
-        text += " \\\n        " + in_quotes(line);
+        text += " \\\n        " + in_shell_quotes(line);
     }
     return text;
 }
@@ -58,7 +59,8 @@ std::string argument_lines(const CommandEntry& command) {
     for (const OptionEntry& argument : command.arguments) {
         ++number;
         const std::string where = argument.repeated ? "*" : fmt::format("{}", number);
-        text += " \\\n        " + in_quotes(fmt::format("{}:{}", where, value_of(argument, argument.names.front())));
+        text +=
+            " \\\n        " + in_shell_quotes(fmt::format("{}:{}", where, value_of(argument, argument.names.front())));
     }
     return text;
 }
@@ -73,7 +75,7 @@ std::string leaf(const CommandEntry& command) {
 std::string branch(const CommandEntry& command) {
     std::string text = fmt::format("{}() {{\n    local -a below\n    below=(\n", function_name(command));
     for (const CommandEntry& below : command.below)
-        text += "        " + in_quotes(escaped(last_word(below.name)) + ":" + escaped(below.help)) + "\n";
+        text += "        " + in_shell_quotes(escaped(last_word(below.name)) + ":" + escaped(below.help)) + "\n";
     text += "    )\n    _arguments -C";
     for (const OptionEntry& option : command.options) text += option_lines(option);
     text += " \\\n        '1:command:->command' \\\n        '*::argument:->argument'\n";

@@ -3,8 +3,11 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
 
 namespace pliant {
@@ -69,6 +72,46 @@ Result<pid_t> start_process(const std::filesystem::path& program, std::vector<st
                                     arguments.data(), environ);
     if (error != 0) return failure("{}: cannot be started: {}", program.string(), std::strerror(error));
     return process;
+}
+
+std::string in_shell_quotes(std::string_view text) {
+    std::string quoted = "'";
+    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+std::string end_text(const ProcessEnd& end) {
+    if (WIFSIGNALED(end.status)) {
+        const int number = WTERMSIG(end.status);
+        const char* const words = ::strsignal(number);
+        return fmt::format("signal {}: {}", number, words != nullptr ? words : "unknown");
+    }
+    return fmt::format("exit status {}", WIFEXITED(end.status) ? WEXITSTATUS(end.status) : end.status);
+}
+
+ProcessEnd ChildProcess::end() {
+    if (process_ < 0) return end_;
+    ::kill(process_, SIGKILL);
+    rusage usage{};
+    while (::wait4(process_, &end_.status, 0, &usage) < 0 && errno == EINTR) {
+    }
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    end_.cpu_s = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+    process_ = -1;
+    return end_;
+}
+
+ProcessEnd ChildProcess::let_end() {
+    constexpr int looks = 100, pause_us = 10000;
+    for (int look = 0; process_ >= 0 && look < looks; ++look) {
+        siginfo_t info{};
+        if (::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != 0)
+            break;
+        ::usleep(pause_us);
+    }
+    return end();
 }
 
 }  // namespace pliant

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/core/error.hpp"
@@ -23,5 +24,35 @@ struct ProcessFiles {
 /// the process (waitpid). Errors: names the program and the system's reason.
 [[nodiscard]] Result<pid_t> start_process(const std::filesystem::path& program, std::vector<std::string> words,
                                           const ProcessFiles& files);
+
+/// A text in single quotes, as the shells sh, bash, zsh and fish read it.
+[[nodiscard]] std::string in_shell_quotes(std::string_view text);
+
+/// How a process ended.
+struct ProcessEnd {
+    int status = 0;    ///< as of waitpid()
+    double cpu_s = 0;  ///< processor time that it used
+};
+
+/// "signal 9: Killed" or "exit status 1".
+[[nodiscard]] std::string end_text(const ProcessEnd& end);
+
+/// A process from start_process(), killed with its owner.
+class ChildProcess {
+public:
+    explicit ChildProcess(pid_t process) : process_(process) {}
+    ChildProcess(const ChildProcess&) = delete;
+    ChildProcess& operator=(const ChildProcess&) = delete;
+    ~ChildProcess() { (void)end(); }
+
+    /// Kills it if it still runs.
+    ProcessEnd end();
+    /// Gives it a second to exit by itself, for processes that were asked to or that have closed their pipe.
+    ProcessEnd let_end();
+
+private:
+    pid_t process_;  ///< -1 once it has ended
+    ProcessEnd end_;
+};
 
 }  // namespace pliant

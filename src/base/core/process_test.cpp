@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -90,4 +91,25 @@ TEST_CASE("a missing program is reported") {
     const Result<pid_t> process = start_process("/no/such/program", {}, {});
     REQUIRE_FALSE(process);
     CHECK(process.error().message == "/no/such/program: cannot be started: No such file or directory");
+}
+
+TEST_CASE("a child process is killed with its owner, or ends by itself within a second") {
+    const auto start = [](const std::string& script) { return start_process("/bin/sh", {"-c", script}, {}); };
+    pid_t process = 0;
+    {
+        const auto sleeper = start("exec sleep 60");
+        REQUIRE(sleeper);
+        const ChildProcess child(process = *sleeper);
+    }
+    CHECK(::kill(process, 0) != 0);
+    ChildProcess quick(*start("exit 3"));
+    CHECK(end_text(quick.let_end()) == "exit status 3");
+    CHECK(end_text(quick.end()) == "exit status 3");
+    ChildProcess slow(*start("exec sleep 60"));
+    CHECK(end_text(slow.end()) == "signal 9: Killed");
+}
+
+TEST_CASE("texts in shell quotes come back from a shell as they were") {
+    const std::string text = "it's $HOME `x` \"y\" \\";
+    CHECK(run("printf %s " + in_shell_quotes(text)).said == text);
 }

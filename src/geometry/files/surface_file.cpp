@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/core/files.hpp"
+#include "geometry/files/measurable.hpp"
 #include "geometry/files/surface_mending.hpp"
 #include "geometry/files/text_scanner.hpp"
 
@@ -56,7 +57,12 @@ bool looks_like_surface(std::string_view bytes) {
 Result<SurfaceFile> parse_surface(std::string_view bytes, const std::string& name) {
     if (bytes.empty()) return input_error("{}: the file is empty", name);
     Result<SurfaceFile> file = parse_any(without_mark(bytes), name);
-    if (file) mend_surface(*file, name);
+    if (!file) return file;
+    const auto& points = file->mesh.points;
+    const auto far = std::find_if_not(points.begin(), points.end(), is_measurable);
+    if (far != points.end())
+        return input_error("{}: a vertex lies at ({:g}, {:g}, {:g}): {}", name, far->x, far->y, far->z, too_far);
+    mend_surface(*file, name);
     return file;
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/core/parallel.hpp"
+#include "geometry/files/measurable.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -89,8 +90,11 @@ Status TetCollector::add(std::span<const std::int64_t> nodes, std::int64_t regio
     for (const std::int64_t node : nodes) {
         int& number = index_[static_cast<std::size_t>(node)];
         if (number < 0) {
+            const Vec3& p = points_[static_cast<std::size_t>(node)];
+            if (!is_measurable(p))
+                return input_error("point {} lies at ({:g}, {:g}, {:g}): {}", node, p.x, p.y, p.z, too_far);
             number = static_cast<int>(mesh_.points.size());
-            mesh_.points.push_back(points_[static_cast<std::size_t>(node)]);
+            mesh_.points.push_back(p);
         }
         mesh_.nodes.push_back(number);
     }

@@ -116,6 +116,8 @@ TEST_CASE("damaged files give a reason with the line, and stated sizes are not t
     CHECK(vtk_problem(head + "POINTS 2 double\n0 0 0 1 0\n").find("ends") != std::string::npos);
     CHECK(vtk_problem(head + "POINTS 1 double\n0 zero 0\n").find("\"zero\" is not a number") != std::string::npos);
     CHECK(vtk_problem(head + "POINTS 1 double\n0 inf 0\n").find("not finite") != std::string::npos);
+    CHECK(vtk_problem(head + "POINTS 4 double\n0 0 0 1e200 0 0 0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n")
+              .find("point 1 lies at (1e+200, 0, 0): coordinates go up to 1e30") != std::string::npos);
     const std::string points = head + "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n";
     CHECK(vtk_problem(points + "CELLS 1 5\n4 0 1 2 9\nCELL_TYPES 1\n10\n").find("names point 9") != std::string::npos);
     CHECK(vtk_problem(points + "CELLS 1 5\n9 0 1 2 3\nCELL_TYPES 1\n10\n").find("runs past the end") !=

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <mutex>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -71,24 +72,32 @@ std::vector<Listed> by_smallest_corner(const TetMesh& mesh, const Member& member
     return faces;
 }
 
-/// Faces that belong to only one of the tets for which `member` holds.
-template <class Member>
-std::vector<Face> single_faces(const TetMesh& mesh, const Member& member) {
+/// Calls `use` with the faces of each group of by_smallest_corner(), equal ones side by side; on several threads.
+template <class Member, class Use>
+void for_each_group(const TetMesh& mesh, const Member& member, const Use& use) {
     constexpr std::size_t corners_at_once = 1024;
     std::vector<std::size_t> start;
     std::vector<Listed> listed = by_smallest_corner(mesh, member, start);
-    std::vector<char> single(4 * mesh.tet_count(), 0);
     parallel_for(mesh.points.size(), corners_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t corner = begin; corner < end; ++corner) {
             const auto list = std::span(listed).subspan(start[corner], start[corner + 1] - start[corner]);
             std::sort(list.begin(), list.end(), [](const Listed& a, const Listed& b) {
-                return std::tie(a.middle, a.largest) < std::tie(b.middle, b.largest);
+                return std::tie(a.middle, a.largest, a.face) < std::tie(b.middle, b.largest, b.face);
             });
-            for (std::size_t k = 0; k < list.size(); ++k) {
-                const bool alone = (k == 0 || !list[k].is_on_same(list[k - 1])) &&
-                                   (k + 1 == list.size() || !list[k].is_on_same(list[k + 1]));
-                single[list[k].face] = alone ? 1 : 0;
-            }
+            use(std::span<const Listed>(list));
+        }
+    });
+}
+
+/// Faces that belong to only one of the tets for which `member` holds.
+template <class Member>
+std::vector<Face> single_faces(const TetMesh& mesh, const Member& member) {
+    std::vector<char> single(4 * mesh.tet_count(), 0);
+    for_each_group(mesh, member, [&](std::span<const Listed> list) {
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            const bool alone = (k == 0 || !list[k].is_on_same(list[k - 1])) &&
+                               (k + 1 == list.size() || !list[k].is_on_same(list[k + 1]));
+            single[list[k].face] = alone ? 1 : 0;
         }
     });
     std::vector<Face> faces;
@@ -96,6 +105,15 @@ std::vector<Face> single_faces(const TetMesh& mesh, const Member& member) {
         if (single[k] != 0) faces.push_back(face_of(mesh, k / 4, static_cast<int>(k % 4)));
     }
     return faces;
+}
+
+/// Whether the corners of a face ascend when seen from outside its tet, beginning with the smallest.
+bool ascends(const TetMesh& mesh, std::uint32_t face) {
+    const auto n = mesh.tet(face / 4);
+    const auto& c = face_corners[face % 4];
+    std::array<int, 3> corners{n[c[0]], n[c[1]], n[c[2]]};
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    return corners[1] < corners[2];
 }
 
 template <class Member>
@@ -136,6 +154,23 @@ std::vector<Face> boundary_faces(const TetMesh& mesh) {
 
 std::vector<Face> region_faces(const TetMesh& mesh, int region) {
     return single_faces(mesh, [&](std::size_t t) { return mesh.region[t] == region; });
+}
+
+std::optional<std::array<int, 2>> overlapping_tets(const TetMesh& mesh) {
+    std::mutex mutex;
+    std::optional<std::array<int, 2>> lowest;
+    const auto all = [](std::size_t) { return true; };
+    for_each_group(mesh, all, [&](std::span<const Listed> list) {
+        for (std::size_t k = 1; k < list.size(); ++k) {
+            for (std::size_t m = k; m-- > 0 && list[k].is_on_same(list[m]);) {
+                if (ascends(mesh, list[k].face) != ascends(mesh, list[m].face)) continue;
+                const std::array<int, 2> pair{static_cast<int>(list[m].face / 4), static_cast<int>(list[k].face / 4)};
+                const std::lock_guard lock(mutex);
+                if (!lowest || pair < *lowest) lowest = pair;
+            }
+        }
+    });
+    return lowest;
 }
 
 Extract extract_regions(const TetMesh& mesh, const std::vector<bool>& keep) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -54,6 +55,10 @@ void reverse_tet(std::span<int> nodes);
 
 /// The faces that bound one region, towards other regions or the outside.
 [[nodiscard]] std::vector<Face> region_faces(const TetMesh& mesh, int region);
+
+/// Two tets that share a face and lie on the same side of it, so that they overlap (as a tet that is listed twice
+/// does); the lower of such pairs. Tets that overlap without a common face are not found.
+[[nodiscard]] std::optional<std::array<int, 2>> overlapping_tets(const TetMesh& mesh);
 
 /// Some regions of a mesh, with the nodes that they use.
 struct Extract {

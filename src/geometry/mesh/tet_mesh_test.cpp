@@ -35,6 +35,22 @@ TEST_CASE("the boundary leaves out shared faces and looks outwards") {
     }
 }
 
+TEST_CASE("tets that overlap are found by the face that they share") {
+    using Pair = std::array<int, 2>;
+    for (const int order : {1, 2}) {
+        const auto raised = [&](const TetMesh& mesh) { return order == 2 ? to_quadratic(mesh) : mesh; };
+        CHECK_FALSE(overlapping_tets(raised(two_tets())));
+        TetMesh twice = two_tets();
+        twice.nodes.insert(twice.nodes.end(), {2, 0, 1, 3});  // the first one again, its corners rotated
+        twice.region.push_back(0);
+        CHECK(overlapping_tets(raised(twice)) == Pair{0, 2});
+        TetMesh same_side = two_tets();
+        same_side.points[4] = {-0.5, -0.5, -0.5};  // the second tet folded over the first
+        reverse_tet(std::span(same_side.nodes).subspan(4));
+        CHECK(overlapping_tets(raised(same_side)) == Pair{0, 1});
+    }
+}
+
 TEST_CASE("the surface of one region is closed") {
     CHECK(signed_volume(region_surface(two_tets(), 1)) == near(1.0 / 3, {.relative = 1e-12}));
     CHECK(signed_volume(region_surface(to_quadratic(two_tets()), 0)) == near(1.0 / 6, {.relative = 1e-12}));

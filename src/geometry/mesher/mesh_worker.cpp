@@ -1,9 +1,7 @@
 #include "geometry/mesher/mesh_worker.hpp"
 
 #include <dlfcn.h>
-#include <signal.h>
 #include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -42,47 +40,14 @@ double environment_number(const char* name, double otherwise) {
 class Worker {
 public:
     Worker(pid_t process, MessagePipe pipe) : process_(process), pipe_(std::move(pipe)) {}
-    Worker(const Worker&) = delete;
-    Worker& operator=(const Worker&) = delete;
-    ~Worker() { (void)end(); }
 
+    [[nodiscard]] ChildProcess& process() { return process_; }
     [[nodiscard]] MessagePipe& pipe() { return pipe_; }
-    /// Kills the process if it still runs; returns its status as of waitpid().
-    int end() {
-        if (process_ < 0) return status_;
-        ::kill(process_, SIGKILL);
-        while (::waitpid(process_, &status_, 0) < 0 && errno == EINTR) {
-        }
-        process_ = -1;
-        return status_;
-    }
-    /// The status of a process that has closed its end: waits for its exit instead of killing it.
-    int ended() {
-        for (int k = 0; process_ >= 0 && k < 100; ++k) {
-            if (::waitpid(process_, &status_, WNOHANG) == process_) {
-                process_ = -1;
-                return status_;
-            }
-            ::usleep(10000);
-        }
-        return end();
-    }
 
 private:
-    pid_t process_;
-    int status_ = 0;
+    ChildProcess process_;
     MessagePipe pipe_;
 };
-
-/// Why a process ended, in words.
-std::string reason_of(int status) {
-    if (WIFSIGNALED(status)) {
-        const int number = WTERMSIG(status);
-        const char* const words = ::strsignal(number);
-        return fmt::format("signal {}: {}", number, words != nullptr ? words : "unknown");
-    }
-    return fmt::format("exit status {}", WIFEXITED(status) ? WEXITSTATUS(status) : status);
-}
 
 Result<std::unique_ptr<Worker>> start_worker(const MesherLimits& limits) {
     const Result<std::filesystem::path> program = mesher_program();
@@ -180,7 +145,7 @@ Result<Message> next_message(Worker& worker, Clock::time_point until, const Mesh
         if (progress.cancelled()) return cancelled();
         const Received received = worker.pipe().receive(message, look_every_ms);
         if (received == Received::message) return message;
-        if (received == Received::closed) return failure("{} ({})", crash, reason_of(worker.ended()));
+        if (received == Received::closed) return failure("{} ({})", crash, end_text(worker.process().let_end()));
         if (Clock::now() > until)
             return failure(
                 "meshing took longer than {:g} s and was ended; take a larger mesh size, or more time "

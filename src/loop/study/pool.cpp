@@ -2,7 +2,6 @@
 
 #include <poll.h>
 #include <signal.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -32,49 +31,16 @@ double seconds_since(Clock::time_point begin) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// How a process ended.
-struct Death {
-    int status = 0;
-    double cpu_s = 0;
-};
-
 /// A process that serves rows, killed with its owner.
 class Worker {
 public:
     Worker(pid_t process, FileHandle socket) : process_(process), socket_(std::move(socket)) {}
-    Worker(const Worker&) = delete;
-    Worker& operator=(const Worker&) = delete;
-    ~Worker() { (void)end(); }
 
-    /// Kills it if it is still there.
-    Death end() {
-        if (process_ < 0) return death_;
-        ::kill(process_, SIGKILL);
-        rusage usage{};
-        while (::wait4(process_, &death_.status, 0, &usage) < 0 && errno == EINTR) {
-        }
-        const auto s = [](const timeval& t) {
-            return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-        };
-        death_.cpu_s = s(usage.ru_utime) + s(usage.ru_stime);
-        process_ = -1;
-        return death_;
-    }
-    /// Its own exit status; a process that only closed its socket gets a second to end.
-    Death died() {
-        for (int look = 0; look < 100; ++look) {
-            siginfo_t info{};
-            if (::waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
-                info.si_pid != 0)
-                break;
-            ::usleep(10000);
-        }
-        return end();
-    }
+    [[nodiscard]] ChildProcess& process() { return process_; }
     /// Closes its socket, so that it ends by itself.
-    Death finish() {
+    ProcessEnd finish() {
         ::shutdown(socket_.number(), SHUT_RDWR);
-        return died();
+        return process_.let_end();
     }
     [[nodiscard]] int file() const { return socket_.number(); }
 
@@ -85,9 +51,8 @@ public:
     double rows_cpu_s = 0;  ///< of the rows it has completed
 
 private:
-    pid_t process_;
+    ChildProcess process_;
     FileHandle socket_;
-    Death death_;
 };
 
 Result<std::unique_ptr<Worker>> start_worker(const PoolOptions& options) {
@@ -102,11 +67,6 @@ Result<std::unique_ptr<Worker>> start_worker(const PoolOptions& options) {
     // If the process is already dead, the next read notices it.
     (void)send_message(worker->file(), {{"paths", options.paths}, {"work_in", options.folder.string()}});
     return worker;
-}
-
-std::string words_of(int status) {
-    if (WIFSIGNALED(status)) return fmt::format("signal {}: {}", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
-    return fmt::format("exit status {}", WIFEXITED(status) ? WEXITSTATUS(status) : status);
 }
 
 Result<RowRecord> record_of(std::size_t row, const nlohmann::json& answer, std::size_t results) try {
@@ -153,7 +113,7 @@ private:
     Result<double> cancel() {
         Status told;
         for (auto& worker : workers_) {
-            worker->end();
+            worker->process().end();
             if (worker->order && told) told = calls_.given_up(worker->order->row);
         }
         if (!told) return tl::unexpected(told.error());
@@ -252,11 +212,11 @@ private:
     /// Handles a dead process: its row fails, unless the process was killed from outside.
     Status bury(Worker& worker) {
         constexpr int most_failed_starts = 3;
-        const Death death = worker.died();
+        const ProcessEnd death = worker.process().let_end();
         cpu_s_ += death.cpu_s;
         if (!worker.ready && ++failed_starts_ >= most_failed_starts)
             return failure("{}: worker exited before its first row ({})", options_.worker.program.string(),
-                           words_of(death.status));
+                           end_text(death));
         if (!worker.order) return {};
         const bool killed = WIFSIGNALED(death.status) && WTERMSIG(death.status) == SIGKILL;
         RowOrder order = std::move(*worker.order);
@@ -266,12 +226,12 @@ private:
         }
         return fail(order.row,
                     killed ? fmt::format("was killed {} times ({}); was there too little memory?", options_.tries,
-                                         words_of(death.status))
-                           : fmt::format("crashed ({})", words_of(death.status)),
+                                         end_text(death))
+                           : fmt::format("crashed ({})", end_text(death)),
                     worker, death);
     }
 
-    Status fail(std::size_t row, std::string reason, const Worker& worker, const Death& death) {
+    Status fail(std::size_t row, std::string reason, const Worker& worker, const ProcessEnd& death) {
         RowRecord record{row,
                          false,
                          false,
@@ -288,7 +248,7 @@ private:
         for (std::size_t k = 0; k < workers_.size(); ++k) {
             Worker& worker = *workers_[k];
             if (!worker.order || seconds_since(worker.begun) < options_.row_limit_s) continue;
-            const Death death = worker.end();
+            const ProcessEnd death = worker.process().end();
             cpu_s_ += death.cpu_s;
             Status status =
                 fail(worker.order->row, fmt::format("took longer than {:g} s", options_.row_limit_s), worker, death);

@@ -22,12 +22,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double patience_s = 120;  // per call; Slurm's own limits are shorter
 
-std::string in_quotes(const std::string& text) {
-    std::string quoted = "'";
-    for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-    return quoted + "'";
-}
-
 /// The last line logged by one of these tasks.
 std::string last_words(const fs::path& folder, const std::vector<std::size_t>& tasks) {
     for (const std::size_t task : tasks) {
@@ -270,7 +264,7 @@ std::string task_script(const Plan& plan, const fs::path& program, const fs::pat
         "# One task of the study in this folder: the rows of some chunks that have no record yet.\n"
         "exec {} study {} --chunk \"$SLURM_ARRAY_TASK_ID\" --chunks {}{} --jobs \"${{SLURM_CPUS_PER_TASK:-1}}\" "
         "--quiet\n",
-        in_quotes(program.string()), in_quotes(folder.string()), chunks_of_task, others);
+        in_shell_quotes(program.string()), in_shell_quotes(folder.string()), chunks_of_task, others);
 }
 
 bool passes_later(std::string_view errors) {

@@ -216,6 +216,10 @@ private:
     void make_sides(const Surface& robot);
     void number_parts(std::vector<RigidPart> rigid);
     [[nodiscard]] Status check_parts_at_rest() const;
+    /// Precondition: no surfaces cross at rest. Error: the robot, an object or a closed obstacle lies inside another.
+    [[nodiscard]] Status check_nothing_is_nested() const;
+    /// `a`, `b`: as part_of(), or -1 for obstacles.
+    [[nodiscard]] bool parts_are_joined(int a, int b) const;
     [[nodiscard]] double reach(int obstacle, double apart_m) const;
     /// An obstacle and what touches it at rest.
     struct Touched {

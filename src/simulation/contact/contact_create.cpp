@@ -116,6 +116,7 @@ Result<Contact> Contact::create(Surface robot, std::vector<Obstacle> obstacles, 
                            touched->part == 0 ? ", or hold the robot there" : "");
     if (!contact.rigid_.empty())
         if (auto status = contact.check_parts_at_rest(); !status) return tl::unexpected(status.error());
+    if (auto status = contact.check_nothing_is_nested(); !status) return tl::unexpected(status.error());
     contact.draw_in_obstacles();
     return contact;
 }

@@ -474,6 +474,36 @@ TEST_CASE("invalid settings and obstacles are refused by name") {
     refused({"it", mesh::TriMesh{{{-1, -1, 0.01}, {1, -1, 0.01}, {0, 1, 0.01}}, {{0, 1, 2}}}});
 }
 
+TEST_CASE("solids that begin inside one another are refused, hollows are not") {
+    const SpringBody body = spring_box({0, 0, 0}, {0.01, 0.01, 0.01}, {2, 2, 2});
+    const auto box = [](double low, double high, bool inwards = false) {
+        const SpringBody drawn = spring_box({low, low, low}, {high - low, high - low, high - low}, {1, 1, 1});
+        mesh::TriMesh surface;
+        for (std::size_t i = 0; i < drawn.node_count(); ++i)
+            surface.points.push_back(node_at(drawn.rest, static_cast<int>(i)));
+        surface.triangles = drawn.triangles;
+        for (auto& t : surface.triangles)
+            if (inwards) std::swap(t[0], t[1]);
+        return surface;
+    };
+    const auto message = [&](mesh::TriMesh obstacle) -> std::string {
+        const auto contact =
+            Contact::create(make_surface(body.triangles), {{"it", std::move(obstacle)}}, usual, body.rest);
+        return contact ? "accepted" : contact.error().message;
+    };
+    CHECK(message(box(0.004, 0.006)) ==
+          "obstacle \"it\" begins inside the robot, which is solid: move it out, or cut a hollow for it");
+    CHECK(message(box(-0.01, 0.02)) ==
+          "the robot begins inside obstacle \"it\", which is solid: move it out, or cut a hollow for it");
+    mesh::TriMesh hollow = box(-0.02, 0.03);
+    const mesh::TriMesh inner = box(-0.01, 0.02, true);
+    const int first = static_cast<int>(hollow.points.size());
+    hollow.points.insert(hollow.points.end(), inner.points.begin(), inner.points.end());
+    for (const auto& t : inner.triangles) hollow.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    CHECK(message(hollow) == "accepted");
+    CHECK(message(box(0.02, 0.03)) == "accepted");
+}
+
 namespace {
 
 /// A box in which every third point of the top has a duplicate next to it: fans of needles, some of whose edges are

@@ -81,10 +81,10 @@ Steps steps_of_program(const Description& d, const Program& program) {
     Progress silent;
     Steps all;
     for (int k = 1; k <= program.steps; ++k) {
-        Way way = program_way(stepper, program, robot, k);
+        StepPath path = program_path(stepper, program, robot, k);
         int pieces = 0;
-        way.after_piece = [&](const RobotState&) { ++pieces; };
-        const StepReport report = stepper.step(robot, way, silent);
+        path.after_piece = [&](const RobotState&) { ++pieces; };
+        const StepReport report = stepper.step(robot, path, silent);
         REQUIRE_MESSAGE(report.arrived, report.reason);
         REQUIRE(pieces == 1);
         all.states.push_back(robot.now.state);

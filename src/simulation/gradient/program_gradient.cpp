@@ -60,12 +60,12 @@ private:
     [[nodiscard]] Status forward(RobotState& robot, int k, std::vector<Piece>* pieces) {
         if (progress_.cancelled()) return cancelled();
         progress_.advance(stage, std::min(1.0, result_.steps_taken / expected_steps()));
-        Way way = program_way(stepper_, program_, robot, k);
+        StepPath path = program_path(stepper_, program_, robot, k);
         if (pieces != nullptr)
-            way.after_piece = [&](const RobotState& at) {
+            path.after_piece = [&](const RobotState& at) {
                 pieces->push_back({at.controls.time, at.now.state, at.controls});
             };
-        const StepReport report = stepper_.step(robot, way, progress_);
+        const StepReport report = stepper_.step(robot, path, progress_);
         if (progress_.cancelled()) return cancelled();
         ++result_.steps_taken;
         pattern_ = known_pattern(stepper_.system(), stepper_.laplacian(), robot.memory.get());

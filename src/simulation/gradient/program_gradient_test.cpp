@@ -185,8 +185,8 @@ Lagged steps_of(const Description& d, int steps, const Lagged* as, const Paramet
     for (int k = 1; k <= steps; ++k) {
         const double time = static_cast<double>(k) / steps;
         if (as == nullptr) {
-            const Way way{time, [&](double t) { return stepper.controls(robot, t); }, 1.0 / 64 / steps};
-            REQUIRE(stepper.step(robot, way, silent).arrived);
+            const StepPath path{time, [&](double t) { return stepper.controls(robot, t); }, 1.0 / 64 / steps};
+            REQUIRE(stepper.step(robot, path, silent).arrived);
             REQUIRE(robot.past.size() == static_cast<std::size_t>(std::min(k, 3)));  // in one piece each
             now = robot.now.state;
             before = robot.controls;

@@ -55,9 +55,9 @@ Status Trial::run(Progress& progress) {
     for (std::size_t k = 1; k < stops_.size(); ++k) {
         if (progress.cancelled()) return cancelled();
         progress.advance("trial", static_cast<double>(k) / static_cast<double>(stops_.size()));
-        sim::Way way{stops_[k], [&](double time) { return stepper_->controls(robot, time); }, shortest};
-        if (history) way.after_piece = [&](const sim::RobotState& at) { keep(-1, at); };
-        const sim::StepReport report = stepper_->step(robot, way, progress);
+        sim::StepPath path{stops_[k], [&](double time) { return stepper_->controls(robot, time); }, shortest};
+        if (history) path.after_piece = [&](const sim::RobotState& at) { keep(-1, at); };
+        const sim::StepReport report = stepper_->step(robot, path, progress);
         if (progress.cancelled()) return cancelled();
         if (!report.arrived) return failure("stopped at time {:.4g}: {}", stops_[k], report.reason);
         if (!history && needed[k]) keep(0, robot);

@@ -130,8 +130,8 @@ SystemSolver::SystemSolver(const LinearSystem& system) : system_(&system) {
 }
 
 SystemSolver::SystemSolver(const LinearSystem& system, SystemSolver&& other) : SystemSolver(system) {
-    if (!other.exact_ || (other.way_ != Way::levels && other.way_ != Way::single_)) return;
-    taken_over_ = other.way_;
+    if (!other.exact_ || (other.method_ != Method::levels && other.method_ != Method::single_)) return;
+    taken_over_ = other.method_;
     factor_ = std::move(other.factor_);
     levels_ = std::move(other.levels_);
     from_forces_ = std::move(other.from_forces_);
@@ -211,13 +211,13 @@ bool SystemSolver::solve_body(const Eigen::MatrixXd& right, double wanted, Eigen
 /// Since the preconditioner replaces K anyway, the columns of the Schur complement need no more accuracy than that,
 /// unless actuators are so nearly redundant that rounding hides it. False: only double precision can tell.
 bool SystemSolver::take_schur_complement() {
-    if (way_ == Way::single_ && take_schur_complement(Columns::rough, nearly_redundant)) return true;
+    if (method_ == Method::single_ && take_schur_complement(Columns::rough, nearly_redundant)) return true;
     return take_schur_complement(Columns::fine, redundant);
 }
 
 /// For responses to changes of the constraints alone, which are combinations of these columns.
 void SystemSolver::improve_columns() {
-    if (way_ == Way::single_ && accuracy_ < Columns::wanted)
+    if (method_ == Method::single_ && accuracy_ < Columns::wanted)
         (void)take_schur_complement(Columns::wanted, nearly_redundant);
 }
 
@@ -225,7 +225,7 @@ void SystemSolver::improve_columns() {
 /// constraint of a slack cable has none.
 bool SystemSolver::solve_columns(Columns accuracy) {
     const auto solve = [&](const Eigen::MatrixXd& right, Eigen::MatrixXd& columns) {
-        if (way_ == Way::double_ || accuracy == Columns::rough) {
+        if (method_ == Method::double_ || accuracy == Columns::rough) {
             columns = right;
             return apply_body(columns);
         }
@@ -267,7 +267,7 @@ bool SystemSolver::take_schur_complement(Columns accuracy, double threshold) {
     const auto [inverse, rank] = linalg::pseudo_inverse_and_rank(balanced, threshold);
     schur_inverse_ = scale.asDiagonal() * inverse * scale.asDiagonal();
     if (rank == S.cols()) return true;
-    if (way_ != Way::double_) return false;
+    if (method_ != Method::double_) return false;
     const Eigen::MatrixXd kept = inverse * balanced;
     schur_null_ = Eigen::MatrixXd::Identity(S.cols(), S.cols()) - kept;
     return true;
@@ -275,26 +275,26 @@ bool SystemSolver::take_schur_complement(Columns accuracy, double threshold) {
 
 /// Chooses the fastest method that is accurate enough for this matrix.
 void SystemSolver::begin() {
-    if (system_->on_levels && system_->skew.empty() && begin_quickly(Way::levels)) return;
+    if (system_->on_levels && system_->skew.empty() && begin_quickly(Method::levels)) return;
     levels_.reset();
     // Rounding errors of single precision cannot be told from a skew part.
-    if (system_->skew.empty() && begin_quickly(Way::single_)) return;
+    if (system_->skew.empty() && begin_quickly(Method::single_)) return;
     begin_surely();
 }
 
-bool SystemSolver::begin_quickly(Way way) {
-    way_ = way;
-    if (std::exchange(taken_over_, Way::none) != way) {
+bool SystemSolver::begin_quickly(Method method) {
+    method_ = method;
+    if (std::exchange(taken_over_, Method::none) != method) {
         accuracy_ = Columns::none;
-        if (!make_quickly(way)) return false;
+        if (!make_quickly(method)) return false;
     }
     exact_ = true;
     // Conjugate gradients detect by themselves that they do not converge.
     return take_schur_complement() && (levels_ || is_content() || is_far_from_singular());
 }
 
-bool SystemSolver::make_quickly(Way way) {
-    if (way == Way::levels) {
+bool SystemSolver::make_quickly(Method method) {
+    if (method == Method::levels) {
         const linalg::SymmetricPattern& pattern = system_->layout->pattern;
         levels_ = system_->corners ? std::make_unique<linalg::TwoLevel>(pattern, *system_->corners)
                                    : std::make_unique<linalg::TwoLevel>(pattern);
@@ -306,7 +306,7 @@ bool SystemSolver::make_quickly(Way way) {
 }
 
 void SystemSolver::begin_surely() {
-    way_ = Way::double_;
+    method_ = Method::double_;
     accuracy_ = Columns::none;
     const bool begun = factorise();
     factor_->release_work_space();
@@ -345,7 +345,7 @@ double SystemSolver::allowed_residual() const {
 }
 
 Status SystemSolver::prepare() {
-    if (way_ == Way::none) begin();
+    if (method_ == Method::none) begin();
     if (!singular_) return {};
     return failure(
         "the tangent of this state is singular: it stands at a limit point or at a bifurcation, or a part of the robot "
@@ -517,10 +517,10 @@ Result<Eigen::MatrixXd> SystemSolver::solve_all(const Eigen::MatrixXd& columns, 
     const Eigen::MatrixXd right = balanced(columns, side);
     if (right.topRows(forces_.rows()).isZero(0)) improve_columns();
     Eigen::MatrixXd firsts, result(columns.rows(), columns.cols());
-    const Way begun = way_;
+    const Method begun = method_;
     if (exact_ && system_->skew.empty() && columns.cols() > 1) firsts = precondition(right, side);
     for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-        const bool is_known = firsts.size() > 0 && way_ == begun;
+        const bool is_known = firsts.size() > 0 && method_ == begun;
         const Eigen::VectorXd first = is_known ? Eigen::VectorXd(firsts.col(k)) : Eigen::VectorXd();
         auto x = solve_balanced(right.col(k), side, is_known ? &first : nullptr);
         if (!x) return tl::unexpected(x.error());
@@ -532,7 +532,7 @@ Result<Eigen::MatrixXd> SystemSolver::solve_all(const Eigen::MatrixXd& columns, 
 Result<Eigen::VectorXd> SystemSolver::solve_balanced(const Eigen::VectorXd& b, Side side,
                                                      const Eigen::VectorXd* first) {
     std::optional<Eigen::VectorXd> x = refine(b, side, first);
-    if (!x && way_ != Way::double_) {
+    if (!x && method_ != Method::double_) {
         levels_.reset();
         begin_surely();
         if (Status status = prepare(); !status) return tl::unexpected(status.error());

@@ -79,11 +79,11 @@ public:
 
 private:
     /// How K is solved with, from fastest to most robust.
-    enum class Way { none, levels, single_, double_ };
+    enum class Method { none, levels, single_, double_ };
     [[nodiscard]] Status prepare();
     void begin();
-    [[nodiscard]] bool begin_quickly(Way way);
-    [[nodiscard]] bool make_quickly(Way way);
+    [[nodiscard]] bool begin_quickly(Method method);
+    [[nodiscard]] bool make_quickly(Method method);
     /// How accurate K^-1 B is: as the preconditioner, as solutions are wanted, or to nearly all digits.
     enum class Columns { none, rough, wanted, fine };
     [[nodiscard]] bool solve_columns(Columns accuracy);
@@ -113,8 +113,8 @@ private:
     [[nodiscard]] Error redundancy() const;
 
     const LinearSystem* system_;
-    Way way_ = Way::none;
-    Way taken_over_ = Way::none;  ///< how the factor or the levels that were taken over solve with K
+    Method method_ = Method::none;
+    Method taken_over_ = Method::none;  ///< how the factor or the levels that were taken over solve with K
     bool singular_ = false;
     bool exact_ = false;                        ///< the preconditioner is the inverse to rounding
     double stiffness_ = 1;                      ///< mean of the diagonal of K, N/m

@@ -181,8 +181,8 @@ TEST_CASE("a step from a copied state gives the same bits, whatever was solved i
         Progress silent;
         Stepper stepper(p.model, stepper_options(p.program));
         const auto step = [&](Stepper& with, RobotState& robot, double end) {
-            const Way way{end, [&](double time) { return with.controls(robot, time); }, 1.0 / 64};
-            REQUIRE(with.step(robot, way, silent).arrived);
+            const StepPath path{end, [&](double time) { return with.controls(robot, time); }, 1.0 / 64};
+            REQUIRE(with.step(robot, path, silent).arrived);
         };
         RobotState robot = stepper.rest();
         for (const double time : {0.1, 0.2, 0.3}) step(stepper, robot, time);
@@ -228,7 +228,7 @@ TEST_CASE("a bulky body, which is solved on levels, goes on with the same bits f
         Progress silent;
         Stepper stepper(model, stepper_options(program));
         const auto step = [&](Stepper& with, RobotState& robot, int k) {
-            REQUIRE(with.step(robot, program_way(with, program, robot, k), silent).arrived);
+            REQUIRE(with.step(robot, program_path(with, program, robot, k), silent).arrived);
         };
         RobotState robot = stepper.rest();
         step(stepper, robot, 1);

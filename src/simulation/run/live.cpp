@@ -51,7 +51,7 @@ public:
         const Inputs wanted{target.time, target.drives, wanted_force(target.pull)};
         LiveProgress result;
         const double way = distance(wanted);
-        if (way > 0) result = go(wanted, way, progress);
+        if (way > 0) result = go(wanted, path, progress);
         result.arrived = result.reason.empty() && distance(wanted) == 0 && is_settled(target.pull);
         result.wall_s = wall_s_ = watch.read_s();
         return result;
@@ -171,10 +171,10 @@ private:
     /// the current state.
     StepReport leap(const Inputs& next, const Progress& progress) {
         const bool onward = stepper_.set_course(robot_, next);
-        const Way way{1, [&](double) { return controls_of(next); }, 0, onward};
+        const StepPath path{1, [&](double) { return controls_of(next); }, 0, onward};
         const Inputs now = robot_.inputs;
         const Vec3 point = spring_.pull() ? spring_.point_at(robot_.x()) : Vec3{};
-        StepReport report = stepper_.leap(robot_, way, progress);
+        StepReport report = stepper_.leap(robot_, path, progress);
         if (!report.arrived) return report;
         if (spring_.pull()) learn(now, next, spring_.point_at(robot_.x()) - point);
         robot_.before = now;

@@ -68,10 +68,10 @@ private:
         Stopwatch watch;
         Step step;
         step.index = k;
-        const Way way = program_way(stepper_, program_, now_.robot, k);
-        step.time = way.end;
+        const StepPath path = program_path(stepper_, program_, now_.robot, k);
+        step.time = path.end;
         StepReport report;
-        if (!progress.cancelled()) report = stepper_.step(now_.robot, way, progress);
+        if (!progress.cancelled()) report = stepper_.step(now_.robot, path, progress);
         Trajectory& result = now_.so_far;
         if (report.arrived) checks_.after_step(now_.robot, step, report, result.warnings, progress);
         for (IterationRecord record : report.history) {
@@ -162,7 +162,7 @@ StepperOptions stepper_options(const Program& program) {
             program.dynamics, RotatingStep::most_past, program.duration / program.steps};
 }
 
-Way program_way(const Stepper& stepper, const Program& program, const RobotState& robot, int k) {
+StepPath program_path(const Stepper& stepper, const Program& program, const RobotState& robot, int k) {
     return {program.duration * static_cast<double>(k) / program.steps,
             [&](double time) { return stepper.controls(robot, time); },
             (stepper.is_adaptive() ? smallest_adaptive_share : smallest_share) * program.duration / program.steps};

@@ -44,7 +44,7 @@ struct RunOptions {
 /// The stepper options of a program; and the path of its step k, from 1, for a robot at the end of the previous step.
 /// The path refers to stepper and robot.
 [[nodiscard]] StepperOptions stepper_options(const Program& program);
-[[nodiscard]] Way program_way(const Stepper& stepper, const Program& program, const RobotState& robot, int k);
+[[nodiscard]] StepPath program_path(const Stepper& stepper, const Program& program, const RobotState& robot, int k);
 
 /// Positions of the points of every cable at node positions (n, 3): [cable][point].
 [[nodiscard]] std::vector<std::vector<Vec3>> cable_points(const Model& model, std::span<const Vec3> positions);

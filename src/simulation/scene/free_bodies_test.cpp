@@ -290,7 +290,7 @@ friction = 0.2
     Progress silent;
     const auto steps = [&](sim::Stepper& stepper, sim::RobotState& robot, int from, int to) {
         for (int k = from; k <= to; ++k)
-            REQUIRE(stepper.step(robot, sim::program_way(stepper, built.robot.program, robot, k), silent).arrived);
+            REQUIRE(stepper.step(robot, sim::program_path(stepper, built.robot.program, robot, k), silent).arrived);
     };
     sim::Stepper stepper(built.model, sim::stepper_options(built.robot.program));
     sim::RobotState robot = stepper.rest();
@@ -324,6 +324,9 @@ TEST_CASE("impossible scenes give one line each") {
     check_problem(object("geometry = { box = [[0, 0, 0], [1, 1, 1]] }\nmass = \"1 g\"\n"
                          "[[object]]\nname = \"other\"\ngeometry = { box = [[1, 0, 0], [2, 1, 1]] }\nmass = \"1 g\""),
                   "object \"other\" touches or crosses object \"it\" at rest");
+    check_problem(object("geometry = { box = [[-2, -2, -2], [3, 3, 3]] }\nmass = \"1 g\"\n"
+                         "[[object]]\nname = \"core\"\ngeometry = { box = [[0, 0, 0], [1, 1, 1]] }\nmass = \"1 g\""),
+                  "object \"core\" begins inside object \"it\", which is solid: move it out, or cut a hollow for it");
     std::string loose = soft_cube(0, still);
     loose.erase(loose.find("[[obstacle]]"), loose.find("[[marker]]") - loose.find("[[obstacle]]"));
     check_problem(loose, "nothing is fixed; add [[fixed]]");

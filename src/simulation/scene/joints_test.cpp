@@ -315,7 +315,7 @@ TEST_CASE("joints give the same bits on any number of threads, and after reading
     Progress silent;
     const auto steps = [&](sim::Stepper& stepper, sim::RobotState& robot, int from, int to) {
         for (int k = from; k <= to; ++k)
-            REQUIRE(stepper.step(robot, sim::program_way(stepper, built.robot.program, robot, k), silent).arrived);
+            REQUIRE(stepper.step(robot, sim::program_path(stepper, built.robot.program, robot, k), silent).arrived);
     };
     sim::Stepper stepper(built.model, sim::stepper_options(built.robot.program));
     sim::RobotState robot = stepper.rest();

@@ -60,11 +60,11 @@ public:
         const Terms terms = terms_here();
         const Direction direction = find_direction(terms);
         if (!direction.dx.allFinite()) return false;
-        Way way = way_of(direction);
-        const bool whole = way.longest() == 1;
-        if (whole && search(direction, way, {1, 0.5})) return true;
+        SearchLine line = line_along(direction);
+        const bool whole = line.longest() == 1;
+        if (whole && search(direction, line, {1, 0.5})) return true;
         if (step_through_contact(terms, !whole)) return true;
-        return search(direction, way, {whole ? 0.5 : way.longest(), curvature_.smallest_share() * way.longest()});
+        return search(direction, line, {whole ? 0.5 : line.longest(), curvature_.smallest_share() * line.longest()});
     }
 
 private:
@@ -254,8 +254,8 @@ private:
             if (!pressed) continue;
             const std::optional<Direction> direction = find_direction_under(*pressed, *std::move(reduced), terms);
             if (!direction) return false;
-            Way way = way_of(*direction);
-            return search(*direction, way, {way.longest(), smallest_contact_share * way.longest()});
+            SearchLine line = line_along(*direction);
+            return search(*direction, line, {line.longest(), smallest_contact_share * line.longest()});
         }
         return false;
     }
@@ -321,18 +321,18 @@ private:
         compliance -= 0.5 * (prevented + prevented.transpose());
     }
 
-    class Way;
-    [[nodiscard]] Way way_of(const Direction& direction) const {
+    class SearchLine;
+    [[nodiscard]] SearchLine line_along(const Direction& direction) const {
         Eigen::VectorXd motion = Eigen::VectorXd::Zero(state_.x.size());
         system_.add_free(direction.dx, 1, motion);
-        return Way(*this, std::move(motion));
+        return SearchLine(*this, std::move(motion));
     }
 
     struct Shares {
         double first, smallest;  ///< of the direction: which are tried
     };
-    bool search(const Direction& direction, Way& way, const Shares& shares) {
-        const LineSearch::Path path{shares.first, shares.smallest, [&](double alpha) { return way.at(alpha); }};
+    bool search(const Direction& direction, SearchLine& line, const Shares& shares) {
+        const LineSearch::Path path{shares.first, shares.smallest, [&](double alpha) { return line.at(alpha); }};
         std::optional<LineSearch::Found> found = search_.search(
             state_, evaluation_, direction, path, [&](const State& next) { return system_.evaluate(next, controls_); });
         if (found) accept(std::move(*found));
@@ -341,9 +341,9 @@ private:
 
     /// The path of a direction. The solver's retraction may rotate the body; if that path meets something, the straight
     /// one is used, up to the largest step without contact.
-    class Way {
+    class SearchLine {
     public:
-        Way(const StepSolver& solver, Eigen::VectorXd motion) : solver_(solver), motion_(std::move(motion)) {
+        SearchLine(const StepSolver& solver, Eigen::VectorXd motion) : solver_(solver), motion_(std::move(motion)) {
             rotated_ = free_end(1);
             if (!rotated_) longest_ = solver_.system_.largest_step(solver_.state_.x, motion_, solver_.controls_);
         }

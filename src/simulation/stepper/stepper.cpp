@@ -167,9 +167,9 @@ StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progres
     if (in_time) robot.now.along = begin.time;
     const double from = robot.now.along;
     const auto inputs_at = [&](double along) { return between(begin, wanted, (along - from) / length); };
-    const Way way{from + length, [&](double along) { return controls(robot, inputs_at(along)); },
-                  (is_adaptive() ? smallest_adaptive_share : smallest_share) * length, onward, expected};
-    StepReport report = step(robot, way, progress);
+    const StepPath path{from + length, [&](double along) { return controls(robot, inputs_at(along)); },
+                        (is_adaptive() ? smallest_adaptive_share : smallest_share) * length, onward, expected};
+    StepReport report = step(robot, path, progress);
     robot.inputs = report.arrived ? wanted : inputs_at(robot.now.along);
     if (report.pieces > 0) robot.before = inputs_at(robot.past.back().along);
     return report;
@@ -177,21 +177,21 @@ StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progres
 
 /// The step length is adapted to the error. If the next step would nearly reach the end of the path it is shortened, or
 /// two are made equally long, so that none is very short.
-StepReport Stepper::step_by_error(RobotState& robot, const Way& way, const Progress& progress) {
+StepReport Stepper::step_by_error(RobotState& robot, const StepPath& path, const Progress& progress) {
     constexpr double first_share = 1.0 / 64, most_growth = 2, most_loss = 0.2, careful = 0.9;
     const double tolerance = options_.dynamics->time_tolerance_m;
     StepReport report;
     std::string off, why;  // why the last solved step was rejected, and the last one of all
     double piece = robot.history.next_dt;
-    if (!(piece > 0)) piece = first_share * (way.end - robot.now.along);
-    while (robot.now.along < way.end && !progress.cancelled()) {
-        const double rest = way.end - robot.now.along;
+    if (!(piece > 0)) piece = first_share * (path.end - robot.now.along);
+    while (robot.now.along < path.end && !progress.cancelled()) {
+        const double rest = path.end - robot.now.along;
         const double dt = piece >= (1 - rounding) * rest ? rest : piece > 0.5 * rest ? 0.5 * rest : piece;
-        const double end = dt == rest ? way.end : robot.now.along + dt;
-        const bool shortest = !(dt > way.shortest_piece);
+        const double end = dt == rest ? path.end : robot.now.along + dt;
+        const bool shortest = !(dt > path.shortest_piece);
         double error = 0;
         const StepOutcome outcome =
-            go(robot, {end, way.at(end), way.onward, end == way.end ? way.expected : nullptr, &error, tolerance},
+            go(robot, {end, path.at(end), path.onward, end == path.end ? path.expected : nullptr, &error, tolerance},
                report, progress);
         const bool of_second_order = outcome.converged || error > 0;
         const double growth =
@@ -201,7 +201,7 @@ StepReport Stepper::step_by_error(RobotState& robot, const Way& way, const Progr
         if (outcome.converged) {
             robot.history.next_dt = dt < piece && growth >= 1 ? std::max(piece, growth * dt) : growth * dt;
             piece = robot.history.next_dt;
-            if (way.after_piece) way.after_piece(robot);
+            if (path.after_piece) path.after_piece(robot);
             continue;
         }
         ++report.refused;
@@ -212,44 +212,44 @@ StepReport Stepper::step_by_error(RobotState& robot, const Way& way, const Progr
         piece = std::min(growth, careful) * dt;
         if (shortest) break;
     }
-    report.arrived = !(robot.now.along < way.end);
+    report.arrived = !(robot.now.along < path.end);
     if (!report.arrived) report.reason = why;
     remember(robot);
     return report;
 }
 
-StepReport Stepper::step(RobotState& robot, const Way& way, const Progress& progress) {
+StepReport Stepper::step(RobotState& robot, const StepPath& path, const Progress& progress) {
     recall(robot);
-    if (is_adaptive()) return step_by_error(robot, way, progress);
+    if (is_adaptive()) return step_by_error(robot, path, progress);
     StepReport report;
-    double piece = way.end - robot.now.along;
+    double piece = path.end - robot.now.along;
     int in_vain = 0;  // iterations of the attempts since the last one that succeeded
     std::string why;  // the last one that failed did so
-    while (robot.now.along < way.end) {
+    while (robot.now.along < path.end) {
         const double along = robot.now.along + piece;
-        const double end = along >= way.end - rounding * way.shortest_piece ? way.end : along;
-        const State* expected = end == way.end ? way.expected : nullptr;
-        const StepOutcome outcome = go(robot, {end, way.at(end), way.onward, expected}, report, progress);
+        const double end = along >= path.end - rounding * path.shortest_piece ? path.end : along;
+        const State* expected = end == path.end ? path.expected : nullptr;
+        const StepOutcome outcome = go(robot, {end, path.at(end), path.onward, expected}, report, progress);
         if (outcome.converged) {
             in_vain = 0;
-            if (way.after_piece) way.after_piece(robot);
+            if (path.after_piece) path.after_piece(robot);
             continue;
         }
         why = outcome.reason;
         piece *= 0.5;
         in_vain += outcome.iterations;
-        if (progress.cancelled() || piece < way.shortest_piece || is_hopeless(model_, options_, in_vain)) break;
+        if (progress.cancelled() || piece < path.shortest_piece || is_hopeless(model_, options_, in_vain)) break;
     }
-    report.arrived = !(robot.now.along < way.end);
+    report.arrived = !(robot.now.along < path.end);
     if (!report.arrived) report.reason = why;
     remember(robot);
     return report;
 }
 
-StepReport Stepper::leap(RobotState& robot, const Way& way, const Progress& progress) {
+StepReport Stepper::leap(RobotState& robot, const StepPath& path, const Progress& progress) {
     recall(robot);
     StepReport report;
-    const StepOutcome outcome = go(robot, {way.end, way.at(way.end), way.onward, way.expected}, report, progress);
+    const StepOutcome outcome = go(robot, {path.end, path.at(path.end), path.onward, path.expected}, report, progress);
     report.arrived = outcome.converged;
     if (!outcome.converged) report.reason = outcome.reason;
     remember(robot);

@@ -29,7 +29,7 @@ struct StepperOptions {
 inline constexpr double smallest_adaptive_share = 1.0 / (1 << 20);
 
 /// The path of a step: the controls at each point of it.
-struct Way {
+struct StepPath {
     double end = 0;  ///< end of the step; Moment::along is its start
     std::function<Controls(double along)> at;
     double shortest_piece = 0;        ///< shortest piece that is tried
@@ -77,9 +77,9 @@ public:
 
     /// Steps to the end of the path, halving pieces that do not converge. If it does not arrive, `robot` is as far as
     /// it got. With dynamics `along` is time in seconds.
-    [[nodiscard]] StepReport step(RobotState& robot, const Way& way, const Progress& progress);
+    [[nodiscard]] StepReport step(RobotState& robot, const StepPath& path, const Progress& progress);
     /// In one piece; `robot` keeps its positions if that does not converge.
-    [[nodiscard]] StepReport leap(RobotState& robot, const Way& way, const Progress& progress);
+    [[nodiscard]] StepReport leap(RobotState& robot, const StepPath& path, const Progress& progress);
     /// Solves for equilibrium from `guess`, with everything else of `robot` unchanged: on another branch of equilibria
     /// than that of the last steps, which are forgotten. Without convergence `robot` is unchanged.
     [[nodiscard]] StepReport settle_beside(RobotState& robot, State guess, const Progress& progress);
@@ -123,7 +123,7 @@ private:
     [[nodiscard]] Scheme scheme(const RobotState& robot, const Controls& controls) const;
     void take_mean_inputs(const RobotState& robot, Controls& controls) const;
     [[nodiscard]] double time_error_m(const Controls& controls, const State& next) const;
-    [[nodiscard]] StepReport step_by_error(RobotState& robot, const Way& way, const Progress& progress);
+    [[nodiscard]] StepReport step_by_error(RobotState& robot, const StepPath& path, const Progress& progress);
     [[nodiscard]] StepOutcome settle(const RobotState& from, Controls& controls, State& next, const Progress& progress,
                                      std::optional<Evaluation> known);
     void accept(RobotState& robot, const Target& target, Controls controls, State next, int touching,

@@ -1,0 +1,101 @@
+// Refuses solids that begin inside one another. Surfaces that do not cross are either apart or nested, so one point of
+// each connected piece decides.
+#include <algorithm>
+#include <optional>
+
+#include "base/core/boxes.hpp"
+#include "base/core/disjoint_sets.hpp"
+#include "geometry/mesh/triangle_tree.hpp"
+#include "geometry/repair/surface_check.hpp"
+#include "simulation/contact/contact.hpp"
+
+namespace pliant::sim::contact {
+namespace {
+
+/// A point of each connected piece of a surface.
+std::vector<Vec3> point_of_each_piece(const mesh::TriMesh& surface) {
+    DisjointSets pieces(surface.points.size());
+    for (const auto& [a, b, c] : surface.triangles) {
+        pieces.join(a, b);
+        pieces.join(b, c);
+    }
+    std::vector<Vec3> points;
+    std::vector<char> seen(surface.points.size(), 0);
+    for (const auto& t : surface.triangles) {
+        const int piece = pieces.find(t[0]);
+        if (seen[piece] == 0) points.push_back(surface.points[t[0]]);
+        seen[piece] = 1;
+    }
+    return points;
+}
+
+/// Something with a surface at rest. Pieces and tree are computed when they are first needed: mostly never.
+class Solid {
+public:
+    Solid(std::string name, int part, mesh::TriMesh surface)
+        : name_(std::move(name)), part_(part), surface_(std::move(surface)) {
+        for (const auto& t : surface_.triangles)
+            for (const int p : t) box_.add(surface_.points[p]);
+    }
+
+    [[nodiscard]] const std::string& name() const { return name_; }
+    [[nodiscard]] int part() const { return part_; }
+    [[nodiscard]] bool is_obstacle() const { return part_ < 0; }
+
+    /// Whether a piece of `other` lies inside.
+    [[nodiscard]] bool holds(Solid& other) {
+        if (!boxes_meet(box_, other.box_)) return false;
+        if (!other.pieces_) other.pieces_ = point_of_each_piece(other.surface_);
+        return std::any_of(other.pieces_->begin(), other.pieces_->end(), [&](const Vec3& p) {
+            if (!box_.contains(p)) return false;
+            if (!tree_) tree_.emplace(surface_);
+            return tree_->winding_number(p) > 0.5;
+        });
+    }
+
+private:
+    std::string name_;
+    int part_;  ///< as Contact::part_of(); -1: an obstacle
+    mesh::TriMesh surface_;
+    Box3 box_;
+    std::optional<std::vector<Vec3>> pieces_;
+    std::optional<mesh::TriangleTree> tree_;
+};
+
+}  // namespace
+
+Status Contact::check_nothing_is_nested() const {
+    std::vector<Solid> solids;
+    int part = 0;
+    visit_moving_sides([&](const Side& side) {
+        mesh::TriMesh surface;
+        surface.triangles = side.surface.triangles;
+        for (int i = 0; i < robot_nodes_; ++i) surface.points.push_back(node_at(rest_, i));
+        solids.emplace_back(part_name(part), part, std::move(surface));
+        ++part;
+    });
+    for (const Obstacle& obstacle : obstacles_) {
+        const auto* surface = std::get_if<mesh::TriMesh>(&obstacle.shape);
+        if (surface != nullptr && mesh::check_closed(*surface))
+            solids.emplace_back("obstacle \"" + obstacle.name + "\"", -1, *surface);
+    }
+    for (Solid& outer : solids) {
+        for (Solid& inner : solids) {
+            const bool of_interest = &outer != &inner && !(outer.is_obstacle() && inner.is_obstacle()) &&
+                                     !parts_are_joined(outer.part(), inner.part());
+            if (of_interest && outer.holds(inner))
+                return input_error("{} begins inside {}, which is solid: move it out, or cut a hollow for it",
+                                   inner.name(), outer.name());
+        }
+    }
+    return {};
+}
+
+bool Contact::parts_are_joined(int a, int b) const {
+    return std::any_of(joined_.begin(), joined_.end(), [&](const Joined& joined) {
+        const auto [low, high] = std::minmax(joined.first, joined.second);
+        return std::minmax(a - 1, b - 1) == std::pair(low, high);
+    });
+}
+
+}  // namespace pliant::sim::contact
