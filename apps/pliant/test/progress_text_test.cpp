@@ -1,4 +1,4 @@
-#include "progress_text.hpp"
+#include "../progress_text.hpp"
 
 #include <doctest/doctest.h>
 
