@@ -54,6 +54,8 @@ class Batch(NotPickled):
             if robots < 0:
                 raise InputError(f"count is {robots}; it must not be negative")
             self.models = (models,) * robots
+        elif not isinstance(models, Iterable):
+            raise TypeError(f"models must be a pliant.Model or several, not {type(models).__name__}")
         else:
             if count is not None:
                 raise InputError("count goes with one model; there are as many robots as models")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 
@@ -37,3 +39,17 @@ class Cancelled(Failure):
     """The work was cancelled by a progress callable."""
 
     kind = "cancelled"
+
+
+@contextmanager
+def arguments_for_options(arguments: Mapping[str, str]) -> Iterator[None]:
+    """In the errors of what is done, options of the command line become the arguments of Python that they stand for."""
+    try:
+        yield
+    except Failure as error:
+        message = str(error)
+        for option, argument in arguments.items():
+            message = message.replace(option, argument)
+        if message == str(error):
+            raise
+        raise type(error)(message, error.file, error.line, error.key) from None

@@ -42,10 +42,13 @@ def plot(
     Returns:
         The axes.
     """
-    import matplotlib.pyplot as plt
+    state = _state(what)
+    if ax is not None and not hasattr(ax, "get_zlim"):
+        raise InputError(f'ax must be axes with projection="3d", not {type(ax).__name__}')
+    angles = _check.finite(view, "view", (2,))
+    plt = _pyplot()
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    state = _state(what)
     axes = plt.figure().add_subplot(projection="3d") if ax is None else ax
     axes.computed_zorder = False  # cables and markers are seen through the body
     triangles = state.model.surface()
@@ -63,7 +66,7 @@ def plot(
     markers = 1e3 * state.markers()
     if len(markers):
         axes.scatter(*markers.T, color="#11161d", s=14, depthshade=False, zorder=6)
-    _frame(axes, corners.reshape(-1, 3), view)
+    _frame(axes, corners.reshape(-1, 3), angles)
     if values is not None and field is not None:
         _colour_bar(axes, values, field)
     return axes
@@ -75,8 +78,12 @@ def plot_program(result: ProgramResult, *, axes: Any = None) -> Any:
     Returns:
         Two axes, one above the other.
     """
-    import matplotlib.pyplot as plt
+    from .program import ProgramResult
 
+    _check.instance(result, ProgramResult, "result")
+    if axes is not None and np.shape(axes) != (2,):
+        raise InputError("axes must be two axes, one for markers and one for tensions and pressures")
+    plt = _pyplot()
     upper, lower = plt.subplots(2, 1, sharex=True, layout="constrained")[1] if axes is None else axes
     times = result.times
     for name, way in result.markers.items():
@@ -98,17 +105,29 @@ def plot_program(result: ProgramResult, *, axes: Any = None) -> Any:
 
 def picture(what: Union[Model, State], *, field: str | None = None, size_px: tuple[int, int] = (640, 480)) -> Any:
     """(height, width, 3) bytes: the robot as :func:`plot` draws it, without a window."""
+    sizes = _check.integers(size_px, "size_px")
+    if sizes.shape != (2,):
+        raise InputError("size_px must be two whole numbers, width and height")
+    width, height = (int(s) for s in sizes)
+    if not (16 <= width <= 10000 and 16 <= height <= 10000):
+        raise InputError(f"a picture of {width} x {height} pixels is not possible; write 16 to 10000 for each")
+    _pyplot()
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    width, height = (_check.integer(s, "size_px") for s in size_px)
-    if not (16 <= width <= 10000 and 16 <= height <= 10000):
-        raise InputError(f"a picture of {width} x {height} pixels is not possible; write 16 to 10000 for each")
     figure = Figure(figsize=(width / 100, height / 100), dpi=100, layout="constrained")
     canvas = FigureCanvasAgg(figure)
     plot(what, field=field, ax=figure.add_subplot(projection="3d"))
     canvas.draw()
     return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+
+
+def _pyplot() -> Any:
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError as error:
+        raise ImportError("pictures need matplotlib (Debian: python3-matplotlib)") from error
+    return plt
 
 
 def _state(what: Any) -> State:

@@ -15,8 +15,20 @@ import numpy.typing as npt
 from . import _check, _pliant
 from ._check import Array, PathLike, Progress
 from ._values import Value
-from .errors import InputError
+from .errors import InputError, arguments_for_options
 from .robot import Changes, Robot, _changes
+
+
+_ARGUMENTS = {
+    "--resin MATERIAL=RESIN": "resins={MATERIAL: RESIN}",
+    "--resin": "resins",
+    "--any-vat": "any_vat=True",
+    "--layer": "layer",
+    "--copies": "copies",
+    "--support": "support",
+    "--printer": "printer",
+    "--set ": "changes: ",
+}
 
 
 class Vat(NamedTuple):
@@ -134,7 +146,7 @@ def slice(
         support: material of supports; None: no supports.
         progress: called with (stage, share) some times a second; False cancels.
     """
-    with _files_of(inputs) as files:
+    with arguments_for_options(_ARGUMENTS), _files_of(inputs) as files:
         plan = _pliant.slice(
             files,
             _check.path(printer, "printer"),

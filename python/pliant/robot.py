@@ -14,7 +14,7 @@ import numpy as np
 from . import _check, _pliant, _toml
 from ._check import AnyArray, Array, IntArray, PathLike
 from ._values import Value
-from .errors import Failure, InputError
+from .errors import Failure, InputError, arguments_for_options
 
 #: Changes of a robot file: {"mesh.order": 1}, or ["mesh.order=1"] as on the command line.
 Changes = Union[Mapping[str, Any], Iterable[str], None]
@@ -107,7 +107,7 @@ class Robot:
         self.folder = folder.absolute()
         self.changes = tuple(listed)
         self._in_python = in_python
-        with self._in_its_words():
+        with arguments_for_options({"--set ": "changes: "}), self._in_its_words():
             self._robot = _pliant.Robot.parse(text, self.folder, listed)
 
     @contextmanager

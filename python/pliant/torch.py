@@ -8,7 +8,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import torch
+
+try:
+    import torch
+except ImportError as error:
+    raise ImportError("pliant.torch needs PyTorch (Debian: python3-torch)") from error
 
 from . import _check
 from .model import Model, State

@@ -158,6 +158,36 @@ MISTAKES = {
         lambda m: pliant.gradient(m, [pliant.Measure("tension", "flexor")], lambda step, values: (0.0, [np.nan])),
         "the slopes of judge has a number that is not finite",
     ),
+    "tetrahedra overlap": (
+        lambda m: pliant.Model(pliant.Robot(BLOCK), pliant.Mesh(cube().points, [*cube().tets, cube().tets[0]])),
+        "overlap: they lie on the same side of a face that they share",
+    ),
+    "a change names nothing": (
+        lambda m: m.robot.changed({"parameters.width": 3}),
+        "changes: parameters.width: the file has no",
+    ),
+    "a layer has no unit": (
+        lambda m: pliant.slice(
+            "examples/tutorial/finger.toml", "no.zip", printer="examples/printers/tower.toml", layer="50"
+        ),
+        "layer",
+    ),
+    "models are forgotten": (
+        lambda m: pliant.Batch(None),
+        "models must be a pliant.Model or several, not NoneType",
+    ),
+    "a view is one number": (
+        lambda m: pliant.plotting.plot(m, view=30),
+        "view has shape (); it must have shape (2,)",
+    ),
+    "a picture has one size": (
+        lambda m: pliant.plotting.picture(m, size_px=300),
+        "size_px must be two whole numbers, width and height",
+    ),
+    "a model is plotted as a program": (
+        lambda m: pliant.plotting.plot_program(m),
+        "result must be a pliant.ProgramResult, not Model",
+    ),
     "progress cannot be called": (
         lambda m: m.step(m.rest(), [0.05], progress=True),
         "progress must be callable, as progress(stage, share), not bool",
