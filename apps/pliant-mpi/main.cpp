@@ -5,12 +5,11 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
-#include <CLI/Validators.hpp>
 #include <cstdio>
-#include <map>
 #include <new>
 #include <string>
 
+#include "../usage.hpp"
 #include "base/core/error.hpp"
 #include "simulate.hpp"
 #include "simulation/distributed/petsc.hpp"
@@ -23,23 +22,29 @@ using sim::distributed::Preconditioner;
 constexpr const char* about =
     "Simulates one robot on many machines: each rank has a part of it. Start it with mpirun or srun.";
 
+Preconditioner preconditioner_of(const std::string& word) {
+    if (word == "gamg") return Preconditioner::gamg;
+    if (word == "hypre") return Preconditioner::hypre;
+    throw CLI::ValidationError("--preconditioner", "write gamg or hypre, not " + word);
+}
+
 void add_options(CLI::App& command, app::Options& options) {
     command.add_option("robot", options.robot, "robot file (TOML)")->required();
     command.add_option("-o,--output", options.folder, "folder for the results; without it only a summary is printed");
     command.add_option("--steps", options.steps, "number of steps, in place of the file's")
-        ->check(CLI::Range(1, 100000));
+        ->check(app::between(1, 100000));
     command.add_option("--set", options.assignments, "KEY=VALUE: change any key")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
-    command.add_option("--preconditioner", options.preconditioner, "gamg or hypre (gamg)")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, Preconditioner>{{"gamg", Preconditioner::gamg}, {"hypre", Preconditioner::hypre}}));
+    command.add_option_function<std::string>(
+        "--preconditioner", [&](const std::string& word) { options.preconditioner = preconditioner_of(word); },
+        "gamg or hypre (gamg)");
     command.add_option("--frames-every", options.frames_every, "a frame for ParaView every so many steps; 0: none (1)")
-        ->check(CLI::Range(0, 100000));
+        ->check(app::between(0, 100000));
     command
         .add_option("--checkpoint-every", options.checkpoint_every,
                     "write a checkpoint every so many steps, to FOLDER.checkpoint; 0: never (1)")
-        ->check(CLI::Range(0, 100000));
+        ->check(app::between(0, 100000));
     command.add_flag("--resume", options.resume, "continue from FOLDER.checkpoint, on any number of ranks");
     command.add_flag("-q,--quiet", options.quiet, "print errors only");
     command.add_flag("--json", options.json, "print the summary as JSON");
@@ -56,9 +61,14 @@ int run(const sim::distributed::Ranks& ranks, int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        const bool asked = error.get_exit_code() == 0;
+        if (error.get_exit_code() != 0) {
+            const auto below = app.get_subcommands();
+            const Error found = app::usage_error(below.empty() ? app : *below.front(), error);
+            if (ranks.is_root()) fmt::print(stderr, "{}\n", found.message);
+            return app::exit_bad_input;
+        }
         if (ranks.is_root()) app.exit(error);
-        return asked ? app::exit_done : app::exit_bad_input;
+        return app::exit_done;
     }
     const Result<int> status = simulate(ranks, options);
     if (status) return *status;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "../usage.hpp"
 #include "base/core/files.hpp"
 #include "base/core/units.hpp"
 #include "command.hpp"
@@ -312,13 +313,13 @@ void add_tensile(CLI::App& parent, int& status) {
         ->check(CLI::IsMember({"neo-hookean", "mooney-rivlin", "yeoh", "ogden"}))
         ->capture_default_str();
     command->add_option("--terms", c->terms, "number of terms of Ogden's law, with --law ogden (default 1)")
-        ->check(CLI::Range(1, 3));
+        ->check(between(1, 3));
     command->add_option("--max-stretch", c->most_stretch, "ignore rows beyond this stretch")
-        ->check(CLI::Range(1.0, 100.0));
+        ->check(between(1.0, 100.0));
     command
         ->add_option("--poisson", c->options.poisson_ratio,
                      "Poisson ratio for the robot file; the fit is incompressible")
-        ->check(CLI::Range(0.0, 0.4999))
+        ->check(between(0.0, 0.4999))
         ->capture_default_str();
     command->add_option("--name", c->name, "name of the material (default: that of the file)");
     add_files(*command, *c);

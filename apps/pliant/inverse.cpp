@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "../usage.hpp"
 #include "base/core/counted.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
@@ -98,7 +99,7 @@ void add_inverse(CLI::App& app, int& status) {
     command
         ->add_option("--starts", options->search.starts,
                      "starts spread over the ranges, tried where the path from rest does not reach the first waypoint")
-        ->check(CLI::Range(0, 1000))
+        ->check(between(0, 1000))
         ->capture_default_str();
     command->add_option("--set", options->assignments, "KEY=VALUE: change any key, as in goal.reach.tolerance=\"1 mm\"")
         ->type_name("KEY=VALUE")

@@ -16,6 +16,7 @@
 #include <system_error>
 #include <vector>
 
+#include "../usage.hpp"
 #include "base/core/text.hpp"
 #include "command.hpp"
 #include "program.hpp"
@@ -122,7 +123,8 @@ int pliant::app::run_program(const std::vector<std::string>& words) {
             fmt::print(stderr, "{}", app.help());
             return exit_bad_input;
         }
-        return app.exit(error) == 0 ? exit_done : exit_bad_input;
+        if (error.get_exit_code() == 0) return app.exit(error);  // it asks for the help or the version
+        return report(usage_error(command, error), std::find(words.begin(), words.end(), "--json") != words.end());
     }
     return status;
 }

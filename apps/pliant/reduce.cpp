@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../usage.hpp"
 #include "base/core/counted.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
@@ -136,23 +137,23 @@ void add_reduce(CLI::App& app, int& status) {
     command
         ->add_option("--samples", options->reduction.samples,
                      "equilibria to learn from; 0: 24 for each actuator, 240 at most")
-        ->check(CLI::Range(0, 100000))
+        ->check(between(0, 100000))
         ->capture_default_str();
     command
         ->add_option("--basis-error", options->reduction.basis_error,
                      "share of the motion that the modes may leave out")
-        ->check(CLI::Range(1e-12, 0.999))
+        ->check(between(1e-12, 0.999))
         ->capture_default_str();
     command
         ->add_option("--force-error", options->reduction.force_error,
                      "share of the forces that the weighted tets may miss")
-        ->check(CLI::Range(1e-12, 0.999))
+        ->check(between(1e-12, 0.999))
         ->capture_default_str();
     command->add_option("--modes", options->reduction.most_modes, "largest number of modes")
-        ->check(CLI::Range(1, 1000))
+        ->check(between(1, 1000))
         ->capture_default_str();
     command->add_option("--checks", options->checks, "other inputs at which it is compared with the whole robot")
-        ->check(CLI::Range(0, 100000))
+        ->check(between(0, 100000))
         ->capture_default_str();
     command->add_option("--set", options->assignments, "KEY=VALUE: change any key, as in cable.flexor.range=[0.8, 1]")
         ->type_name("KEY=VALUE")

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "../usage.hpp"
 #include "base/core/counted.hpp"
 #include "base/core/vec3.hpp"
 #include "command.hpp"
@@ -234,7 +235,7 @@ void add_simulate(CLI::App& app, int& status) {
     command->add_option("robot", options->robot, "robot file (TOML)")->required();
     add_output_path(*command, options->folder, "folder for the results; without it only a summary is printed");
     command->add_option("--steps", options->steps, "number of steps, in place of the file's")
-        ->check(CLI::Range(1, 100000));
+        ->check(between(1, 100000));
     auto* solver = command->add_option("--solver", options->solvers,
                                        "auto, newton, quasi-newton, anderson or local-global, in place of the file's; "
                                        "several, separated by commas, are compared");
@@ -253,7 +254,7 @@ void add_simulate(CLI::App& app, int& status) {
     command
         ->add_option("--checkpoint-every", options->checkpoint_every,
                      "write a checkpoint every so many steps to FOLDER.checkpoint, to resume from after a stop")
-        ->check(CLI::Range(1, 100000));
+        ->check(between(1, 100000));
     command->add_flag("--resume", options->resume,
                       "resume from FOLDER.checkpoint; the results are the same as without a stop");
     command

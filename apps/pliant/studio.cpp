@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "../usage.hpp"
 #include "base/core/process.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
@@ -126,7 +127,7 @@ void add_studio(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand("studio", "web interface: simulate a robot live, slice it and print it");
     command->add_option("file", options->file, "robot file (TOML) or job (.zip); without it an example");
     command->add_option("--port", options->port, "port to listen on; 0: any (7117, or any if that is taken)")
-        ->check(CLI::Range(0, 65535));
+        ->check(between(0, 65535));
     command->add_option("--bind", options->address,
                         "address to listen on; any but loopback needs the token that is printed");
     command->add_option("--token-file", options->token_file,

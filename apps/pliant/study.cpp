@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "../usage.hpp"
 #include "base/core/counted.hpp"
 #include "base/core/files.hpp"
 #include "base/core/own_core.hpp"
@@ -280,16 +281,16 @@ void add_study(CLI::App& app, int& status) {
         ->add_option(
             "--jobs", options->jobs,
             "rows at a time (default: all cores; 1 in each rank); with --on slurm: tasks at a time (default: no limit)")
-        ->check(CLI::Range(1, 100000));
+        ->check(between(1, 100000));
     command->add_flag("--resume", options->resume, "resume: keep the rows that are already in the folder");
     command->add_flag("--plan-only", options->plan_only,
                       "write the plan of the rows to the folder without running any");
     command
         ->add_option("--chunk", options->chunk,
                      "run only the rows of this chunk, counted from 0, as a task of a cluster does")
-        ->check(CLI::Range(0, 1000000));
+        ->check(between(0, 1000000));
     command->add_option("--chunks", options->chunks, "with --chunk: that many chunks, from that one on")
-        ->check(CLI::Range(1, 1000000))
+        ->check(between(1, 1000000))
         ->capture_default_str()
         ->needs("--chunk");
     command->add_flag("--others", options->others, "with --chunk: then also chunks that no other process has begun")

@@ -128,6 +128,12 @@ Status run_twin(const TwinOptions& options) {
     Result<std::optional<job::Image>> mask = operate::load_mask(printer->projector, options.printer);
     if (!mask) return tl::unexpected(mask.error());
     wanted->mask = std::move(*mask);
+    if (!options.projector.empty()) {
+        std::error_code error;
+        std::filesystem::create_directories(options.projector, error);
+        if (!std::filesystem::is_directory(options.projector))
+            return input_error("--projector {}: is not a folder and cannot be made one", options.projector);
+    }
     Result<twin::Pty> pty = twin::Pty::open(options.link);
     if (!pty) return tl::unexpected(pty.error());
     twin::Twin twin(*printer, *wanted);

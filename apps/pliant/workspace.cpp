@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "../usage.hpp"
 #include "base/core/counted.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
@@ -125,13 +126,13 @@ void add_workspace(CLI::App& app, int& status) {
     command
         ->add_option("--side", options->search.side,
                      "samples along each input of a sheet, over which two inputs vary, or of the only one")
-        ->check(CLI::Range(2, 1000))
+        ->check(between(2, 1000))
         ->capture_default_str();
     command
         ->add_option("--between", options->between,
                      "samples spread over the ranges of two actuators or more, besides those of the sheets (default "
                      "100)")
-        ->check(CLI::Range(0, 1000000));
+        ->check(between(0, 1000000));
     command->add_flag("--resume", options->search.resume,
                       "resume from FOLDER.checkpoint; the results are the same as without a stop");
     command->add_option("--set", options->assignments, "KEY=VALUE: change any key, as in cable.flexor.range=[0.8, 1]")

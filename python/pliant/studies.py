@@ -183,7 +183,7 @@ def _told(output: str) -> dict[str, Any] | None:
 
 def _complain(status: int, told: dict[str, Any], errors: str) -> None:
     """Raises the error that the program reported, in its output or among its errors."""
-    lines = [line for line in errors.strip().splitlines() if not line.startswith("Run with --help")]
+    lines = errors.strip().splitlines()
     ended = f"pliant study ended with exit status {status}"
     message = str(told["error"]) if "error" in told else lines[-1] if lines else ended
     if status == 2:

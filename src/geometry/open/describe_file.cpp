@@ -21,11 +21,16 @@ namespace {
 std::string no_volume(const TriMesh& surface) {
     constexpr double flat = 1e-9;
     const std::vector<BorderEdge> border = border_edges(surface);
-    if (!border.empty())
+    if (!border.empty()) {
+        const double missing = surface_area(border_caps(surface)), whole = surface_area(surface);
+        if (!(missing > flat * whole))
+            return fmt::format("triangles are listed twice: {} have no neighbour of their own; it has no volume",
+                               counted(border.size(), "edge"));
         return fmt::format(
             "the surface is open: {} without a neighbour, and an area of about {:.3g} is missing, of "
             "{:.3g} in all; it has no volume",
-            counted(border.size(), "edge"), surface_area(border_caps(surface)), surface_area(surface));
+            counted(border.size(), "edge"), missing, whole);
+    }
     const double size = bounds(surface).diagonal();
     if (!(std::fabs(signed_volume(surface)) > flat * size * size * size))
         return "the surface is flat: it encloses no volume";
@@ -43,7 +48,7 @@ std::string surface_text(const SurfaceFile& surface) {
     if (!none.empty())
         text += "\n  note: " + none;
     else if (cuts_itself(surface.mesh))
-        text += "\n  note: the surface cuts itself: the volume counts what lies in two of its parts twice";
+        text += "\n  note: the surface cuts or touches itself: the volume counts what lies in two of its parts twice";
     return text;
 }
 

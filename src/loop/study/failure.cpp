@@ -10,20 +10,13 @@
 namespace pliant::study {
 namespace {
 
-/// Where usage errors end; the error is in the line before.
-constexpr std::string_view advice = "Run with --help";
-
-/// The last non-empty line, other than advice: errors come last.
+/// The last non-empty line: errors come last.
 std::string last_line(std::string_view text) {
-    while (true) {
-        const std::size_t end = text.find_last_not_of(" \r\n");
-        if (end == std::string_view::npos) return "";
-        text = text.substr(0, end + 1);
-        const std::size_t before = text.find_last_of("\r\n");
-        const std::size_t start = before == std::string_view::npos ? 0 : before + 1;
-        if (!text.substr(start).starts_with(advice)) return std::string(text.substr(start));
-        text = text.substr(0, start);
-    }
+    const std::size_t end = text.find_last_not_of(" \r\n");
+    if (end == std::string_view::npos) return "";
+    text = text.substr(0, end + 1);
+    const std::size_t before = text.find_last_of("\r\n");
+    return std::string(text.substr(before == std::string_view::npos ? 0 : before + 1));
 }
 
 std::string text_in(const nlohmann::json& json, const char* key) {

@@ -14,11 +14,11 @@ std::string reason(const std::string& output, const std::string& errors = "") {
 
 }  // namespace
 
-TEST_CASE("a usage error is its reason, not the advice after it") {
-    const std::string error = "--steps: Value 0 not in range [1 - 100000]";
-    CHECK(reason("", error + "\nRun with --help for more information.\n") == error);
-    CHECK(reason("", error + "\r\n\r\nRun with --help for more information.\r\n\r\n") == error);
-    CHECK(reason("", "Run with --help for more information.\n") == "exit status 1");
+TEST_CASE("a usage error is the last line that is not empty") {
+    const std::string error = "pliant simulate: --steps: write a whole number from 1 to 100000, not 0";
+    CHECK(reason("", "note: first\n" + error + "\n") == error);
+    CHECK(reason("", error + "\r\n\r\n") == error);
+    CHECK(reason("", "\n\n") == "exit status 1");
 }
 
 TEST_CASE("an unreachable goal fails a row with the first waypoint that was missed, and why") {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/files/surface_file.hpp"
+#include "geometry/mesh/triangle_tree.hpp"
 #include "geometry/repair/cavity.hpp"
 #include "geometry/repair/surface_check.hpp"
 #include "simulation/actuators/chamber_surface.hpp"
@@ -18,6 +19,8 @@ namespace {
 /// The wall in a surface file need not match the mesh exactly: largest distance from the bodies, as a share of the
 /// robot's size.
 constexpr double wall_reach = 0.03;
+/// Of the space inside such a wall; some is allowed because the wall need not match the mesh.
+constexpr double most_material = 0.9;
 
 /// The boundary of a meshed chamber. A mouth not covered by a body must be inside a support.
 sim::Wall wall_of_region(ModelDraft& draft, const ChamberSpec& spec) {
@@ -46,6 +49,24 @@ sim::Wall wall_of_cavity(ModelDraft& draft, const ChamberSpec& spec, const Cavit
     return {};
 }
 
+/// The share of the space inside a closed surface that is material, by the points of a grid; 0 if none of them lies
+/// inside.
+double share_of_material(const mesh::TriMesh& surface, const sim::Attacher& attacher) {
+    constexpr int cells = 12;
+    const mesh::TriangleTree tree(surface);
+    const Box3 box = mesh::bounds(surface);
+    const Vec3 step = box.size() / cells;
+    int inside = 0, material = 0;
+    for (int k = 0; k < cells * cells * cells; ++k) {
+        const Vec3 cell{k % cells + 0.5, k / cells % cells + 0.5, k / (cells * cells) + 0.5};
+        const Vec3 p = box.low + Vec3{cell.x * step.x, cell.y * step.y, cell.z * step.z};
+        if (tree.winding_number(p) < 0.5) continue;
+        ++inside;
+        material += attacher.distance_outside(p) > 0 ? 0 : 1;
+    }
+    return inside > 0 ? static_cast<double>(material) / inside : 0;
+}
+
 /// A closed surface whose points are attached to the tets that contain them.
 sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const ChamberSpec& spec,
                        const SurfaceFile& given) {
@@ -58,6 +79,13 @@ sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const C
         mesh::scaled(mesh::placed(std::move(file->mesh), given.placement), draft.robot.unit_m);
     if (Status closed = mesh::check_closed(surface); !closed) {
         draft.problem(spec.line, "chamber", spec.name, closed.error().message);
+        return {};
+    }
+    if (const double share = share_of_material(surface, attacher); share > most_material) {
+        draft.problem(spec.line, "chamber", spec.name,
+                      fmt::format("{:.0f} % of the space in its surface is material, but the bodies must already have "
+                                  "the cavity; with geometry = a shape it is cut out of them",
+                                  100 * share));
         return {};
     }
     sim::Wall wall;

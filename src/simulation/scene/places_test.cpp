@@ -140,6 +140,15 @@ fixed = [{ name = "floor", box = [[0, 0, 0], [10, 10, 0]] }]
 chamber = [{ name = "air", surface = "cube.stl", place = { scale = 0.4, move = [3, 3, 3] }, target = { volume_ratio = 1.1 } }]
 obstacle = [{ name = "lid", surface = "cube.stl", place = { rotate = { angle = 90, axis = [1, 0, 0] }, move = [0, 10, 12] } }]
 )";
+    const std::string filled = replaced(text, "{ box = [[3, 3, 3], [7, 7, 7]] }", "{ box = [[3, 3, 3], [4, 4, 4]] }");
+    const Result<Robot> robot = parse_robot(filled, folder.path() / "block.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    const auto mesh = build_mesh(*robot, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    const auto refused = build_model(*robot, *mesh);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message.find("98 % of the space in its surface is material") != std::string::npos);
     const Built built = testing::build(parse_robot(text, folder.path() / "block.toml"));
     const sim::Description& d = built.model.description();
     const sim::Wall& wall = d.chambers.at(0).wall;
