@@ -9,11 +9,11 @@
 namespace pliant::mesh {
 
 /// Volumes and their squares stay below the largest double, whatever the unit.
-inline constexpr double largest_coordinate = 1e30;
+inline constexpr double farthest = 1e30;
 inline constexpr const char* too_far = "coordinates go up to 1e30, so that volumes can be computed";
 
 [[nodiscard]] inline bool is_measurable(const Vec3& p) {
-    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= largest_coordinate;
+    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= farthest;
 }
 
 }  // namespace pliant::mesh

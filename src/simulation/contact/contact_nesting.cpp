@@ -93,8 +93,7 @@ Status Contact::check_nothing_is_nested() const {
 
 bool Contact::parts_are_joined(int a, int b) const {
     return std::any_of(joined_.begin(), joined_.end(), [&](const Joined& joined) {
-        const auto [low, high] = std::minmax(joined.first, joined.second);
-        return std::minmax(a - 1, b - 1) == std::pair(low, high);
+        return (joined.first == a - 1 && joined.second == b - 1) || (joined.first == b - 1 && joined.second == a - 1);
     });
 }
 
