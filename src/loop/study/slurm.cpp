@@ -10,6 +10,7 @@
 
 #include "base/core/digest.hpp"
 #include "base/core/files.hpp"
+#include "base/core/process.hpp"
 #include "base/core/letters.hpp"
 #include "loop/study/folder.hpp"
 #include "loop/study/tool.hpp"

@@ -51,7 +51,7 @@ public:
         const Inputs wanted{target.time, target.drives, wanted_force(target.pull)};
         LiveProgress result;
         const double way = distance(wanted);
-        if (way > 0) result = go(wanted, path, progress);
+        if (way > 0) result = go(wanted, way, progress);
         result.arrived = result.reason.empty() && distance(wanted) == 0 && is_settled(target.pull);
         result.wall_s = wall_s_ = watch.read_s();
         return result;
