@@ -10,8 +10,8 @@
 
 #include "base/core/digest.hpp"
 #include "base/core/files.hpp"
-#include "base/core/process.hpp"
 #include "base/core/letters.hpp"
+#include "base/core/process.hpp"
 #include "loop/study/folder.hpp"
 #include "loop/study/tool.hpp"
 
