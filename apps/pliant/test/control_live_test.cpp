@@ -6,12 +6,12 @@
 #include <functional>
 #include <thread>
 
+#include "../shared_light.hpp"
 #include "control_bench.hpp"
 #include "printing/host/control_api.hpp"
 #include "printing/twin/serve.hpp"
 #include "printing/wire/scaled_time.hpp"
 #include "printing/wire/serial.hpp"
-#include "shared_light.hpp"
 
 using namespace pliant;
 using namespace pliant::app;
