@@ -33,8 +33,11 @@ std::string reason_of(const CLI::App& command, const CLI::ParseError& error) {
 }  // namespace
 
 Error usage_error(const CLI::App& command, const CLI::ParseError& error) {
-    const std::string name = full_name(command);
-    return {Cause::input, fmt::format("{}: {}; {} --help lists what it takes", name, reason_of(command, error), name)};
+    const std::string name = full_name(command), reason = reason_of(command, error);
+    const bool is_value = dynamic_cast<const CLI::ValidationError*>(&error) != nullptr ||
+                          dynamic_cast<const CLI::ConversionError*>(&error) != nullptr;  // says what would be right
+    return {Cause::input, is_value ? fmt::format("{}: {}", name, reason)
+                                   : fmt::format("{}: {}; {} --help lists what it takes", name, reason, name)};
 }
 
 }  // namespace pliant::app

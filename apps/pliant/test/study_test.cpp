@@ -109,7 +109,7 @@ TEST_CASE("an empty name of the output is an error, of a study as of other comma
     const Place place(head + "plan = \"grid\"\n" + modulus + ", levels = 2 }\n" + force);
     const Ended ended = place.wait(place.start({(place / "s.toml").string(), "-o", ""}));
     CHECK(ended.status == 2);
-    CHECK(ended.errors.starts_with("--output: the name is empty"));
+    CHECK(ended.errors.starts_with("pliant study: --output: the name is empty"));
 }
 
 TEST_CASE("a key of a material that the robot does not have fails every row, and says so") {
@@ -191,7 +191,7 @@ goal = [{ name = "back", marker = "tip", point = [20, 5, 5] }]
     const auto failures = place.summary()["failures"];
     REQUIRE(failures.size() == 2);
     CHECK(failures[0]["reason"] == "waypoint 1 of 1 is not reached: pull is at the lower end of its range");
-    CHECK(failures[1]["reason"].get<std::string>().starts_with("--starts: Value 2000 not in range"));
+    CHECK(failures[1]["reason"].get<std::string>().starts_with("pliant inverse: --starts: write a whole number from "));
 }
 
 TEST_CASE("a study killed at any time resumes to the results of a study that was never stopped") {
