@@ -1,5 +1,7 @@
 #include "geometry/mesh/tet_mesh.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <mutex>
@@ -156,21 +158,32 @@ std::vector<Face> region_faces(const TetMesh& mesh, int region) {
     return single_faces(mesh, [&](std::size_t t) { return mesh.region[t] == region; });
 }
 
-std::optional<std::array<int, 2>> overlapping_tets(const TetMesh& mesh) {
+std::optional<OverlappingTets> overlapping_tets(const TetMesh& mesh) {
     std::mutex mutex;
-    std::optional<std::array<int, 2>> lowest;
+    std::optional<OverlappingTets> lowest;
+    const auto order = [](const OverlappingTets& pair) { return std::tuple(!pair.same, pair.first, pair.second); };
     const auto all = [](std::size_t) { return true; };
     for_each_group(mesh, all, [&](std::span<const Listed> list) {
         for (std::size_t k = 1; k < list.size(); ++k) {
             for (std::size_t m = k; m-- > 0 && list[k].is_on_same(list[m]);) {
                 if (ascends(mesh, list[k].face) != ascends(mesh, list[m].face)) continue;
-                const std::array<int, 2> pair{static_cast<int>(list[m].face / 4), static_cast<int>(list[k].face / 4)};
+                const std::size_t first = list[m].face / 4, second = list[k].face / 4;
+                const auto a = mesh.tet(first).first(4), b = mesh.tet(second).first(4);
+                const OverlappingTets pair{static_cast<int>(first), static_cast<int>(second),
+                                           std::is_permutation(a.begin(), a.end(), b.begin())};
                 const std::lock_guard lock(mutex);
-                if (!lowest || pair < *lowest) lowest = pair;
+                if (!lowest || order(pair) < order(*lowest)) lowest = pair;
             }
         }
     });
     return lowest;
+}
+
+std::string overlap_text(const OverlappingTets& pair) {
+    return fmt::format(fmt::runtime(pair.same ? "tetrahedra {} and {} are the same"
+                                              : "tetrahedra {} and {} overlap: they lie on the same side of a face "
+                                                "that they share"),
+                       pair.first, pair.second);
 }
 
 Extract extract_regions(const TetMesh& mesh, const std::vector<bool>& keep) {

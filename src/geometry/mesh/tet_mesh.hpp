@@ -56,9 +56,15 @@ void reverse_tet(std::span<int> nodes);
 /// The faces that bound one region, towards other regions or the outside.
 [[nodiscard]] std::vector<Face> region_faces(const TetMesh& mesh, int region);
 
-/// Two tets that share a face and lie on the same side of it, so that they overlap (as a tet that is listed twice
-/// does); the lower of such pairs. Tets that overlap without a common face are not found.
-[[nodiscard]] std::optional<std::array<int, 2>> overlapping_tets(const TetMesh& mesh);
+/// Two tets that share a face and lie on the same side of it.
+struct OverlappingTets {
+    int first, second;
+    bool same;  ///< they have the same corners: one tet is listed twice
+};
+/// The first such pair, of the same tets if there are any. Tets that overlap without a common face are not found.
+[[nodiscard]] std::optional<OverlappingTets> overlapping_tets(const TetMesh& mesh);
+/// "tetrahedra 3 and 7 are the same", or that they overlap.
+[[nodiscard]] std::string overlap_text(const OverlappingTets& pair);
 
 /// Some regions of a mesh, with the nodes that they use.
 struct Extract {
