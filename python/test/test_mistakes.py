@@ -158,9 +158,9 @@ MISTAKES = {
         lambda m: pliant.gradient(m, [pliant.Measure("tension", "flexor")], lambda step, values: (0.0, [np.nan])),
         "the slopes of judge has a number that is not finite",
     ),
-    "tetrahedra overlap": (
+    "a tetrahedron is listed twice": (
         lambda m: pliant.Model(pliant.Robot(BLOCK), pliant.Mesh(cube().points, [*cube().tets, cube().tets[0]])),
-        "overlap: they lie on the same side of a face that they share",
+        "mesh: tetrahedra 0 and 6 are the same",
     ),
     "a change names nothing": (
         lambda m: m.robot.changed({"parameters.width": 3}),

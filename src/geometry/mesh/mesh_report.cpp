@@ -107,11 +107,7 @@ MeshReport report_on(const TetMesh& mesh) {
     report.tets = mesh.tet_count();
     for (const Vec3& p : mesh.points) report.box.add(p);
     report.notes = mesh.notes;
-    if (const auto pair = overlapping_tets(mesh))
-        report.notes.push_back(
-            fmt::format("tetrahedra {} and {} overlap: they lie on the same side of a face that "
-                        "they share",
-                        (*pair)[0], (*pair)[1]));
+    if (const auto pair = overlapping_tets(mesh)) report.notes.push_back(overlap_text(*pair));
     add_regions(mesh, report);
     if (mesh.tet_count() > 0) add_shapes(mesh, report);
     return report;

@@ -43,11 +43,16 @@ TEST_CASE("tets that overlap are found by the face that they share") {
         TetMesh twice = two_tets();
         twice.nodes.insert(twice.nodes.end(), {2, 0, 1, 3});  // the first one again, its corners rotated
         twice.region.push_back(0);
-        CHECK(overlapping_tets(raised(twice)) == Pair{0, 2});
+        const auto same = overlapping_tets(raised(twice));
+        REQUIRE(same);
+        CHECK((same->same && Pair{same->first, same->second} == Pair{0, 2}));
+        CHECK(overlap_text(*same) == "tetrahedra 0 and 2 are the same");
         TetMesh same_side = two_tets();
         same_side.points[4] = {-0.5, -0.5, -0.5};  // the second tet folded over the first
         reverse_tet(std::span(same_side.nodes).subspan(4));
-        CHECK(overlapping_tets(raised(same_side)) == Pair{0, 1});
+        const auto folded = overlapping_tets(raised(same_side));
+        REQUIRE(folded);
+        CHECK((!folded->same && Pair{folded->first, folded->second} == Pair{0, 1}));
     }
 }
 

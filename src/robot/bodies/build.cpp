@@ -251,11 +251,12 @@ Status claim_tets(const Robot& robot, const mesh::TetMesh& mesh, const std::vect
 
 /// Assigns every region of a given mesh to the body, chamber or gap that names it.
 Result<mesh::TetMesh> give_regions(const Robot& robot, mesh::TetMesh mesh) {
-    if (const auto pair = mesh::overlapping_tets(mesh))
-        return tl::unexpected(at(place(robot, robot.mesh.line, "mesh", ""),
-                                 {Cause::input, fmt::format("tetrahedra {} and {} of the mesh overlap: they lie on the "
-                                                            "same side of a face that they share",
-                                                            (*pair)[0], (*pair)[1])}));
+    if (const auto pair = mesh::overlapping_tets(mesh)) {
+        if (pair->same)
+            return tl::unexpected(
+                at(place(robot, robot.mesh.line, "mesh", ""), {Cause::input, mesh::overlap_text(*pair)}));
+        mesh.notes.push_back(mesh::overlap_text(*pair));  // as slivers of published meshes do
+    }
     const std::vector<Region> users = regions_of(robot);
     std::vector<int> user_of_tet(mesh.tet_count(), -1);
     for (std::size_t u = 0; u < users.size(); ++u) {

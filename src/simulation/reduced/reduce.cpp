@@ -244,7 +244,7 @@ Result<SparseWeights> chosen_tets(const Model& model, const Reduction& reduction
     });
     if (progress.cancelled()) return cancelled();
     if (found.weights.empty())
-        return failure("the robot does not move within the ranges of its actuators: there is nothing to reduce");
+        return failure("no sample moves the robot: take more of them (--samples), or larger ranges of its actuators");
     for (Weight& tet : found.weights) tet.column = training.candidates[tet.column];
     return found;
 }
@@ -275,7 +275,7 @@ Result<Reduction> reduce(const Model& model, const StepperOptions& stepping, con
     if (Status status = solver.solve(wanted, reduction); !status) return tl::unexpected(status.error());
     choose_modes(model, options, reduction);
     if (reduction.modes.cols() == 0)
-        return failure("the robot does not move within the ranges of its actuators: there is nothing to reduce");
+        return failure("no sample moves the robot: take more of them (--samples), or larger ranges of its actuators");
     Result<SparseWeights> tets =
         chosen_tets(model, reduction, reduction.modes.leftCols(reduction.used), options.force_error, progress);
     if (!tets) return tl::unexpected(tets.error());
