@@ -113,7 +113,7 @@ void ChamberSurface::add_gradient(std::span<const double> x, double factor, std:
 }
 
 void ChamberSurface::add_force(std::span<const double> x, double factor, std::span<double> forces) const {
-    add_gradient_of(faces_of_bodies(), x, factor, forces);
+    add_gradient_of(wall_.faces_of_bodies(), x, factor, forces);
 }
 
 void ChamberSurface::add_gradient_of(std::span<const WallFace> faces, std::span<const double> x, double factor,
@@ -147,7 +147,7 @@ void ChamberSurface::add_hessian(std::span<const double> x, double factor, const
                                  const linalg::SymmetricPattern& pattern, std::span<double> values,
                                  bool project) const {
     const std::vector<Vec3> points = points_at(x);
-    for (const WallFace& face : faces_of_bodies()) {
+    for (const WallFace& face : wall_.faces_of_bodies()) {
         const auto count = static_cast<Eigen::Index>(points_of(face));
         const Eigen::MatrixXd symmetric = symmetric_part(second_gradient(face, factor, points), count, project);
         for (Eigen::Index i = 0; i < count; ++i) {
@@ -181,7 +181,7 @@ void ChamberSurface::apply_skew(std::span<const double> x, double factor, std::s
     std::vector<Vec3> motions;
     for (const Attachment& point : wall_.points) motions.push_back(motion(point, v));
     std::vector<Vec3> on_points(points.size());
-    for (const WallFace& face : faces_of_bodies()) {
+    for (const WallFace& face : wall_.faces_of_bodies()) {
         const FaceMatrix between = second_gradient(face, 0.5 * factor, points);
         for (std::size_t i = 0; i < points_of(face); ++i) {
             Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -198,7 +198,7 @@ void ChamberSurface::apply_skew(std::span<const double> x, double factor, std::s
 void ChamberSurface::add_skew(std::span<const double> x, double factor, const std::vector<int>& index,
                               const linalg::SymmetricPattern& pattern, std::span<double> values) const {
     const std::vector<Vec3> points = points_at(x);
-    for (const WallFace& face : faces_of_bodies()) {
+    for (const WallFace& face : wall_.faces_of_bodies()) {
         const FaceMatrix between = second_gradient(face, 0.5 * factor, points);
         for (std::size_t i = 0; i < points_of(face); ++i) {
             for (std::size_t j = 0; j < points_of(face); ++j)

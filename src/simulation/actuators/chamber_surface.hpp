@@ -48,9 +48,6 @@ public:
 
 private:
     [[nodiscard]] std::vector<Vec3> points_at(std::span<const double> x) const;
-    [[nodiscard]] std::span<const WallFace> faces_of_bodies() const {
-        return std::span(wall_.faces).first(wall_.faces.size() - wall_.mouth_faces);
-    }
     void add_gradient_of(std::span<const WallFace> faces, std::span<const double> x, double factor,
                          std::span<double> forces) const;
     void spread(std::span<const Vec3> on_points, std::span<double> on_nodes) const;

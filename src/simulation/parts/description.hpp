@@ -103,6 +103,10 @@ struct Wall {
     /// The last so many faces are mouths of a chamber: no body has them, a support closes the chamber there. They bound
     /// the volume, but the air presses on the support, not on the robot.
     std::size_t mouth_faces = 0;
+
+    [[nodiscard]] std::span<const WallFace> faces_of_bodies() const {
+        return std::span(faces).first(faces.size() - mouth_faces);
+    }
 };
 
 /// A pressure that follows the surface as it deforms: share * pressure, towards the solid.

@@ -330,7 +330,7 @@ private:
 
     Status press(const std::string& name, const Wall& wall, double pressure_Pa) {
         // At a mouth the air presses on the support.
-        for (const WallFace& face : std::span(wall.faces).first(wall.faces.size() - wall.mouth_faces)) {
+        for (const WallFace& face : wall.faces_of_bodies()) {
             std::array<int, 3> corners{};
             for (std::size_t k = 0; k < 3; ++k) {
                 const Attachment& point = wall.points[static_cast<std::size_t>(face[k])];
