@@ -135,6 +135,24 @@ TEST_CASE("all requests before one layer are answered in one pause") {
         CHECK(printed.report.resins[resin].left_ml > plain.report.resins[resin].left_ml);
 }
 
+TEST_CASE("a fixed vat that is refilled many times in a row never ends below its least") {
+    Bench b;
+    b.printer = machine::load_printer("examples/printers/single.toml").value();
+    b.printer.projector.width_px = halves::width_px;
+    b.printer.projector.height_px = halves::height_px;
+    b.job.materials.pop_back();
+    for (job::Layer& layer : b.job.layers) layer.images.pop_back();
+    b.printer.vats.front().fill_ml = b.printer.vat_shape.least_ml + 1.2 * halves::soft_mm2 * 0.05 / 1000;
+    const auto plan = plan::make_plan(b.job, b.printer).value();
+    REQUIRE(plan.refills.size() == layers - 1);
+    for (const plan::RefillBefore& refill : plan.refills)
+        b.refills.push_back({refill.layer, refill.slot, "refill the vat"});
+    const Printed printed = b.run();
+    REQUIRE(printed.status);
+    CHECK_MESSAGE(printed.report.passed, twin::report_text(printed.report));
+    CHECK(printed.report.resins[0].left_ml >= b.printer.vat_shape.least_ml);
+}
+
 TEST_CASE("after a pause during an exposure the rest of the exposure is given") {
     Bench b;
     const Printed printed =

@@ -192,18 +192,33 @@ void note_rare_materials(Manifest& manifest) {
     }
 }
 
-/// The images must contain the drawn volume, unless outlines were compensated.
-void note_volume(Manifest& manifest) {
+/// Notes a difference of more than `tolerance` of the drawn volume; none is known of layer images.
+void note_difference(const std::string& of, double lit_mm3, double drawn_mm3, double tolerance, Manifest& manifest) {
+    if (drawn_mm3 > 0 && std::fabs(lit_mm3 - drawn_mm3) > tolerance * drawn_mm3)
+        manifest.warnings.push_back(fmt::format("the images{} hold {:.6g} mm^3, the bodies {:.6g} mm^3: {:+.2f} %", of,
+                                                lit_mm3, drawn_mm3, 100 * (lit_mm3 / drawn_mm3 - 1)));
+}
+
+/// The images must contain the drawn volume, unless outlines were compensated. Where materials meet, whole pixels
+/// belong to one of them, so each may differ by more than all together.
+void note_volumes(Manifest& manifest) {
+    constexpr double tolerance = 1e-3, tolerance_of_material = 1e-2;
     if (manifest.compensated) return;
-    double drawn = 0, lit = 0;
-    for (const Material& m : manifest.materials) drawn += m.model_volume_mm3;
+    std::vector<double> lit_mm3(manifest.materials.size(), 0.0);
     for (const Layer& layer : manifest.layers) {
-        for (const LayerImage& image : layer.images) lit += image.area_mm2 * layer.thickness_um / 1000;
+        for (const LayerImage& image : layer.images)
+            lit_mm3[static_cast<std::size_t>(image.material)] += image.area_mm2 * layer.thickness_um / 1000;
     }
-    constexpr double tolerance = 1e-3;
-    if (std::fabs(lit - drawn) > tolerance * drawn)
-        manifest.warnings.push_back(fmt::format("the images hold {:.6g} mm^3, the bodies {:.6g} mm^3: {:+.2f} %", lit,
-                                                drawn, 100 * (lit / drawn - 1)));
+    double lit = 0, drawn = 0;
+    for (std::size_t m = 0; m < lit_mm3.size(); ++m) {
+        const Material& material = manifest.materials[m];
+        lit += lit_mm3[m];
+        drawn += material.model_volume_mm3;
+        if (lit_mm3.size() > 1)
+            note_difference(fmt::format(" of material \"{}\"", material.name), lit_mm3[m], material.model_volume_mm3,
+                            tolerance_of_material, manifest);
+    }
+    note_difference("", lit, drawn, tolerance, manifest);
 }
 
 void note_thin(const std::vector<slice::ThinSpot>& thin, const JobSettings& settings, Manifest& manifest) {
@@ -221,7 +236,7 @@ void note_findings(const slice::Findings& findings, const std::vector<slice::Thi
         manifest.warnings.push_back(fmt::format("the part falls apart into {} separate pieces; {} expected",
                                                 findings.pieces.size(), settings.copies));
     note_rare_materials(manifest);
-    note_volume(manifest);
+    note_volumes(manifest);
 }
 
 /// Records findings as warnings, and adds their pictures.

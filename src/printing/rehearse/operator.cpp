@@ -10,7 +10,11 @@ WillingOperator::WillingOperator(twin::Twin& twin, std::vector<host::Refill> ref
 void WillingOperator::look(host::Control& control) {
     if (control.state() != host::State::paused) return;
     const host::Snapshot now = control.snapshot();
-    do_as_asked(now.prompt);
+    // The state stays paused until the resume is carried out, and the next request may have the same text.
+    for (const host::Event& event : control.events_since(last_event_)) {
+        last_event_ = event.number;
+        if (event.kind == "prompt") do_as_asked(event.text);
+    }
     if (!now.door_open.value_or(false)) (void)control.resume();
 }
 

@@ -25,6 +25,7 @@ private:
     twin::Twin& twin_;
     std::vector<host::Refill> refills_;
     std::size_t done_ = 0;  ///< number of refills done
+    long last_event_ = 0;   ///< newest one seen
 };
 
 }  // namespace pliant::rehearse

@@ -127,7 +127,8 @@ void judge_materials(Report& report, const job::Manifest& job, const ImageKind& 
         // Layer images have no drawn surface that explains a difference: only their rounding does.
         const double area_mm2 = job.materials[i].model_area_mm2;
         const double rounding = images.exact || area_mm2 > 0 ? 1e-9 : shown_rounding;
-        m.tolerance_mm3 = rounding * m.model_mm3 + volume_tolerance_mm3(area_mm2, border_um, layer_um);
+        m.tolerance_mm3 =
+            rounding * m.model_mm3 + m.interface_mm3 + volume_tolerance_mm3(area_mm2, border_um, layer_um);
         judge_material(m, images.exact, verdict);
     }
 }
@@ -207,7 +208,7 @@ double volume_tolerance_mm3(double area_mm2, double border_um, double layer_um) 
 Result<Report> inspect(Twin& twin, const job::Manifest& job, const RunSource& images, const Judgement& judgement) {
     Report report;
     for (const job::Material& m : job.materials)
-        report.materials.push_back({m.name, m.resin, m.model_volume_mm3, 0, 0, 0, 0, 0, 0, false});
+        report.materials.push_back({m.name, m.resin, m.model_volume_mm3, 0, 0, 0, 0, 0, 0, 0, false});
     const Result<ImageKind> kind = inspect_layers(report, twin, job, images, judgement.light_slack_s);
     if (!kind) return tl::unexpected(kind.error());
     const Cure& cured = twin.cured();

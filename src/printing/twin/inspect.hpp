@@ -28,7 +28,8 @@ struct MaterialReport {
     double cured_mm3 = 0;      ///< of that, in the right resin
     double foreign_mm3 = 0;    ///< of that, in another resin
     double missing_mm3 = 0;    ///< of that, not at all
-    double tolerance_mm3 = 0;  ///< allowed difference of model and cured volume, see volume_tolerance_mm3
+    double interface_mm3 = 0;  ///< half a pixel along its borders with other materials, whose pixels belong to one only
+    double tolerance_mm3 = 0;  ///< allowed difference of model and cured volume: interface and volume_tolerance_mm3
     bool passed = false;
 };
 

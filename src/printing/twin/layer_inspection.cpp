@@ -83,7 +83,9 @@ private:
         Result<std::vector<AskedImage>> asked = asked_of(index);
         if (!asked) return tl::unexpected(asked.error());
         const LayerDifference found = difference(*asked, shown, slack_s_);
-        add_volumes(layer, found, pixel_mm2_ * (cured != nullptr ? cured->thickness_um : thickness_um) / 1000);
+        const double voxel_mm3 = pixel_mm2_ * (cured != nullptr ? cured->thickness_um : thickness_um) / 1000;
+        add_volumes(layer, found, voxel_mm3);
+        add_interfaces(layer, *asked, voxel_mm3);
         add_pixels(found);
         note_difference(static_cast<int>(index), found);
         judge_areas(static_cast<int>(index), found);
@@ -142,6 +144,21 @@ private:
             m.cured_mm3 += volume_mm3(image.light - image.foreign - image.missing);
             m.foreign_mm3 += volume_mm3(image.foreign);
             m.missing_mm3 += volume_mm3(image.missing);
+        }
+    }
+
+    /// A pixel in which materials meet is exposed for the one that has most of it.
+    void add_interfaces(const job::Layer& layer, const std::vector<AskedImage>& asked, double voxel_mm3) {
+        const auto material = [&](std::size_t k) -> MaterialReport& {
+            return report_.materials[static_cast<std::size_t>(layer.images[k].material)];
+        };
+        for (std::size_t k = 0; k < asked.size(); ++k) {
+            for (std::size_t j = 0; j < k; ++j) {
+                const double moved_mm3 =
+                    0.5 * voxel_mm3 * static_cast<double>(common_sides(asked[j].runs, asked[k].runs));
+                material(j).interface_mm3 += moved_mm3;
+                material(k).interface_mm3 += moved_mm3;
+            }
         }
     }
 

@@ -20,6 +20,19 @@ int next_lit(const std::uint8_t* row, int at, int width) {
     return at;
 }
 
+/// How many pixels of `a` come to lie on pixels of `b` when they are moved.
+long long pixels_on(const Runs& a, const Runs& b, int rows, int columns) {
+    long long count = 0;
+    std::size_t first = 0;
+    for (const Run& run : a) {
+        const int row = run.row + rows, begin = run.begin + columns, end = run.end + columns;
+        while (first < b.size() && (b[first].row < row || (b[first].row == row && b[first].end <= begin))) ++first;
+        for (std::size_t k = first; k < b.size() && b[k].row == row && b[k].begin < end; ++k)
+            count += std::min(end, b[k].end) - std::max(begin, b[k].begin);
+    }
+    return count;
+}
+
 void append_row(Runs& runs, int row, const std::vector<int>& values, int begin, int end) {
     for (int at = begin; at < end;) {
         int next = at + 1;
@@ -71,6 +84,10 @@ Runs sum_of(const std::vector<Runs>& parts, int width) {
         append_row(sum, row, values, begin, end);
         std::fill(values.begin() + begin, values.begin() + end, 0);
     }
+}
+
+long long common_sides(const Runs& a, const Runs& b) {
+    return pixels_on(a, b, 0, 1) + pixels_on(a, b, 0, -1) + pixels_on(a, b, 1, 0) + pixels_on(a, b, -1, 0);
 }
 
 long long light_of(const Runs& runs) {

@@ -26,6 +26,9 @@ using Runs = std::vector<Run>;
 /// Pixelwise sum; `width` is that of the frame.
 [[nodiscard]] Runs sum_of(const std::vector<Runs>& parts, int width);
 
+/// How many sides of pixels one image has in common with another.
+[[nodiscard]] long long common_sides(const Runs& a, const Runs& b);
+
 /// Sum of the grey values: 255 for every fully lit pixel.
 [[nodiscard]] long long light_of(const Runs& runs);
 
