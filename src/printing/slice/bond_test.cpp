@@ -80,3 +80,25 @@ TEST_CASE("bleed compensation removes the lowest layers above an underside, and 
         CHECK(sum == 255 * (k < 6 ? 200 : 400));
     }
 }
+
+TEST_CASE("bleed compensation of a slope moves it sideways by as much as its height asks, with grey pixels too") {
+    // A wedge that leans out by `lean` for each unit of height.
+    for (const double lean : {0.3, 1.0, 2.5}) {
+        Body wedge{"soft", box({-1000, -500, 0}, {1000, 500, 500}), ""};
+        for (Vec3& p : wedge.surface_um.points)
+            if (p.x > 0) p.x = 500 + lean * p.z;
+        Settings settings{small_raster, 10, {}};
+        const auto sum = [&](double bleed_um) {
+            settings.compensation["soft"].bleed_um = bleed_um;
+            const auto slicer = Slicer::prepare(std::vector{wedge}, settings);
+            REQUIRE(slicer.has_value());
+            std::int64_t light = 0;
+            for (int k = 20; k < 40; ++k)
+                for (const MaterialImage& m : slicer->layer(k).images) light += m.value_sum;
+            return static_cast<double>(light);
+        };
+        const double bleed_um = 100, pixels = small_raster.pixel_um * small_raster.pixel_um;
+        const double removed_um3 = (sum(0) - sum(bleed_um)) / 255 * pixels * 10;
+        CHECK(removed_um3 == near(lean * bleed_um * 1000 * 200, {.relative = 0.02}));
+    }
+}

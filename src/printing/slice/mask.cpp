@@ -34,6 +34,19 @@ RunImage outside(const RunImage& image, const RunSet& set) {
     return part(image, set, false);
 }
 
+RunImage lesser(const RunImage& a, const RunImage& b) {
+    RunImage result(a.width_px(), a.height_px());
+    for (int row = std::max(a.first_row(), b.first_row()); row < std::min(a.end_row(), b.end_row()); ++row) {
+        const auto left = a.row(row), right = b.row(row);
+        for (auto i = left.begin(), j = right.begin(); i != left.end() && j != right.end();) {
+            const int begin = std::max(i->begin, j->begin), end = std::min(i->end, j->end);
+            if (begin < end) result.append(row, begin, end, std::min(i->value, j->value));
+            (i->end < j->end ? i : j)++;
+        }
+    }
+    return result;
+}
+
 RunImage together(const RunImage& a, const RunImage& b) {
     if (a.blank()) return b;
     if (b.blank()) return a;

@@ -10,6 +10,9 @@ namespace pliant::slice {
 [[nodiscard]] RunImage inside(const RunImage& image, const RunSet& set);
 [[nodiscard]] RunImage outside(const RunImage& image, const RunSet& set);
 
+/// The smaller value at every pixel. Precondition: both of the same size.
+[[nodiscard]] RunImage lesser(const RunImage& a, const RunImage& b);
+
 /// The union of two images. Precondition: no pixel is lit in both.
 [[nodiscard]] RunImage together(const RunImage& a, const RunImage& b);
 

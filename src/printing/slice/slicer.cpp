@@ -72,9 +72,10 @@ Status check_place(const Body& body, const Box3& box, const Raster& raster, cons
 }
 
 /// All lit pixels.
-RunSet lit(const ComposedLayer& layer, const Raster& raster) {
-    RunSet all(raster.width_px, raster.height_px);
-    for (const MaterialImage& m : layer.images) all = united(all, RunSet::lit(m.image));
+/// The coverage by all materials. Precondition: each pixel has one owner.
+RunImage coverage(const ComposedLayer& layer, const Raster& raster) {
+    RunImage all(raster.width_px, raster.height_px);
+    for (const MaterialImage& m : layer.images) all = together(all, m.image);
     return all;
 }
 
@@ -270,18 +271,19 @@ int Slicer::bleed_layers(int material, int k) const {
     return count;
 }
 
-/// The layer without the light that would go too deep.
+/// The layer without the light that would go too deep: no pixel gets more than is covered in all layers that must be
+/// solid below it.
 ComposedLayer Slicer::bled(int k) const {
     ComposedLayer layer = owned(k);
-    std::vector<RunSet> held;  // by the number of solid layers required below
+    std::vector<RunImage> held;  // by the number of solid layers required below
     for (MaterialImage& m : layer.images) {
         const auto count = static_cast<std::size_t>(bleed_layers(m.material, k));
         if (count == 0) continue;
         while (held.size() < count) {
-            RunSet solid = lit(owned(k - 1 - static_cast<int>(held.size())), settings_.raster);
-            held.push_back(held.empty() ? std::move(solid) : common(held.back(), solid));
+            RunImage solid = coverage(owned(k - 1 - static_cast<int>(held.size())), settings_.raster);
+            held.push_back(held.empty() ? std::move(solid) : lesser(held.back(), solid));
         }
-        m.image = inside(m.image, held[count - 1]);
+        m.image = lesser(m.image, held[count - 1]);
         m.value_sum = m.image.value_sum();
     }
     std::erase_if(layer.images, [](const MaterialImage& m) { return m.image.blank(); });
