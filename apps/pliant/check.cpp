@@ -23,6 +23,7 @@
 #include "printing/machine/board_report.hpp"
 #include "printing/machine/printer.hpp"
 #include "printing/operate/board.hpp"
+#include "printing/operate/job_file.hpp"
 #include "printing/operate/proved_job.hpp"
 #include "printing/plan/safe_stop.hpp"
 #include "robot/description/unused.hpp"
@@ -65,6 +66,7 @@ Result<std::string> check_robot(const std::string& file, const std::vector<std::
 Result<std::string> check_printer(const std::string& file) {
     const Result<machine::Printer> printer = read_printer(file);
     if (!printer) return tl::unexpected(printer.error());
+    if (auto mask = operate::load_mask(printer->projector, file); !mask) return tl::unexpected(mask.error());
     return fmt::format("printer \"{}\": {}, {}, {} x {} px", printer->name,
                        counted(static_cast<std::size_t>(printer->slot_count()), "slot"),
                        counted(printer->vats.size(), "vat"), printer->projector.width_px, printer->projector.height_px);

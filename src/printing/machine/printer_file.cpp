@@ -216,7 +216,7 @@ Projector read_projector(Reader r) {
     read_alignment(r, p);
     p.grey = read_grey(r);
     p.mask = r.text("mask", "");
-    p.irradiance_W_m2 = not_negative(r, "irradiance", Dimension::irradiance);
+    if (r.has("irradiance")) p.irradiance_W_m2 = positive(r, "irradiance", Dimension::irradiance, 1);
     p.delay_s = wait_s(r, "delay");
     r.finish();
     return p;
@@ -264,8 +264,12 @@ void read_vats(Reader& root, Printer& printer) {
 
 /// Resins in a cleaning pair must exist, so that misspelt names are noticed.
 void check_pairs(Reader& root, const Printer& p) {
-    for (const CleaningPair& pair : p.cleaning.pairs) {
-        for (const std::string& resin : {pair.from, pair.to}) {
+    const auto& pairs = p.cleaning.pairs;
+    for (auto pair = pairs.begin(); pair != pairs.end(); ++pair) {
+        if (std::any_of(pairs.begin(), pair,
+                        [&](const CleaningPair& other) { return other.from == pair->from && other.to == pair->to; }))
+            root.problem("cleaning.pair", fmt::format("from \"{}\" to \"{}\" is there twice", pair->from, pair->to));
+        for (const std::string& resin : {pair->from, pair->to}) {
             if (p.find_resin(resin) != nullptr) continue;
             root.problem("cleaning.pair",
                          fmt::format("names resin \"{}\", which has no [resin.{}] table", resin, resin));
@@ -273,12 +277,37 @@ void check_pairs(Reader& root, const Printer& p) {
     }
 }
 
+/// Layers are whole micrometres high: rounding would change the height of the part.
+int read_layer_um(Reader& root) {
+    const double wanted_um = 1e6 * root.quantity("layer_height", Dimension::length);
+    const int layer_um = length_um(root, "layer_height", 1);
+    if (std::abs(wanted_um - layer_um) > 1e-6 * wanted_um)
+        root.problem("layer_height", fmt::format("is {:.6g} um; a layer is a whole number of micrometres", wanted_um));
+    return layer_um;
+}
+
+/// What the machine refuses to do must not be asked of it by other keys.
+void check_limits(Reader& root, const Printer& p) {
+    for (const Resin& resin : p.resins) {
+        const double longest_s = std::max(resin.exposure_s, resin.bottom_exposure_s);
+        if (longest_s > p.limits.exposure_s)
+            root.problem(
+                fmt::format("resin.{}", resin.name),
+                fmt::format("exposes for {:g} s, longer than limits.exposure, {:g} s", longest_s, p.limits.exposure_s));
+    }
+    double spray_s = p.cleaning.spray_s;
+    for (const CleaningPair& pair : p.cleaning.pairs) spray_s = std::max(spray_s, pair.spray_s);
+    if (spray_s > p.limits.cleaning_s)
+        root.problem("cleaning", fmt::format("cleans for {:g} s, longer than limits.cleaning, {:g} s", spray_s,
+                                             p.limits.cleaning_s));
+}
+
 Printer read_printer(Reader& root, const StoreTables& has) {
     Printer p;
     p.name = root.text("name");
     if (std::any_of(p.name.begin(), p.name.end(), is_control))
         root.problem("name", "must have no line breaks or other control characters");
-    if (root.has("layer_height")) p.layer_um = length_um(root, "layer_height", 1);
+    if (root.has("layer_height")) p.layer_um = read_layer_um(root);
     p.controller = read_controller(root.table("controller"));
     read_axes(root.table("axis"), p, has);
     p.platform = read_platform(root.table("platform"));
@@ -309,6 +338,7 @@ Result<Printer> from_document(const config::Document& document) {
         check_store(root, printer);
         check_magnet(root, printer);
         check_pairs(root, printer);
+        check_limits(root, printer);
         check_switches(root, printer);
     }
     if (auto status = problems.status(); !status) return tl::unexpected(status.error());

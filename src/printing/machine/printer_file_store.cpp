@@ -207,9 +207,18 @@ void check_wall(Reader& root, const Printer& p) {
     }
 }
 
+/// Checks that vats fit above each other, with the free height between them.
+void check_tower(Reader& root, const Printer& p) {
+    const Tower& t = p.tower;
+    if (t.slots > 1 && t.pitch_um - t.clearance_um < p.vat_shape.wall_um)
+        root.problem("tower.pitch", fmt::format("must be at least the vat's wall and the clearance above it, {:g} mm",
+                                                (p.vat_shape.wall_um + t.clearance_um) / 1000.0));
+}
+
 void check_geometry(Reader& root, const Printer& p) {
     if (p.has_carriage()) check_carriage_way(root, p);
     if (p.store() == Store::wall) check_wall(root, p);
+    if (p.store() == Store::tower) check_tower(root, p);
     if (p.axis(Axis::platform).home_um() < p.clear_um(0)) {
         root.problem("axis.platform.home", "must end clear of the vat (home = \"max\")");
     }

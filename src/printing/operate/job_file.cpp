@@ -1,5 +1,7 @@
 #include "printing/operate/job_file.hpp"
 
+#include <algorithm>
+
 #include "base/core/files.hpp"
 #include "printing/job/png.hpp"
 
@@ -23,6 +25,8 @@ Result<std::optional<job::Image>> load_mask(const machine::Projector& projector,
     if (!png) return tl::unexpected(png.error());
     Result<job::Image> mask = job::decode_png(*png, {projector.width_px, projector.height_px}, path.string());
     if (!mask) return tl::unexpected(mask.error());
+    if (std::ranges::all_of(mask->pixels, [](std::uint8_t light) { return light == 0; }))
+        return input_error("{}: is black everywhere: nothing would be exposed", path.string());
     return std::optional(std::move(*mask));
 }
 
