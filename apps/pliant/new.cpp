@@ -3,11 +3,13 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/core/files.hpp"
+#include "base/core/letters.hpp"
 #include "base/core/text.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
@@ -19,7 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct NewOptions {
-    std::string robot, printer, file, name;
+    std::string robot, printer, file;
+    std::optional<std::string> name;
     Output output;
 };
 
@@ -71,7 +74,9 @@ tl::unexpected<Error> no_such_template(const std::string& name, std::span<const 
     return input_error("{}: there is no such template; did you mean \"{}\"?", name, nearest);
 }
 
-Status check_name(const std::string& name) {
+Status check_name(const std::optional<std::string>& wanted) {
+    const std::string name = wanted.value_or("-");
+    if (trimmed(name).empty()) return input_error("--name: the name is empty");
     if (name.find_first_of("\"\\\n\r") == std::string::npos) return {};
     return input_error("--name {}: must have no quotes, backslashes or line breaks", name);
 }
@@ -90,7 +95,7 @@ Status make(const NewOptions& options) {
     if (!fits) return fits;
     std::error_code ignored;
     if (fs::exists(file, ignored)) return input_error("{}: exists and is not overwritten; choose another name", file);
-    const std::string text = options.name.empty() ? std::string(found->text) : renamed(found->text, options.name);
+    const std::string text = options.name ? renamed(found->text, *options.name) : std::string(found->text);
     if (Status written = write_file(file, text); !written) return written;
     const std::string next = of_robots ? fmt::format("pliant studio {0}   or   pliant simulate {0} -o out", file)
                                        : fmt::format("pliant slice ROBOT.toml --printer {} -o JOB.zip", file);

@@ -1,7 +1,9 @@
 #include "print_virtual.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
+#include <filesystem>
 #include <utility>
 
 #include "base/core/counted.hpp"
@@ -41,11 +43,35 @@ Status write_records(const LiveOptions& options, rehearse::Rehearsal& rehearsal,
     return options.report.empty() ? Status{} : write_page(options.report, rehearsal, judgement);
 }
 
+/// What the print writes at its end can be written: its folders exist.
+Status check_folders(const LiveOptions& options) {
+    for (const std::string& file : {options.journal, options.report, options.verdict}) {
+        std::error_code error;
+        const std::filesystem::path folder = std::filesystem::absolute(file, error).parent_path();
+        if (!file.empty() && !std::filesystem::is_directory(folder, error))
+            return input_error("{}: there is no folder {}", file, folder.string());
+    }
+    return {};
+}
+
+/// With -q the reasons alone, as an error.
+void tell(const LiveOptions& options, const rehearse::VirtualPrint& print, const twin::Report& report,
+          const std::string& json) {
+    if (options.output.json)
+        fmt::print("{}\n", json);
+    else if (!options.output.quiet)
+        fmt::print("{} sent, {}\n{}", counted(static_cast<std::size_t>(print.snapshot().lines_sent), "line"),
+                   counted(print.lights().size(), "exposure"), twin::report_text(report));
+    else if (!report.passed)
+        fmt::print(stderr, "{}: the virtual print failed: {}\n", options.job, fmt::join(report.reasons, "; "));
+}
+
 }  // namespace
 
 Result<int> print_virtual(const LiveOptions& options) {
     auto progress = terminal_progress(options.output);
     if (Status is_job = expect(FileKind::job, options.job); !is_job) return tl::unexpected(is_job.error());
+    if (Status folders = check_folders(options); !folders) return tl::unexpected(folders.error());
     if (!options.journal.empty()) {
         if (Status may = host::may_replace_journal(options.journal); !may) return tl::unexpected(may.error());
     }
@@ -72,11 +98,7 @@ Result<int> print_virtual(const LiveOptions& options) {
         if (Status written = write_file(options.verdict, json + "\n"); !written) return tl::unexpected(written.error());
     }
     progress.reset();
-    if (options.output.json)
-        fmt::print("{}\n", json);
-    else if (!options.output.quiet)
-        fmt::print("{} sent, {}\n{}", counted(static_cast<std::size_t>(print.snapshot().lines_sent), "line"),
-                   counted(print.lights().size(), "exposure"), twin::report_text(*report));
+    tell(options, print, *report, json);
     return report->passed ? exit_done : exit_failed;
 }
 

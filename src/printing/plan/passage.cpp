@@ -188,7 +188,10 @@ Status Passage::check_cleaning(double seconds) const {
     if (working_s > std::max(most_s, strokes_ <= 2 ? stroke_s_ : 0))
         return input_error("the part is cleaned for {:.1f} s, {} asks for {:g} s", working_s, printer_->name, seconds);
     const double least_s = fan_on_.empty() ? 0 : printer_->cleaning.dry_s;
-    if (!enough(dried_s_, least_s) || (!fan_on_.empty() && dried_s_ <= 0))
+    if (!fan_on_.empty() && dried_s_ <= 0 && least_s <= 0)
+        return input_error("the part is not dried: {} has {} fans, and they never run all at once", printer_->name,
+                           fan_on_.size());
+    if (!enough(dried_s_, least_s))
         return input_error("the part dries for {:.1f} s with all fans on, {} asks for {:g} s", dried_s_, printer_->name,
                            least_s);
     return {};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "base/core/text.hpp"
 #include "geometry/mesher/mesher.hpp"
@@ -167,6 +168,8 @@ Result<Drawing> read_drawing(const std::vector<std::string>& inputs, const std::
         if (!robot) return tl::unexpected(robot.error());
         return drawing_of(*robot, progress);
     }
+    if (!assignments.empty())
+        return input_error("--set {}: changes the keys of a robot file, and there is none", assignments.front());
     Drawing drawing;
     for (const std::string& input : inputs) {
         if (std::filesystem::path(input).extension() == ".toml")
@@ -180,6 +183,7 @@ Result<Drawing> read_drawing(const std::vector<std::string>& inputs, const std::
 }
 
 Status set_resins(const std::vector<std::string>& choices, Drawing& drawing) {
+    std::set<std::string> given;
     for (const std::string& choice : choices) {
         const std::size_t equals = choice.find('=');
         const std::string material = choice.substr(0, equals);
@@ -192,6 +196,8 @@ Status set_resins(const std::vector<std::string>& choices, Drawing& drawing) {
             for (const auto& pair : drawing.resin_of_material) names.push_back(pair.first);
             return input_error("--resin {}: there is no material \"{}\", only {}", choice, material, join_names(names));
         }
+        if (!given.insert(material).second)
+            return input_error("--resin {}: the resin of \"{}\" is given twice", choice, material);
         found->second = choice.substr(equals + 1);
     }
     return {};

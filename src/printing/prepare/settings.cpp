@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "base/core/letters.hpp"
 #include "base/core/text.hpp"
@@ -123,8 +125,9 @@ Status set_pairs(const Order& order, const Drawing& drawing, slice::Settings& sl
 Result<double> seconds_of(const std::string& option, const std::string& text) {
     const Result<double> seconds = parse_quantity(text, Dimension::time);
     if (!seconds) return input_error("--exposure {}: {}", option, seconds.error().message);
-    if (!(*seconds > 0 && *seconds <= job::longest_exposure_s))
-        return input_error("--exposure {}: must be above 0 s and at most an hour", option);
+    constexpr double shortest_s = 0.001;  // G-code has milliseconds
+    if (!(*seconds >= shortest_s && *seconds <= job::longest_exposure_s))
+        return input_error("--exposure {}: must be from a millisecond to an hour", option);
     return *seconds;
 }
 
@@ -144,8 +147,9 @@ void note_far_exposure(const std::string& option, double seconds, double usual_s
 }
 
 /// MATERIAL=TIME, MATERIAL=TIME,BOTTOM or MATERIAL:FIRST-LAST=TIME.
+/// `given`: the materials that have had one already.
 Status set_exposure(const std::string& text, const machine::Printer& printer, job::JobSettings& settings,
-                    std::vector<std::string>& warnings) {
+                    std::set<std::string>& given, std::vector<std::string>& warnings) {
     const std::size_t equals = text.rfind('=');
     if (equals == std::string::npos || equals == 0)
         return input_error("--exposure {}: write MATERIAL=TIME, MATERIAL=TIME,BOTTOM or MATERIAL:FIRST-LAST=TIME",
@@ -182,6 +186,8 @@ Status set_exposure(const std::string& text, const machine::Printer& printer, jo
         rule->second.spans.push_back(*span);
         return {};
     }
+    if (!given.insert(name).second)
+        return input_error("--exposure {}: the exposure of \"{}\" is given twice", text, name);
     material->exposure_s = *seconds;
     material->bottom_exposure_s = std::max(material->bottom_exposure_s, *seconds);
     if (comma == times.size()) return {};
@@ -379,8 +385,9 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
             return tl::unexpected(status.error());
     }
     settings.exposures = exposure_rules(drawing, printer, settings.bottom_layers, !order.least_layer.empty());
+    std::set<std::string> given;
     for (const std::string& text : order.exposures) {
-        if (Status status = set_exposure(text, printer, settings, drawing.warnings); !status)
+        if (Status status = set_exposure(text, printer, settings, given, drawing.warnings); !status)
             return tl::unexpected(status.error());
     }
     settings.slicing.compensation = compensations(drawing, printer);
