@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "../usage.hpp"
 #include "base/core/config.hpp"
 #include "base/core/counted.hpp"
 #include "base/core/files.hpp"
@@ -188,7 +189,8 @@ void add_check(CLI::App& app, int& status) {
     command->add_option("--printer", options->printer,
                         "printer that G-code files are checked against, and jobs in place of their own");
     command->add_option("--cancel-after", options->cancel_after,
-                        "line of a G-code program to stop after: print the commands that do so safely");
+                        "line of a G-code program to stop after: print the commands that do so safely")
+        ->check(between(0, std::numeric_limits<int>::max()));
     command->add_option("--set", options->assignments, "KEY=VALUE: change any key of the robot files")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -224,7 +225,23 @@ double clearance(const Robot& robot, const JointSpec& spec, const std::array<End
     return std::max(ends[0].clear_m, ends[1].clear_m);
 }
 
+/// A motor that is told to go beyond its own stops would only be half obeyed.
+void check_target(ModelDraft& draft, const JointSpec& spec) {
+    if (!spec.limits || !spec.wanted || spec.by_force) return;
+    const auto [lowest, highest] = std::ranges::minmax(spec.wanted->value);
+    const auto [low, high] = *spec.limits;
+    const double rounding = 1e-9 * (high - low);
+    if (lowest >= low - rounding && highest <= high + rounding) return;
+    const bool turns = kind_of(spec.kind) == sim::Joint::Kind::hinge;
+    const double unit = turns ? std::numbers::pi / 180 : draft.robot.unit_m;
+    draft.problem(
+        spec.line, "joint", spec.name,
+        fmt::format("its target of {:.6g} lies outside its limits, [{:.6g}, {:.6g}]{}",
+                    (lowest < low ? lowest : highest) / unit, low / unit, high / unit, turns ? " degrees" : ""));
+}
+
 void add_joint(ModelDraft& draft, const JointSpec& spec) {
+    check_target(draft, spec);
     const Vec3 point = draft.robot.unit_m * spec.point;
     std::array<End, 2> ends;
     for (std::size_t k = 0; k < 2; ++k) {

@@ -354,6 +354,8 @@ TEST_CASE("mistakes in joints give one line each") {
     check("kind = \"motor\"\naxis = [0, 0, 1]\ntorque = \"1 N\"\n" + held,
           "unknown unit \"N\"; here the units are N mm");
     check("kind = \"hinge\"\naxis = [0, 0, 1]\nangle = \"3 deg\"\n" + held, "kind = \"motor\"");
+    check("kind = \"motor\"\naxis = [0, 0, 1]\nangle = \"30 deg\"\nlimits = [-10, 10]\n" + held,
+          "its target of 30 lies outside its limits, [-10, 10] degrees");
     check("kind = \"hinge\"\naxis = [0, 0, 1]\nlimits = [10, 20]\n" + held, "must lie between them");
     check("kind = \"slider\"\naxis = [0, 0, 1]\nangle = \"3 deg\"\n" + held, "a slider takes position or force");
     check("kind = \"ball\"\nstiffness = \"1 N/m\"\n" + held, "a [[spring]] is elastic");
