@@ -225,11 +225,16 @@ StepReport Stepper::step(RobotState& robot, const StepPath& path, const Progress
     double piece = path.end - robot.now.along;
     int in_vain = 0;  // iterations of the attempts since the last one that succeeded
     std::string why;  // the last one that failed did so
+    bool may_relax = tether_dt_s_ > 0;
     while (robot.now.along < path.end) {
         const double along = robot.now.along + piece;
         const double end = along >= path.end - rounding * path.shortest_piece ? path.end : along;
         const State* expected = end == path.end ? path.expected : nullptr;
-        const StepOutcome outcome = go(robot, {end, path.at(end), path.onward, expected}, report, progress);
+        StepOutcome outcome = go(robot, {end, path.at(end), path.onward, expected}, report, progress);
+        if (!outcome.converged && std::exchange(may_relax, false)) {
+            const std::optional<State> relaxed = relax(robot, path.at(end), report, progress);
+            if (relaxed) outcome = go(robot, {end, path.at(end), path.onward, &*relaxed}, report, progress);
+        }
         if (outcome.converged) {
             in_vain = 0;
             if (path.after_piece) path.after_piece(robot);
@@ -244,6 +249,37 @@ StepReport Stepper::step(RobotState& robot, const StepPath& path, const Progress
     if (!report.arrived) report.reason = why;
     remember(robot);
     return report;
+}
+
+/// Where parts that can swing or fall come to rest: implicit Euler steps without velocity, from a tether so strong that
+/// they move by a tenth of the robot's size to the usual one. Each finds the minimum of the energy and of the square of
+/// the motion, so the energy decreases from step to step.
+std::optional<State> Stepper::relax(const RobotState& robot, Controls controls, StepReport& report,
+                                    const Progress& progress) {
+    constexpr double first_share = 0.01, least_share = 1e-4, growth = 2, loss = 0.25;
+    constexpr int most_steps = 100;
+    State at = follow_supports(system_, laplacian_, robot.now.state, controls);
+    Controls last = robot.controls;
+    double share = first_share;
+    for (int k = 0; k < most_steps && share >= least_share && !progress.cancelled(); ++k) {
+        Controls now = controls;
+        now.met = robot.controls.met;
+        now.inertia = motion_->inertia(MotionInTime::still(at.x), share * tether_dt_s_);
+        now.joint_start = system_.joint_coordinates(at.x, last);
+        State next = at;
+        solvers_.restart();
+        const StepOutcome outcome = settle(robot, now, next, progress, std::nullopt);
+        report.iterations += outcome.iterations;
+        if (!outcome.converged) {
+            share *= loss;
+            continue;
+        }
+        at = std::move(next);
+        last = std::move(now);
+        if (share == 1) return at;
+        share = std::min(1.0, growth * share);
+    }
+    return std::nullopt;
 }
 
 StepReport Stepper::leap(RobotState& robot, const StepPath& path, const Progress& progress) {

@@ -123,6 +123,10 @@ private:
     [[nodiscard]] Scheme scheme(const RobotState& robot, const Controls& controls) const;
     void take_mean_inputs(const RobotState& robot, Controls& controls) const;
     [[nodiscard]] double time_error_m(const Controls& controls, const State& next) const;
+    /// An approximate state at the end of a step with a tether, for a step that is not solved directly; nullopt: none was
+    /// found.
+    [[nodiscard]] std::optional<State> relax(const RobotState& robot, Controls controls, StepReport& report,
+                                             const Progress& progress);
     [[nodiscard]] StepReport step_by_error(RobotState& robot, const StepPath& path, const Progress& progress);
     [[nodiscard]] StepOutcome settle(const RobotState& from, Controls& controls, State& next, const Progress& progress,
                                      std::optional<Evaluation> known);
