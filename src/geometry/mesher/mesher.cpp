@@ -10,6 +10,26 @@ namespace {
 constexpr const char* crash =
     "the mesher crashed inside Gmsh, Open CASCADE or CGAL; another mesh size or a simpler drawing may pass";
 
+/// Open CASCADE has tolerances that are lengths: much smaller or larger shapes crash it or Gmsh.
+Status check_extent(std::span<const BodyGeometry> bodies) {
+    constexpr double smallest = 1e-5, largest = 2e5;
+    Box3 box;
+    bool drawn = false;
+    for (const BodyGeometry& body : bodies) {
+        const Box3 own = bounds(body);
+        if (own.empty()) continue;
+        drawn = drawn || std::holds_alternative<Solid>(body.shape);
+        box.add(own.low);
+        box.add(own.high);
+    }
+    const double extent = box.diagonal();
+    if (!drawn || (extent >= smallest && extent <= largest)) return {};
+    return input_error(
+        "the bodies measure {:.3g} length units from corner to corner, {:g} to {:g} can be meshed: choose another "
+        "length_unit",
+        extent, smallest, largest);
+}
+
 }  // namespace
 
 Box3 bounds(const BodyGeometry& body) {
@@ -18,6 +38,7 @@ Box3 bounds(const BodyGeometry& body) {
 }
 
 Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings, Progress& progress) {
+    if (Status status = check_extent(bodies); !status) return tl::unexpected(status.error());
     Packer request;
     pack(request, bodies);
     pack(request, settings);

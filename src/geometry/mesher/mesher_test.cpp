@@ -268,6 +268,20 @@ TEST_CASE("the mesh size is checked against the material's volume, not against t
     CHECK_FALSE(tessellate(box({0, 0, 0}, {1, 1, 1}), 0));
 }
 
+TEST_CASE("bodies too small or too large for the mesher are refused, those within the limits are meshed") {
+    Progress silent;
+    for (const double edge : {1e-8, 1e-5, 1e5, 1e6}) {
+        const std::vector<BodyGeometry> bodies{{"cube", box({0, 0, 0}, {edge, edge, edge})}};
+        const Result<TetMesh> mesh = mesh_bodies(bodies, {.size = edge / 2, .order = 1}, silent);
+        const bool possible = edge > 1e-7 && edge < 1e6;
+        REQUIRE_MESSAGE(mesh.has_value() == possible, (mesh ? "" : mesh.error().message));
+        if (mesh)
+            CHECK(volume(*mesh) == near(edge * edge * edge, {.relative = 1e-6}));
+        else
+            CHECK(mesh.error().message.find("choose another length_unit") != std::string::npos);
+    }
+}
+
 TEST_CASE("a caller that cancels gets no mesh") {
     struct Cancelled : Progress {
         [[nodiscard]] bool cancelled() const override { return true; }
