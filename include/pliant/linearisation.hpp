@@ -90,7 +90,8 @@ public:
     [[nodiscard]] std::vector<double> multiply(std::span<const double> v) const;
     /// (unknowns) the product A^T w.
     [[nodiscard]] std::vector<double> multiply_transposed(std::span<const double> w) const;
-    /// (unknowns) A^-1 b with a residual of 1e-12 of b; also at an unstable equilibrium. The first solve factorises A.
+    /// (unknowns) A^-1 b, as accurate as rounding allows: residuals of forces are 1e-12 of b, those of the few other
+    /// rows, which have other units, 1e-7. Also at an unstable equilibrium. The first solve factorises A.
     /// @throws Failure if b has the wrong size or a number that is not finite, A is singular, or redundant cables have
     /// conflicting targets.
     [[nodiscard]] std::vector<double> solve(std::span<const double> b);
@@ -104,8 +105,9 @@ public:
     /// program.
     [[nodiscard]] const std::vector<Parameter>& inputs() const;
     /// The parameters of the robot and its surroundings: material constants, densities, springs, friction, loads,
-    /// gravity, supports, contact. The constants of a material are Young's modulus and Poisson ratio, followed by those
-    /// of its law.
+    /// gravity, supports, contact. The constants of a material are those of its law, followed by Young's modulus and
+    /// Poisson ratio where the law is given by them. A graded body has materials of its own, "soft with 60 % firm": the
+    /// constants of "soft" itself are then those of what is wholly soft, and have no effect where nothing is.
     [[nodiscard]] const std::vector<Parameter>& parameters() const;
 
     /// The guide points of all cables, followed by those of all springs. Guide points placed at crossings are included.

@@ -65,7 +65,8 @@ struct Mesh {
 
 /// Solver options. Options that are not set take the value in the robot file.
 struct StepOptions {
-    std::optional<double> tolerance{};     ///< largest residual of a converged step
+    std::optional<double> tolerance{};     ///< largest residual of a converged step: 1e-10 to 0.1 for a Model, above
+                                           ///< 0 and below 1 for a Stepper
     std::optional<int> iteration_limit{};  ///< for each substep; 0: that of the solver
 };
 
@@ -294,7 +295,7 @@ public:
     [[nodiscard]] Inputs program(double time) const;
     /// Solves for equilibrium at `inputs` and stores the new state in `state`. The inputs are ramped linearly from
     /// those of the state, in as many substeps as needed. A motion in time is integrated up to `inputs.time`, which
-    /// must be later than the time of the state.
+    /// must be later than the time of the state, in equal time steps no longer than the program's.
     /// @throws Failure of kind `input` if the state belongs to another model, the number of drives differs from that of
     /// the cables and chambers, or a value is impossible; of kind `cancelled`: `state` is then as far as the solver
     /// got.

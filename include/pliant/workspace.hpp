@@ -19,7 +19,7 @@ namespace pliant {
 /// Options of workspace().
 struct WorkspaceOptions {
     int side = 9;       ///< samples along each input of a sheet; at least 2
-    int between = 100;  ///< number of further samples, spread over the ranges
+    int between = 100;  ///< number of further samples, spread over the ranges; none with one input
     /// Folder in which completed pieces are stored, so that the search can be resumed; empty: nothing is stored.
     std::filesystem::path checkpoint{};
     /// Resumes from the checkpoint; the results are those of an uninterrupted search.

@@ -142,7 +142,7 @@ class Linearisation(NotPickled):
         return self._at.multiply_transposed(self._vector(w, "w"))
 
     def solve(self, b: Any) -> Array:
-        """(unknowns,) A^-1 b with a residual of 1e-12 of b; also at an unstable equilibrium."""
+        """(unknowns,) A^-1 b, as accurate as rounding allows; also at an unstable equilibrium."""
         return self._at.solve(self._vector(b, "b"))
 
     def solve_transposed(self, b: Any) -> Array:

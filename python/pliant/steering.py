@@ -260,7 +260,7 @@ def workspace(
     Args:
         model: a model of a robot with a range for each actuator that may be moved.
         side: samples along each input of a sheet; at least 2.
-        between: number of further samples, spread over the ranges.
+        between: number of further samples, spread over the ranges; none with one input.
         checkpoint: folder in which completed pieces are stored, so that the search can be resumed.
         resume: resumes from the checkpoint; the results are those of an uninterrupted search.
         progress: called with (stage, share) some times a second; False cancels.

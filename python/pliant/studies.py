@@ -186,6 +186,7 @@ def _complain(status: int, told: dict[str, Any], errors: str) -> None:
     lines = errors.strip().splitlines()
     ended = f"pliant study ended with exit status {status}"
     message = str(told["error"]) if "error" in told else lines[-1] if lines else ended
+    message = message.replace("--resume goes on with them, -o names", "resume=True goes on with them, folder names")
     if status == 2:
         raise InputError(message)
     raise (Cancelled if message.startswith("cancelled") else Failure)(message)

@@ -190,6 +190,19 @@ def test_dynamics_advance_with_time_and_not_back():
     assert state.time == pytest.approx(0.02) and state.displacements[:, 2].min() < -5e-4
     with pytest.raises(pliant.InputError, match="does not lead on"):
         model.step(state, time=0.01)
+    with pytest.raises(pliant.InputError, match="take several calls"):
+        model.step(state, time=1e6)
+
+
+def test_one_call_takes_the_time_steps_of_the_program():
+    model = bar(program={"duration": "0.2 s", "time_step": "0.01 s", "gravity": [0, 0, -9.81]})
+    at_once, by_steps = model.rest(), model.rest()
+    result = model.step(at_once, time=0.055)
+    assert result.arrived and result.pieces == 6
+    for k in range(1, 7):
+        assert model.step(by_steps, time=0.055 * k / 6).pieces == 1
+    assert np.abs(at_once.displacements).max() > 1e-3
+    assert np.allclose(at_once.positions, by_steps.positions, rtol=0, atol=1e-7)
 
 
 def test_a_run_gives_the_same_bits_as_the_command_line(tmp_path):

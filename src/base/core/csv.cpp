@@ -61,7 +61,7 @@ std::string CsvTable::place(int line) const {
 
 Result<std::string_view> CsvTable::cell(const CsvRow& row, std::size_t column) const {
     if (column < row.cells.size()) return std::string_view(row.cells[column]);
-    return input_error("{}: {} columns, but the first line names more", place(row.line), row.cells.size());
+    return input_error_at(file, row.line, "{} columns, but the first line names more", row.cells.size());
 }
 
 Result<double> CsvTable::number(const CsvRow& row, std::size_t column, std::string_view what) const {
@@ -74,9 +74,9 @@ Result<double> CsvTable::number(const CsvRow& row, std::size_t column, std::stri
     const auto [end, code] = std::from_chars(first, last, value);
     if (code == std::errc() && end == last && std::isfinite(value)) return value;
     if (text->find(',') != std::string_view::npos)
-        return input_error("{}: {} \"{}\" has a comma; write numbers with a decimal point", place(row.line), what,
-                           text->substr(0, 40));
-    return input_error("{}: {} \"{}\" is not a number", place(row.line), what, text->substr(0, 40));
+        return input_error_at(file, row.line, "{} \"{}\" has a comma; write numbers with a decimal point", what,
+                              text->substr(0, 40));
+    return input_error_at(file, row.line, "{} \"{}\" is not a number", what, text->substr(0, 40));
 }
 
 Result<CsvTable> parse_csv(std::string_view text, const std::string& file, std::string_view example) {

@@ -11,17 +11,17 @@ namespace fs = std::filesystem;
 Result<std::string> read_file(const fs::path& path, std::uintmax_t limit_bytes) {
     std::error_code code;
     const fs::file_status status = fs::status(path, code);
-    if (!fs::exists(status)) return input_error("{}: no such file", path.string());
-    if (fs::is_directory(status)) return input_error("{}: is a folder, a file is needed", path.string());
-    if (!fs::is_regular_file(status)) return input_error("{}: is not a regular file", path.string());
+    if (!fs::exists(status)) return input_error_at(path.string(), 0, "no such file");
+    if (fs::is_directory(status)) return input_error_at(path.string(), 0, "is a folder, a file is needed");
+    if (!fs::is_regular_file(status)) return input_error_at(path.string(), 0, "is not a regular file");
     const std::uintmax_t size = fs::file_size(path, code);
-    if (code) return input_error("{}: {}", path.string(), code.message());
+    if (code) return input_error_at(path.string(), 0, "{}", code.message());
     if (size > limit_bytes)
-        return input_error("{}: {} bytes, more than the {} allowed", path.string(), size, limit_bytes);
+        return input_error_at(path.string(), 0, "{} bytes, more than the {} allowed", size, limit_bytes);
     std::ifstream in(path, std::ios::binary);
     std::string bytes(static_cast<std::size_t>(size), '\0');
     if (!in || !in.read(bytes.data(), static_cast<std::streamsize>(size))) {
-        return input_error("{}: cannot be read: {}", path.string(), std::strerror(errno));
+        return input_error_at(path.string(), 0, "cannot be read: {}", std::strerror(errno));
     }
     return bytes;
 }
@@ -52,7 +52,7 @@ Status write_through(const fs::path& path, std::string_view bytes, const fs::pat
 Result<fs::path> replaceable_file(const fs::path& path) {
     std::error_code code;
     const fs::file_type type = fs::status(path, code).type();
-    if (type == fs::file_type::directory) return input_error("{}: is a folder, a file is needed", path.string());
+    if (type == fs::file_type::directory) return input_error_at(path.string(), 0, "is a folder, a file is needed");
     if (is_special(path, type)) return input_error("{}: is not a regular file, and is not replaced", path.string());
     if (type == fs::file_type::not_found || !fs::is_symlink(fs::symlink_status(path, code))) return path;
     fs::path target = fs::canonical(path, code);

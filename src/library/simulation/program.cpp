@@ -169,6 +169,7 @@ std::string ProgramResult::summary_json() const {
 }
 
 bool ProgramResult::write(const std::filesystem::path& folder, const ResultsOptions& options, const Watch& watch) {
+    if (folder.empty()) throw Failure(Failure::Kind::input, "the name of the folder for the results is empty");
     const report::PictureChoice choice = picture_choice(options);
     library::WatchedProgress writing(watch);
     library::Drawing drawing(writing, options.enough_pictures);

@@ -28,6 +28,16 @@ sim::StepperOptions options_for(const sim::Program& program, const StepOptions& 
     return options;
 }
 
+/// One call may take many time steps, but it must end.
+void check_time_steps(const sim::Stepper& stepper, double from_s, double to_s) {
+    constexpr double most = 10000;
+    const sim::StepperOptions& options = stepper.options();
+    if (options.dynamics && (to_s - from_s) / options.time_unit > most)
+        throw Failure(Failure::Kind::input,
+                      fmt::format("from {:g} s to {:g} s are more than {:g} time steps of {:g} s; take several calls",
+                                  from_s, to_s, most, options.time_unit));
+}
+
 }  // namespace
 
 struct Stepper::Work {
@@ -67,6 +77,7 @@ StepResult Stepper::step(State& state, const Inputs& inputs, const Watch& watch)
     if (work_->stepper.options().dynamics && !(wanted.time > robot.inputs.time))
         throw Failure(Failure::Kind::input, fmt::format("a step in time from {:g} s to {:g} s does not lead on",
                                                         robot.inputs.time, wanted.time));
+    check_time_steps(work_->stepper, robot.inputs.time, wanted.time);
     library::WatchedProgress progress(watch);
     progress.advance("step", 0);
     const sim::StepReport report = work_->stepper.drive(robot, wanted, progress);

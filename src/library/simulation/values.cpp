@@ -36,20 +36,30 @@ sim::Drive drive_for(const Drive& drive, const std::string& name, bool cable) {
     if (of_cable != cable) wrong(cable ? "is driven by length or tension" : "is driven by volume, pressure or gas");
     const bool positive = drive.by == By::volume || drive.by == By::gas;
     if (positive ? !(drive.value > 0) : cable && !(drive.value >= 0)) {
-        const char* what = drive.by == By::length    ? "length"
-                           : drive.by == By::tension ? "tension"
-                           : drive.by == By::volume  ? "volume"
-                                                     : "amount of gas";
+        const char* what = drive.by == By::length    ? "a length"
+                           : drive.by == By::tension ? "a tension"
+                           : drive.by == By::volume  ? "a volume"
+                                                     : "an amount of gas";
         const char* unit = drive.by == By::length    ? "m"
                            : drive.by == By::tension ? "N"
                            : drive.by == By::volume  ? "m^3"
                                                      : "J";
-        wrong(fmt::format("a {} of {:g} {} is not possible: it must {}", what, drive.value, unit,
+        wrong(fmt::format("{} of {:g} {} is not possible: it must {}", what, drive.value, unit,
                           positive ? "be above 0" : "not be negative"));
     }
     if (drive.by == By::length || drive.by == By::volume) return {DriveKind::measure, drive.value};
     if (drive.by == By::gas) return {DriveKind::gas, drive.value};
     return {DriveKind::multiplier, cable ? drive.value : -drive.value};
+}
+
+/// Nothing is below a vacuum.
+void check_vacuum(const Drive& drive, const std::string& chamber, double ambient_Pa) {
+    if (drive.by == By::pressure && drive.value < -ambient_Pa)
+        throw Failure(
+            Failure::Kind::input,
+            fmt::format("chamber \"{}\": a pressure of {:.6g} kPa is below a vacuum: the air around has {:.6g} "
+                        "kPa (program.ambient_pressure)",
+                        chamber, 1e-3 * drive.value, 1e-3 * ambient_Pa));
 }
 
 }  // namespace
@@ -87,8 +97,10 @@ sim::Inputs inputs_for(const sim::Model& model, const Inputs& inputs) {
     sim::Inputs out{inputs.time, {}};
     for (std::size_t c = 0; c < d.cables.size(); ++c)
         out.drives.push_back(drive_for(inputs.cables[c], d.cables[c].name, true));
-    for (std::size_t c = 0; c < d.chambers.size(); ++c)
+    for (std::size_t c = 0; c < d.chambers.size(); ++c) {
+        check_vacuum(inputs.chambers[c], d.chambers[c].name, d.ambient_pressure_Pa);
         out.drives.push_back(drive_for(inputs.chambers[c], d.chambers[c].name, false));
+    }
     return out;
 }
 

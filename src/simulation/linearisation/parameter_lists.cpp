@@ -1,6 +1,7 @@
 // Lists of the inputs and parameters of a linearisation.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <utility>
@@ -121,12 +122,20 @@ void add_masses(const Description& d, std::vector<Parameter>& all) {
         if (d.objects[k].friction > 0)
             all.push_back({Kind::object_friction, k, owner + ": friction", "", d.objects[k].friction});
     }
-    for (std::size_t k = 0; k < d.masses.size(); ++k)
-        all.push_back(
-            {Kind::point_mass, k, fmt::format("mass \"{}\": mass", d.masses[k].name), "kg", d.masses[k].mass_kg});
+    for (std::size_t k = 0; k < d.masses.size(); k += points_of_mass(d, k).size()) {
+        double mass_kg = 0;
+        for (const PointMass& point : points_of_mass(d, k)) mass_kg += point.mass_kg;
+        all.push_back({Kind::point_mass, k, fmt::format("mass \"{}\": mass", d.masses[k].name), "kg", mass_kg});
+    }
 }
 
 }  // namespace
+
+std::span<const PointMass> points_of_mass(const Description& d, std::size_t first) {
+    const auto begin = d.masses.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = std::find_if(begin, d.masses.end(), [&](const PointMass& p) { return p.name != begin->name; });
+    return {begin, end};
+}
 
 double weighted_share(const Linearisation& at, std::size_t cable) {
     const Actuator& actuator = at.system().actuators()[cable];

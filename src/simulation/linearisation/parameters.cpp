@@ -201,7 +201,7 @@ Derivative by_joint(const Linearisation& at, const Parameter& by) {
     return by_force(at, force);
 }
 
-/// For an object's mass, a quarter of which is at each of its nodes, or for a point mass.
+/// For an object's mass, a quarter of which is at each of its nodes, or for a [[mass]].
 Derivative by_lump(const Linearisation& at, const Parameter& by) {
     const Description& d = at.system().model().description();
     const Masses masses = masses_at(d, at.controls(), at.state().x);
@@ -214,7 +214,8 @@ Derivative by_lump(const Linearisation& at, const Parameter& by) {
     };
     constexpr double all_of_it = 1;
     if (by.kind == Kind::point_mass) {
-        add(d.masses[by.index].point.nodes, d.masses[by.index].point.weights, 1);
+        for (const PointMass& point : points_of_mass(d, by.index))
+            add(point.point.nodes, point.point.weights, point.mass_kg / by.value);
     } else {
         for (const int node : d.objects[by.index].nodes) add({&node, 1}, {&all_of_it, 1}, 0.25);
     }

@@ -41,7 +41,7 @@ struct Parameter {
         obstacle_friction,   ///< coefficient of the robot against an obstacle, lagged
         object_mass,         ///< kg: its inertia scales with it
         object_friction,     ///< coefficient of an object where its own applies, lagged
-        point_mass,          ///< kg
+        point_mass,          ///< kg: of all points that carry one [[mass]]; its inertia scales with it
         joint_stiffness,     ///< N m/rad or N/m, along the free coordinate
         joint_damping,       ///< N m s/rad or N s/m
         gap_weight,          ///< of the elements of a gap that a cable passes, Pa; index: that of the growth
@@ -55,6 +55,9 @@ struct Parameter {
     double value = 0;       ///< at this state
     std::size_t part = 0;   ///< component, for quantities with several numbers
 };
+
+/// The point masses from `first` on that carry one [[mass]]: it has several if it has an inertia.
+[[nodiscard]] std::span<const PointMass> points_of_mass(const Description& d, std::size_t first);
 
 /// Weighted length over true length of a cable: 1 without friction.
 [[nodiscard]] double weighted_share(const Linearisation& at, std::size_t cable);

@@ -62,7 +62,8 @@ inline Description with_value(Description d, const Parameter& p, double value) {
             d.objects[p.index].friction = value;
             break;
         case Parameter::Kind::point_mass:
-            d.masses[p.index].mass_kg = value;
+            for (std::size_t k = p.index, end = k + points_of_mass(d, k).size(); k < end; ++k)
+                d.masses[k].mass_kg *= value / p.value;
             break;
         case Parameter::Kind::joint_stiffness:
             d.joints[p.index].law.stiffness = value;

@@ -167,8 +167,9 @@ StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progres
     if (in_time) robot.now.along = begin.time;
     const double from = robot.now.along;
     const auto inputs_at = [&](double along) { return between(begin, wanted, (along - from) / length); };
-    const StepPath path{from + length, [&](double along) { return controls(robot, inputs_at(along)); },
-                        (is_adaptive() ? smallest_adaptive_share : smallest_share) * length, onward, expected};
+    StepPath path{from + length, [&](double along) { return controls(robot, inputs_at(along)); },
+                  (is_adaptive() ? smallest_adaptive_share : smallest_share) * length, onward, expected};
+    if (in_time) path.longest_piece = length / std::max(1.0, std::ceil(length / options_.time_unit - rounding));
     StepReport report = step(robot, path, progress);
     robot.inputs = report.arrived ? wanted : inputs_at(robot.now.along);
     if (report.pieces > 0) robot.before = inputs_at(robot.past.back().along);
@@ -222,7 +223,8 @@ StepReport Stepper::step(RobotState& robot, const StepPath& path, const Progress
     recall(robot);
     if (is_adaptive()) return step_by_error(robot, path, progress);
     StepReport report;
-    double piece = path.end - robot.now.along;
+    const double longest = path.longest_piece > 0 ? path.longest_piece : path.end - robot.now.along;
+    double piece = longest;
     int in_vain = 0;  // iterations of the attempts since the last one that succeeded
     std::string why;  // the last one that failed did so
     bool may_relax = tether_dt_s_ > 0;
@@ -237,6 +239,7 @@ StepReport Stepper::step(RobotState& robot, const StepPath& path, const Progress
         }
         if (outcome.converged) {
             in_vain = 0;
+            if (path.longest_piece > 0) piece = longest;
             if (path.after_piece) path.after_piece(robot);
             continue;
         }

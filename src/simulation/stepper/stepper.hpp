@@ -37,6 +37,7 @@ struct StepPath {
     const State* expected = nullptr;  ///< approximate state at its end; null: unknown
     /// Called with every intermediate state of a step, including its end. May be empty.
     std::function<void(const RobotState&)> after_piece{};
+    double longest_piece = 0;  ///< 0: the whole step
 };
 
 /// Result of a step.
@@ -123,8 +124,8 @@ private:
     [[nodiscard]] Scheme scheme(const RobotState& robot, const Controls& controls) const;
     void take_mean_inputs(const RobotState& robot, Controls& controls) const;
     [[nodiscard]] double time_error_m(const Controls& controls, const State& next) const;
-    /// An approximate state at the end of a step with a tether, for a step that is not solved directly; nullopt: none was
-    /// found.
+    /// An approximate state at the end of a step with a tether, for a step that is not solved directly; nullopt: none
+    /// was found.
     [[nodiscard]] std::optional<State> relax(const RobotState& robot, Controls controls, StepReport& report,
                                              const Progress& progress);
     [[nodiscard]] StepReport step_by_error(RobotState& robot, const StepPath& path, const Progress& progress);
