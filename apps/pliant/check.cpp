@@ -188,8 +188,9 @@ void add_check(CLI::App& app, int& status) {
     command->add_option("--port", options->port, "serial port of the board, such as /dev/ttyACM0");
     command->add_option("--printer", options->printer,
                         "printer that G-code files are checked against, and jobs in place of their own");
-    command->add_option("--cancel-after", options->cancel_after,
-                        "line of a G-code program to stop after: print the commands that do so safely")
+    command
+        ->add_option("--cancel-after", options->cancel_after,
+                     "line of a G-code program to stop after: print the commands that do so safely")
         ->check(between(0, std::numeric_limits<int>::max()));
     command->add_option("--set", options->assignments, "KEY=VALUE: change any key of the robot files")
         ->type_name("KEY=VALUE")

@@ -55,8 +55,8 @@ Status check_folders(const LiveOptions& options) {
 }
 
 /// With -q the reasons alone, as an error.
-void tell(const LiveOptions& options, const rehearse::VirtualPrint& print, const twin::Report& report,
-          const std::string& json) {
+void show_result(const LiveOptions& options, const rehearse::VirtualPrint& print, const twin::Report& report,
+                 const std::string& json) {
     if (options.output.json)
         fmt::print("{}\n", json);
     else if (!options.output.quiet)
@@ -98,7 +98,7 @@ Result<int> print_virtual(const LiveOptions& options) {
         if (Status written = write_file(options.verdict, json + "\n"); !written) return tl::unexpected(written.error());
     }
     progress.reset();
-    tell(options, print, *report, json);
+    show_result(options, print, *report, json);
     return report->passed ? exit_done : exit_failed;
 }
 
