@@ -45,6 +45,7 @@ function Open() {
   const d = documentState.value;
   const box = useRef<HTMLDivElement>(null);
   useDismiss(project !== null, () => setProject(null), box);
+  const own = (project?.files ?? []).filter((f) => !project!.printers.includes(f));
   return (
     <div class="menu" ref={box}>
       <button class="document" aria-expanded={project !== null} onClick={toggle} data-testid="open">
@@ -69,9 +70,9 @@ function Open() {
             <span class="quiet">or drop it onto the page</span>
           </div>
           <h2 title={project.folder}>This folder</h2>
-          {project.files.length === 0 && <p class="quiet none">no robot files or jobs</p>}
+          {own.length === 0 && <p class="quiet none">no robot files or jobs</p>}
           <div class="gallery">
-            {project.files.map((name) => (
+            {own.map((name) => (
               <button class="item" key={name} onClick={() => (name.endsWith('.toml') ? unlessLost(`Opening ${name}`, () => void post('/api/open', { name })) : void post('/api/open', { name }))}>
                 <Thumbnail of={`file=${encodeURIComponent(name)}`} />
                 <span class="item-name">{name}</span>

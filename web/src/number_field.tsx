@@ -13,7 +13,7 @@ export function rangeText({ from, to, open }: Range, unit: string): string {
   if (from === -Infinity && to === Infinity) return 'must be a number';
   if (to === Infinity) return `must be ${open ? 'more than' : 'at least'} ${from}${u}`;
   if (from === -Infinity) return `must be ${open ? 'less than' : 'at most'} ${to}${u}`;
-  return `must be ${open ? 'between' : 'from'} ${from} ${open ? 'and' : 'to'} ${to}${u}`;
+  return open ? `must be more than ${from} and less than ${to}${u}` : `must be from ${from} to ${to}${u}`;
 }
 
 export function inRange(v: number, { from, to, open }: Range): boolean {

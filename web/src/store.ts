@@ -41,6 +41,8 @@ export const following = signal(true);
 /// Milliseconds from the last input to the frame that showed it.
 export const latency = signal(0);
 export const frameRate = signal(0);
+/// The last input has not been answered by a frame yet: what is shown belongs to the one before.
+export const unanswered = signal(false);
 
 const listeners = new Set<(event: Record<string, unknown>) => void>();
 export function onEvent(listener: (event: Record<string, unknown>) => void) {
@@ -83,6 +85,7 @@ export function send(message: Record<string, unknown>) {
 export function sendInput(message: Record<string, unknown>) {
   tag += 1;
   sentAt.set(tag, performance.now());
+  unanswered.value = true;
   if (sentAt.size > 500) sentAt.delete(sentAt.keys().next().value as number);
   send({ ...message, tag });
 }
@@ -173,6 +176,8 @@ export function driveAll() {
 /// Returns to rest and to the program; pending inputs will not be answered.
 export function toRest() {
   sentAt.clear();
+  unanswered.value = false;
+  latency.value = 0;
   send({ type: 'rest' });
 }
 
@@ -192,7 +197,10 @@ function receiveText(text: string) {
   const event = JSON.parse(text) as Record<string, unknown> & { type: string };
   if (event.type === 'helm') {
     helm.value = event as never;
-    if (!helm.value.you) sentAt.clear();
+    if (!helm.value.you) {
+      sentAt.clear();
+      unanswered.value = false;
+    }
     askForLostHelm();
   }
   if (event.type === 'document') documentState.value = event as never;
@@ -231,6 +239,7 @@ function receiveFrame(buffer: ArrayBuffer) {
       for (const key of sentAt.keys()) if (key <= next.head.tag) sentAt.delete(key);
     }
     frameRate.value = frameTimes.length;
+    unanswered.value = sentAt.size > 0;
     frame.value = next;
     adopt(next.head);
   });
@@ -243,6 +252,7 @@ function forget() {
   early = null;
   sentAt.clear();
   batch(() => {
+    unanswered.value = false;
     building.value = null;
     problems.value = [];
     slicing.value = null;

@@ -164,7 +164,8 @@ std::string happenings(const Printed& p) {
     if (p.story.happenings.empty())
         return "<h2>What happened</h2>\n<p>One host, no pause, no fault: every step as planned.</p>\n";
     std::string out =
-        "<h2>What happened</h2>\n<div class=\"scroll\"><table class=\"words\"><thead><tr><th>after</th><th>layer</th>"
+        "<h2>What happened</h2>\n<p>Layers are counted from 0, as in the job.</p>\n<div class=\"scroll\"><table "
+        "class=\"words\"><thead><tr><th>after</th><th>layer</th>"
         "<th>what</th><th>how it went on</th></tr></thead><tbody>\n";
     for (const Happening& h : p.story.happenings) {
         out += fmt::format("<tr{}><td>{}</td><td>{}</td><td class=\"wide\">{}</td><td class=\"wide\">{}</td></tr>\n",

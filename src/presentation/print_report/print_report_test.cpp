@@ -82,7 +82,7 @@ TEST_CASE("a print left unfinished is called interrupted; a damaged journal name
     CHECK(story.end == PrintEnd::interrupted);
     REQUIRE(story.happenings.size() == 1);
     CHECK(story.happenings[0].text == "the host ended in the light of layer 1");
-    CHECK(story.happenings[0].then == "the print waits to be gone on with");
+    CHECK(story.happenings[0].then == "the print waits to be resumed");
     dark(records, 99, 1, true, "host");
     CHECK(story_of(records).error().message == "record 6: no light 99 is on");
     CHECK(story_of({}).value().end == PrintEnd::not_begun);
@@ -97,7 +97,7 @@ TEST_CASE("a pause says what somebody was asked to do") {
     const PrintStory story = story_of(records).value();
     REQUIRE(story.happenings.size() == 3);
     CHECK(story.happenings[0].text == "paused: refill the vat of slot 2 with rigid-flex");
-    CHECK(story.happenings[1].text == "gone on");
+    CHECK(story.happenings[1].text == "resumed");
     CHECK(story.happenings[2].text == "paused");
     CHECK(story.faults == 0);
 }

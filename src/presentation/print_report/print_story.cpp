@@ -141,7 +141,7 @@ Status Teller::take(const host::JournalRecord& record) {
         const std::string asked = text_of(record, "asked");
         tell(record, false, asked.empty() ? "paused" : "paused: " + asked);
     } else if (kind == "resume") {
-        tell(record, false, "gone on");
+        tell(record, false, "resumed");
     } else if (kind == "suspend") {
         tell(record, false, "suspended and parked");
     } else if (kind == "cancel") {
@@ -163,7 +163,7 @@ void Teller::say_how_it_went_on(std::size_t index) {
     else if (story_.end == PrintEnd::complete)
         h.then = "survived: all light had been given";
     else
-        h.then = story_.end == PrintEnd::cancelled ? "the print was put away" : "the print waits to be gone on with";
+        h.then = story_.end == PrintEnd::cancelled ? "the print was put away" : "the print waits to be resumed";
 }
 
 }  // namespace

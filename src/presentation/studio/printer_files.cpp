@@ -45,7 +45,8 @@ Json resins_json(const machine::Printer& p) {
         resins.push_back({{"name", r.name},
                           {"exposure_s", r.exposure_s},
                           {"bottom_exposure_s", r.bottom_exposure_s},
-                          {"bottom_layers", r.bottom_layers}});
+                          {"bottom_layers", r.bottom_layers},
+                          {"longest_exposure_s", p.limits.exposure_s}});
     return resins;
 }
 

@@ -315,7 +315,7 @@ Status PrintRun::keep_changes() {
             s.exposures_s.resize(run_.job.materials.size());
             s.exposures_s[static_cast<std::size_t>(change.material)] = change.seconds;
         });
-        run_.desk.event("log", fmt::format("from layer {} on {} is exposed for {:g} s", change.from_layer + 1,
+        run_.desk.event("log", fmt::format("from layer {} on, {} is exposed for {:g} s", change.from_layer + 1,
                                            material_name(change.material), change.seconds));
     }
     for (const int layer : run_.desk.take_skips()) {

@@ -158,9 +158,9 @@ void warn_of_gaps(const job::Manifest& job, const Printer& printer, Plan& plan) 
         below_um = layer.z_um;
     }
     if (gaps == 0) return;
-    plan.warnings.push_back(
-        fmt::format("{} higher above the one below than the cure depth of the resin",
-                    gaps == 1 ? "1 layer lies" : counted(static_cast<std::size_t>(gaps), "layer") + " lie"));
+    plan.warnings.push_back(fmt::format(
+        "{} to be cured deeper than the cure depth of the resin: nothing will hold there",
+        gaps == 1 ? "1 layer would have" : counted(static_cast<std::size_t>(gaps), "layer") + " would have"));
 }
 
 }  // namespace

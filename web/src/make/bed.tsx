@@ -10,7 +10,7 @@ import { mayDrive, say, scene } from '../store';
 import { theme } from '../theme';
 import type { Scene } from '../types';
 import { estimate } from './estimate';
-import { copies, fields, printer, printerInfo, scale, shift, support, turn, type PrinterInfo } from './order';
+import { area, copies, fields, printer, printerInfo, scale, shift, support, turn, type PrinterInfo } from './order';
 import { painted, paintTable, readPaint, refined, strokes, touches, wishColours, type Touch, type Wish } from './paint';
 import { layOnFace, placed, rotationOf, type Degrees } from './place';
 import { clock } from './plan';
@@ -136,7 +136,7 @@ class BedView {
 
   show(where: ReturnType<typeof placed>, degrees: Degrees, size: number, at: [number, number], p: PrinterInfo) {
     if (this.platform) this.world.remove(this.platform);
-    this.platform = platformMesh(p.image_mm[0], p.image_mm[1]);
+    this.platform = platformMesh(...area(p));
     this.world.add(this.platform);
     this.parts.clear();
     const turned = rotationOf(degrees);
@@ -155,10 +155,10 @@ class BedView {
       this.down = down;
       this.colour();
     }
-    const key = JSON.stringify([where.size, p.image_mm]);
+    const key = JSON.stringify([where.size, area(p)]);
     if (key !== this.seen) {
       this.seen = key;
-      this.size = Math.max(Math.hypot(...where.size), 0.5 * Math.hypot(...p.image_mm));
+      this.size = Math.max(Math.hypot(...where.size), 0.5 * Math.hypot(...area(p)));
       this.height = where.size[2];
       this.home();
     }
@@ -411,7 +411,7 @@ export function Bed() {
   const p = printerInfo.value;
   const spacing = millimetres(fields.value.spacing, 2);
   const count = Math.max(1, Math.min(1000, Math.round(copies.value) || 1));
-  const where = s && p ? placed(s.f32('rest'), turn.value, count, spacing, p.image_mm, p.platform.height_mm, scale.value, shift.value) : null;
+  const where = s && p ? placed(s.f32('rest'), turn.value, count, spacing, area(p), p.platform.height_mm, scale.value, shift.value) : null;
   const materials = s?.head.materials.map((m) => m.name) ?? [];
   const e = estimate.value;
   const angle = Number(fields.value['support-angle'] || 45);
@@ -502,7 +502,7 @@ export function Bed() {
       {where && (
         <div class="layer-info">
           <b>{where.size.map((v) => v.toFixed(1)).join(' × ')} mm</b>
-          {!where.fits && <span class="problems-inline" role="alert">does not fit {p!.image_mm.map((v) => v.toFixed(1)).join(' × ')} × {p!.platform.height_mm.toFixed(0)} mm{shift.value.some((v) => v !== 0) && ' there'}</span>}
+          {!where.fits && <span class="problems-inline" role="alert">does not fit {area(p!).map((v) => v.toFixed(1)).join(' × ')} × {p!.platform.height_mm.toFixed(0)} mm{shift.value.some((v) => v !== 0) && ' there'}</span>}
         </div>
       )}
     </div>

@@ -30,9 +30,17 @@ function walk(e: KeyboardEvent) {
 
 function Issues() {
   const j = job.value!;
+  const warnings = j.plan?.warnings ?? [];
+  const count = j.issues.length + warnings.length;
   return (
-    <div class="issues">
-      <h3>{j.issues.length ? counted(j.issues.length, 'issue') : 'No issues found'}</h3>
+    <div class="issues" data-testid="issues">
+      <h3>{count ? counted(count, 'issue') : 'No issues found'}</h3>
+      {warnings.map((text) => (
+        <button class="issue" key={text} onClick={() => (tab.value = 'plan')}>
+          <Icon name="warn" />
+          <span>{text}</span>
+        </button>
+      ))}
       {j.issues.map((issue) => (
         <button
           class={`issue ${issue.severity ?? ''}`}
@@ -52,7 +60,7 @@ function Issues() {
           )}
         </button>
       ))}
-      {j.issues.length === 0 && (
+      {count === 0 && (
         <p class="quiet">
           <Icon name="check" /> No unsupported islands, no trapped resin, no loose pieces.
         </p>

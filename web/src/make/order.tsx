@@ -20,6 +20,9 @@ export interface PrinterInfo {
   vats: { slot: number; resin: string }[];
 }
 
+/// What can be printed on: the part of the platform that the image reaches, mm.
+export const area = (p: PrinterInfo): [number, number] => [Math.min(p.image_mm[0], p.platform.width_mm), Math.min(p.image_mm[1], p.platform.depth_mm)];
+
 interface Bond {
   kind: 'overlap' | 'interlock';
   a: string;
@@ -64,7 +67,7 @@ function quantity(option: string, text: string): string {
   return unit && /^[\d.eE+-]+$/.test(text.trim()) ? `${text.trim()} ${unit}` : text.trim();
 }
 
-const seconds = (text: string) => (/^[\d.]+$/.test(text.trim()) ? `${text.trim()} s` : text.trim());
+const seconds = (text: string) => (/^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(text.trim()) ? `${text.trim()} s` : text.trim());
 
 /// Including painted supports, which an estimate does not need.
 export const wholeOrder = (materials: string[]) => {
@@ -136,7 +139,7 @@ export function orderJson(materials: string[]) {
   const order: Record<string, unknown> = { printer: printer.value, copies: copies.value };
   const needSupport = ['support-angle', 'support-spacing', 'support-tip', 'support-pillar', 'lift', 'raft'];
   for (const [option, text] of Object.entries(fields.value)) {
-    if (!text.trim() || (needSupport.includes(option) && !support.value) || (option === 'drain' && !fields.value.hollow)) continue;
+    if (!text.trim() || (needSupport.includes(option) && !support.value)) continue;
     order[option] = option === 'threshold' ? Number(text) : quantity(option, text);
   }
   if (support.value) order.support = support.value;
@@ -470,7 +473,11 @@ export function SliceForm() {
         e.preventDefault();
         forget();
         // Errors in the order itself are shown at their field too.
-        void post('/api/job/slice', wholeOrder(materials), (text) => (sliceError.value = text));
+        const form = e.currentTarget;
+        void post('/api/job/slice', wholeOrder(materials), (text) => {
+          sliceError.value = text;
+          requestAnimationFrame(() => form.querySelector('[aria-invalid=true], .at-field')?.scrollIntoView({ block: 'center' }));
+        });
       }}
     >
       <label>

@@ -37,7 +37,7 @@ export interface Placed {
   fits: boolean;
 }
 
-/// The grid of copies in as few rows as the image's width allows, as placed by `pliant slice --copies`.
+/// The grid of copies in as few rows as the width of what can be printed on allows, as placed by `pliant slice --copies`.
 export function placed(points: Float32Array, turn: Degrees, copies: number, spacing: number, [width, depth]: [number, number], height: number, scale = 1, at: [number, number] = [0, 0]): Placed {
   const m = rotationOf(turn).scale(new THREE.Vector3(scale, scale, scale));
   const box = new THREE.Box3();

@@ -88,7 +88,8 @@ export function Print() {
         {!busy.value && !now.value.job.canResume && <ByHand />}
         <Log />
         <p class="quiet">
-          {now.value.machine.firmware} · {counted(now.value.machine.linesSent, 'line')} sent · {now.value.machine.resends} resent
+          {now.value.machine.firmware && `${now.value.machine.firmware} · `}
+          {counted(now.value.machine.linesSent, 'line')} sent · {now.value.machine.resends} resent
         </p>
       </div>
     </main>

@@ -21,9 +21,12 @@ const kindsOf = {
   chamber: ['volume_ratio', 'volume_change_mm3', 'pressure_kPa', 'gas_ratio'],
 };
 
-/// The actuator's current value, in the unit of this kind.
+/// Of the state that is shown: the present one, or one that is replayed.
+const shownHead = () => (shownFrame.value ?? frame.value)?.head;
+
+/// The actuator's value in the state that is shown, in the unit of this kind.
 export function reading(actuator: Actuator, kind: string): number {
-  const head = frame.value?.head;
+  const head = shownHead();
   const all = scene.value?.head.actuators ?? [];
   if (!head) return NaN;
   if (actuator.type === 'cable') {
@@ -73,6 +76,8 @@ function possible(actuator: Actuator, kind: string): Range {
       return { from: -(+actuator.rest.toPrecision(5)), to: Infinity, open: true };
     case 'pressure_kPa':
       return { from: -Infinity, to: Infinity };
+    case 'length_ratio':
+      return { from: 0, to: 10, open: true }; // as in the robot file
     default:
       return { from: 0, to: Infinity, open: true };
   }
@@ -113,11 +118,12 @@ function holdOthers(names: string[]) {
 function Control({ actuator }: { actuator: Actuator }) {
   const want = wanted.value[actuator.name] ?? { kind: actuator.kind, value: 1 };
   const now = reading(actuator, want.kind);
-  // If the program or another page controls it, show its current value rather than this page's last request.
-  const value = (following.value || !mayDrive.value) && Number.isFinite(now) ? now : want.value;
+  // If the program or another page controls it, or a state is replayed, show the value there rather than this page's last
+  // request.
+  const value = (following.value || !mayDrive.value || shownFrame.value) && Number.isFinite(now) ? now : want.value;
   const kind = kinds[want.kind];
   const [low, high] = range(actuator, want.kind, value);
-  const head = frame.value?.head;
+  const head = shownHead();
   const index = scene.value!.head.actuators.indexOf(actuator);
   const force =
     actuator.type === 'cable'

@@ -72,7 +72,7 @@ effect(() => {
 });
 
 export function Compare() {
-  const [project, setProject] = useState<{ files: string[]; examples: string[] } | null>(null);
+  const [project, setProject] = useState<{ files: string[]; examples: string[]; printers: string[] } | null>(null);
   const box = useRef<HTMLDivElement>(null);
   useDismiss(project !== null, () => setProject(null), box);
   if (comparing.value)
@@ -84,13 +84,13 @@ export function Compare() {
         </button>
       </span>
     );
-  const open = async () => setProject(project ? null : ((await (await api('/api/project')).json()) as { files: string[]; examples: string[] }));
+  const open = async () => setProject(project ? null : ((await (await api('/api/project')).json()) as { files: string[]; examples: string[]; printers: string[] }));
   const item = (label: string, order: unknown) => (
     <button class="item" key={label} onClick={() => void post('/api/compare', order)}>
       {label}
     </button>
   );
-  const robots = (project?.files ?? []).filter((f) => f.endsWith('.toml'));
+  const robots = (project?.files ?? []).filter((f) => f.endsWith('.toml') && !project!.printers.includes(f));
   return (
     <div class="menu" ref={box}>
       <button class="chip" aria-expanded={project !== null} disabled={!mayDrive.value} onClick={() => void open().catch((e: Error) => say(e.message))} data-testid="compare">

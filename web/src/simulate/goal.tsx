@@ -5,7 +5,7 @@ import { api, frame, mayDrive, say, scene } from '../store';
 import { driveTo, units } from './actuators';
 import { text } from './editor';
 import { insertKeys, programKeys } from './recorder';
-import { begin, resultOf, Search, type WaypointFound } from './search';
+import { begin, resultOf, Search, searching, type WaypointFound } from './search';
 
 type Point = [number, number, number];
 
@@ -175,9 +175,15 @@ function Waypoint({ at }: { at: WaypointFound }) {
   );
 }
 
+/// What was searched for last, to notice that the points have changed since.
+const asked = signal('');
+const order = () => JSON.stringify([marker.value, path.value]);
+
 function Found() {
   const last = resultOf('goal');
   if (!last || last.revision !== scene.value?.head.revision) return null;
+  if (searching.value?.kind === 'goal') return null;
+  if (asked.value && asked.value !== order()) return <p class="quiet" data-testid="goal-changed">The points have changed since the last search.</p>;
   const waypoints = (last.found as { waypoints: WaypointFound[] }).waypoints;
   return (
     <>
@@ -232,14 +238,15 @@ export function Goal() {
         kind="goal"
         label="Find inputs"
         ready={mayDrive.value && path.value.length > 0 && inputs.value.some((i) => i.used)}
-        onBegin={() =>
+        onBegin={() => {
+          asked.value = order();
           begin('goal', {
             marker: marker.value,
             path: path.value,
             tolerance: tolerance.value,
             inputs: inputs.value.filter((i) => i.used).map(({ name, low, high }) => ({ name, low, high })),
-          })
-        }
+          });
+        }}
       />
       <Found />
     </div>

@@ -1,5 +1,6 @@
 // Three hints for the first visit.
 import { signal } from '@preact/signals';
+import { mayDrive } from '../store';
 
 const hints = [
   'Drag a slider to pull a cable or to inflate a chamber. While you drag, numbers marked ≈ are approximate; let go, and the exact ones follow.',
@@ -11,7 +12,7 @@ const hintsSeen = signal(Number(localStorage.getItem('pliant_hints') ?? 0));
 
 export function Hints() {
   const k = hintsSeen.value;
-  if (k >= hints.length) return null;
+  if (k >= hints.length || !mayDrive.value) return null;
   const next = (to: number) => {
     hintsSeen.value = to;
     localStorage.setItem('pliant_hints', String(to));

@@ -25,7 +25,10 @@ export function LookBar() {
       <Toggle on={look.wireframe} label="Mesh" />
       <Toggle on={look.ghost} label="Rest shape" />
       <Toggle on={look.showInside} label="Transparent" />
-      <button class="chip" aria-pressed={more || look.sectionAxis.value !== ''} aria-expanded={more} onClick={() => setMore(!more)}>
+      <button class="chip" aria-pressed={more || look.sectionAxis.value !== ''} aria-expanded={more} onClick={() => {
+          setMore(!more);
+          look.measuring.value = false; // both would lie over the same place
+        }}>
         Section
       </button>
       <ViewMenu />
@@ -35,6 +38,7 @@ export function LookBar() {
         data-testid="measure-toggle"
         onClick={() => {
           look.measuring.value = !look.measuring.value;
+          setMore(false);
           look.picks.value = [];
         }}
       >

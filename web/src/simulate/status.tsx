@@ -1,5 +1,5 @@
 // One line below the view: whether the robot is at equilibrium, at which residual, how fast.
-import { building, frame, frameRate, latency, online, rough, scene } from '../store';
+import { building, frame, frameRate, latency, online, rough, scene, unanswered } from '../store';
 import { Rough } from './accuracy';
 import * as look from './view_state';
 
@@ -7,7 +7,8 @@ import * as look from './view_state';
 const millimetres = (mm: number) => `${mm < 0.01 ? 0.01 : +mm.toPrecision(1)} mm`;
 
 export function Status() {
-  const head = frame.value?.head;
+  const replayed = look.shownFrame.value;
+  const head = (replayed ?? frame.value)?.head;
   const s = scene.value?.head;
   if (building.value)
     return (
@@ -23,7 +24,7 @@ export function Status() {
       </div>
     );
   const led = head.lead?.settled ?? false;
-  const state = look.shownFrame.value ? 'replay' : head.stuck ? 'stuck' : head.arrived ? 'arrived' : head.refining ? 'refining' : led ? 'led' : 'solving';
+  const state = replayed ? 'replay' : head.stuck ? 'stuck' : unanswered.value ? 'solving' : head.arrived ? 'arrived' : head.refining ? 'refining' : led ? 'led' : 'solving';
   const warning = head.warnings.join('. ');
   const near = head.reduced_error_mm === undefined ? '≈ linear preview' : `≈ within ${millimetres(head.reduced_error_mm)}`;
   const words = {
@@ -42,7 +43,9 @@ export function Status() {
       {state === 'stuck' && <span data-testid="stuck-why">: {head.stuck}</span>}
       {warning && <span data-testid="state-warning">: {warning}</span>}
       <span class="quiet">
-        residual {head.residual.toExponential(0)} · {s.tets.toLocaleString('en')} tets · {head.solve_ms.toFixed(0)} ms
+        {head.residual > 0 && `residual ${head.residual.toExponential(0)} · `}
+        {s.tets.toLocaleString('en')} tets
+        {!replayed && ` · ${head.solve_ms.toFixed(0)} ms`}
         <span class="wide">
           {/* a rate is one while the robot moves: a single frame of a second says nothing */}
           {frameRate.value >= 5 && ` · ${frameRate.value} frames/s`}

@@ -12,15 +12,15 @@ import { sliceTest } from './test_job';
 import type { Step } from './wizard';
 
 const resin = signal('');
-const low = signal('');
-const high = signal('');
+const low = signal<string | null>(null); // null: the usual one
+const high = signal<string | null>(null);
 const count = signal('7');
 /// The job that was made: its revision, and the exposures of its pieces.
 const made = signal<{ revision: number; seconds: number[]; resin: string } | null>(null);
 const best = signal(-1);
 
 const known = () => setup.value?.resins.find((r) => r.name === resin.value) ?? setup.value?.resins[0];
-const num = (text: string, usual: number) => (text.trim() === '' ? usual : Number(text.replace(',', '.')));
+const num = (text: string | null, usual: number) => (text === null ? usual : text.trim() === '' ? NaN : Number(text.replace(',', '.')));
 const usualLow = () => Math.round(50 * (known()?.exposure_s ?? 2)) / 100;
 const usualHigh = () => Math.round(200 * (known()?.exposure_s ?? 2)) / 100;
 const seconds = () => ramp(num(low.value, usualLow()), num(high.value, usualHigh()), Math.round(num(count.value, 7)));
@@ -28,7 +28,9 @@ const seconds = () => ramp(num(low.value, usualLow()), num(high.value, usualHigh
 function wrong(): string {
   if (!file.value || !setup.value || setup.value.built_in) return 'a printer file of your own is needed';
   const [a, b, n] = [num(low.value, usualLow()), num(high.value, usualHigh()), num(count.value, 7)];
-  if (!(a > 0 && b > a && b <= 3600)) return 'the exposures must rise, from above 0 s';
+  if (!(a > 0 && b > a)) return 'From must be above 0 s and less than To';
+  const most = known()?.longest_exposure_s ?? Infinity;
+  if (b > most) return `To: ${setup.value.name} allows exposures up to ${most} s`;
   if (!(Number.isInteger(n) && n >= 2 && n <= 15)) return '2 to 15 pieces';
   return '';
 }
@@ -83,11 +85,11 @@ function Ask() {
       </label>
       <label class="wizard-field">
         <span>From</span>
-        <SetupNumber label="Shortest exposure" value={low.value || String(usualLow())} unit="s" testId="finder-from" onValue={(t) => (low.value = t)} />
+        <SetupNumber label="Shortest exposure" value={low.value ?? String(usualLow())} unit="s" testId="finder-from" onValue={(t) => (low.value = t)} />
       </label>
       <label class="wizard-field">
         <span>To</span>
-        <SetupNumber label="Longest exposure" value={high.value || String(usualHigh())} unit="s" testId="finder-to" onValue={(t) => (high.value = t)} />
+        <SetupNumber label="Longest exposure" value={high.value ?? String(usualHigh())} unit="s" testId="finder-to" onValue={(t) => (high.value = t)} />
       </label>
       <label class="wizard-field">
         <span>Pieces</span>

@@ -41,7 +41,7 @@ export interface PrinterSetup {
   axes: AxisSetup[];
   slots: number;
   vats: { slot: number; resin: string; fill_ml: number }[];
-  resins: { name: string; exposure_s: number; bottom_exposure_s: number; bottom_layers: number }[];
+  resins: { name: string; exposure_s: number; bottom_exposure_s: number; bottom_layers: number; longest_exposure_s: number }[];
   switches: { axis: string; end: string; name: string }[];
   platform: { width_mm: number; depth_mm: number; height_mm: number };
   projector: Projector;
