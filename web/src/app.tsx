@@ -20,6 +20,7 @@ import { GuideBar } from './wizard/guide_bar';
 interface Project {
   files: string[];
   examples: string[];
+  printers: string[];
   folder: string;
 }
 
