@@ -148,6 +148,24 @@ TEST_CASE("a hinge with a spring turns until its torque balances the weight, and
     CHECK(stopped.joint().coordinate == near(5 * pi / 180, {.absolute = 1e-3}));
 }
 
+TEST_CASE("a soft body on a free hinge or ball swings to where it hangs in one static step, or to its stop") {
+    const auto swung = [](const std::string& kind, const std::string& more) {
+        const std::string body =
+            "[[body]]\nname = \"flap\"\nmaterial = \"rubber\"\ngeometry = { box = [[0, -5, -5], [100, 5, 5]] }\n";
+        return run_jointed(jointed_world(
+            body + joint(kind, "world", "flap", 0, 0, more) + "[[marker]]\nname = \"tip\"\npoint = [95, 0, 0]\n",
+            fmt::format("steps = 1\ngravity = [0, 0, {}]\n", -g)));
+    };
+    const JointedRun hinge = swung("hinge", about_y), ball = swung("ball", "");
+    for (const JointedRun* run : {&hinge, &ball}) {
+        const Vec3 tip = run->last().markers.at(0).position_m;
+        CHECK(std::hypot(tip.x, tip.y) < 2e-3);
+        CHECK(tip.z == near(-0.095, {.relative = 0.02}));
+    }
+    const JointedRun stopped = swung("hinge", about_y + "\nlimits = [-5, 5]");
+    CHECK(std::abs(stopped.joint().coordinate) == near(5 * pi / 180, {.relative = 0.01}));
+}
+
 TEST_CASE("a bar that falls against the limit of its hinge gains no energy, and comes to rest there") {
     for (const char* integrator : {"bdf2", "energy-conserving"}) {
         CAPTURE(std::string(integrator));
