@@ -151,7 +151,8 @@ TEST_CASE("a hinge with a spring turns until its torque balances the weight, and
 TEST_CASE("a soft body on a free hinge or ball swings to where it hangs in one static step, or to its stop") {
     const auto swung = [](const std::string& kind, const std::string& more) {
         const std::string body =
-            "[[body]]\nname = \"flap\"\nmaterial = \"rubber\"\ngeometry = { box = [[0, -5, -5], [100, 5, 5]] }\n";
+            "[material.heavy]\nyoungs_modulus = \"1 MPa\"\npoisson_ratio = 0.3\ndensity = \"1000 kg/m^3\"\n"
+            "[[body]]\nname = \"flap\"\nmaterial = \"heavy\"\ngeometry = { box = [[0, -5, -5], [100, 5, 5]] }\n";
         return run_jointed(jointed_world(
             body + joint(kind, "world", "flap", 0, 0, more) + "[[marker]]\nname = \"tip\"\npoint = [95, 0, 0]\n",
             fmt::format("steps = 1\ngravity = [0, 0, {}]\n", -g)));
