@@ -259,8 +259,10 @@ StepReport Stepper::step(RobotState& robot, const StepPath& path, const Progress
 /// the motion, so the energy decreases from step to step.
 std::optional<State> Stepper::relax(const RobotState& robot, Controls controls, StepReport& report,
                                     const Progress& progress) {
-    constexpr double first_share = 0.01, least_share = 1e-4, growth = 2, loss = 0.25;
-    constexpr int most_steps = 100;
+    constexpr double first_share = 0.01, least_share = 1e-4, loss = 0.25;
+    constexpr int most_steps = 400;
+    // Far swings take many iterations, long before they fail.
+    const auto growth = [](int iterations) { return iterations <= 8 ? 2 : iterations <= 16 ? 1.2 : 0.8; };
     State at = follow_supports(system_, laplacian_, robot.now.state, controls);
     Controls last = robot.controls;
     double share = first_share;
@@ -280,7 +282,7 @@ std::optional<State> Stepper::relax(const RobotState& robot, Controls controls, 
         at = std::move(next);
         last = std::move(now);
         if (share == 1) return at;
-        share = std::min(1.0, growth * share);
+        share = std::min(1.0, growth(outcome.iterations) * share);
     }
     return std::nullopt;
 }
