@@ -1,6 +1,7 @@
 // pliant slice: layer images, plan and G-code of a robot for one printer, in one job file.
 #include <fmt/core.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
