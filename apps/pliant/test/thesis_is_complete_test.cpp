@@ -153,7 +153,7 @@ TEST_CASE("every figure has a row with a place that exists and a command that th
 
 TEST_CASE("every folder of a figure is in the suite: its numbers, and its document") {
     const std::string examples = read_file("examples/CMakeLists.txt").value();
-    const std::string documents = read_file("apps/pliant/CMakeLists.txt").value();
+    const std::string documents = read_file("apps/pliant/test/CMakeLists.txt").value();
     for (const auto& folder : std::filesystem::directory_iterator("examples/thesis")) {
         if (!folder.is_directory()) continue;
         const std::string name = "thesis/" + folder.path().filename().string();

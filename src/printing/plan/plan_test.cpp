@@ -114,7 +114,7 @@ TEST_CASE("warnings: a material that prints nothing, and a vat that holds too li
     CHECK(holds(plan.warnings[0], "\"m1\" prints nothing"));
     CHECK(
         holds(plan.warnings[1], "the vat of slot 1 gives 0.0 ml of \"semi-flex\" at a time: refill it before layer 4"));
-    CHECK(holds(plan.warnings[2], "1 layer lies higher"));
+    CHECK(holds(plan.warnings[2], "1 layer would have to be cured deeper"));
 }
 
 TEST_CASE("the G-code passes the interlocks, is absolute, and shows each image once, after M400") {

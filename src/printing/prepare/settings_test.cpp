@@ -226,7 +226,7 @@ TEST_CASE("--exposure sets all layers of a material, its first layers, or some l
     for (const char* wrong : {"soft=0 s", "soft=-1 s", "soft=3601 s", "soft=2 s,0 s"})
         CHECK(refused_settings([&](Order& o) {
                   o.exposures = {wrong};
-              }).find("must be above 0 s and at most an hour") != std::string::npos);
+              }).find("must be from a millisecond to an hour") != std::string::npos);
     for (const char* wrong : {"soft:5-2=3 s", "soft:-1-2=3 s", "soft:=3 s", "soft:1-=3 s", "soft:1-2=3 s,4 s"})
         CHECK(refused_settings([&](Order& o) { o.exposures = {wrong}; }).find("layers are FIRST-LAST") !=
               std::string::npos);
