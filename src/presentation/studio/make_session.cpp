@@ -69,6 +69,8 @@ Status MakeSession::save(const std::filesystem::path& file) {
     std::error_code ignored;
     if (std::filesystem::exists(file, ignored))
         return input_error("{} exists; choose another name", file.filename().string());
+    if (!std::filesystem::is_directory(file.parent_path(), ignored))
+        return input_error("there is no folder {}", file.parent_path().filename().string());
     const Result<std::string> bytes = read_file(job->file);
     if (!bytes) return tl::unexpected(bytes.error());
     if (Status written = write_file(file, *bytes); !written) return written;

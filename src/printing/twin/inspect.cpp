@@ -113,8 +113,8 @@ void judge_material(MaterialReport& m, bool exact_images, Verdict& verdict) {
         verdict.add(Kind::volume, fmt::format("{}: {:.3f} mm^3 cured, the model has {:.3f}, tolerance {:.3f}", m.name,
                                               m.cured_mm3, m.model_mm3, m.tolerance_mm3));
     if (m.foreign_mm3 > 0)
-        verdict.add(Kind::foreign, fmt::format("{}: {:.6f} mm^3 cured in another resin", m.name, m.foreign_mm3));
-    if (m.missing_mm3 > 0) verdict.add(Kind::missing, fmt::format("{}: {:.6f} mm^3 missing", m.name, m.missing_mm3));
+        verdict.add(Kind::foreign, fmt::format("{}: {:.6g} mm^3 cured in another resin", m.name, m.foreign_mm3));
+    if (m.missing_mm3 > 0) verdict.add(Kind::missing, fmt::format("{}: {:.6g} mm^3 missing", m.name, m.missing_mm3));
 }
 
 void judge_materials(Report& report, const job::Manifest& job, const ImageKind& images, Verdict& verdict) {

@@ -37,7 +37,7 @@ public:
 
     InverseResult run() {
         for (std::size_t k = 0; k < task_.waypoints() && result_.message.empty(); ++k) {
-            progress_.advance("inverse", static_cast<double>(k) / static_cast<double>(task_.waypoints()));
+            progress_.advance("finding inputs", static_cast<double>(k) / static_cast<double>(task_.waypoints()));
             Stopwatch watch;
             const Work before = seeker_.work();
             const std::optional<Found> found = k == 0 ? first() : next(k);
@@ -46,7 +46,7 @@ public:
             keep(*found, k, seeker_.work() - before, watch.read_s());
             if (found->cancelled) stop(k);
         }
-        progress_.advance("inverse", 1);
+        progress_.advance("finding inputs", 1);
         result_.reached = result_.waypoints.size() == task_.waypoints() &&
                           std::ranges::all_of(result_.waypoints, [](const Waypoint& w) { return w.reached; });
         return std::move(result_);
