@@ -400,6 +400,9 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
     const Result<double> least = length_um("--least-feature", order.least_feature, 0, 1e-3, 10000);
     if (!least) return tl::unexpected(least.error());
     settings.least_feature_um = *least;
+    if (order.threshold != Order{}.threshold && !order.no_anti_alias)
+        return input_error("--threshold {:g}: is that of images without anti-aliasing; add --no-anti-alias",
+                           order.threshold);
     settings.slicing.rules.anti_alias = !order.no_anti_alias;
     settings.slicing.rules.threshold = order.threshold;
     return settings;
