@@ -227,16 +227,11 @@ StepReport Stepper::step(RobotState& robot, const StepPath& path, const Progress
     double piece = longest;
     int in_vain = 0;  // iterations of the attempts since the last one that succeeded
     std::string why;  // the last one that failed did so
-    bool may_relax = tether_dt_s_ > 0;
     while (robot.now.along < path.end) {
         const double along = robot.now.along + piece;
         const double end = along >= path.end - rounding * path.shortest_piece ? path.end : along;
         const State* expected = end == path.end ? path.expected : nullptr;
-        StepOutcome outcome = go(robot, {end, path.at(end), path.onward, expected}, report, progress);
-        if (!outcome.converged && std::exchange(may_relax, false)) {
-            const std::optional<State> relaxed = relax(robot, path.at(end), report, progress);
-            if (relaxed) outcome = go(robot, {end, path.at(end), path.onward, &*relaxed}, report, progress);
-        }
+        const StepOutcome outcome = go(robot, {end, path.at(end), path.onward, expected}, report, progress);
         if (outcome.converged) {
             in_vain = 0;
             if (path.longest_piece > 0) piece = longest;
@@ -246,12 +241,20 @@ StepReport Stepper::step(RobotState& robot, const StepPath& path, const Progress
         why = outcome.reason;
         piece *= 0.5;
         in_vain += outcome.iterations;
-        if (progress.cancelled() || piece < path.shortest_piece || is_hopeless(model_, options_, in_vain)) break;
+        if (piece >= path.shortest_piece && !is_hopeless(model_, options_, in_vain) && !progress.cancelled()) continue;
+        if (!ends_by_relaxing(robot, path, report, progress)) break;
+        if (path.after_piece) path.after_piece(robot);
     }
     report.arrived = !(robot.now.along < path.end);
     if (!report.arrived) report.reason = why;
     remember(robot);
     return report;
+}
+
+bool Stepper::ends_by_relaxing(RobotState& robot, const StepPath& path, StepReport& report, const Progress& progress) {
+    if (!(tether_dt_s_ > 0) || progress.cancelled()) return false;
+    const std::optional<State> relaxed = relax(robot, path.at(path.end), report, progress);
+    return relaxed && go(robot, {path.end, path.at(path.end), path.onward, &*relaxed}, report, progress).converged;
 }
 
 /// Where parts that can swing or fall come to rest: implicit Euler steps without velocity, from a tether so strong that

@@ -124,8 +124,10 @@ private:
     [[nodiscard]] Scheme scheme(const RobotState& robot, const Controls& controls) const;
     void take_mean_inputs(const RobotState& robot, Controls& controls) const;
     [[nodiscard]] double time_error_m(const Controls& controls, const State& next) const;
-    /// An approximate state at the end of a step with a tether, for a step that is not solved directly; nullopt: none
-    /// was found.
+    /// For the end of a step with a tether that is not solved in pieces either.
+    [[nodiscard]] bool ends_by_relaxing(RobotState& robot, const StepPath& path, StepReport& report,
+                                        const Progress& progress);
+    /// An approximate state at the end of such a step; nullopt: none was found.
     [[nodiscard]] std::optional<State> relax(const RobotState& robot, Controls controls, StepReport& report,
                                              const Progress& progress);
     [[nodiscard]] StepReport step_by_error(RobotState& robot, const StepPath& path, const Progress& progress);
