@@ -39,8 +39,15 @@ async function told(page, text) {
 test('opening a printer file, a broken job or another text gives the right message, and the robot stays', async (t) => {
   const { page } = await openPage(browser, studio.address, t);
   await settled(page);
-  await open(page, 'machine.toml');
-  await told(page, /machine\.toml is a printer file: choose it under Prepare/);
+  await page.getByTestId('open').click();
+  await page.locator('.open-list .item').filter({ hasText: 'finger.toml' }).first().waitFor();
+  assert.equal(await page.locator('.open-list .item').filter({ hasText: 'machine.toml' }).count(), 0);
+  await page.keyboard.press('Escape');
+  const refused = await page.evaluate(async () => {
+    const headers = { 'Content-Type': 'application/json', 'X-Pliant-Page': sessionStorage.getItem('pliant_page') };
+    return (await fetch('/api/open', { method: 'POST', headers, body: JSON.stringify({ name: 'machine.toml' }) })).json();
+  });
+  assert.match(refused.error, /machine\.toml is a printer file: choose it under Prepare/);
   await open(page, 'broken.zip');
   await told(page, /broken\.zip/);
   assert.match(await page.getByTestId('open').textContent(), /finger/);
