@@ -204,7 +204,11 @@ function receiveText(text: string) {
     askForLostHelm();
   }
   if (event.type === 'document') documentState.value = event as never;
-  if (event.type === 'scene') loadScene().catch((e: Error) => say(e.message));
+  if (event.type === 'scene') {
+    sentAt.clear(); // inputs to the robot before
+    unanswered.value = false;
+    loadScene().catch((e: Error) => say(e.message));
+  }
   if (event.type === 'build') {
     building.value = event.stage ? (event as never) : null;
     if (event.stage === 'read') problems.value = [];
