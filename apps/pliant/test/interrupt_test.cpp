@@ -79,7 +79,7 @@ public:
     /// True from one percent on; which percentage is shown first depends on the speed of the computer.
     bool has_converged_steps() {
         listen();
-        static const std::regex bar(R"((simulate|inverse) \[[= ]*\] +[1-9][0-9]? %)");
+        static const std::regex bar(R"((simulate|finding inputs) \[[= ]*\] +[1-9][0-9]? %)");
         return std::regex_search(said_, bar);
     }
     /// Whether it has begun (before, it is a copy of this test) and has a handler for this signal, which would end it.

@@ -138,6 +138,7 @@ TEST_CASE("all requests before one layer are answered in one pause") {
 TEST_CASE("a fixed vat that is refilled many times in a row never ends below its least") {
     Bench b;
     b.printer = machine::load_printer("examples/printers/single.toml").value();
+    b.printer.projector.pixel_um = halves::pixel_um;
     b.printer.projector.width_px = halves::width_px;
     b.printer.projector.height_px = halves::height_px;
     b.job.materials.pop_back();
