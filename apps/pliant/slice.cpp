@@ -13,6 +13,7 @@
 #include "interrupt.hpp"
 #include "overcure.hpp"
 #include "presentation/print_report/job_picture.hpp"
+#include "printing/job/image_volumes.hpp"
 #include "printing/job/png.hpp"
 #include "printing/operate/job_file.hpp"
 #include "printing/plan/plan.hpp"
@@ -47,15 +48,8 @@ std::string parts_text(const job::Material& material) {
 }
 
 /// What the images hold of a material where it differs from the drawing: parts that are hollow, supports.
-std::string images_text(const job::Manifest& manifest, std::size_t material) {
+std::string images_text(double held_mm3, double drawn_mm3) {
     constexpr double noticeable = 0.01;
-    double held_mm3 = 0;
-    for (const job::Layer& layer : manifest.layers) {
-        for (const job::LayerImage& image : layer.images)
-            if (static_cast<std::size_t>(image.material) == material)
-                held_mm3 += image.area_mm2 * layer.thickness_um / 1000;
-    }
-    const double drawn_mm3 = manifest.materials[material].model_volume_mm3;
     return std::abs(held_mm3 - drawn_mm3) > noticeable * drawn_mm3
                ? fmt::format(" drawn, {:.1f} mm^3 in the images", held_mm3)
                : "";
@@ -66,10 +60,11 @@ void print_job(const SliceOptions& options, const job::Manifest& manifest, const
     if (options.output.quiet) return;
     fmt::print("{}: {} of {}, {} x {} px of {:.6g} um\n", options.job, counted(manifest.layers.size(), "layer"),
                heights_text(manifest), manifest.width_px, manifest.height_px, manifest.pixel_um);
+    const std::vector<double> held_mm3 = job::image_volumes_mm3(manifest);
     for (std::size_t m = 0; m < manifest.materials.size(); ++m) {
         const job::Material& material = manifest.materials[m];
         fmt::print("material {}: resin {}, {:.1f} mm^3{}{}\n", material.name, material.resin, material.model_volume_mm3,
-                   images_text(manifest, m), parts_text(material));
+                   images_text(held_mm3[m], material.model_volume_mm3), parts_text(material));
     }
     for (const std::string& note : notes) fmt::print("{}\n", note);
     for (const std::string& warning : plan.warnings) fmt::print("warning: {}\n", warning);

@@ -190,6 +190,14 @@ void check_carriage_way(Reader& root, const Printer& p) {
     }
 }
 
+/// Checks that `count` vats fit above each other, with the free height between them.
+void check_pitch(Reader& root, const Printer& p, const char* key, int count, int pitch_um, int clearance_um) {
+    const int least_um = p.vat_shape.wall_um + clearance_um;
+    if (count > 1 && pitch_um < least_um)
+        root.problem(
+            key, fmt::format("must be at least the vat's wall and the clearance above it, {:g} mm", least_um / 1000.0));
+}
+
 /// Checks that vats fit beside and above each other, with room to lift them off their places.
 void check_wall(Reader& root, const Printer& p) {
     const Wall& w = p.wall;
@@ -200,25 +208,14 @@ void check_wall(Reader& root, const Printer& p) {
                                                       wide_um / 1000.0));
     }
     if (w.lift_off_um >= w.clearance_um) root.problem("wall.lift_off", "must be less than the wall's clearance");
-    if (w.rows > 1 && w.row_pitch_um - w.clearance_um < p.vat_shape.wall_um) {
-        root.problem("wall.row_pitch",
-                     fmt::format("must be at least the vat's wall and the clearance above it, {:g} mm",
-                                 (p.vat_shape.wall_um + w.clearance_um) / 1000.0));
-    }
-}
-
-/// Checks that vats fit above each other, with the free height between them.
-void check_tower(Reader& root, const Printer& p) {
-    const Tower& t = p.tower;
-    if (t.slots > 1 && t.pitch_um - t.clearance_um < p.vat_shape.wall_um)
-        root.problem("tower.pitch", fmt::format("must be at least the vat's wall and the clearance above it, {:g} mm",
-                                                (p.vat_shape.wall_um + t.clearance_um) / 1000.0));
+    check_pitch(root, p, "wall.row_pitch", w.rows, w.row_pitch_um, w.clearance_um);
 }
 
 void check_geometry(Reader& root, const Printer& p) {
     if (p.has_carriage()) check_carriage_way(root, p);
     if (p.store() == Store::wall) check_wall(root, p);
-    if (p.store() == Store::tower) check_tower(root, p);
+    if (p.store() == Store::tower)
+        check_pitch(root, p, "tower.pitch", p.tower.slots, p.tower.pitch_um, p.tower.clearance_um);
     if (p.axis(Axis::platform).home_um() < p.clear_um(0)) {
         root.problem("axis.platform.home", "must end clear of the vat (home = \"max\")");
     }

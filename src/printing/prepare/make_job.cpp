@@ -7,6 +7,7 @@
 
 #include "base/core/parallel.hpp"
 #include "base/core/text.hpp"
+#include "printing/job/image_volumes.hpp"
 #include "printing/prepare/finding_pictures.hpp"
 #include "printing/prepare/printed_together.hpp"
 #include "printing/prepare/thumbnail.hpp"
@@ -204,11 +205,7 @@ void note_difference(const std::string& of, double lit_mm3, double drawn_mm3, do
 void note_volumes(Manifest& manifest) {
     constexpr double tolerance = 1e-3, tolerance_of_material = 1e-2;
     if (manifest.compensated) return;
-    std::vector<double> lit_mm3(manifest.materials.size(), 0.0);
-    for (const Layer& layer : manifest.layers) {
-        for (const LayerImage& image : layer.images)
-            lit_mm3[static_cast<std::size_t>(image.material)] += image.area_mm2 * layer.thickness_um / 1000;
-    }
+    const std::vector<double> lit_mm3 = image_volumes_mm3(manifest);
     double lit = 0, drawn = 0;
     for (std::size_t m = 0; m < lit_mm3.size(); ++m) {
         const Material& material = manifest.materials[m];
