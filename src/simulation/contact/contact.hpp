@@ -134,6 +134,9 @@ public:
     /// already touches. `dx`: (3 nodes).
     [[nodiscard]] double largest_step(std::span<const double> x, std::span<const double> dx) const;
 
+    /// True if largest_step() is 1; quicker, as the search ends with the first pair that comes too close.
+    [[nodiscard]] bool is_free(std::span<const double> x, std::span<const double> dx) const;
+
     /// True if largest_step() is below 1. Much quicker where nothing comes near in a sequence of small steps: it
     /// records the distances between all surfaces, and the next steps are compared with these.
     [[nodiscard]] bool meets(std::span<const double> x, std::span<const double> dx) const;
@@ -176,7 +179,7 @@ private:
         int node, obstacle;
         Vec3 normal;
     };
-    class Search;  ///< one sweep over the features whose boxes overlap: contact_search.cpp
+    class Search;  ///< one sweep over the features whose boxes overlap: contact_search.hpp
     class Nearby;  ///< the result of such a sweep, valid while nothing moves far
     struct Memory;
 
@@ -236,6 +239,8 @@ private:
     void find_planes(const Side& side, std::span<const double> x, double within_m, Pairs& pairs) const;
     void shorten_to_planes(const Side& side, std::span<const double> x, std::span<const double> dx, double& step) const;
     [[nodiscard]] double largest_plane_step(std::span<const double> x, std::span<const double> dx) const;
+    /// largest_step(), or where that is below `enough`, any other value below it.
+    [[nodiscard]] double free_step(std::span<const double> x, std::span<const double> dx, double enough) const;
 
     Settings settings_;
     std::vector<Obstacle> obstacles_;

@@ -235,6 +235,7 @@ TEST_CASE("cached data change nothing: pairs and steps equal those of a new cont
         }
         const double step = contact_of(body, usual).largest_step(span(x), span(dx));
         CHECK(contact.largest_step(span(x), span(dx)) == step);
+        CHECK(contact.is_free(span(x), span(dx)) == (step == 1));
         CHECK(contact.meets(span(x), span(dx)) == (step < 1));
         check_pairs(x + 0.3 * dx);
     }

@@ -10,6 +10,16 @@ namespace pliant::sim {
 
 using linalg::view;
 
+namespace {
+
+/// Motion of the nodes of the obstacles (3 obstacle nodes).
+Eigen::VectorXd or_at_rest(const Eigen::VectorXd& motion, const Controls& controls) {
+    if (motion.size() > 0) return motion;
+    return Eigen::VectorXd::Zero(controls.obstacles.size());
+}
+
+}  // namespace
+
 std::vector<double> Equilibrium::with_obstacles(const Eigen::VectorXd& x, const Eigen::VectorXd& obstacles) const {
     std::vector<double> all(x.data(), x.data() + x.size());
     model_->object_points().append(view(x), all);
@@ -122,9 +132,15 @@ double Equilibrium::largest_step(const Eigen::VectorXd& x, const Eigen::VectorXd
                                  const Eigen::VectorXd& obstacle_motion) const {
     const contact::Contact* contact = this->contact(controls);
     if (contact == nullptr) return 1;
-    const Eigen::VectorXd none = Eigen::VectorXd::Zero(controls.obstacles.size());
     return contact->largest_step(with_obstacles(x, controls.obstacles),
-                                 with_obstacles(motion, obstacle_motion.size() > 0 ? obstacle_motion : none));
+                                 with_obstacles(motion, or_at_rest(obstacle_motion, controls)));
+}
+
+bool Equilibrium::is_free(const Eigen::VectorXd& x, const Eigen::VectorXd& motion, const Controls& controls,
+                          const Eigen::VectorXd& obstacle_motion) const {
+    const contact::Contact* contact = this->contact(controls);
+    return contact == nullptr || contact->is_free(with_obstacles(x, controls.obstacles),
+                                                  with_obstacles(motion, or_at_rest(obstacle_motion, controls)));
 }
 
 std::shared_ptr<const contact::Friction> Equilibrium::freeze_friction(const State& state, const State& start,

@@ -363,7 +363,7 @@ private:
         [[nodiscard]] std::optional<Eigen::VectorXd> free_end(double alpha) const {
             const Eigen::VectorXd& x = solver_.state_.x;
             Eigen::VectorXd end = solver_.curvature_.retract(x, alpha * motion_);
-            if (solver_.system_.largest_step(x, end - x, solver_.controls_) < 1) return std::nullopt;
+            if (!solver_.system_.is_free(x, end - x, solver_.controls_)) return std::nullopt;
             return end;
         }
 

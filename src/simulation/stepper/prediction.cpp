@@ -122,8 +122,7 @@ State follow_supports(const Equilibrium& system, const FactoredLaplacian& laplac
 }
 
 bool passes(const Equilibrium& system, const RobotState& from, const State& next, const Controls& controls) {
-    return system.largest_step(from.x(), next.x - from.x(), from.controls,
-                               controls.obstacles - from.controls.obstacles) >= 1;
+    return system.is_free(from.x(), next.x - from.x(), from.controls, controls.obstacles - from.controls.obstacles);
 }
 
 }  // namespace pliant::sim

@@ -1,0 +1,101 @@
+// Where surfaces cut through each other or touch.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "simulation/contact/contact_search.hpp"
+#include "simulation/contact/intersection.hpp"
+
+namespace pliant::sim::contact {
+
+std::optional<Crossing> Contact::first_crossing(std::span<const double> x, bool self, bool at_rest) const {
+    using Found = std::optional<Crossing>;
+    const Search search(*this, x, {}, 0, Search::What::crossings, self);
+    const auto test = [&](const Search::Candidate& c, Found& found) {
+        const auto& n = c.nodes;
+        const bool joined =
+            std::find(n.begin() + 2, n.end(), n[0]) != n.end() || std::find(n.begin() + 2, n.end(), n[1]) != n.end();
+        if (found || joined) return;
+        const Vec3 a = node_at(x, n[0]), b = node_at(x, n[1]);
+        const Vec3 t0 = node_at(x, n[2]), t1 = node_at(x, n[3]), t2 = node_at(x, n[4]);
+        const Rim rim = at_rest ? Rim::left_out : Rim::counts;
+        if (!segment_crosses_triangle(a, b, t0, t1, t2, rim) || (!at_rest && edge_and_triangle_belong_together(n)) ||
+            are_joined(std::span(n).first(2), std::span(n).last(3)))
+            return;
+        const int obstacle = std::max(obstacle_of_node_[n[0]], obstacle_of_node_[n[2]]);
+        found = {{n[0], n[1]}, {n[2], n[3], n[4]}, obstacle, point_in_plane(a, b, t0, t1, t2)};
+    };
+    for (const Found& piece : search.run(Found{}, test))
+        if (piece) return piece;
+    return {};
+}
+
+bool Contact::edge_and_triangle_belong_together(std::span<const int, 5> n) const {
+    const std::span<const int> edge = n.first<2>(), triangle = n.last<3>();
+    const auto r = [&](std::size_t k) { return node_at(rest_, n[k]); };
+    if (segment_crosses_triangle(r(0), r(1), r(2), r(3), r(4))) return true;
+    double squared = std::numeric_limits<double>::infinity();
+    const auto offer = [&](Features features, const Stencil& at) {
+        squared = std::min(squared, squared_distance(nearest(features, at), at));
+    };
+    for (std::size_t k = 0; k < 2; ++k) offer(Features::point_triangle, {r(k), r(2), r(3), r(4)});
+    for (std::size_t k = 0; k < 3; ++k) offer(Features::edge_edge, {r(0), r(1), r(2 + k), r(2 + (k + 1) % 3)});
+    return left_out(edge, triangle, std::sqrt(squared));
+}
+
+std::optional<Crossing> Contact::crossing(std::span<const double> x) const {
+    return first_crossing(x, true, false);
+}
+
+std::optional<Crossing> Contact::crossing_at_rest() const {
+    const auto found = first_crossing(rest_, true, true);
+    return found && found->obstacle < 0 ? found : std::nullopt;
+}
+
+std::optional<Contact::Touched> Contact::obstacle_touched_at_rest() const {
+    std::optional<Touched> touched;
+    visit_moving_sides([&](const Side& side) {
+        for (const Plane& plane : planes_)
+            for (const int point : side.surface.points)
+                if (dot(plane.normal, node_at(rest_, point) - node_at(rest_, plane.node)) < -touching_m_)
+                    touched = {plane.obstacle, part_of(point)};
+    });
+    const Search search(*this, rest_, {}, touching_m_, Search::What::pairs, false);
+    const auto moving = [&](int a, int b) { return part_of(obstacle_of_node_[a] < 0 ? a : b); };
+    const auto test = [&](const Search::Candidate& c, std::optional<Touched>& found) {
+        const int obstacle = obstacle_of(c.nodes);
+        if (obstacle >= 0 && std::sqrt(c.squared_distance(rest_)) <= touching_m_)
+            found = {obstacle, moving(c.nodes[0], c.nodes[3])};
+    };
+    for (const auto& piece : search.run(std::optional<Touched>(), test)) touched = piece ? piece : touched;
+    const auto crossed = first_crossing(rest_, false, true);
+    if (crossed && crossed->obstacle >= 0)
+        touched = {crossed->obstacle, moving(crossed->edge[0], crossed->triangle[0])};
+    return touched;
+}
+
+std::string Contact::part_name(int part) const {
+    return part == 0 ? "the robot" : "object \"" + rigid_[static_cast<std::size_t>(part) - 1].name + "\"";
+}
+
+Status Contact::check_parts_at_rest() const {
+    const auto refused = [&](int a, int b) {
+        return input_error("{} touches or crosses {} at rest: leave a gap", part_name(std::max(part_of(a), part_of(b))),
+                           part_name(std::min(part_of(a), part_of(b))));
+    };
+    using Found = std::optional<std::array<int, 2>>;
+    const Search search(*this, rest_, {}, touching_m_, Search::What::pairs, false);
+    const auto test = [&](const Search::Candidate& c, Found& found) {
+        if (part_of(c.nodes[0]) != part_of(c.nodes[3]) && obstacle_of(c.nodes) < 0 &&
+            std::sqrt(c.squared_distance(rest_)) <= touching_m_ && !are_joined(c.first_nodes(), c.second_nodes()))
+            found = {c.nodes[0], c.nodes[3]};
+    };
+    for (const Found& piece : search.run(Found{}, test))
+        if (piece) return refused((*piece)[0], (*piece)[1]);
+    const auto crossed = first_crossing(rest_, false, true);
+    if (crossed && crossed->obstacle < 0 && part_of(crossed->edge[0]) != part_of(crossed->triangle[0]))
+        return refused(crossed->edge[0], crossed->triangle[0]);
+    return {};
+}
+
+}  // namespace pliant::sim::contact

@@ -1,0 +1,148 @@
+// How far nodes may move until features meet.
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <numeric>
+
+#include "simulation/contact/ccd.hpp"
+#include "simulation/contact/contact_search.hpp"
+
+namespace pliant::sim::contact {
+namespace {
+
+/// A tenth: share of its present distance that every pair keeps in a step.
+constexpr double kept_share = 0.1;
+
+/// A clearance that answers fewer calls than this has cost more than it saved.
+constexpr int worth_knowing = 4;
+
+}  // namespace
+
+bool Contact::is_clear(std::span<const double> x, std::span<const double> dx) const {
+    std::shared_ptr<const Clearance> known;
+    {
+        const std::lock_guard lock(memory_->mutex);
+        if (!memory_->clear.known) return false;
+        if (dx.empty() && std::ranges::equal(memory_->clear.end, x)) return true;
+        known = memory_->clear.known;
+    }
+    const bool holds = known->holds(x, dx);
+    const std::lock_guard lock(memory_->mutex);
+    auto& clear = memory_->clear;
+    if (holds) {
+        ++clear.served;
+        clear.end.assign(x.begin(), x.end());
+        for (std::size_t i = 0; i < dx.size(); ++i) clear.end[i] += dx[i];
+        return true;
+    }
+    if (clear.known != known) return false;
+    if (clear.served >= worth_knowing)
+        clear.patience = 1, clear.wait = 0;
+    else
+        clear.grow_patience();
+    clear.known.reset();
+    clear.end.clear();
+    return false;
+}
+
+void Contact::wait_for_clearance() const {
+    const std::lock_guard lock(memory_->mutex);
+    memory_->clear.grow_patience();
+}
+
+void Contact::note_clearance(std::span<const double> x) const {
+    {
+        const std::lock_guard lock(memory_->mutex);
+        if (memory_->clear.known || memory_->clear.wait-- > 0) return;
+    }
+    struct Seen {
+        Search::Candidate candidate;
+        double now_m, rest_m;  ///< apart
+    };
+    const auto look = [&](const Search::Candidate& c, std::vector<Seen>& seen) {
+        if (c.distance_bound(x) >= seen_m_) return;
+        const double now = std::sqrt(c.squared_distance(x)), rest = std::sqrt(c.squared_distance(rest_));
+        if (now < seen_m_ && !left_out(c.first_nodes(), c.second_nodes(), rest)) seen.push_back({c, now, rest});
+    };
+    const Search search(*this, x, {}, seen_m_, Search::What::pairs, settings_.self);
+    std::vector<Seen> all;
+    for (const std::vector<Seen>& piece : search.run(std::vector<Seen>{}, look))
+        all.insert(all.end(), piece.begin(), piece.end());
+    const auto reach_of = [&](const Seen& s) { return reach(obstacle_of(s.candidate.nodes), s.rest_m); };
+    if (std::ranges::any_of(all, [&](const Seen& s) { return s.now_m <= reach_of(s); })) return wait_for_clearance();
+    std::vector<Clearance::Side> sides;
+    for (std::size_t k = 0; k < 2 + parts_.size(); ++k) sides.push_back({&side(k).surface, side(k).regions});
+    const auto meetings = this->meetings(settings_.self);
+    Clearance clearance(sides, meetings, x, seen_m_, settings_.distance_m);
+    for (const Seen& seen : all) {
+        const auto first = seen.candidate.first_nodes(), second = seen.candidate.second_nodes();
+        const std::pair both(side_of(first[0]), side_of(second[0]));
+        const auto is_it = [&](const auto& m) { return m == both || m == std::pair(both.second, both.first); };
+        const auto meeting = std::ranges::find_if(meetings, is_it);
+        const bool in_order = *meeting == both;
+        clearance.offer(static_cast<std::size_t>(meeting - meetings.begin()), in_order ? first : second,
+                        in_order ? second : first, seen.now_m, reach_of(seen));
+    }
+    const std::lock_guard lock(memory_->mutex);
+    memory_->clear.known = std::make_shared<const Clearance>(std::move(clearance));
+    memory_->clear.end.assign(x.begin(), x.end());
+    memory_->clear.served = 0;
+}
+
+double Contact::largest_step(std::span<const double> x, std::span<const double> dx) const {
+    return free_step(x, dx, 0);
+}
+
+bool Contact::is_free(std::span<const double> x, std::span<const double> dx) const {
+    return free_step(x, dx, 1) >= 1;
+}
+
+double Contact::free_step(std::span<const double> x, std::span<const double> dx, double enough) const {
+    const double free = largest_plane_step(x, dx);
+    if (free < enough || is_clear(x, dx)) return free;
+    const double margin = kept_share * settings_.distance_m;
+    std::atomic<bool> ended = false;
+    const auto limit = [&](const Search::Candidate& c, double& step) {
+        if (ended.load(std::memory_order_relaxed) || !c.comes_near(x, dx, margin)) return;
+        const double t =
+            contact::largest_step(c.features(), stencil_at(c.nodes, x), stencil_at(c.nodes, dx), kept_share, step);
+        if (t >= step || left_out(c.first_nodes(), c.second_nodes(), std::sqrt(c.squared_distance(rest_)))) return;
+        step = t;
+        if (t < enough) ended.store(true, std::memory_order_relaxed);
+    };
+    const auto known = nearby(x, dx);
+    const std::vector<double> steps =
+        known ? known->run(free, limit)
+              : Search(*this, x, dx, margin, Search::What::pairs, settings_.self).run(free, limit);
+    return std::accumulate(steps.begin(), steps.end(), free, [](double a, double b) { return std::min(a, b); });
+}
+
+bool Contact::meets(std::span<const double> x, std::span<const double> dx) const {
+    if (largest_plane_step(x, dx) < 1) return true;
+    if (is_clear(x, dx)) return false;
+    // Distances at the start answer for this step as well as for later ones; the search along the step is slower.
+    note_clearance(x);
+    return !is_clear(x, dx) && !is_free(x, dx);
+}
+
+double Contact::largest_plane_step(std::span<const double> x, std::span<const double> dx) const {
+    double step = 1;
+    visit_moving_sides([&](const Side& side) { shorten_to_planes(side, x, dx, step); });
+    return step;
+}
+
+void Contact::shorten_to_planes(const Side& side, std::span<const double> x, std::span<const double> dx,
+                                double& step) const {
+    for (const Plane& plane : planes_) {
+        for (const int point : side.surface.points) {
+            const double now = dot(plane.normal, node_at(x, point) - node_at(x, plane.node));
+            const double closing = dot(plane.normal, node_at(dx, plane.node) - node_at(dx, point));
+            if (now - closing < kept_share * now)
+                step = std::min(step, (1 - kept_share) * std::max(now, 0.0) / closing);
+        }
+    }
+}
+
+}  // namespace pliant::sim::contact
