@@ -45,6 +45,38 @@ Json chamber_json(const sim::Chamber& chamber, double rest_m3) {
     return actuator_json("chamber", chamber.name, kind.name, kind.per_unit * chamber.target.value, 1e9 * rest_m3);
 }
 
+/// An array with entry(one) for each of the list.
+template <class List, class Entry>
+Json array_of(const List& list, const Entry& entry) {
+    Json array = Json::array();
+    for (const auto& one : list) array.push_back(entry(one));
+    return array;
+}
+
+Json sensor_json(const sim::Sensor& sensor) {
+    const Json readings = array_of(sim::readings_of(sensor), [](const auto& reading) -> Json {
+        const auto& [name, measure] = reading;
+        const sim::Shown as = sim::shown(measure);
+        return {{"name", name + std::string(as.suffix)}, {"unit", std::string(as.unit)}};
+    });
+    return {{"name", sensor.name}, {"readings", readings}};
+}
+
+Json graded_json(const std::vector<robot::BodySpec>& bodies) {
+    Json graded = Json::array();
+    for (const robot::BodySpec& body : bodies) {
+        if (body.blend)
+            graded.push_back({{"body", body.name}, {"material", body.material}, {"other", body.blend->material}});
+    }
+    return graded;
+}
+
+/// True if something besides actuators acts on the robot.
+bool is_loaded(const sim::Description& d) {
+    return !d.loads.empty() || !d.pressures.empty() || !d.torques.empty() || norm(d.gravity_m_s2) > 0 ||
+           std::ranges::any_of(d.supports, [](const sim::Support& support) { return support.moves(); });
+}
+
 double cable_length_m(const sim::Model& model, std::size_t c) {
     const auto cables = sim::cable_points(model, model.mesh().points);
     double length = 0;
@@ -71,6 +103,39 @@ double wall_volume(const sim::Wall& wall, const std::vector<Vec3>& positions) {
                       cross(p[static_cast<std::size_t>(f[1])], p[static_cast<std::size_t>(f[2])])) /
                   6;
     return std::abs(volume);
+}
+
+Json materials_json(const robot::Robot& robot) {
+    Json materials = Json::array();
+    for (std::size_t m = 0; m < robot.materials.size(); ++m) {
+        const robot::MaterialSpec& spec = robot.materials[m];
+        materials.push_back({{"name", spec.name},
+                             {"colour", report::hex(colour_of(robot, m))},
+                             {"law", law_text(spec)},
+                             {"youngs_modulus_MPa", 1e-6 * spec.youngs_modulus_Pa},
+                             {"poisson_ratio", spec.poisson_ratio},
+                             {"density_kg_m3", spec.density_kg_m3},
+                             {"resin", spec.resin}});
+    }
+    return materials;
+}
+
+Json actuators_json(const sim::Model& model) {
+    const sim::Description& d = model.description();
+    Json actuators = Json::array();
+    for (std::size_t c = 0; c < d.cables.size(); ++c)
+        actuators.push_back(cable_json(d.cables[c], cable_length_m(model, c)));
+    for (const sim::Chamber& chamber : d.chambers)
+        actuators.push_back(chamber_json(chamber, wall_volume(chamber.wall, model.mesh().points)));
+    return actuators;
+}
+
+/// From `first_object` on they are objects.
+Json obstacles_json(const std::vector<report::Obstacle>& obstacles, std::size_t first_object) {
+    Json all = Json::array();
+    for (std::size_t o = 0; o < obstacles.size(); ++o)
+        all.push_back({{"name", obstacles[o].name}, {"open", obstacles[o].open}, {"object", o >= first_object}});
+    return all;
 }
 
 /// Appends a curved face as four flat ones.
@@ -154,62 +219,24 @@ void Scene::add_grades() {
 
 std::string Scene::head() const {
     const sim::Description& d = model_.description();
-    Json materials = Json::array(), actuators = Json::array(), supports = Json::array(), markers = Json::array(),
-         obstacles = Json::array(), cables = Json::array();
-    for (std::size_t m = 0; m < robot_.materials.size(); ++m) {
-        const robot::MaterialSpec& spec = robot_.materials[m];
-        materials.push_back({{"name", spec.name},
-                             {"colour", report::hex(colour_of(robot_, m))},
-                             {"law", law_text(spec)},
-                             {"youngs_modulus_MPa", 1e-6 * spec.youngs_modulus_Pa},
-                             {"poisson_ratio", spec.poisson_ratio},
-                             {"density_kg_m3", spec.density_kg_m3},
-                             {"resin", spec.resin}});
-    }
-    for (std::size_t c = 0; c < d.cables.size(); ++c) {
-        actuators.push_back(cable_json(d.cables[c], cable_length_m(model_, c)));
-        cables.push_back(d.cables[c].points.size());
-    }
-    for (const sim::Chamber& chamber : d.chambers)
-        actuators.push_back(chamber_json(chamber, wall_volume(chamber.wall, model_.mesh().points)));
-    for (const sim::Support& support : d.supports) supports.push_back(support.name);
-    for (const sim::Marker& marker : d.markers)
-        markers.push_back({{"name", marker.name},
-                           {"rest", vector_json(mm * sim::position(marker.point, flat(model_.mesh().points)))}});
-    Json sensors = Json::array();
-    for (const sim::Sensor& sensor : d.sensors) {
-        Json readings = Json::array();
-        for (const auto& [name, measure] : sim::readings_of(sensor)) {
-            const sim::Shown as = sim::shown(measure);
-            readings.push_back({{"name", name + std::string(as.suffix)}, {"unit", std::string(as.unit)}});
-        }
-        sensors.push_back({{"name", sensor.name}, {"readings", readings}});
-    }
-    Json graded = Json::array(), bodies = Json::array();
-    for (const robot::BodySpec& body : robot_.bodies)
-        bodies.push_back({{"name", body.name}, {"material", body.material}});
-    for (const robot::BodySpec& body : robot_.bodies) {
-        if (body.blend)
-            graded.push_back({{"body", body.name}, {"material", body.material}, {"other", body.blend->material}});
-    }
-    const std::size_t fixed_things = obstacles_.size() - model_.objects().size();
-    for (std::size_t o = 0; o < obstacles_.size(); ++o)
-        obstacles.push_back(
-            {{"name", obstacles_[o].name}, {"open", obstacles_[o].open}, {"object", o >= fixed_things}});
-    const bool loaded = !d.loads.empty() || !d.pressures.empty() || !d.torques.empty() || norm(d.gravity_m_s2) > 0 ||
-                        std::any_of(d.supports.begin(), d.supports.end(), [](const auto& s) { return s.moves(); });
+    const auto support_name = [](const sim::Support& support) -> Json { return support.name; };
+    const auto body = [](const robot::BodySpec& b) -> Json { return {{"name", b.name}, {"material", b.material}}; };
+    const auto points_of = [](const sim::Cable& cable) -> Json { return cable.points.size(); };
+    const auto marker = [&](const sim::Marker& m) -> Json {
+        return {{"name", m.name}, {"rest", vector_json(mm * sim::position(m.point, flat(model_.mesh().points)))}};
+    };
     const Json json = {{"robot", robot_.name},
-                       {"materials", materials},
-                       {"bodies", bodies},
+                       {"materials", materials_json(robot_)},
+                       {"bodies", array_of(robot_.bodies, body)},
                        {"unit_mm", mm * robot_.unit_m},
-                       {"graded", graded},
-                       {"actuators", actuators},
-                       {"cable_points", cables},
-                       {"supports", supports},
-                       {"markers", markers},
-                       {"sensors", sensors},
-                       {"obstacles", obstacles},
-                       {"loaded", loaded},
+                       {"graded", graded_json(robot_.bodies)},
+                       {"actuators", actuators_json(model_)},
+                       {"cable_points", array_of(d.cables, points_of)},
+                       {"supports", array_of(d.supports, support_name)},
+                       {"markers", array_of(d.markers, marker)},
+                       {"sensors", array_of(d.sensors, sensor_json)},
+                       {"obstacles", obstacles_json(obstacles_, obstacles_.size() - model_.objects().size())},
+                       {"loaded", is_loaded(d)},
                        {"program",
                         {{"steps", robot_.program.steps},
                          {"duration", robot_.program.duration},

@@ -234,76 +234,77 @@ int Server::port() const {
     return state_->rules.port;
 }
 
+/// The callbacks of /live; `data` is the server's state.
+struct Server::LivePath {
+    static int admit(const mg_connection* wire, void* data) {
+        auto query = read_query(mg_get_request_info(wire)->query_string);
+        const auto* state = static_cast<State*>(data);
+        return state->access(const_cast<mg_connection*>(wire), query["token"], true) == Access::granted ? 0 : 1;
+    }
+    static void open(mg_connection* wire, void* data) {
+        auto* socket = new Socket{static_cast<State*>(data)->studio.join(), {}};
+        socket->writer = std::thread(write_all, wire, socket->connection);
+        mg_set_user_connection_data(wire, socket);
+    }
+    static int receive(mg_connection* wire, int bits, char* text, std::size_t length, void* data) {
+        const auto* socket = static_cast<Socket*>(mg_get_user_connection_data(wire));
+        const int opcode = bits & 0xf;
+        if (opcode == MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE) return 0;
+        if (opcode == MG_WEBSOCKET_OPCODE_PING || opcode == MG_WEBSOCKET_OPCODE_PONG) return 1;
+        const bool whole = (bits & 0x80) != 0;  // messages are short: fragmented ones are not accepted
+        if (opcode != MG_WEBSOCKET_OPCODE_TEXT || !whole || length > longest_message) return 0;
+        static_cast<State*>(data)->studio.receive(socket->connection, {text, length});
+        return 1;
+    }
+    static void close(const mg_connection* wire, void* data) {
+        auto* socket = static_cast<Socket*>(mg_get_user_connection_data(wire));
+        if (socket == nullptr) return;
+        static_cast<State*>(data)->studio.leave(socket->connection);
+        socket->writer.join();
+        delete socket;
+        mg_set_user_connection_data(wire, nullptr);
+    }
+};
+
 Result<std::unique_ptr<Server>> Server::start(Studio& studio, const ServerSettings& settings) {
     use_large_thread_stacks();
     mg_init_library(MG_FEATURES_DEFAULT);
     std::unique_ptr<Server> server(new Server(
         std::make_unique<State>(State{studio, {0, settings.token}, find_help_pages(settings.program_folder)})));
-    const bool six = settings.address.find(':') != std::string::npos;
-    const std::string ports =
-        fmt::format("{}:{}", six ? "[" + settings.address + "]" : settings.address, settings.port);
-    const char* options[] = {"listening_ports",
-                             ports.c_str(),
-                             "num_threads",
-                             "32",
-                             "request_timeout_ms",
-                             "10000",
-                             "websocket_timeout_ms",
-                             "20000",
-                             "enable_keep_alive",
-                             "yes",
-                             "keep_alive_timeout_ms",
-                             "5000",
-                             "linger_timeout_ms",
-                             "0",
-                             "tcp_nodelay",
-                             "1",
-                             nullptr};
-    mg_callbacks callbacks{};
-    callbacks.log_message = [](const mg_connection*, const char*) { return 1; };  // the library never prints
     State* state = server->state_.get();
-    state->context = mg_start(&callbacks, state, options);
-    mg_server_port listening[4];
-    const int count = state->context == nullptr ? 0 : mg_get_server_ports(state->context, 4, listening);
-    if (count < 1)
-        return failure("{}: cannot listen there; the port is taken, or the address is not this machine's", ports);
-    state->rules.port = listening[0].port;
-
-    mg_set_websocket_handler(
-        state->context, "/live",
-        [](const mg_connection* wire, void* data) {
-            auto* s = static_cast<State*>(data);
-            auto query = read_query(mg_get_request_info(wire)->query_string);
-            return s->access(const_cast<mg_connection*>(wire), query["token"], true) == Access::granted ? 0 : 1;
-        },
-        [](mg_connection* wire, void* data) {
-            auto* socket = new Socket{static_cast<State*>(data)->studio.join(), {}};
-            socket->writer = std::thread(write_all, wire, socket->connection);
-            mg_set_user_connection_data(wire, socket);
-        },
-        [](mg_connection* wire, int bits, char* text, std::size_t length, void* data) {
-            const auto* socket = static_cast<Socket*>(mg_get_user_connection_data(wire));
-            const int opcode = bits & 0xf;
-            if (opcode == MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE) return 0;
-            if (opcode == MG_WEBSOCKET_OPCODE_PING || opcode == MG_WEBSOCKET_OPCODE_PONG) return 1;
-            const bool whole = (bits & 0x80) != 0;  // messages are short: fragmented ones are not accepted
-            if (opcode != MG_WEBSOCKET_OPCODE_TEXT || !whole || length > longest_message) return 0;
-            static_cast<State*>(data)->studio.receive(socket->connection, {text, length});
-            return 1;
-        },
-        [](const mg_connection* wire, void* data) {
-            auto* socket = static_cast<Socket*>(mg_get_user_connection_data(wire));
-            if (socket == nullptr) return;
-            static_cast<State*>(data)->studio.leave(socket->connection);
-            socket->writer.join();
-            delete socket;
-            mg_set_user_connection_data(wire, nullptr);
-        },
-        state);
+    if (Status status = listen(*state, settings); !status) return tl::unexpected(status.error());
+    mg_set_websocket_handler(state->context, "/live", LivePath::admit, LivePath::open, LivePath::receive,
+                             LivePath::close, state);
     mg_set_request_handler(
         state->context, "/", [](mg_connection* wire, void* data) { return static_cast<State*>(data)->handle(wire); },
         state);
     return server;
+}
+
+Status Server::listen(State& state, const ServerSettings& settings) {
+    const bool six = settings.address.find(':') != std::string::npos;
+    const std::string ports =
+        fmt::format("{}:{}", six ? "[" + settings.address + "]" : settings.address, settings.port);
+    // clang-format off
+    const char* options[] = {"listening_ports", ports.c_str(),
+                             "num_threads", "32",
+                             "request_timeout_ms", "10000",
+                             "websocket_timeout_ms", "20000",
+                             "enable_keep_alive", "yes",
+                             "keep_alive_timeout_ms", "5000",
+                             "linger_timeout_ms", "0",
+                             "tcp_nodelay", "1",
+                             nullptr};
+    // clang-format on
+    mg_callbacks callbacks{};
+    callbacks.log_message = [](const mg_connection*, const char*) { return 1; };  // the library never prints
+    state.context = mg_start(&callbacks, &state, options);
+    mg_server_port listening[4];
+    const int count = state.context == nullptr ? 0 : mg_get_server_ports(state.context, 4, listening);
+    if (count < 1)
+        return failure("{}: cannot listen there; the port is taken, or the address is not this machine's", ports);
+    state.rules.port = listening[0].port;
+    return {};
 }
 
 }  // namespace pliant::studio

@@ -30,6 +30,8 @@ public:
 
 private:
     struct State;
+    struct LivePath;
+    [[nodiscard]] static Status listen(State& state, const ServerSettings& settings);
     explicit Server(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };
