@@ -180,6 +180,17 @@ Result<Attachment> Attacher::carried_by_tet(const Vec3& point, double tolerance)
     return attachment;
 }
 
+double Attacher::edge_of_tet(const Vec3& point) const {
+    const auto nodes = mesh_->tet(static_cast<std::size_t>(locator_.locate(point).tet));
+    double longest = 0;
+    for (std::size_t a = 0; a < 4; ++a) {
+        for (std::size_t b = 0; b < a; ++b)
+            longest = std::max(longest, norm(mesh_->points[static_cast<std::size_t>(nodes[a])] -
+                                             mesh_->points[static_cast<std::size_t>(nodes[b])]));
+    }
+    return longest;
+}
+
 std::vector<int> Attacher::connected_nodes_within(int tet, const Vec3& point, double radius) const {
     std::vector<int> found;
     std::vector<bool> seen(mesh_->points.size(), false);

@@ -57,6 +57,9 @@ public:
     /// How far a point lies outside the mesh; 0 inside.
     [[nodiscard]] double distance_outside(const Vec3& point) const { return locator_.locate(point).distance; }
 
+    /// The longest edge of the tet that contains the point, or else is nearest.
+    [[nodiscard]] double edge_of_tet(const Vec3& point) const;
+
     /// The point's motion is the mean motion of the material within `radius`, and a force on it spreads over that
     /// patch: a moving-least-squares weight that reproduces every affine motion exactly (Lancaster and Salkauskas
     /// 1981). The patch stays on the point's side of a gap, is at least as large as the tet that holds the point, and

@@ -8,6 +8,7 @@
 #include "geometry/files/surface_file.hpp"
 #include "geometry/mesh/triangle_tree.hpp"
 #include "geometry/repair/cavity.hpp"
+#include "geometry/repair/split_edges.hpp"
 #include "geometry/repair/surface_check.hpp"
 #include "simulation/actuators/chamber_surface.hpp"
 #include "simulation/scene/build_places.hpp"
@@ -67,7 +68,8 @@ double share_of_material(const mesh::TriMesh& surface, const sim::Attacher& atta
     return inside > 0 ? static_cast<double>(material) / inside : 0;
 }
 
-/// A closed surface whose points are attached to the tets that contain them.
+/// A closed surface whose points are attached to the tets that contain them. Only its points move, and pressure acts on
+/// them: its triangles must not be larger than the faces of the tets beside them.
 sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const ChamberSpec& spec,
                        const SurfaceFile& given) {
     Result<mesh::SurfaceFile> file = mesh::read_surface(given.path);
@@ -75,19 +77,22 @@ sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const C
         draft.problem(spec.line, "chamber", spec.name, file.error().message);
         return {};
     }
-    const mesh::TriMesh surface =
-        mesh::scaled(mesh::placed(std::move(file->mesh), given.placement), draft.robot.unit_m);
+    mesh::TriMesh surface = mesh::scaled(mesh::placed(std::move(file->mesh), given.placement), draft.robot.unit_m);
     if (Status closed = mesh::check_closed(surface); !closed) {
         draft.problem(spec.line, "chamber", spec.name, closed.error().message);
         return {};
     }
-    if (const double share = share_of_material(surface, attacher); share > most_material) {
+    if (const double material = share_of_material(surface, attacher); material > most_material) {
         draft.problem(spec.line, "chamber", spec.name,
                       fmt::format("{:.0f} % of the space in its surface is material, but the bodies must already have "
                                   "the cavity; with geometry = a shape it is cut out of them",
-                                  100 * share));
+                                  100 * material));
         return {};
     }
+    // Quadratic tets have nodes in the middle of their edges.
+    const double share = draft.description.mesh.order == 2 ? 0.5 : 1;
+    surface =
+        mesh::with_short_edges(std::move(surface), [&](const Vec3& p) { return share * attacher.edge_of_tet(p); });
     sim::Wall wall;
     for (const Vec3& p : surface.points) {
         Result<sim::Attachment> attachment = attacher.carried_by_tet(p, wall_reach * draft.box.diagonal());
