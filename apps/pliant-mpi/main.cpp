@@ -9,6 +9,7 @@
 #include <new>
 #include <string>
 
+#include "../standard_streams.hpp"
 #include "../usage.hpp"
 #include "base/core/error.hpp"
 #include "simulate.hpp"
@@ -90,6 +91,7 @@ int give_up(const char* why) {
 
 // Only an exception while an error is printed can escape, and the program is ending then.
 int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
+    app::secure_standard_streams();
     // Errors are returned as values, and signals have their usual effect.
     PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
     if (PetscInitializeNoArguments() != 0) return app::exit_failed;

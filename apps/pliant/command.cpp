@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/core/files.hpp"
 #include "interrupt.hpp"
 #include "progress_text.hpp"
 
@@ -75,6 +76,14 @@ int report(const Failure& failure, bool json) {
 bool asks_for_json(const CLI::App& command) {
     const CLI::Option* option = command.get_option_no_throw("--json");
     return option != nullptr && option->count() > 0;
+}
+
+Status check_file_places(std::initializer_list<std::string> files) {
+    for (const std::string& file : files) {
+        if (file.empty()) continue;
+        if (Status place = check_file_place(file); !place) return place;
+    }
+    return {};
 }
 
 std::unique_ptr<Progress> terminal_progress(const Output& output) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -74,6 +75,9 @@ void on_call(CLI::App& command, int& status, Work work) {
         }
     });
 }
+
+/// An error, before any work, for a file that cannot be written (check_file_place). Empty names stand for none.
+[[nodiscard]] Status check_file_places(std::initializer_list<std::string> files);
 
 /// A progress bar on stderr, if it is a terminal, for work that takes over a second; Ctrl-C and SIGTERM cancel
 /// (interrupt.hpp).

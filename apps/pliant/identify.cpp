@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/core/files.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
 #include "output_option.hpp"
@@ -44,7 +45,9 @@ Result<JudgeOn> read_judge(const std::string& text) {
 Result<int> identify(const IdentifyOptions& options) {
     const Result<JudgeOn> judge = read_judge(options.judge_on);
     if (!judge) return tl::unexpected(judge.error());
-    if (Status status = expect(FileKind::robot, options.robot); !status) return tl::unexpected(status.error());
+    Status status = expect(FileKind::robot, options.robot);
+    if (status && !options.folder.empty()) status = check_folder_place(options.folder, "identified.toml");
+    if (!status) return tl::unexpected(status.error());
     auto progress = terminal_progress(options.output);
     const Watch watch = watch_of(*progress);
     const Robot robot = Robot::load(options.robot, options.assignments);

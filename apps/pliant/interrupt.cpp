@@ -58,11 +58,22 @@ void handle(int signal) {
 
 }  // namespace
 
+namespace {
+
+/// SIGHUP: the terminal is gone. nohup asks to go on then.
+bool is_ignored(int signal) {
+    struct sigaction now {};
+    return ::sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
+}
+
+}  // namespace
+
 void on_signal(OnSignal what) {
     owner = ::getpid();
     on_terminal = ::isatty(STDERR_FILENO) == 1;
     wanted = what;
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, what == OnSignal::end ? SIG_DFL : handle);
+    if (!is_ignored(SIGHUP)) std::signal(SIGHUP, what == OnSignal::end ? SIG_DFL : handle);
     if (what == OnSignal::leave && interrupted()) leave();
 }
 

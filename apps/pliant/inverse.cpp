@@ -12,6 +12,7 @@
 
 #include "../usage.hpp"
 #include "base/core/counted.hpp"
+#include "base/core/files.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
@@ -76,7 +77,9 @@ int tell_found(const InverseArguments& options, const Model& model, const Invers
 }
 
 Result<int> inverse(const InverseArguments& options) {
-    if (Status status = expect(FileKind::robot, options.robot); !status) return tl::unexpected(status.error());
+    Status status = expect(FileKind::robot, options.robot);
+    if (status && !options.folder.empty()) status = check_folder_place(options.folder, "summary.json");
+    if (!status) return tl::unexpected(status.error());
     auto progress = terminal_progress(options.output);
     const Watch watch = watch_of(*progress);
     const Model model = load_model(options.robot, options.assignments, watch);

@@ -16,6 +16,7 @@
 #include <system_error>
 #include <vector>
 
+#include "../standard_streams.hpp"
 #include "../usage.hpp"
 #include "base/core/text.hpp"
 #include "command.hpp"
@@ -149,6 +150,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     // The solver repeatedly allocates and frees the same large blocks: keep them instead of mapping them anew.
     mallopt(M_MMAP_THRESHOLD, 1 << 30);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
+    pliant::app::secure_standard_streams();
     const std::vector<std::string> words(argv + 1, argv + argc);
     if (!words.empty() && words.front() == pliant::app::study_rows_word) return pliant::app::serve_study_rows(words);
     try {

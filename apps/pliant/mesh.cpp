@@ -140,6 +140,7 @@ Status mesh_file(const MeshOptions& options) {
     if (options.files.size() > 1 &&
         (!options.output_file.empty() || !options.picture_file.empty() || options.output.json))
         return input_error("-o, --picture and --json need exactly one robot or mesh file");
+    if (Status places = check_file_places({options.output_file, options.picture_file}); !places) return places;
     if (!options.output_file.empty()) return is_robot_file(options.files.front()) ? build(options) : convert(options);
     if (options.text) return input_error("--text is the encoding of a mesh that is written; name it with -o");
     for (const std::string& file : options.files) {

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "../standard_streams.hpp"
 #include "base/core/files.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
@@ -39,7 +40,7 @@ Status check_outputs(const LiveOptions& live) {
         if (!file.empty() && std::filesystem::equivalent(file, live.job, none))
             return input_error("{} {}: is the job itself; give another name", option, file);
     }
-    return {};
+    return check_file_places({live.report, live.verdict, live.journal});
 }
 
 /// The report of a print from its journal, whoever printed it.
@@ -87,6 +88,7 @@ Result<int> print(PrintOptions& options) {
         return input_error("--resume needs --port DEVICE; the virtual printer of --twin ends with its command");
     if (!options.twin && options.live.projector.empty())
         return input_error("say where the light comes from: --projector DISPLAY or FOLDER");
+    outlive_readers();
     if (options.twin && !options.given_speed) return print_virtual(options.live);
     return print_live(options.live);
 }

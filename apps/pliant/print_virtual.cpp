@@ -43,17 +43,6 @@ Status write_records(const LiveOptions& options, rehearse::Rehearsal& rehearsal,
     return options.report.empty() ? Status{} : write_page(options.report, rehearsal, judgement);
 }
 
-/// What the print writes at its end can be written: its folders exist.
-Status check_folders(const LiveOptions& options) {
-    for (const std::string& file : {options.journal, options.report, options.verdict}) {
-        std::error_code error;
-        const std::filesystem::path folder = std::filesystem::absolute(file, error).parent_path();
-        if (!file.empty() && !std::filesystem::is_directory(folder, error))
-            return input_error("{}: there is no folder {}", file, folder.string());
-    }
-    return {};
-}
-
 /// With -q the reasons alone, as an error.
 void show_result(const LiveOptions& options, const rehearse::VirtualPrint& print, const twin::Report& report,
                  const std::string& json) {
@@ -71,7 +60,6 @@ void show_result(const LiveOptions& options, const rehearse::VirtualPrint& print
 Result<int> print_virtual(const LiveOptions& options) {
     auto progress = terminal_progress(options.output);
     if (Status is_job = expect(FileKind::job, options.job); !is_job) return tl::unexpected(is_job.error());
-    if (Status folders = check_folders(options); !folders) return tl::unexpected(folders.error());
     if (!options.journal.empty()) {
         if (Status may = host::may_replace_journal(options.journal); !may) return tl::unexpected(may.error());
     }

@@ -108,8 +108,9 @@ void print_reduction_json(const ReduceOptions& options, const ReducedModel& redu
 
 Result<int> reduce(const ReduceOptions& options) {
     if (Status status = expect(FileKind::robot, options.robot); !status) return tl::unexpected(status.error());
-    if (Status status = check_ending("-o", options.file, "a reduced model", ".reduced"); !status)
-        return tl::unexpected(status.error());
+    Status named = check_ending("-o", options.file, "a reduced model", ".reduced");
+    if (named) named = check_file_places({options.file});
+    if (!named) return tl::unexpected(named.error());
     auto progress = terminal_progress(options.output);
     const Watch watch = watch_of(*progress);
     const Model model = load_model(options.robot, options.assignments, watch);

@@ -13,6 +13,7 @@
 
 #include "../usage.hpp"
 #include "base/core/counted.hpp"
+#include "base/core/files.hpp"
 #include "base/core/vec3.hpp"
 #include "command.hpp"
 #include "compare_solvers.hpp"
@@ -202,6 +203,10 @@ Status check_options(const SimulateOptions& options, const std::vector<sim::Solv
         return input_error("--film needs --output: film.gif goes into that folder");
     if (kept && solvers.size() > 1)
         return input_error("a comparison of solvers has no checkpoints; leave out --checkpoint-every and --resume");
+    if (!options.folder.empty()) {
+        const char* marker = solvers.size() > 1 ? "comparison.json" : "summary.json";
+        if (Status place = check_folder_place(options.folder, marker); !place) return place;
+    }
     return expect(FileKind::robot, options.robot);
 }
 

@@ -136,6 +136,7 @@ Status read_paint(const std::string& file, prepare::Order& order) {
 Status slice(SliceOptions& options) {
     Status named = check_ending("-o", options.job, "a job", ".zip");
     if (named) named = check_ending("--picture", options.picture, "a picture", ".png");
+    if (named) named = check_file_places({options.job, options.picture});
     if (named) named = read_paint(options.paint, options.order);
     if (!named) return named;
     auto progress = terminal_progress(options.output);

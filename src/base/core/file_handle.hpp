@@ -22,6 +22,8 @@ public:
     [[nodiscard]] bool is_open() const { return number_ >= 0; }
     /// For system calls; ownership stays here.
     [[nodiscard]] int number() const { return number_; }
+    /// Gives the descriptor to the caller.
+    [[nodiscard]] int release() { return std::exchange(number_, -1); }
     /// Does nothing if no descriptor is owned. Preserves errno.
     void close() noexcept;
 

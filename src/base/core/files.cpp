@@ -1,12 +1,19 @@
 #include "base/core/files.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <system_error>
+#include <thread>
 
 namespace pliant {
 namespace fs = std::filesystem;
+using namespace std::chrono_literals;
 
 Result<std::string> read_file(const fs::path& path, std::uintmax_t limit_bytes) {
     std::error_code code;
@@ -60,12 +67,111 @@ Result<fs::path> replaceable_file(const fs::path& path) {
     return target;
 }
 
+namespace {
+
+constexpr const char* aside_ending = ".partial";
+
+/// An error if a file or folder `made` in this folder cannot be: it is no folder, is read-only, or the name is too
+/// long.
+Status check_parent(const fs::path& folder, const fs::path& made) {
+    std::error_code code;
+    if (!fs::is_directory(folder, code))
+        return input_error("{}: {} is a file, a folder is needed", made.string(), folder.string());
+    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+        return input_error("{}: cannot be made in {}: {}", made.string(), folder.string(), std::strerror(errno));
+    const long longest = ::pathconf(folder.c_str(), _PC_NAME_MAX);
+    const auto room = static_cast<long>(std::strlen(aside_ending));
+    if (longest > 0 && static_cast<long>(made.filename().string().size()) + room > longest)
+        return input_error("{}: the name is too long", made.string());
+    return {};
+}
+
+fs::path absolute_place(const fs::path& path) {
+    std::error_code code;
+    fs::path place = fs::absolute(path, code).lexically_normal();
+    return place.has_filename() ? place : place.parent_path();
+}
+
+bool is_there(const FileHandle& open, const fs::path& path) {
+    struct stat one {
+    }, other{};
+    return ::fstat(open.number(), &one) == 0 && ::stat(path.c_str(), &other) == 0 && one.st_ino == other.st_ino &&
+           one.st_dev == other.st_dev;
+}
+
+FileHandle opened(const fs::path& path, AsideKind kind) {
+    constexpr mode_t usual = 0666;
+    if (kind == AsideKind::file) return FileHandle(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, usual));
+    std::error_code code;
+    fs::create_directories(path, code);
+    if (code) {
+        errno = code.value();
+        return {};
+    }
+    return FileHandle(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+}
+
+void empty(const FileHandle& open, const fs::path& path, AsideKind kind) {
+    if (kind == AsideKind::file) return void(::ftruncate(open.number(), 0) == 0);
+    std::error_code code;
+    for (const fs::directory_entry& entry : fs::directory_iterator(path, code)) fs::remove_all(entry.path(), code);
+}
+
+}  // namespace
+
+Status check_file_place(const fs::path& path) {
+    std::error_code code;
+    const fs::file_type type = fs::status(path, code).type();
+    if (type != fs::file_type::directory && is_special(path, type)) return {};
+    const Result<fs::path> target = replaceable_file(path);
+    if (!target) return tl::unexpected(target.error());
+    const fs::path place = absolute_place(*target);
+    if (!fs::exists(place.parent_path(), code))
+        return input_error("{}: there is no folder {}", path.string(), place.parent_path().string());
+    return check_parent(place.parent_path(), place);
+}
+
+Status check_folder_place(const fs::path& path, std::string_view marker) {
+    std::error_code code;
+    const fs::path place = absolute_place(path);
+    if (fs::exists(place, code) && !fs::is_directory(place, code))
+        return input_error("{}: is a file, a folder is needed", path.string());
+    if (!may_replace_folder(place, marker))
+        return input_error("{}: holds other files (no {}); name an empty or new folder", path.string(), marker);
+    fs::path made = place;
+    while (made.has_relative_path() && !fs::exists(made.parent_path(), code)) made = made.parent_path();
+    if (Status last = place == made ? Status{} : check_parent(made.parent_path(), place); !last) return last;
+    return check_parent(made.parent_path(), made);
+}
+
+Result<FileHandle> open_aside(const fs::path& aside, AsideKind kind, const fs::path& target,
+                              std::chrono::milliseconds patience) {
+    constexpr auto pause = 20ms;
+    const auto refuse = [&](const char* why) { return failure("{}: cannot be written: {}", target.string(), why); };
+    for (std::chrono::milliseconds waited{}; waited <= patience;) {
+        FileHandle open = opened(aside, kind);
+        if (!open.is_open() && !(kind == AsideKind::folder && errno == ENOENT)) return refuse(std::strerror(errno));
+        if (!open.is_open()) continue;  // renamed in between
+        const bool is_free = ::flock(open.number(), LOCK_EX | LOCK_NB) == 0;
+        if (is_free && !is_there(open, aside)) continue;
+        if (is_free || errno != EWOULDBLOCK) {  // some file systems have no locks
+            empty(open, aside, kind);
+            return open;
+        }
+        std::this_thread::sleep_for(pause);
+        waited += pause;
+    }
+    return refuse("another program is writing it; wait for it, or choose another name");
+}
+
 Status write_file(const fs::path& path, std::string_view bytes) {
     std::error_code code;
     if (is_special(path, fs::status(path, code).type())) return write_through(path, bytes, path);
     const Result<fs::path> target = replaceable_file(path);
     if (!target) return tl::unexpected(target.error());
-    const fs::path aside = target->string() + ".partial";
+    const fs::path aside = target->string() + aside_ending;
+    const Result<FileHandle> mine = open_aside(aside, AsideKind::file, path, 30s);
+    if (!mine) return tl::unexpected(mine.error());
     Status status = write_through(aside, bytes, path);
     if (status) {
         fs::rename(aside, *target, code);
@@ -108,16 +214,11 @@ Status put_in_place(const fs::path& fresh, const fs::path& target) {
 Status write_folder(const fs::path& folder, std::string_view marker,
                     const std::function<Status(const fs::path&)>& fill) {
     std::error_code code;
-    fs::path target = fs::absolute(folder, code).lexically_normal();
-    if (!target.has_filename()) target = target.parent_path();
-    if (!may_replace_folder(target, marker)) {
-        if (!fs::is_directory(target, code)) return input_error("{}: is a file, a folder is needed", folder.string());
-        return input_error("{}: holds other files (no {}); name an empty or new folder", folder.string(), marker);
-    }
-    const fs::path aside = target.string() + ".partial";
-    fs::remove_all(aside, code);
-    fs::create_directories(aside, code);
-    if (code) return failure("{}: cannot be made: {}", aside.string(), code.message());
+    const fs::path target = absolute_place(folder);
+    if (Status place = check_folder_place(folder, marker); !place) return place;
+    const fs::path aside = target.string() + aside_ending;
+    const Result<FileHandle> mine = open_aside(aside, AsideKind::folder, folder, 30min);
+    if (!mine) return tl::unexpected(mine.error());
     if (const Status filled = fill(aside); !filled) {
         fs::remove_all(aside, code);
         return filled;

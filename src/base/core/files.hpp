@@ -1,6 +1,7 @@
 // Reading whole files with a size limit; writing to a temporary name and renaming, so no partial result is ever seen.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -8,6 +9,7 @@
 #include <string_view>
 
 #include "base/core/error.hpp"
+#include "base/core/file_handle.hpp"
 
 namespace pliant {
 
@@ -18,6 +20,18 @@ namespace pliant {
 /// The file that is replaced when `path` is written: where its symbolic links lead, or `path` itself if nothing is
 /// there. Errors: a folder, a device or a pipe, which a rename would destroy.
 [[nodiscard]] Result<std::filesystem::path> replaceable_file(const std::filesystem::path& path);
+
+/// Whether a file, or a folder with its parents, can be made here, as far as that can be told beforehand: before work
+/// whose results would be lost. Devices and pipes can be written to.
+[[nodiscard]] Status check_file_place(const std::filesystem::path& path);
+/// `marker`: as of write_folder().
+[[nodiscard]] Status check_folder_place(const std::filesystem::path& path, std::string_view marker);
+
+/// Makes a file or folder that will be renamed to `target`, or empties what a program that was killed left there. No
+/// other program gets it before the handle is closed; waits for one that has it, at most for `patience`.
+enum class AsideKind { file, folder };
+[[nodiscard]] Result<FileHandle> open_aside(const std::filesystem::path& aside, AsideKind kind,
+                                            const std::filesystem::path& target, std::chrono::milliseconds patience);
 
 /// Writes `PATH.partial`, then renames it to the file that is replaced. Devices, pipes and the names of open files
 /// (/dev/stdout, /proc/self/fd) are written to directly.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <set>
@@ -141,8 +142,11 @@ Result<ZipWriter> ZipWriter::create(const std::filesystem::path& path) {
     const Result<std::filesystem::path> target = replaceable_file(path);
     if (!target) return tl::unexpected(target.error());
     const std::filesystem::path aside = target->string() + ".partial";
-    std::FILE* file = std::fopen(aside.c_str(), "wb");
+    Result<FileHandle> mine = open_aside(aside, AsideKind::file, path, std::chrono::milliseconds(0));
+    if (!mine) return tl::unexpected(mine.error());
+    std::FILE* file = ::fdopen(mine->number(), "wb");
     if (file == nullptr) return failure("{}: cannot be written: {}", path.string(), std::strerror(errno));
+    (void)mine->release();
     return ZipWriter(std::make_unique<State>(path, *target, aside, file));
 }
 

@@ -1,9 +1,11 @@
 #include "presentation/studio/server.hpp"
 
+#include <arpa/inet.h>
 #include <civetweb.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstring>
 #include <map>
@@ -107,6 +109,22 @@ bool read_body(mg_connection* wire, long long length, std::string& body) {
 
 }  // namespace
 
+namespace {
+
+/// Each page that watches keeps a thread of the server; the others are for requests, such as an emergency stop.
+constexpr const char* threads = "96";
+constexpr int most_pages = 64;
+
+/// The library would take 999.1.1.1 for 231.1.1.1.
+bool may_be_address(const std::string& address) {
+    in6_addr bytes{};
+    if (address.find(':') != std::string::npos) return ::inet_pton(AF_INET6, address.c_str(), &bytes) == 1;
+    if (address.find_first_not_of("0123456789.") != std::string::npos) return true;  // a name
+    return ::inet_pton(AF_INET, address.c_str(), &bytes) == 1;
+}
+
+}  // namespace
+
 bool is_loopback(const std::string& address) {
     return address == "127.0.0.1" || address == "::1" || address == "localhost";
 }
@@ -116,6 +134,7 @@ struct Server::State {
     AccessRules rules;
     std::filesystem::path help;  ///< empty: no help pages
     mg_context* context = nullptr;
+    std::atomic<int> pages = 0;  ///< that watch
 
     [[nodiscard]] Access access(mg_connection* wire, const std::string& query_token, bool websocket) const {
         std::string_view bearer = header(wire, "Authorization");
@@ -239,10 +258,13 @@ struct Server::LivePath {
     static int admit(const mg_connection* wire, void* data) {
         auto query = read_query(mg_get_request_info(wire)->query_string);
         const auto* state = static_cast<State*>(data);
+        if (state->pages >= most_pages) return 1;
         return state->access(const_cast<mg_connection*>(wire), query["token"], true) == Access::granted ? 0 : 1;
     }
     static void open(mg_connection* wire, void* data) {
-        auto* socket = new Socket{static_cast<State*>(data)->studio.join(), {}};
+        auto* state = static_cast<State*>(data);
+        ++state->pages;
+        auto* socket = new Socket{state->studio.join(), {}};
         socket->writer = std::thread(write_all, wire, socket->connection);
         mg_set_user_connection_data(wire, socket);
     }
@@ -259,8 +281,10 @@ struct Server::LivePath {
     static void close(const mg_connection* wire, void* data) {
         auto* socket = static_cast<Socket*>(mg_get_user_connection_data(wire));
         if (socket == nullptr) return;
-        static_cast<State*>(data)->studio.leave(socket->connection);
+        auto* state = static_cast<State*>(data);
+        state->studio.leave(socket->connection);
         socket->writer.join();
+        --state->pages;
         delete socket;
         mg_set_user_connection_data(wire, nullptr);
     }
@@ -270,7 +294,7 @@ Result<std::unique_ptr<Server>> Server::start(Studio& studio, const ServerSettin
     use_large_thread_stacks();
     mg_init_library(MG_FEATURES_DEFAULT);
     std::unique_ptr<Server> server(new Server(
-        std::make_unique<State>(State{studio, {0, settings.token}, find_help_pages(settings.program_folder)})));
+        std::unique_ptr<State>(new State{studio, {0, settings.token}, find_help_pages(settings.program_folder)})));
     State* state = server->state_.get();
     if (Status status = listen(*state, settings); !status) return tl::unexpected(status.error());
     mg_set_websocket_handler(state->context, "/live", LivePath::admit, LivePath::open, LivePath::receive,
@@ -282,12 +306,14 @@ Result<std::unique_ptr<Server>> Server::start(Studio& studio, const ServerSettin
 }
 
 Status Server::listen(State& state, const ServerSettings& settings) {
+    if (!may_be_address(settings.address))
+        return input_error("{}: is not an address such as 127.0.0.1, 0.0.0.0 or ::1", settings.address);
     const bool six = settings.address.find(':') != std::string::npos;
     const std::string ports =
         fmt::format("{}:{}", six ? "[" + settings.address + "]" : settings.address, settings.port);
     // clang-format off
     const char* options[] = {"listening_ports", ports.c_str(),
-                             "num_threads", "32",
+                             "num_threads", threads,
                              "request_timeout_ms", "10000",
                              "websocket_timeout_ms", "20000",
                              "enable_keep_alive", "yes",

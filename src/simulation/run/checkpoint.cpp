@@ -20,7 +20,7 @@ using cbor::Reader;
 namespace fs = std::filesystem;
 
 constexpr const char* format_name = "pliant checkpoint";
-constexpr int version = 3;  // 2: friction with memory, objects; 3: joints
+constexpr int version = 4;  // 2: friction with memory, objects; 3: joints; 4: checksums of steps
 constexpr const char* steps_name = "steps";
 constexpr const char* state_name = "state";
 
@@ -102,7 +102,9 @@ Status read_steps(const fs::path& file, std::uintmax_t bytes, std::size_t count,
         std::string record(length, '\0');
         in.read(record.data(), static_cast<std::streamsize>(length));
         if (!in) return input_error("{}: damaged: it ends in step {}", file.string(), k);
-        auto step = step_from_bytes(record, nodes);
+        const Result<std::string_view> content = cbor::unsealed(record);
+        if (!content) return input_error("{}: step {}: {}", file.string(), k, content.error().message);
+        auto step = step_from_bytes(*content, nodes);
         if (!step) return input_error("{}: step {}: {}", file.string(), k, step.error().message);
         if (step->step.index != static_cast<int>(k))
             return input_error("{}: damaged: step {} is where step {} should be", file.string(), step->step.index, k);
@@ -119,8 +121,8 @@ Result<Checkpoint> Checkpoint::create(const fs::path& folder, std::string origin
     if (!may_replace_folder(folder, steps_name))
         return input_error("{}: is there already, and is not a checkpoint; move it away", folder.string());
     fs::remove_all(folder, code);
-    if (!fs::create_directories(folder, code))
-        return failure("{}: cannot be made: {}", folder.string(), code.message());
+    fs::create_directories(folder, code);
+    if (code) return failure("{}: cannot be made: {}", folder.string(), code.message());
     std::ofstream steps(folder / steps_name, std::ios::binary);
     if (!steps) return failure("{}: cannot be written", (folder / steps_name).string());
     return Checkpoint(folder, std::move(origin), every);
@@ -137,7 +139,7 @@ Status Checkpoint::keep(const Model& model, const RunState& run) {
                          [&](const IterationRecord& r) { return r.step > all.steps[k].index; });
         const auto last = static_cast<std::size_t>(end - all.iterations.begin());
         const std::string record =
-            step_bytes(all.steps[k], std::span(all.iterations).subspan(iterations, last - iterations));
+            cbor::sealed(step_bytes(all.steps[k], std::span(all.iterations).subspan(iterations, last - iterations)));
         file << length_bytes(record.size()) << record;
         bytes += sizeof(std::uint64_t) + record.size();
         iterations = last;
@@ -159,9 +161,7 @@ Status Checkpoint::keep(const Model& model, const RunState& run) {
                     {"crossings", crossings_of(all.steps)},
                     {"checks", json_of_checks(run.checks)},
                     {"robot", Json::binary({robot.begin(), robot.end()})}};
-    std::string text;
-    Json::to_cbor(json, text);
-    if (Status status = write_file(folder_ / state_name, text); !status) return status;
+    if (Status status = write_file(folder_ / state_name, cbor::sealed(json)); !status) return status;
     bytes_ = bytes;
     steps_ = all.steps.size();
     iterations_ = iterations;
@@ -172,12 +172,16 @@ Result<Checkpoint::Resumed> Checkpoint::open(const fs::path& folder, std::string
                                              const Program& program) {
     const fs::path state = folder / state_name;
     std::error_code code;
+    if (!fs::exists(state, code) && fs::exists(folder / steps_name, code))
+        return input_error("{}: the run ended before its first checkpoint; begin again without --resume",
+                           folder.string());
     if (!fs::exists(state, code))
         return input_error("{}: no checkpoint is there; it is made by --checkpoint-every", folder.string());
     const auto text = read_file(state);
     if (!text) return tl::unexpected(text.error());
     const auto wrong = [&](const std::string& why) { return input_error("{}: {}", state.string(), why); };
-    const Json json = cbor::parsed(*text);
+    const Result<std::string_view> content = cbor::unsealed(*text);
+    const Json json = content ? cbor::parsed(*content) : Json();
     if (!json.is_object() || json.value("format", Json()) != format_name)
         return wrong("not a checkpoint that Pliant has written, or damaged");
     Reader in(json);
