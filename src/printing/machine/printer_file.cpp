@@ -139,6 +139,9 @@ Vat read_vat(Reader& r, const Printer& printer) {
         r.problem("fill", fmt::format("overflows once the platform is in; at most {:.0f} ml",
                                       printer.vat_shape.free_volume_ml));
     }
+    if (!v.resin.empty() && v.fill_ml > 0 && v.fill_ml <= printer.vat_shape.least_ml)
+        r.problem("fill", fmt::format("gives no resin: {:g} ml must stay in the vat (vat_shape.least)",
+                                      printer.vat_shape.least_ml));
     if (printer.vat_of_slot(v.slot) != nullptr) r.problem("slot", fmt::format("{} holds a vat already", v.slot));
     if (!v.resin.empty() && printer.find_resin(v.resin) == nullptr) {
         r.problem("resin", fmt::format("\"{}\" has no [resin.{}] table", v.resin, v.resin));
@@ -286,6 +289,15 @@ int read_layer_um(Reader& root) {
     return layer_um;
 }
 
+/// A dose follows from the irradiance.
+void check_curves(Reader& root, const Printer& p) {
+    for (const Resin& resin : p.resins) {
+        if (resin.penetration_um > 0 && !(p.projector.irradiance_W_m2 > 0))
+            root.problem(fmt::format("resin.{}", resin.name),
+                         "penetration_depth and critical_dose need projector.irradiance: the dose follows from it");
+    }
+}
+
 /// What the machine refuses to do must not be asked of it by other keys.
 void check_limits(Reader& root, const Printer& p) {
     for (const Resin& resin : p.resins) {
@@ -338,6 +350,7 @@ Result<Printer> from_document(const config::Document& document) {
         check_store(root, printer);
         check_magnet(root, printer);
         check_pairs(root, printer);
+        check_curves(root, printer);
         check_limits(root, printer);
         check_switches(root, printer);
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "base/core/counted.hpp"
 #include "printing/job/exposure.hpp"
@@ -143,15 +144,25 @@ void choose_order(Plan& plan, const std::vector<VatList>& layers, const Printer&
     plan.swap_lower_bound = fewest_swaps(layers);
 }
 
+/// How deep the k-th image of a layer cures: by the resin's own working curve, or as the printer file says.
+double cure_depth_um(const job::Manifest& job, std::size_t layer, std::size_t k, const Printer& printer,
+                     const machine::Resin& resin) {
+    if (!(resin.penetration_um > 0)) return resin.cure_depth_um;
+    const double dose = machine::irradiance_W_m2(printer) * job::exposure_s(job, layer, k);
+    return machine::working_curve(printer, resin).depth_um(dose);
+}
+
 /// A blank layer below a printed one leaves a gap that curing must bridge.
 void warn_of_gaps(const job::Manifest& job, const Printer& printer, Plan& plan) {
     int below_um = 0;
     int gaps = 0;
-    for (const job::Layer& layer : job.layers) {
+    for (std::size_t i = 0; i < job.layers.size(); ++i) {
+        const job::Layer& layer = job.layers[i];
         if (layer.images.empty()) continue;
-        for (const job::LayerImage& image : layer.images) {
-            const auto* resin = printer.find_resin(job.materials[static_cast<std::size_t>(image.material)].resin);
-            if (resin == nullptr || layer.z_um - below_um <= resin->cure_depth_um) continue;
+        for (std::size_t k = 0; k < layer.images.size(); ++k) {
+            const auto material = static_cast<std::size_t>(layer.images[k].material);
+            const auto* resin = printer.find_resin(job.materials[material].resin);
+            if (resin == nullptr || layer.z_um - below_um <= cure_depth_um(job, i, k, printer, *resin)) continue;
             ++gaps;
             break;
         }
@@ -161,6 +172,23 @@ void warn_of_gaps(const job::Manifest& job, const Printer& printer, Plan& plan) 
     plan.warnings.push_back(fmt::format(
         "{} to be cured deeper than the cure depth of the resin: nothing will hold there",
         gaps == 1 ? "1 layer would have" : counted(static_cast<std::size_t>(gaps), "layer") + " would have"));
+}
+
+/// Two statements of a printer file about one thing.
+void warn_of_curves(const job::Manifest& job, const Printer& printer, Plan& plan) {
+    constexpr double far = 2;
+    std::set<std::string> seen;
+    for (const job::Material& material : job.materials) {
+        const auto* resin = printer.find_resin(material.resin);
+        if (resin == nullptr || !(resin->penetration_um > 0) || !seen.insert(resin->name).second) continue;
+        const double depth =
+            machine::working_curve(printer, *resin).depth_um(machine::irradiance_W_m2(printer) * resin->exposure_s);
+        if (depth * far >= resin->cure_depth_um && depth <= far * resin->cure_depth_um) continue;
+        plan.warnings.push_back(
+            fmt::format("resin \"{}\": the printer file gives a cure_depth of {} um, but by the working curve its "
+                        "exposure of {:.4g} s cures {:.0f} um",
+                        resin->name, resin->cure_depth_um, resin->exposure_s, depth));
+    }
 }
 
 }  // namespace
@@ -180,6 +208,7 @@ Result<Plan> make_plan(const job::Manifest& job, const Printer& printer, OrderRu
     plan.vat_of_image = std::move(assignment->vat_of_image);
     choose_order(plan, vats_by_layer(plan.vat_of_image), with_resins(plan, printer), rule);
     warn_of_gaps(job, printer, plan);
+    warn_of_curves(job, printer, plan);
     PrintTimes times = print_times(plan, job, with_resins(plan, printer));
     plan.seconds = times.all;
     plan.layer_seconds = std::move(times.layers);

@@ -105,6 +105,7 @@ public:
         if (!slicer) return tl::unexpected(slicer.error());
         if (auto status = slice(*slicer, progress); !status) return tl::unexpected(status.error());
         for (int k = 1; k < static_cast<int>(solids_.size()); ++k) {
+            if (progress.cancelled()) return cancelled();
             if (!paint_.empty()) hold_painted(k);
             hold_islands(k);
             if (wanted_.angle_deg > 0) hold_undersides(k);
@@ -180,16 +181,25 @@ private:
         return best;
     }
 
-    /// Supports what extends beyond the layers below by more than the angle allows.
-    void hold_undersides(int k) {
+    /// What of layer k extends beyond a layer below by more than the angle allows; from the nearest one on to which it
+    /// may extend by `way_px`.
+    [[nodiscard]] RunSet hanging_over(int k, double way_px) const {
         const double slope = std::tan(wanted_.angle_deg * std::numbers::pi / 180);
         const double pixel_um = settings_.raster.pixel_um;
+        const auto allowed_px = [&](int j) {
+            return (layers_.middle2_um(k) - layers_.middle2_um(j)) / 2.0 / slope / pixel_um;
+        };
         int j = k - 1;
-        while (j > 0 && (layers_.middle2_um(k) - layers_.middle2_um(j)) / 2.0 < pixel_um * slope) --j;
-        const double way_px = (layers_.middle2_um(k) - layers_.middle2_um(j)) / 2.0 / slope / pixel_um;
-        const int reach_px = static_cast<int>(std::ceil(way_px + 0.5));
-        const RunSet hanging =
-            without(solids_[static_cast<std::size_t>(k)], grown(solids_[static_cast<std::size_t>(j)], reach_px));
+        while (j > 0 && allowed_px(j) < way_px) --j;
+        const int reach_px = static_cast<int>(std::ceil(allowed_px(j) + 0.5));
+        return without(solids_[static_cast<std::size_t>(k)], grown(solids_[static_cast<std::size_t>(j)], reach_px));
+    }
+
+    /// Supports what hangs over. Both outlines are rounded to pixels: on a short way only flat undersides exceed that,
+    /// and the longer it is, the nearer to the angle.
+    void hold_undersides(int k) {
+        RunSet hanging = hanging_over(k, 1);
+        for (const double way_px : {4.0, 16.0, 32.0}) hanging = united(hanging, hanging_over(k, way_px));
         for (int row = hanging.first_row(); row < hanging.end_row(); ++row) {
             for (const PixelSpan& span : hanging.row(row)) {
                 for (int column = span.begin; column < span.end; ++column) {

@@ -113,6 +113,32 @@ TEST_CASE("only flat undersides get tips, and a blocked pillar stands on the par
     CHECK(o.supports.on_part == o.supports.tips);
 }
 
+TEST_CASE("an underside gets tips if it is flatter than the angle by a few degrees, and none if it is steeper") {
+    const auto tips = [](double underside_deg, double angle_deg) {
+        const double height = 10000 * std::tan(underside_deg * std::numbers::pi / 180);
+        // From a column of 2 mm outwards and upwards, 6 mm wide.
+        const std::vector<std::array<double, 2>> profile{{-2000, 0}, {0, 0}, {10000, height}, {-2000, height}};
+        mesh::TriMesh wedge;
+        const auto at = [&](std::size_t i, double y) { return Vec3{profile[i % 4][0] - 4000, y, profile[i % 4][1]}; };
+        for (std::size_t i = 0; i < 4; ++i) {
+            add_triangle(wedge, at(i, -3000), at(i + 1, -3000), at(i + 1, 3000));
+            add_triangle(wedge, at(i, -3000), at(i + 1, 3000), at(i, 3000));
+        }
+        for (const std::size_t i : {1, 2}) {
+            add_triangle(wedge, at(0, -3000), at(i + 1, -3000), at(i, -3000));
+            add_triangle(wedge, at(0, 3000), at(i, 3000), at(i + 1, 3000));
+        }
+        SupportSettings wanted = in_wax();
+        wanted.angle_deg = angle_deg;
+        return supported({{"soft", wedge, ""}}, wanted).supports.tips;
+    };
+    for (const double angle : {20.0, 30.0, 45.0, 60.0}) {
+        CAPTURE(angle);
+        CHECK(tips(angle - 5, angle) > 3);
+        CHECK(tips(angle + 1, angle) == 0);
+    }
+}
+
 TEST_CASE("a sphere in mid-air is supported on a raft, in a separate support material") {
     mesh::TriMesh ball;
     constexpr int rings = 24, around = 48;
