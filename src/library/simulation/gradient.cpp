@@ -80,11 +80,12 @@ private:
 };
 
 /// What the gradient is with respect to: from the rest state, where names and values are those of the whole program.
-void add_names(const sim::Model& model, ProgramGradient& out) {
+void add_names(const sim::Model& model, const sim::Program& program, ProgramGradient& out) {
     const sim::Equilibrium system(model);
     const auto at = library::value_of(sim::Linearisation::create(system, system.rest(), system.controls(0)));
     out.inputs = library::parameters_of(sim::inputs(at));
-    out.parameters = library::parameters_of(sim::parameters(at));
+    out.parameters =
+        library::parameters_of(sim::parameters(at, program.dynamics ? &program.dynamics->damping : nullptr));
 }
 
 /// An objective without slopes has an empty gradient in the engine: its derivatives are zero.
@@ -190,7 +191,7 @@ ProgramGradient gradient(const Model& model, const Objective& objective, const G
     ProgramGradient out;
     out.value = of.value;
     out.values = of.values;
-    add_names(scene.model, out);
+    add_names(scene.model, scene.robot.program, out);
     out.by_parameters = or_zeros(library::list_of(of.by.parameters), out.parameters.size());
     out.by_numbers = or_zeros(library::list_of(of.by.numbers), options.numbers.size());
     if (options.rest_positions)

@@ -179,6 +179,11 @@ std::vector<Parameter> inputs(const Linearisation& at) {
 }
 
 std::vector<Parameter> parameters(const Linearisation& at) {
+    const auto& inertia = at.controls().inertia;
+    return parameters(at, inertia && !inertia->is_tether() ? &inertia->damping() : nullptr);
+}
+
+std::vector<Parameter> parameters(const Linearisation& at, const Damping* in_time) {
     const Description& d = at.system().model().description();
     std::vector<Parameter> all;
     add_materials(d, all);
@@ -186,6 +191,9 @@ std::vector<Parameter> parameters(const Linearisation& at) {
     for (std::size_t k = 0; k < d.loads.size(); ++k)
         add_vector(Kind::load_force, k, fmt::format("load \"{}\": force", d.loads[k].name), "N", d.loads[k].force_N,
                    all);
+    for (std::size_t k = 0; k < d.torques.size(); ++k)
+        add_vector(Kind::load_torque, k, fmt::format("load \"{}\": torque", d.torques[k].name), "N m",
+                   d.torques[k].torque_Nm, all);
     for (std::size_t k = 0; k < d.pressures.size(); ++k)
         all.push_back({Kind::load_pressure, k, fmt::format("load \"{}\": full pressure", d.pressures[k].name), "Pa",
                        d.pressures[k].pressure_Pa});
@@ -199,13 +207,11 @@ std::vector<Parameter> parameters(const Linearisation& at) {
     }
     add_contact(d, all);
     add_masses(d, all);
-    const bool in_time = at.controls().inertia && !at.controls().inertia->is_tether();
-    add_joints(d, in_time, all);
-    if (const auto& inertia = at.controls().inertia; inertia && !inertia->is_tether()) {
-        all.push_back({Kind::mass_damping, 0, "damping by mass", "1/s", inertia->damping().mass_per_s});
-        if (inertia->damping().stiffness_s > 0)
-            all.push_back({Kind::stiffness_damping, 0, "damping by stiffness", "s", inertia->damping().stiffness_s});
-    }
+    add_joints(d, in_time != nullptr, all);
+    if (in_time == nullptr) return all;
+    all.push_back({Kind::mass_damping, 0, "damping by mass", "1/s", in_time->mass_per_s});
+    if (in_time->stiffness_s > 0)
+        all.push_back({Kind::stiffness_damping, 0, "damping by stiffness", "s", in_time->stiffness_s});
     return all;
 }
 

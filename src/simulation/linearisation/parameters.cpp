@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/linalg/vectors.hpp"
+#include "simulation/actuators/torque.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/linearisation/contact_forces.hpp"
 #include "simulation/linearisation/damping_stiffness.hpp"
@@ -64,6 +65,13 @@ Derivative by_multiplier(const Linearisation& at, std::size_t actuator, double s
 Eigen::VectorXd spread(const Linearisation& at, const Load& load, const Eigen::Vector3d& total) {
     Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
     for (std::size_t k = 0; k < load.nodes.size(); ++k) force.segment<3>(3 * load.nodes[k]) += load.shares[k] * total;
+    return force;
+}
+
+/// (3n) minus the nodal forces of a torque on the nodes of a load.
+Eigen::VectorXd torque_forces(const Linearisation& at, const TorqueLoad& load, const Eigen::Vector3d& torque_Nm) {
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(at.state().x.size());
+    TorqueForces(load.nodes).subtract_from(view(at.state().x), torque_Nm, view(force));
     return force;
 }
 
@@ -332,6 +340,8 @@ Derivative derivative(Linearisation& at, const Parameter& by) {
             return by_cable_friction(at, by);
         case Kind::load_force:
             return by_force(at, -d.loads[by.index].share.at(time) * spread(at, d.loads[by.index], axis()));
+        case Kind::load_torque:
+            return by_force(at, d.torques[by.index].share.at(time) * torque_forces(at, d.torques[by.index], axis()));
         case Kind::load_pressure: {
             const std::size_t first = d.steered_count();
             return by_multiplier(at, first + by.index, -d.pressures[by.index].share.at(time));

@@ -31,6 +31,7 @@ struct Parameter {
         spring_free_length,  ///< m
         cable_friction,      ///< friction coefficient of a cable in its guides, lagged
         load_force,          ///< part: x, y or z, N, at full share
+        load_torque,         ///< part: about x, y or z, N m, at full share
         load_pressure,       ///< of a pressure load, Pa, at full share
         gravity,             ///< part: x, y or z, m/s^2, at full share
         ambient_pressure,    ///< reference of sealed gas, Pa
@@ -66,9 +67,11 @@ struct Parameter {
 [[nodiscard]] std::vector<Parameter> inputs(const Linearisation& at);
 
 /// All parameters of the robot: laws, loads, springs, supports and contact; without rest positions
-/// (rest_positions.hpp). Coefficients of friction that are zero are not included, because no friction is frozen for
-/// them.
+/// (rest_positions.hpp) and the motions of obstacles, whose shares are inputs. Coefficients of friction that are zero
+/// are not included, because no friction is frozen for them.
 [[nodiscard]] std::vector<Parameter> parameters(const Linearisation& at);
+/// The same for any state of a motion in time with this damping; null: at rest.
+[[nodiscard]] std::vector<Parameter> parameters(const Linearisation& at, const Damping* in_time);
 
 /// Derivative of the equations with respect to the number. The prescribed length of a slack cable has no effect.
 /// Quantities that are lagged or chosen before a step are held fixed: frozen friction except for its coefficient,

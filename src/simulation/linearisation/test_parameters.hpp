@@ -31,6 +31,9 @@ inline Description with_value(Description d, const Parameter& p, double value) {
         case Parameter::Kind::load_force:
             d.loads[p.index].force_N[p.part] = value;
             break;
+        case Parameter::Kind::load_torque:
+            d.torques[p.index].torque_Nm[p.part] = value;
+            break;
         case Parameter::Kind::load_pressure:
             d.pressures[p.index].pressure_Pa = value;
             break;

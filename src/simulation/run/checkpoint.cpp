@@ -173,7 +173,7 @@ Result<Checkpoint::Resumed> Checkpoint::open(const fs::path& folder, std::string
     const fs::path state = folder / state_name;
     std::error_code code;
     if (!fs::exists(state, code) && fs::exists(folder / steps_name, code))
-        return input_error("{}: the run ended before its first checkpoint; begin again without --resume",
+        return input_error("{}: the run ended before its first checkpoint; there is nothing to resume",
                            folder.string());
     if (!fs::exists(state, code))
         return input_error("{}: no checkpoint is there; it is made by --checkpoint-every", folder.string());

@@ -117,19 +117,27 @@ Vector3d spin(const AttachedFrame& frame, const Matrix3d& deformation, const Eig
     return 0.5 * Vector3d(L(2, 1) - L(1, 2), L(0, 2) - L(2, 0), L(1, 0) - L(0, 1));
 }
 
+Matrix3d axes_of(const MotionSensor& sensor, std::span<const double> x) {
+    return linalg::nearest_rotation(slope(sensor.frame, x)) * columns(sensor.axes);
+}
+
 std::vector<double> read(const MotionSensor& sensor, const Scene& scene) {
     const Description& d = scene.system.model().description();
-    const Matrix3d deformation = slope(sensor.frame, scene.x);
-    const Matrix3d axes = linalg::nearest_rotation(deformation) * columns(sensor.axes);
+    const Matrix3d axes = axes_of(sensor, scene.x);
+    Matrix3d axes_of_acceleration = axes;
     Vector3d acceleration = -d.gravity_share.at(scene.controls.time) * linalg::vector(d.gravity_m_s2);
     Vector3d turning = Vector3d::Zero();
     if (scene.controls.inertia && !scene.controls.inertia->is_tether()) {
         const Eigen::VectorXd a = scene.controls.inertia->true_acceleration(scene.state.x);
         const Eigen::VectorXd v = scene.controls.inertia->velocity(scene.state.x);
         acceleration += place(sensor.frame, linalg::view(a));
-        turning = spin(sensor.frame, deformation, v);
+        turning = spin(sensor.frame, slope(sensor.frame, scene.x), v);
+        if (scene.controls.inertia->scheme() == Scheme::conserving) {  // the mean of the step, so in the axes halfway
+            const Eigen::VectorXd halfway = scene.controls.inertia->on_path(scene.state.x, 0.5);
+            axes_of_acceleration = axes_of(sensor, linalg::view(halfway));
+        }
     }
-    const Vector3d a = axes.transpose() * acceleration, w = axes.transpose() * turning;
+    const Vector3d a = axes_of_acceleration.transpose() * acceleration, w = axes.transpose() * turning;
     return {a[0], a[1], a[2], w[0], w[1], w[2]};
 }
 
