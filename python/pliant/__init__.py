@@ -55,10 +55,18 @@ def quantity(text: str, unit: str) -> float:
     Args:
         text: a number and its unit.
         unit: the required unit: m, s, N, Pa, m^3, kg/m^3 or N/m.
+
+    Raises:
+        InputError: the text is no quantity of this kind, or is too large.
     """
     if not isinstance(text, str) or not isinstance(unit, str):
         raise TypeError('quantity takes two texts, as quantity("4 mm", "m")')
-    return _pliant.quantity(text, unit)
+    from math import isfinite
+
+    found = _pliant.quantity(text, unit)
+    if not isfinite(found):
+        raise InputError(f'"{text}" is too large for a number in {unit}')
+    return found
 
 
 #: Names of each file, which is imported when the first of them is used: `import pliant` stays quick.

@@ -34,6 +34,20 @@ def instance(value: Any, kind: type[T], what: str) -> T:
     raise TypeError(f"{what} must be a pliant.{kind.__name__}, not {_named(value)}")
 
 
+def several(values: Any, kind: type[T], what: str) -> list[T]:
+    """A list of `kind`, from anything that can be iterated over once."""
+    if not is_several(values) or isinstance(values, kind):
+        raise InputError(f"{what} must be a list of pliant.{kind.__name__}, not {_named(values)}")
+    return [instance(value, kind, f"each of {what}") for value in values]
+
+
+def is_several(value: Any) -> bool:
+    """True for what can be iterated over, except texts and arrays of one number."""
+    if isinstance(value, np.ndarray):
+        return value.ndim > 0
+    return isinstance(value, Iterable) and not isinstance(value, (str, bytes))
+
+
 def progress(value: Any) -> Any:
     """None, or what can be called."""
     if value is None or callable(value):
@@ -49,6 +63,8 @@ def number(value: Any, what: str) -> float:
         found = float(value)
     except (TypeError, ValueError):
         raise InputError(f"{what} must be a number, not {_shown(value)}") from None
+    except OverflowError:
+        raise InputError(f"{what} is {_shown(value)}, which is too large") from None
     if not np.isfinite(found):
         raise InputError(f"{what} is {found}, which is not finite")
     return found
@@ -71,7 +87,7 @@ def numbers(value: Any, what: str, shape: tuple[int | None, ...]) -> Array:
     if array.ndim != len(shape) or any(w is not None and n != w for n, w in zip(array.shape, shape)):
         wanted = ", ".join("any" if n is None else str(n) for n in shape)
         raise InputError(f"{what} has shape {array.shape}; it must have shape ({wanted}{',' * (len(shape) == 1)})")
-    return np.ascontiguousarray(array, dtype=np.float64)
+    return np.asarray(array, dtype=np.float64, order="C")
 
 
 def finite(value: Any, what: str, shape: tuple[int | None, ...]) -> Array:
@@ -107,6 +123,8 @@ def path(value: Any, what: str) -> Path:
     """A path of a file or folder."""
     if isinstance(value, (str, os.PathLike)):
         found = os.fspath(value)
+        if found == "":
+            raise InputError(f"{what} is an empty text; write a path")
         if isinstance(found, str) and "\0" not in found:
             return Path(found)
     raise InputError(f"{what} must be a path, not {_shown(value)}")

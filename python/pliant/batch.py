@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Union
-
-import numpy as np
 
 from . import _check, _pliant
 from ._check import Progress
@@ -78,7 +76,7 @@ class Batch(NotPickled):
 
     def step(
         self,
-        states: Sequence[State],
+        states: Iterable[State],
         controls: Any = None,
         *,
         time: float | None = None,
@@ -98,26 +96,30 @@ class Batch(NotPickled):
             Cancelled: by `progress`; each state is as far as its solver got. The same holds for KeyboardInterrupt after
                 Ctrl-C.
         """
-        own = self._own(states)
-        wanted: Sequence[Controls] = [None] * len(own) if controls is None else _listed(controls, len(own))
+        listed = self._listed(states)
+        own = self._own(listed)
+        wanted: Sequence[Controls] = [None] * len(own) if controls is None else _controls(controls, len(own))
         tuples = []
-        for k, (model, state, control) in enumerate(zip(self.models, states, wanted)):
+        for k, (model, state, control) in enumerate(zip(self.models, listed, wanted)):
             try:
                 tuples.append(model.inputs(control, state, time=time)._tuple())
             except InputError as error:
                 raise InputError(f"robot {k}: {error}", key=error.key) from None
         return self._batch.step(own, tuples, _check.progress(progress))
 
-    def observe(self, states: Sequence[State]) -> list[Observation]:
+    def observe(self, states: Iterable[State]) -> list[Observation]:
         """(robots) measurable quantities of each state."""
-        return [observation(seen) for seen in self._batch.observe(self._own(states))]
+        return [observation(seen) for seen in self._batch.observe(self._own(self._listed(states)))]
 
-    def _own(self, states: Sequence[State]) -> list[_pliant.State]:
-        listed = list(states)
+    def _listed(self, states: Iterable[State]) -> list[State]:
+        listed = _check.several(states, State, "states")
         if len(listed) != len(self.models):
             raise InputError(f"{len(listed)} states for {len(self.models)} robots")
         if len({id(s) for s in listed}) != len(listed):
             raise InputError("the same state is given for two robots; State.copy makes another")
+        return listed
+
+    def _own(self, listed: list[State]) -> list[_pliant.State]:
         own = []
         for k, (model, state) in enumerate(zip(self.models, listed)):
             try:
@@ -133,9 +135,10 @@ class Batch(NotPickled):
         return f"<pliant.Batch of {len(self)} robots, {self.threads} threads>"
 
 
-def _listed(controls: Any, robots: int) -> Sequence[Controls]:
-    if isinstance(controls, np.ndarray) or isinstance(controls, Sequence) and not isinstance(controls, str):
-        if len(controls) == robots:
-            return list(controls)
-        raise InputError(f"{len(controls)} controls for {robots} robots")
-    raise InputError(f"controls must be a list with one entry for each of {robots} robots")
+def _controls(controls: Any, robots: int) -> Sequence[Controls]:
+    if isinstance(controls, Mapping) or not _check.is_several(controls):
+        raise InputError(f"controls must be a list with one entry for each of {robots} robots")
+    listed = list(controls)
+    if len(listed) != robots:
+        raise InputError(f"{len(listed)} controls for {robots} robots")
+    return listed

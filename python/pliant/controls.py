@@ -37,10 +37,11 @@ Controls = Union["Inputs", Mapping[str, Any], Sequence[float], AnyArray, None]
 class Inputs(Mapping[str, Drive]):
     """All inputs of a robot at one instant: a drive for each cable and chamber, by name, and the time.
 
-    Immutable; :meth:`Model.inputs` makes others.
+    Immutable; :meth:`Model.inputs` makes others. Two are equal if their drives, the order of these and the time are.
     """
 
     __slots__ = ("names", "time", "_by", "_values")
+    __hash__ = None  # type: ignore[assignment]
 
     #: Cables, then chambers, in the order of the model.
     names: tuple[str, ...]
@@ -48,7 +49,7 @@ class Inputs(Mapping[str, Drive]):
     time: float
 
     def __init__(self, names: tuple[str, ...], time: float, by: Sequence[str], values: Sequence[float]) -> None:
-        self.names = tuple(names)
+        self.names = tuple(_check.texts(names, "the names of drives"))
         self.time = _check.number(time, "time")
         self._by = _check.texts(by, "the kinds of drives")
         self._values = _check.numbers(values, "the values of drives", (len(self._by),)).tolist()
@@ -77,6 +78,11 @@ class Inputs(Mapping[str, Drive]):
 
     def __len__(self) -> int:
         return len(self.names)
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Inputs):
+            return (self.names, *self._tuple()) == (other.names, *other._tuple())
+        return super().__eq__(other)
 
     def __repr__(self) -> str:
         drives = ", ".join(f"{n}: {b} {v:g}" for n, b, v in zip(self.names, self._by, self._values))
@@ -134,7 +140,7 @@ def drive_of(name: str, rest: Rest, wanted: Any) -> tuple[str, float]:
         if not unit:
             raise InputError(f'{what}: {kind} is a plain number, not "{number}"', key=name)
         try:
-            value = _pliant.quantity(number, unit)
+            value = _check.number(_pliant.quantity(number, unit), f'"{number}"')
         except InputError as error:
             raise InputError(f"{what}: {kind}: {error}", key=name) from None
     else:

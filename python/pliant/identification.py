@@ -192,6 +192,8 @@ def identify(
 
 
 def _read(path: Path) -> str:
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder, a file is needed", file=str(path))
     try:
         return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:

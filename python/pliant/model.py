@@ -29,7 +29,7 @@ class State:
     any number of threads and whatever was solved in between, also from one that was saved, pickled or copied.
 
     An unpickled state has a model of its own, which is made again from the robot: ``model.state_from(state.bytes())``
-    is the same state for a model at hand.
+    is the same state for a model at hand of the same robot.
     """
 
     __slots__ = ("model", "_state")
@@ -87,7 +87,7 @@ class State:
         return State(self.model, _pliant.State(self._state))
 
     def bytes(self) -> bytes:
-        """The whole state in binary form, for storage: :meth:`Model.state_from` of the same robot and mesh reads it."""
+        """The whole state in binary form, for storage: :meth:`Model.state_from` reads it."""
         return self._state.bytes()
 
     def save(self, file: PathLike) -> None:
@@ -239,13 +239,23 @@ class Model:
         return State(self, self._engine.rest())
 
     def state_from(self, data: bytes) -> State:
-        """Restores a state from :meth:`State.bytes`, of this model or another one of the same robot and mesh."""
+        """Restores a state from :meth:`State.bytes`, of this model or of another one that differs in numbers only.
+
+        The mesh, also of objects, must be the same, node for node, and so must be names and places of supports, cables,
+        chambers, pressure loads, springs and joints, the numbers of corners of obstacles and of torques, and whether
+        there is motion in time. Material constants, masses, forces, gravity, targets, stiffness and friction may
+        differ: positions, tensions and pressures are then those of the other model, and no equilibrium of this one
+        until the next step.
+
+        Raises:
+            InputError: the data are damaged, or are a state of a robot or mesh that does not fit.
+        """
         if not isinstance(data, (bytes, bytearray, memoryview)):
             raise TypeError(f"data must be bytes, not {type(data).__name__}")
         return State(self, self._engine.state_from(bytes(data)))
 
     def load_state(self, file: PathLike) -> State:
-        """Restores a state from a file written by :meth:`State.save`."""
+        """Restores a state from a file written by :meth:`State.save`, as :meth:`state_from` does."""
         return State(self, self._engine.load(_check.path(file, "file")))
 
     # ---- inputs
@@ -422,7 +432,7 @@ class Model:
             on_step: called with each :class:`ProgramStep` as soon as it is solved, the rest state first.
             measured: CSV of measured marker positions, for comparison with the simulated ones.
             checkpoint: folder in which the run is saved as it proceeds, so that it can be resumed.
-            checkpoint_every: steps between checkpoints; 0 with `resume`: as in the checkpoint.
+            checkpoint_every: steps between checkpoints; 0: after each step, or with `resume` as in the checkpoint.
             resume: resumes from the checkpoint.
             progress: called with (stage, share) some times a second; False cancels.
         """

@@ -78,12 +78,15 @@ def show(what: Shown, *, field: str = "material", height_px: int = 420) -> Viewe
     Args:
         what: a model (at rest), a state, several states of one model, or the result of a program.
         field: initial colours: "material", "displacement", "von_mises", "stretch", "J" or "energy".
-        height_px: height of the frame in the notebook.
+        height_px: height of the frame in the notebook, 16 to 10000.
 
     Returns:
         A viewer, which a notebook shows as the value of a cell. ``show(state).write("robot.html")`` saves the page.
     """
     _check.one_of(field, _FIELDS, "field")
+    height = _check.integer(height_px, "height_px")
+    if not 16 <= height <= 10000:
+        raise InputError(f"height_px is {height}; it must be from 16 to 10000")
     model, frames = _frames(what)
     shown = {
         "scene": _text(_pliant.View(model._model).scene()),
@@ -91,7 +94,7 @@ def show(what: Shown, *, field: str = "material", height_px: int = 420) -> Viewe
         "labels": [label for _, label in frames],
         "field": field,
     }
-    return Viewer(_page(model.robot.name, shown), _check.integer(height_px, "height_px"))
+    return Viewer(_page(model.robot.name, shown), height)
 
 
 def _frames(what: Any) -> tuple[Model, list[tuple[bytes, str]]]:
@@ -102,11 +105,15 @@ def _frames(what: Any) -> tuple[Model, list[tuple[bytes, str]]]:
         view = _pliant.View(what.model._model)
         return what.model, [(view.frame_of(s.positions, s.time), _label(s.observed)) for s in what]
     states = [what.rest()] if isinstance(what, Model) else [what] if isinstance(what, State) else what
-    states = list(states) if isinstance(states, Iterable) else []
-    if not states or not all(isinstance(s, State) for s in states):
-        raise TypeError(
-            f"show takes a model, a state, a list of states or the result of a program, not {type(what).__name__}"
-        )
+    takes = "show takes a model, a state, a list of states or the result of a program"
+    if not _check.is_several(states):
+        raise TypeError(f"{takes}, not {type(what).__name__}")
+    states = list(states)
+    if not states:
+        raise InputError("there are no states to show; give at least one")
+    for state in states:
+        if not isinstance(state, State):
+            raise TypeError(f"{takes}; one of the states is {_check._shown(state)}")
     model: Model = states[0].model
     if any(s.model is not model for s in states):
         raise InputError("the states are not all of one model")

@@ -118,7 +118,7 @@ def gradient(
         Failure: a measure or number does not exist, or a step does not converge or has no derivative.
     """
     owned = _check.instance(model, Model, "model")
-    listed = [_check.instance(m, Measure, "each of measures") for m in measures]
+    listed = _check.several(measures, Measure, "measures")
     if not listed:
         raise InputError('measures is empty; name what is measured, as Measure("tension", "flexor")')
     names = _check.texts(numbers, "numbers")

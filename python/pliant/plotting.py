@@ -46,6 +46,8 @@ def plot(
     if ax is not None and not hasattr(ax, "get_zlim"):
         raise InputError(f'ax must be axes with projection="3d", not {type(ax).__name__}')
     angles = _check.finite(view, "view", (2,))
+    if field is not None:
+        _check.one_of(field, FIELDS, "field")
     plt = _pyplot()
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
@@ -81,7 +83,7 @@ def plot_program(result: ProgramResult, *, axes: Any = None) -> Any:
     from .program import ProgramResult
 
     _check.instance(result, ProgramResult, "result")
-    if axes is not None and np.shape(axes) != (2,):
+    if axes is not None and (np.shape(axes) != (2,) or not all(hasattr(a, "plot") for a in axes)):
         raise InputError("axes must be two axes, one for markers and one for tensions and pressures")
     plt = _pyplot()
     upper, lower = plt.subplots(2, 1, sharex=True, layout="constrained")[1] if axes is None else axes

@@ -28,6 +28,7 @@ _ARGUMENTS = {
     "--support": "support",
     "--printer": "printer",
     "--set ": "changes: ",
+    "a mesh in memory can only be given by a program; name a file": "a mesh in memory cannot be sliced; name a file",
 }
 
 
@@ -153,13 +154,20 @@ def slice(
             _check.path(job, "job"),
             _changes(changes),
             _resin_words(resins),
-            "" if layer is None else _check.text(layer, "layer"),
+            _word(layer, "layer"),
             _check.integer(copies, "copies"),
             bool(any_vat),
-            "" if support is None else _check.text(support, "support"),
+            _word(support, "support"),
             _check.progress(progress),
         )
     return _plan(plan)
+
+
+def _word(value: Any, what: str) -> str:
+    """A text that is not empty; "" for None."""
+    if value == "":
+        raise InputError(f"{what} is an empty text; leave it out, or write what it is")
+    return "" if value is None else _check.text(value, what)
 
 
 def _resin_words(resins: Any) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Union, overload
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from . import _check, _pliant
 from ._check import Array, PathLike, Progress
 from ._pliant import StepResult
 from ._values import NotPickled, Value
-from .errors import InputError
+from .errors import InputError, arguments_for_options
 from .results import Observation, observation
 
 if TYPE_CHECKING:
@@ -38,9 +38,14 @@ class ProgramStep(Value):
 
 OnStep = Callable[[ProgramStep], Any]
 
+_ARGUMENTS = {
+    "it is made by --checkpoint-every": "run(checkpoint=FOLDER) makes one",
+    "what --set changes or --solver has changed": "its changes or its solver have changed",
+}
+
 
 class ProgramResult(NotPickled):
-    """Result of a program: a sequence of :class:`ProgramStep`, the rest state first."""
+    """Result of a program: a sequence of :class:`ProgramStep`, the rest state first. A slice is a list of them."""
 
     __slots__ = ("model", "_result")
     _instead = "pickle its steps, as list(result), or write its folder"
@@ -121,11 +126,12 @@ class ProgramResult(NotPickled):
             progress: called with (stage, share) some times a second; False cancels.
         """
         _check.one_of(pictures, ("none", "few", "all"), "pictures")
-        size = (0, 0) if picture_size_px is None else _check.integers(picture_size_px, "picture_size_px").tolist()
-        if len(size) != 2:
+        size = _check.integers((0, 0) if picture_size_px is None else picture_size_px, "picture_size_px")
+        if size.shape != (2,):
             raise InputError("picture_size_px must be (width, height)")
         eye = None if view is None else _check.numbers(view, "view", (3,)).tolist()
-        self._result.write(_check.path(folder, "folder"), pictures, size, bool(film), eye, _check.progress(progress))
+        place = _check.path(folder, "folder")
+        self._result.write(place, pictures, size.tolist(), bool(film), eye, _check.progress(progress))
 
     def remove_checkpoint(self) -> None:
         """Deletes the checkpoint of the run, if it has one."""
@@ -134,7 +140,14 @@ class ProgramResult(NotPickled):
     def __len__(self) -> int:
         return self._result.step_count
 
-    def __getitem__(self, index: int) -> ProgramStep:
+    @overload
+    def __getitem__(self, index: int) -> ProgramStep: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[ProgramStep]: ...
+
+    def __getitem__(self, index: Union[int, slice]) -> Union[ProgramStep, list[ProgramStep]]:
+        if isinstance(index, slice):
+            return [self[k] for k in range(len(self))[index]]
         wanted = _check.integer(index, "index")
         wanted += len(self) if wanted < 0 else 0
         if not 0 <= wanted < len(self):
@@ -162,7 +175,7 @@ def run(
     if on_step is not None and not callable(on_step):
         raise TypeError(f"on_step must be callable, not {type(on_step).__name__}")
     heard = None if on_step is None else lambda step: on_step(_step(step))
-    with model.robot._in_its_words():
+    with arguments_for_options(_ARGUMENTS), model.robot._in_its_words():
         result = _pliant.run(
             model._model,
             heard,

@@ -43,9 +43,11 @@ class Robot:
         InputError: with one line for each problem; `.key` is that of the first.
     """
 
-    __slots__ = ("_robot", "text", "folder", "changes", "_in_python")
+    __slots__ = ("_robot", "text", "folder", "changes", "_in_python", "_called")
 
     _robot: _pliant.Robot
+    #: How errors name the text of a robot that was not made in Python: by its file, if it has one.
+    _called: str
     #: Robot file (TOML).
     text: str
     #: Folder in which files that it names are looked up.
@@ -68,7 +70,7 @@ class Robot:
                 "text by Robot.parse(text)"
             )
         tables = {**(description or {}), **keys}
-        self._fill(_toml.document(tables), _check.path(folder, "folder"), changes, True)
+        self._fill(_toml.document(tables), _folder(folder), changes, True, _TEXT)
 
     @classmethod
     def load(cls, file: PathLike, changes: Changes = None) -> Robot:
@@ -89,44 +91,55 @@ class Robot:
         robot.folder = path.parent.absolute()
         robot.changes = tuple(listed)
         robot._in_python = False
+        robot._called = str(path)
         return robot
 
     @classmethod
     def parse(cls, text: str, folder: PathLike = ".", changes: Changes = None) -> Robot:
-        """Reads a robot from the text of a robot file; files that it names are looked up in `folder`."""
+        """Reads a robot from the text of a robot file; files that it names are looked up in `folder`.
+
+        Raises:
+            InputError: with `.line` and `.key` of the first problem, and a line for each, which begins with
+                "robot text"; `.file` is "".
+        """
         if not isinstance(text, str):
             raise TypeError(f"text must be a str, not {type(text).__name__}")
         _check.text(text, "text")
         robot = cls.__new__(cls)
-        robot._fill(text, _check.path(folder, "folder"), changes, False)
+        robot._fill(text, _folder(folder), changes, False, _TEXT)
         return robot
 
-    def _fill(self, text: str, folder: Path, changes: Changes, in_python: bool) -> None:
+    def _fill(self, text: str, folder: Path, changes: Changes, in_python: bool, called: str) -> None:
         listed = _changes(changes)
         self.text = text
         self.folder = folder.absolute()
         self.changes = tuple(listed)
         self._in_python = in_python
+        self._called = called
         with arguments_for_options({"--set ": "changes: "}), self._in_its_words():
             self._robot = _pliant.Robot.parse(text, self.folder, listed)
 
     @contextmanager
     def _in_its_words(self, file: Path | None = None) -> Iterator[None]:
         """Errors of a robot that was made in Python, or written to a temporary `file`, name no file: nobody has written
-        the lines of its text."""
+        the lines of its text. Those of others name the file that the text is of, if there is one."""
         try:
-            yield
+            with arguments_for_options({} if file else _ARGUMENTS):
+                yield
         except Failure as error:
-            text = str(file or self.folder / "robot text")
-            if not (file or self._in_python) or text not in str(error):
+            text = str(file or self.folder / _TEXT)
+            if text not in str(error):
                 raise
-            message = re.sub(re.escape(text) + r":(\d+:)? ", "", str(error)).replace(text, "the robot")
-            raise type(error)(message, key=error.key) from None
+            if file or self._in_python:
+                message = re.sub(re.escape(text) + r":(\d+:)? ", "", str(error)).replace(text, "the robot")
+                raise type(error)(message, key=error.key) from None
+            known = "" if self._called == _TEXT else self._called
+            raise type(error)(str(error).replace(text, self._called), known, error.line, error.key) from None
 
     def changed(self, changes: Changes) -> Robot:
         """The same robot with further changes, as {"mesh.size": "2 mm"}."""
         robot = type(self).__new__(type(self))
-        robot._fill(self.text, self.folder, [*self.changes, *_changes(changes)], self._in_python)
+        robot._fill(self.text, self.folder, [*self.changes, *_changes(changes)], self._in_python, self._called)
         return robot
 
     @property
@@ -145,7 +158,7 @@ class Robot:
         return self._robot.steps
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _robot_again, (self.text, self.folder, self.changes, self._in_python)
+        return _robot_again, (self.text, self.folder, self.changes, self._in_python, self._called)
 
     def __copy__(self) -> Robot:
         return self
@@ -157,10 +170,22 @@ class Robot:
         return f"<pliant.Robot {self.name!r}>"
 
 
-def _robot_again(text: str, folder: Path, changes: tuple[str, ...], in_python: bool) -> Robot:
+#: How the library names a text that has no file, in the folder of the robot.
+_TEXT = "robot text"
+_ARGUMENTS = {
+    "a mesh in memory can only be given by a program; name a file": "pass the mesh in memory, as mesh=pliant.Mesh(...)",
+}
+
+
+def _robot_again(text: str, folder: Path, changes: tuple[str, ...], in_python: bool, called: str = _TEXT) -> Robot:
     robot = Robot.__new__(Robot)
-    robot._fill(text, folder, changes, in_python)
+    robot._fill(text, folder, changes, in_python, called)
     return robot
+
+
+def _folder(folder: PathLike) -> Path:
+    """The path of a folder; an empty text is the current one, as for `os.path.dirname`."""
+    return Path() if folder == "" else _check.path(folder, "folder")
 
 
 def _changes(changes: Changes) -> list[str]:
@@ -171,6 +196,18 @@ def _changes(changes: Changes) -> list[str]:
             raise InputError('changes must have texts as keys, as {"mesh.order": 1}')
         return [f"{k}={_toml.value(v, k)}" for k, v in changes.items()]
     return _check.texts(changes, "changes")
+
+
+def _region_names(names: Iterable[str]) -> tuple[str, ...]:
+    found = tuple(_check.texts(names, "region_names"))
+    if not found:
+        raise InputError('region_names is empty; give at least one name, as ("all",)')
+    if "" in found:
+        raise InputError("one of region_names is empty; bodies refer to regions by their names")
+    for name in found:
+        if found.count(name) > 1:
+            raise InputError(f"region_names has {name!r} twice; each region needs a name of its own")
+    return found
 
 
 def _kept(array: Any) -> Any:
@@ -194,7 +231,7 @@ class Mesh(Value):
     tets: IntArray
     #: (tets,) index into region_names; None: all tetrahedra are in the first region.
     regions: IntArray | None
-    #: Names that `region` of a body refers to.
+    #: Names that `region` of a body refers to: at least one, all different.
     region_names: tuple[str, ...]
 
     def __init__(
@@ -210,10 +247,18 @@ class Mesh(Value):
         if listed.ndim != 2 or listed.shape[1] not in (4, 10):
             raise InputError(f"tets has shape {listed.shape}; it must have shape (tets, 4) or (tets, 10)")
         put(self, "tets", _kept(listed))
-        put(self, "region_names", tuple(_check.texts(region_names, "region_names")))
+        put(self, "region_names", _region_names(region_names))
         put(self, "regions", None if regions is None else _kept(_check.integers(regions, "regions")))
-        if self.regions is not None and self.regions.shape != (len(self.tets),):
-            raise InputError(f"regions has shape {self.regions.shape}; it must have shape ({len(self.tets)},)")
+        if self.regions is not None:
+            self._check_regions(self.regions)
+
+    def _check_regions(self, regions: IntArray) -> None:
+        if regions.shape != (len(self.tets),):
+            raise InputError(f"regions has shape {regions.shape}; it must have shape ({len(self.tets)},)")
+        wrong = regions[(regions < 0) | (regions >= len(self.region_names))]
+        if wrong.size:
+            last = len(self.region_names) - 1
+            raise InputError(f"regions has {wrong[0]}; with these region_names it must be from 0 to {last}")
 
     def _mesh(self) -> _pliant.Mesh:
         regions = np.empty(0, dtype=np.int32) if self.regions is None else self.regions

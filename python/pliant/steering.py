@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -77,7 +77,7 @@ class Waypoint(Value):
 
 
 class InverseResult(NotPickled):
-    """Result of :func:`inverse`: a sequence of :class:`Waypoint`."""
+    """Result of :func:`inverse`: a sequence of :class:`Waypoint`. A slice is a list of them."""
 
     __slots__ = ("model", "_result")
     _instead = "pickle its waypoints, as list(result), or write its folder"
@@ -134,7 +134,14 @@ class InverseResult(NotPickled):
     def __len__(self) -> int:
         return self._result.waypoint_count
 
-    def __getitem__(self, index: int) -> Waypoint:
+    @overload
+    def __getitem__(self, index: int) -> Waypoint: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Waypoint]: ...
+
+    def __getitem__(self, index: Union[int, slice]) -> Union[Waypoint, list[Waypoint]]:
+        if isinstance(index, slice):
+            return [self[k] for k in range(len(self))[index]]
         wanted = _check.integer(index, "index")
         wanted += len(self) if wanted < 0 else 0
         if not 0 <= wanted < len(self):

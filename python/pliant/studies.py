@@ -145,9 +145,9 @@ def _written(plan: Mapping[str, Any], out: Path) -> Path:
     text = _MARK + _toml.document(plan)
     if file.exists() and not _may_replace(file, text, out):
         raise InputError(f"{file}: is there already, and is another study; choose another folder, or move it away")
-    file.parent.mkdir(parents=True, exist_ok=True)
     aside = file.with_name(file.name + ".partial")
     try:
+        file.parent.mkdir(parents=True, exist_ok=True)
         aside.write_text(text, encoding="utf-8")
         aside.replace(file)
     except OSError as error:
@@ -181,12 +181,21 @@ def _told(output: str) -> dict[str, Any] | None:
     return told if isinstance(told, dict) else None
 
 
+#: Words of the command line in messages, and those of study().
+_ARGUMENTS = {
+    "--resume goes on with them, -o names": "resume=True goes on with them, folder names",
+    "the same command with --resume continues": "the same study with resume=True continues",
+    ", or --chunk N for a part of the study in the folder": "",
+}
+
+
 def _complain(status: int, told: dict[str, Any], errors: str) -> None:
     """Raises the error that the program reported, in its output or among its errors."""
     lines = errors.strip().splitlines()
     ended = f"pliant study ended with exit status {status}"
     message = str(told["error"]) if "error" in told else lines[-1] if lines else ended
-    message = message.replace("--resume goes on with them, -o names", "resume=True goes on with them, folder names")
+    for words, arguments in _ARGUMENTS.items():
+        message = message.replace(words, arguments)
     if status == 2:
         raise InputError(message)
     raise (Cancelled if message.startswith("cancelled") else Failure)(message)
@@ -194,9 +203,11 @@ def _complain(status: int, told: dict[str, Any], errors: str) -> None:
 
 def _run(words: list[str]) -> tuple[int, str, str]:
     """An interrupt is passed on to the study once; it stops in good order before KeyboardInterrupt is raised here."""
-    process = subprocess.Popen(
-        words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
-    )
+    pipe, none = subprocess.PIPE, subprocess.DEVNULL
+    try:
+        process = subprocess.Popen(words, stdin=none, stdout=pipe, stderr=pipe, text=True, start_new_session=True)
+    except OSError as error:
+        raise Failure(f"{words[0]}: cannot be started: {error.strerror}", file=words[0]) from None
     try:
         output, errors = process.communicate()
     except BaseException:

@@ -57,6 +57,9 @@ def test_mistakes_name_the_robot_and_do_not_change_the_states(model):
         "robot 2: cable \"flexor\": nan": lambda: None,
         "2 controls for 3 robots": lambda: batch.step(states, [[0.05]] * 2),
         "2 states for 3 robots": lambda: batch.step(states[:2]),
+        "states must be a list of pliant.State, not None": lambda: batch.step(None),
+        "controls must be a list with one entry for each of 3 robots": lambda: batch.step(states, np.array(0.05)),
+        "controls must be a list": lambda: batch.step(states, {"flexor": {"shortening": "1 mm"}}),
         "the same state is given for two robots": lambda: batch.step([states[0]] * 3),
         "robot 0: the state is one of another model": lambda: batch.step([block().rest(), *states[1:]]),
         "count goes with one model": lambda: pliant.Batch([model], 2),
@@ -70,6 +73,17 @@ def test_mistakes_name_the_robot_and_do_not_change_the_states(model):
     with pytest.raises(pliant.InputError, match="^robot 1: .*not finite"):
         batch.step(states, np.array([[0.05], [np.nan], [0.05]]))
     assert states == batch.rest()
+
+
+def test_states_and_controls_may_be_iterated_over_once(model):
+    batch = pliant.Batch(model, 2)
+    states = batch.rest()
+    batch.step(iter(states), iter(lengths(2)))
+    again = batch.rest()
+    batch.step(again, lengths(2))
+    assert states == again and batch.observe(iter(states)) == batch.observe(again)
+    with pytest.raises(TypeError, match="^each of states must be a pliant.State, not int$"):
+        batch.step([states[0], 3])
 
 
 def test_an_empty_batch_does_nothing(model):

@@ -257,16 +257,19 @@ def test_impossible_options_are_refused_and_leave_the_environment_as_it_was():
         "goal has a number that is not finite": lambda: reach.reset(seed=3, options={"goal": [np.nan, 0, 0]}),
         "there is no option 'gaol' of Reach; there are: goal$": lambda: reach.reset(options={"gaol": [0.09, 0, 0]}),
         "there are: angle, radius$": lambda: follow.reset(options={"goal": [0.09, 0, 0]}),
+        r"goal is \[1e\+300, 0.0, 0.0\]; it must be from": lambda: reach.reset(options={"goal": [1e300, 0, 0]}),
+        r"radius is 1e\+300; it must be from 0 to 0.1$": lambda: follow.reset(options={"radius": 1e300}),
+        "radius must be a number, not 'x'$": lambda: follow.reset(options={"radius": "x"}),
+        "radius is -1.0; it must be from 0 to 0.1$": lambda: follow.reset(options={"radius": -1}),
         "pulled has a number that is not finite": lambda: grasp.reset(options={"pulled": [np.inf, 0]}),
+        r"pulled is \[0.0, 2.0\]; it must be from 0 to 1$": lambda: grasp.reset(options={"pulled": [0, 2]}),
         "there are: none$": lambda: crawl.reset(options={"pulled": [0, 0]}),
         "options must be a dict, not str": lambda: reach.reset(options="goal"),
     }
     for text, call in wrong.items():
         with pytest.raises(pliant.InputError, match=text):
             call()
-    after = reach.get_state()
-    assert after.robot == before.robot and after.random == before.random
-    assert np.array_equal(after.task["goal"], before.task["goal"])
+    assert reach.get_state() == before
 
     class Own(Reach):
         option_names = None
@@ -300,3 +303,104 @@ def test_a_state_of_another_environment_is_refused():
         many.set_states([reach.get_state(), kept])
     assert many.get_states()[0].robot == before[0].robot and many.get_states()[0].pulled is not before[0].pulled
     assert np.array_equal(many.get_states()[0].task["goal"], before[0].task["goal"])
+
+
+def test_a_refused_reset_leaves_the_random_generator_as_it_was():
+    follow, grasp = Follow(), Grasp()
+    for env, wrong in ((follow, {"radius": "x"}), (grasp, {"pulled": [1, 2, 3]})):
+        env.reset(seed=1)
+        kept = env.get_state()
+        for seed in (None, 5):
+            with pytest.raises(pliant.InputError):
+                env.reset(seed=seed, options=wrong)
+            assert env.get_state() == kept
+        first = env.reset()[0]
+        env.reset(seed=1)
+        assert np.array_equal(env.reset()[0], first)
+
+
+def test_states_of_environments_are_values(env):
+    env.reset(seed=2)
+    kept = env.get_state()
+    assert kept == copy.deepcopy(kept) == pickle.loads(pickle.dumps(kept)) and not kept != env.get_state()
+    env.step(np.full(env.action_space.shape, 0.4))
+    assert kept != env.get_state() and kept != 3
+
+
+def changed(state, **members):
+    state = copy.deepcopy(state)
+    for name, value in members.items():
+        setattr(state, name, value)
+    return state
+
+
+def test_a_damaged_state_is_refused_and_leaves_the_environment_as_it_was():
+    env = Follow()
+    env.reset(seed=1)
+    kept = env.get_state()
+    wrong = {
+        r"pulled of the state has shape \(7,\); it must have shape \(3,\)": {"pulled": np.zeros(7)},
+        "pulled of the state must be from 0 to 1": {"pulled": np.array([0, 0, 2.0])},
+        "pulled of the state must be an array of numbers, not None": {"pulled": None},
+        "steps of the state is -1": {"steps": -1},
+        "steps of the state must be a whole number": {"steps": 1.5},
+        "task of the state must be a dict, not NoneType": {"task": None},
+        "task of the state has no 'radius'": {"task": {"angle": 0.0}},
+        r"task\['angle'\] of the state has shape \(2,\)": {"task": {**kept.task, "angle": [1, 2]}},
+        r"task\['radius'\] of the state is 1e\+300; it must be": {"task": {**kept.task, "radius": 1e300}},
+        "random of the state is not that of a random generator": {"random": {"bit_generator": "PCG64"}},
+        "random of the state is not": {"random": 3},
+    }
+    for text, members in wrong.items():
+        with pytest.raises(pliant.InputError, match="^" + text):
+            env.set_state(changed(kept, **members))
+        assert env.get_state() == kept
+    with pytest.raises(TypeError, match="^the robot of the state must be a pliant.State, not None$"):
+        env.set_state(changed(kept, robot=None))
+    many = Vector(Follow, 2, model=env.model)
+    many.reset(seed=0)
+    before = many.get_states()
+    with pytest.raises(pliant.InputError, match="^environment 1: pulled of the state has shape"):
+        many.set_states([kept, changed(kept, pulled=np.zeros(7))])
+    with pytest.raises(pliant.InputError, match="^episodes must be a list of pliant.Episode, not None$"):
+        many.set_states(None)
+    assert many.get_states() == before
+    many.set_states(iter([kept, kept]))
+    assert many.get_states() == [kept, kept]
+
+
+def test_an_environment_whose_task_fails_does_not_change():
+    class Picky(Reach):
+        max_steps = 2
+        fails = False
+
+        def begin(self, episode, options):
+            super().begin(episode, options)
+            if Picky.fails and self._random.uniform() < 2:
+                raise ValueError("no goal")
+
+        def judge(self, episode, seen, action):
+            episode.task["goal"] += 1
+            if Picky.fails and episode.steps == 1:
+                raise ValueError("no judge")
+            return super().judge(episode, seen, action)
+
+    env = Picky()
+    many = Vector(Picky, 2, model=env.model)
+    env.reset(seed=1)
+    many.reset(seed=1)
+    many.step(np.zeros((2, 3)))
+    before = env.get_state(), many.get_states()
+    Picky.fails = True
+    for call in (lambda: env.step([0, 0, 0]), lambda: env.reset(seed=3), lambda: many.step(np.zeros((2, 3)))):
+        with pytest.raises(ValueError, match="no (goal|judge)"):
+            call()
+    assert before == (env.get_state(), many.get_states())
+
+
+def test_a_state_may_be_of_a_robot_with_other_constants():
+    light, heavy = Grasp(), Grasp(Grasp.make_model(mass_g=20))
+    light.reset(seed=0)
+    heavy.set_state(light.get_state())
+    assert heavy.get_state() == light.get_state() and heavy.episode.robot.model is heavy.model
+    assert "failed" not in heavy.step([0, 0])[-1]

@@ -1,5 +1,7 @@
 """What people get wrong ends in one sentence, with its place."""
 
+import pickle
+
 import numpy as np
 import pytest
 from robots import BAR, BLOCK, bar, block, cube
@@ -94,7 +96,69 @@ MISTAKES = {
     ),
     "a mesh is forgotten": (
         lambda m: pliant.Model(pliant.Robot(BLOCK)),
-        None,
+        "mesh: file: pass the mesh in memory, as mesh=pliant.Mesh(...)",
+    ),
+    "a mesh in memory is sliced": (
+        lambda m: pliant.slice(pliant.Robot(BLOCK), "no.zip", printer="examples/printers/tower.toml"),
+        "mesh: file: a mesh in memory cannot be sliced; name a file",
+    ),
+    "a mesh has no regions": (
+        lambda m: pliant.Mesh(cube().points, cube().tets, None, ()),
+        'region_names is empty; give at least one name, as ("all",)',
+    ),
+    "a region has no name": (
+        lambda m: pliant.Mesh(cube().points, cube().tets, None, ("a", "")),
+        "one of region_names is empty; bodies refer to regions by their names",
+    ),
+    "two regions have one name": (
+        lambda m: pliant.Mesh(cube().points, cube().tets, None, ("a", "b", "a")),
+        "region_names has 'a' twice; each region needs a name of its own",
+    ),
+    "a region is not there": (
+        lambda m: pliant.Mesh(cube().points, cube().tets, [0, 0, 0, 0, 0, 2], ("a", "b")),
+        "regions has 2; with these region_names it must be from 0 to 1",
+    ),
+    "a checkpoint is not there": (
+        lambda m: m.run(checkpoint="nowhere", resume=True),
+        "nowhere: no checkpoint is there; run(checkpoint=FOLDER) makes one",
+    ),
+    "a table has no name": (
+        lambda m: pliant.identify(m.robot, ["material.soft.youngs_modulus"], ""),
+        "measured is an empty text; write a path",
+    ),
+    "a table is a folder": (
+        lambda m: pliant.identify(m.robot, ["material.soft.youngs_modulus"], "/tmp"),
+        "/tmp: is a folder, a file is needed",
+    ),
+    "a file has no name": (lambda m: pliant.Robot.load(""), "file is an empty text; write a path"),
+    "a layer is empty": (
+        lambda m: pliant.slice("a.toml", "a.zip", printer="b.toml", layer=""),
+        "layer is an empty text; leave it out, or write what it is",
+    ),
+    "a quantity is too large": (
+        lambda m: pliant.quantity("1e308 GPa", "Pa"),
+        '"1e308 GPa" is too large for a number in Pa',
+    ),
+    "a target is too large": (
+        lambda m: m.step(m.rest(), {"flexor": {"tension": "1e308 kN"}}),
+        'cable "flexor": tension: "1e308 kN" is inf, which is not finite',
+    ),
+    "a time is too large": (lambda m: m.program(10**400), "time is 1000"),
+    "measures are forgotten": (
+        lambda m: pliant.gradient(m, None, lambda step, values: (0.0, [])),
+        "measures must be a list of pliant.Measure, not None",
+    ),
+    "one measure is given for several": (
+        lambda m: pliant.gradient(m, pliant.Measure("tension", "flexor"), lambda step, values: (0.0, [])),
+        "measures must be a list of pliant.Measure, not Measure",
+    ),
+    "pictures have one size": (
+        lambda m: m.run().write("nowhere", picture_size_px=300),
+        "picture_size_px must be (width, height)",
+    ),
+    "a program is plotted into numbers": (
+        lambda m: pliant.plotting.plot_program(m.run(), axes=[1, 2]),
+        "axes must be two axes, one for markers and one for tensions and pressures",
     ),
     "a tolerance is impossible": (
         lambda m: pliant.Model(m.robot, tolerance=2),
@@ -220,8 +284,23 @@ def test_errors_have_file_line_and_key(tmp_path):
         pliant.Robot({**BAR, "material": {"soft": {"youngs_modulus": 12}}})
     assert (caught.value.file, caught.value.line) == ("", 0)
     assert caught.value.key == "material.soft.youngs_modulus"
-    with pytest.raises(pliant.InputError, match="^robot text|robot text:1"):
+    with pytest.raises(pliant.InputError, match="^robot text:1: name: ") as caught:
         pliant.Robot.parse("name = 3")
+    assert (caught.value.file, caught.value.line, caught.value.key) == ("", 1, "name") and "/" not in str(caught.value)
+
+
+def test_errors_of_a_changed_robot_name_the_file_that_it_was_read_from(tmp_path):
+    file = tmp_path / "robot.toml"
+    file.write_text(pliant.Robot(BAR).text)
+    robot = pliant.Robot.load(file).changed({"mesh.order": 1})
+    for again in (robot, pickle.loads(pickle.dumps(robot))):
+        with pytest.raises(pliant.InputError) as caught:
+            again.changed({"material.soft.poisson_ratio": 3})
+        assert str(caught.value).startswith(f"{file}:3: ") and caught.value.file == str(file)
+
+
+def test_a_folder_may_be_an_empty_text_for_the_current_one():
+    assert pliant.Robot(BAR, folder="").folder == pliant.Robot(BAR).folder
 
 
 def test_a_step_that_does_not_converge_is_reported():
@@ -251,5 +330,5 @@ def test_errors_of_a_robot_made_in_python_name_no_file():
             work()
         assert "robot text" not in str(caught.value) and caught.value.file != "robot text", caught.value
         assert caught.value.line == 0
-    with pytest.raises(pliant.InputError, match="robot text:"):
+    with pytest.raises(pliant.InputError, match="^robot text:"):
         pliant.Model(pliant.Robot.parse(pliant.Robot(BAR).text, changes={"marker.tip.point": [99, 5, 5]}))

@@ -63,11 +63,17 @@ def test_models_states_and_programs_are_shown(model, states):
     assert len(packets(pliant.show(model).page)[1]) == 2
     assert len(packets(pliant.show(states[1]).page)[1]) == 2
     assert len(packets(pliant.show(model.run()).page)[1]) == 6
-    for wrong in (3, [], [1], "finger.toml"):
+    assert len(packets(pliant.show(iter(states)).page)[1]) == 4
+    for wrong in (3, [1], "finger.toml", np.array(3)):
         with pytest.raises(TypeError, match="show takes a model, a state"):
             pliant.show(wrong)
     with pytest.raises(pliant.InputError, match="not all of one model"):
         pliant.show([states[0], bar().rest()])
+    with pytest.raises(pliant.InputError, match="^there are no states to show; give at least one$"):
+        pliant.show([])
+    for height in (-5, 0, 10001):
+        with pytest.raises(pliant.InputError, match=f"^height_px is {height}; it must be from 16 to 10000$"):
+            pliant.show(model, height_px=height)
     with pytest.raises(pliant.InputError, match="field is material, displacement"):
         pliant.show(model, field="colour")
 

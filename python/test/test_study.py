@@ -57,6 +57,8 @@ def test_a_study_equals_that_of_the_command_line(place):
     told = json.loads(subprocess.run(run, check=True, capture_output=True, text=True).stdout)
     assert told["results"] == found.summary["results"]
     assert (place / "here" / "results.csv").read_bytes() == (place / "there" / "results.csv").read_bytes()
+    with pytest.raises(pliant.InputError, match="is a folder; a study file is needed here$"):
+        pliant.study(place / "here")
     with pytest.raises(pliant.InputError, match="resume=True goes on"):
         pliant.study(place / "here.toml", place / "here")
     assert len(pliant.study(place / "here.toml", place / "here", resume=True)) == 3

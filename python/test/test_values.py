@@ -48,6 +48,20 @@ def test_steps_and_waypoints_can_be_pickled_and_compared(model, program):
     assert np.array_equal(pickle.loads(pickle.dumps(program[2])).positions, program[2].positions)
 
 
+def test_a_slice_of_a_result_is_a_list(model, program):
+    assert program[:2] == [program[0], program[1]] and program[::-2] == list(program)[::-2] and program[9:] == []
+    found = pliant.inverse(model)
+    assert found[:1] == [found[0]] and found[1:] == []
+    for result in (program, found):
+        with pytest.raises(pliant.InputError, match="^index must be a whole number, not 1.5$"):
+            result[1.5]
+
+
+def test_inputs_are_equal_if_their_time_is_too(model):
+    assert model.inputs(None, time=0.3) == model.inputs(None, time=0.3) != model.inputs(None, time=0.6)
+    assert model.inputs([0.058]) != model.inputs([0.057]) and dict(model.inputs([0.058])) == model.inputs([0.058])
+
+
 def test_what_lives_in_this_process_says_what_can_be_pickled(model, program):
     for value in (program, pliant.inverse(model), pliant.Batch(model, 1), model.linearise(model.rest())):
         with pytest.raises(TypeError, match=f"^a {type(value).__name__} cannot be pickled; pickle its "):

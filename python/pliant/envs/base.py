@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, NamedTuple
 
@@ -12,6 +13,7 @@ import numpy.typing as npt
 
 from .. import _check
 from .._pliant import StepResult
+from .._values import Value
 from ..controls import Inputs
 from ..errors import InputError
 from ..model import Model, State
@@ -27,9 +29,9 @@ except ImportError:
 FloatArray = npt.NDArray[np.float32]
 
 
-@dataclass
-class Episode:
-    """The complete state of an environment: a value that can be copied, pickled and restored."""
+@dataclass(eq=False)
+class Episode(Value):
+    """The complete state of an environment: a value that can be copied, compared, pickled and restored."""
 
     #: state of the robot
     robot: State
@@ -80,6 +82,8 @@ class RobotEnv(_Base):  # type: ignore[misc]
     largest_change: ClassVar[float] = 0.15
     #: Names of the options of reset; None: any.
     option_names: ClassVar[tuple[str, ...] | None] = None
+    #: Shape of each variable that `episode.task` must have, by its name.
+    task_shapes: ClassVar[Mapping[str, tuple[int, ...]]] = {}
 
     def __init__(self, model: Model | None = None, *, render_mode: str | None = None) -> None:
         if render_mode not in (None, "rgb_array"):
@@ -141,10 +145,14 @@ class RobotEnv(_Base):  # type: ignore[misc]
         Raises:
             InputError: the seed or an option is not possible; the environment does not change.
         """
-        self._begin(seed, options)
-        episode = self.episode
-        seen = episode.robot.observe()
-        return self.observe(episode, seen), self._info(seen)
+        given = self._known_options(options)
+        generator = None if seed is None else np.random.default_rng(_check.seed(seed))
+        with self._unchanged_by_errors():
+            self._random = generator or self._random
+            self._episode = episode = Episode(self.model.rest(), np.zeros(len(self._low)))
+            self.begin(episode, given)
+            seen = episode.robot.observe()
+            return self.observe(episode, seen), self._info(seen)
 
     def step(self, action: Any) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
         """One step of the robot. If it fails, the environment does not change.
@@ -157,7 +165,8 @@ class RobotEnv(_Base):  # type: ignore[misc]
         """
         half = self._before(action)
         result = self.model.step(half.robot, half.inputs)
-        return self._after(half, result, half.robot.observe())
+        with self._unchanged_by_errors():
+            return self._after(half, result, half.robot.observe())
 
     def render(self) -> Any:
         """(height, width, 3) picture of the robot, with ``render_mode="rgb_array"``."""
@@ -190,7 +199,8 @@ class RobotEnv(_Base):  # type: ignore[misc]
         return self._episode
 
     def get_state(self) -> Episode:
-        """The complete state, which can be pickled and restored in any environment of the same task and robot."""
+        """The complete state, which can be pickled and restored in any environment of the same task and robot, as
+        :meth:`set_state` says."""
         kept = Episode(
             self.episode.robot.copy(),
             self.episode.pulled.copy(),
@@ -204,45 +214,65 @@ class RobotEnv(_Base):  # type: ignore[misc]
     def set_state(self, episode: Episode) -> None:
         """Restores a state from :meth:`get_state`.
 
-        Raises:
-            InputError: the state is of another task or another robot; the environment does not change.
-        """
-        given = _check.instance(episode, Episode, "episode")
-        self._take(given, self._robot_of(given))
+        Its robot must be one that :meth:`Model.state_from` takes. With other material constants, masses, loads or
+        friction the robot is at equilibrium again after the next step.
 
-    def _robot_of(self, episode: Episode) -> State:
-        """The robot of a state, as one of this environment's model."""
+        Raises:
+            InputError: the state is of another task or of a robot with another mesh or other actuators, or a part of it
+                is missing or not possible; the environment does not change.
+        """
+        self._take(self._fitting(_check.instance(episode, Episode, "episode")))
+
+    def _fitting(self, episode: Episode) -> Episode:
+        """A copy of a state that fits this environment, with a robot of its model."""
         if episode.kind not in ("", type(self).__name__):
             raise InputError(f"the state is one of {episode.kind}, not of {type(self).__name__}")
-        if episode.robot.model is self.model:
-            return episode.robot
-        try:
-            found = self.model.state_from(episode.robot.bytes())
-        except InputError:
-            found = None
-        if found is None or len(episode.pulled) != len(self._low):
-            raise InputError("the state is one of an environment with another robot")
-        return found
+        robot = self._own_robot(_check.instance(episode.robot, State, "the robot of the state"))
+        pulled = _check.finite(episode.pulled, "pulled of the state", (len(self._low),))
+        if not ((pulled >= 0) & (pulled <= 1)).all():
+            raise InputError("pulled of the state must be from 0 to 1")
+        steps = _check.integer(episode.steps, "steps of the state")
+        if steps < 0:
+            raise InputError(f"steps of the state is {steps}; it must not be negative")
+        self.check_task(episode.task)
+        random = _generator_state(episode.random, self._random.bit_generator)
+        return Episode(robot, pulled.copy(), steps, copy.deepcopy(episode.task), random)
 
-    def _take(self, given: Episode, robot: State) -> None:
-        self._episode = Episode(robot.copy(), given.pulled.copy(), given.steps, copy.deepcopy(given.task))
-        if given.random:
-            self._random.bit_generator.state = copy.deepcopy(given.random)
+    def _own_robot(self, robot: State) -> State:
+        """A copy of the robot of a state, of this environment's model."""
+        if robot.model is self.model:
+            return robot.copy()
+        try:
+            return self.model.state_from(robot.bytes())
+        except InputError:
+            raise InputError("the state is one of an environment with another robot") from None
+
+    def check_task(self, task: dict[str, Any]) -> None:
+        """Raises an InputError unless the variables of a state's task are there and possible."""
+        if not isinstance(task, dict):
+            raise InputError(f"task of the state must be a dict, not {type(task).__name__}")
+        for name, shape in self.task_shapes.items():
+            if name not in task:
+                raise InputError(f"task of the state has no {name!r}")
+            _check.finite(task[name], f"task[{name!r}] of the state", shape)
+
+    def _take(self, fitting: Episode) -> None:
+        if fitting.random:
+            self._random.bit_generator.state = fitting.random
+        self._episode = Episode(fitting.robot, fitting.pulled, fitting.steps, fitting.task)
+
+    @contextmanager
+    def _unchanged_by_errors(self) -> Iterator[None]:
+        """If what is done fails, the episode and the random generator are those before."""
+        episode, generator, drawn = self._episode, self._random, self._random.bit_generator.state
+        try:
+            yield
+        except BaseException:
+            self._episode, self._random = episode, generator
+            generator.bit_generator.state = drawn
+            raise
 
     # ---- the two halves of a step; in between, one robot is solved, or many in parallel
-
-    def _begin(self, seed: int | None, options: dict[str, Any] | None) -> None:
-        """Begins an episode. If it fails, the environment does not change."""
-        given = self._known_options(options)
-        before = self._episode, self._random
-        if seed is not None:
-            self._random = np.random.default_rng(_check.seed(seed))
-        self._episode = Episode(self.model.rest(), np.zeros(len(self._low)))
-        try:
-            self.begin(self._episode, given)
-        except BaseException:
-            self._episode, self._random = before
-            raise
 
     def _known_options(self, options: Any) -> dict[str, Any]:
         if options is not None and not isinstance(options, Mapping):
@@ -269,9 +299,8 @@ class RobotEnv(_Base):  # type: ignore[misc]
     def _after(
         self, half: Half, result: StepResult, seen: Observation
     ) -> tuple[FloatArray, float, bool, bool, dict[str, Any]]:
-        episode = self.episode
-        episode.robot, episode.pulled = half.robot, half.pulled
-        episode.steps += 1
+        before = self.episode
+        self._episode = episode = Episode(half.robot, half.pulled, before.steps + 1, copy.deepcopy(before.task))
         reward, terminated, more = self.judge(episode, seen, half.action)
         info = {**self._info(seen), **more}
         if not result.arrived:
@@ -282,3 +311,15 @@ class RobotEnv(_Base):  # type: ignore[misc]
 
     def _info(self, seen: Observation) -> dict[str, Any]:
         return {"markers": seen.markers, "steps": self.episode.steps}
+
+
+def _generator_state(given: Any, generator: np.random.BitGenerator) -> dict[str, Any]:
+    """A copy of the state of a random generator, which `generator` can take; {}: none."""
+    if isinstance(given, dict) and not given:
+        return {}
+    trial = type(generator)()
+    try:
+        trial.state = copy.deepcopy(given)
+    except (KeyError, OverflowError, TypeError, ValueError):
+        raise InputError("random of the state is not that of a random generator of an environment") from None
+    return dict(trial.state)

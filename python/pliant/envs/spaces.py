@@ -47,7 +47,10 @@ class OwnBox:
 
     def contains(self, x: Any) -> bool:
         """True if x has the shape and is within the bounds."""
-        array = np.asarray(x)
+        try:
+            array = np.asarray(x)
+        except ValueError:  # rows of different lengths
+            return False
         if array.shape != self.shape or not np.can_cast(array.dtype, self.dtype):
             return False
         return bool(np.all(array >= self.low) and np.all(array <= self.high))

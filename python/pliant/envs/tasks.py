@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _check
+from ..errors import InputError
 from ..model import Model
 from ..results import Observation
 from ..robot import Robot
@@ -19,6 +21,14 @@ _SOFT = {"soft": {"youngs_modulus": "1 MPa", "poisson_ratio": 0.45, "density": "
 def _floats(*parts: Any) -> FloatArray:
     joined: FloatArray = np.concatenate([np.ravel(p) for p in parts]).astype(np.float32)
     return joined
+
+
+def _within(value: Any, what: str, shape: tuple[int, ...], low: float, high: float) -> npt.NDArray[np.float64]:
+    """Numbers of this shape between two bounds."""
+    found = _check.finite(value, what, shape)
+    if not ((found >= low) & (found <= high)).all():
+        raise InputError(f"{what} is {_check._shown(found.tolist())}; it must be from {low:g} to {high:g}")
+    return found
 
 
 class _Arm(RobotEnv):
@@ -81,16 +91,17 @@ class Reach(_Arm):
     Observation (9,): position of the tip (3) and vector from the tip to the goal (3), in units of 100 mm; pull of each
     cable, 0 to 1 (3). Action (3,): change of the pull of each cable. Reward: minus the distance in units of 100 mm,
     plus 1 if the goal is reached within 2 mm, which ends the episode. The goal is random and within reach of the arm;
-    ``options={"goal": [x, y, z]}`` (m) sets it.
+    ``options={"goal": [x, y, z]}`` (m) sets it, each from -1 to 1.
     """
 
     #: m
     tolerance_m: ClassVar[float] = 0.002
     option_names: ClassVar[tuple[str, ...] | None] = ("goal",)
+    task_shapes: ClassVar[Mapping[str, tuple[int, ...]]] = {"goal": (3,)}
 
     def begin(self, episode: Episode, options: dict[str, Any]) -> None:
         goal = options.get("goal")
-        episode.task["goal"] = self._somewhere() if goal is None else _check.finite(goal, "goal", (3,))
+        episode.task["goal"] = self._somewhere() if goal is None else _within(goal, "goal", (3,), -1, 1)
 
     def _goal(self, episode: Episode) -> npt.NDArray[np.float64]:
         goal: npt.NDArray[np.float64] = episode.task["goal"]
@@ -107,16 +118,23 @@ class Follow(_Arm):
 
     Observation (9,): position of the tip (3) and vector from the tip to the next position of the point (3), in units of
     100 mm; pull of each cable, 0 to 1 (3). Action (3,): change of the pull of each cable. Reward: minus the distance in
-    units of 100 mm. The circle begins at a random angle; ``options={"angle": radians, "radius": m}`` sets both.
+    units of 100 mm. The circle begins at a random angle; ``options={"angle": radians, "radius": m}`` sets both, the
+    radius from 0 to 0.1.
     """
 
     max_steps: ClassVar[int] = 40
     option_names: ClassVar[tuple[str, ...] | None] = ("angle", "radius")
+    task_shapes: ClassVar[Mapping[str, tuple[int, ...]]] = {"angle": (), "radius": ()}
 
     def begin(self, episode: Episode, options: dict[str, Any]) -> None:
         angle = options.get("angle", self._random.uniform(0, 2 * np.pi))
         episode.task["angle"] = _check.number(angle, "angle")
-        episode.task["radius"] = _check.number(options.get("radius", 0.03), "radius")
+        radius = _check.number(options.get("radius", 0.03), "radius")
+        episode.task["radius"] = float(_within(radius, "radius", (), 0, self.reach_m))
+
+    def check_task(self, task: dict[str, Any]) -> None:
+        super().check_task(task)
+        _within(task["radius"], "task['radius'] of the state", (), 0, self.reach_m)
 
     def _place(self, episode: Episode, step: int) -> npt.NDArray[np.float64]:
         share = min(1.0, step / 8)  # from the middle out, then around
@@ -159,11 +177,12 @@ class Grasp(_InTime):
     the pull of each cable in 20 ms. Reward: minus the distance of the cube from its start in cm, at most 1, and minus a
     tenth of the mean square of the pulls; if the cube has fallen by more than 10 mm, the episode ends with -10. The
     mass of the cube is set in the model: ``Grasp(Grasp.make_model(mass_g=20))``. The pulls that the fingers begin with
-    are random: ``options={"pulled": [0.1, 0.2]}`` sets them.
+    are random: ``options={"pulled": [0.1, 0.2]}`` sets them, each from 0 to 1.
     """
 
     max_steps: ClassVar[int] = 60
     option_names: ClassVar[tuple[str, ...] | None] = ("pulled",)
+    task_shapes: ClassVar[Mapping[str, tuple[int, ...]]] = {"stood": (3,), "place": (3,), "speed": (3,)}
     largest_change: ClassVar[float] = 0.2
     most_m: ClassVar[float] = 0.0025
     #: s, time at which the table begins to move
@@ -225,7 +244,7 @@ class Grasp(_InTime):
 
     def begin(self, episode: Episode, options: dict[str, Any]) -> None:
         given = options.get("pulled", self._random.uniform(0, 0.2, 2))
-        episode.pulled = np.clip(_check.finite(given, "pulled", (2,)), 0, 1)
+        episode.pulled = _within(given, "pulled", (2,), 0, 1)
         stood = np.array(episode.robot.observe().objects["cube"].position_m)
         episode.task["stood"], episode.task["place"], episode.task["speed"] = stood, stood, np.zeros(3)
 
@@ -261,6 +280,7 @@ class Crawl(_InTime):
 
     max_steps: ClassVar[int] = 100
     option_names: ClassVar[tuple[str, ...] | None] = ()
+    task_shapes: ClassVar[Mapping[str, tuple[int, ...]]] = {"places": (3, 3), "speeds": (3,)}
     largest_change: ClassVar[float] = 0.25
 
     @classmethod

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -49,13 +50,15 @@ class Vector:
     def reset(
         self, *, seed: int | Sequence[int] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[FloatArray, dict[str, Any]]:
-        """Begins all episodes; environment k has the seed + k, or the k-th of a list.
+        """Begins all episodes; environment k has the seed + k, or the k-th of a list. If it fails, no environment
+        changes.
 
         Returns:
             (count, observation_size) observations, and infos by key.
         """
         seeds = self._seeds(seed)
-        found = [env.reset(seed=s, options=options) for env, s in zip(self.envs, seeds)]
+        with self._unchanged_by_errors():
+            found = [env.reset(seed=s, options=options) for env, s in zip(self.envs, seeds)]
         return np.stack([f[0] for f in found]), _gathered([f[1] for f in found])
 
     def step(self, actions: Any) -> tuple[FloatArray, npt.NDArray[np.float64], Flags, Flags, dict[str, Any]]:
@@ -72,15 +75,27 @@ class Vector:
         robots = [half.robot for half in halves]
         results = self._batch.step(robots, [half.inputs for half in halves])
         seen = self._batch.observe(robots)
-        found = [env._after(h, r, s) for env, h, r, s in zip(self.envs, halves, results, seen)]
-        observations, infos = [f[0] for f in found], [f[4] for f in found]
-        for k, (_, _, terminated, truncated, info) in enumerate(found):
-            if terminated or truncated:
-                last = observations[k]
-                observations[k], infos[k] = self.envs[k].reset()
-                infos[k] = {**infos[k], "final_observation": last, "final_info": info}
+        with self._unchanged_by_errors():
+            found = [env._after(h, r, s) for env, h, r, s in zip(self.envs, halves, results, seen)]
+            observations, infos = self._begun_again(found)
         rewards, ended, cut = (np.array([f[k] for f in found]) for k in (1, 2, 3))
         return np.stack(observations), rewards, ended, cut, _gathered(infos)
+
+    def _begun_again(self, found: list[Any]) -> tuple[list[FloatArray], list[dict[str, Any]]]:
+        """Observations and infos of steps, of new episodes where one is over."""
+        observations, infos = [f[0] for f in found], [f[4] for f in found]
+        for k, (last, _, terminated, truncated, info) in enumerate(found):
+            if terminated or truncated:
+                observations[k], begun = self.envs[k].reset()
+                infos[k] = {**begun, "final_observation": last, "final_info": info}
+        return observations, infos
+
+    @contextmanager
+    def _unchanged_by_errors(self) -> Iterator[None]:
+        with ExitStack() as all_of_them:
+            for env in self.envs:
+                all_of_them.enter_context(env._unchanged_by_errors())
+            yield
 
     def _half(self, k: int, action: Any) -> Half:
         try:
@@ -92,14 +107,20 @@ class Vector:
         """:meth:`RobotEnv.get_state` of each environment."""
         return [env.get_state() for env in self.envs]
 
-    def set_states(self, episodes: Sequence[Episode]) -> None:
+    def set_states(self, episodes: Iterable[Episode]) -> None:
         """Restores the state of each environment. If one of them does not fit, no environment changes."""
-        if len(episodes) != self.num_envs:
-            raise InputError(f"{len(episodes)} states for {self.num_envs} environments")
-        given = [_check.instance(episode, Episode, "each of the states") for episode in episodes]
-        robots = [env._robot_of(episode) for env, episode in zip(self.envs, given)]
-        for env, episode, robot in zip(self.envs, given, robots):
-            env._take(episode, robot)
+        given = _check.several(episodes, Episode, "episodes")
+        if len(given) != self.num_envs:
+            raise InputError(f"{len(given)} states for {self.num_envs} environments")
+        fitting = [self._fitting(k, episode) for k, episode in enumerate(given)]
+        for env, episode in zip(self.envs, fitting):
+            env._take(episode)
+
+    def _fitting(self, k: int, episode: Episode) -> Episode:
+        try:
+            return self.envs[k]._fitting(episode)
+        except InputError as error:
+            raise InputError(f"environment {k}: {error}") from None
 
     def close(self) -> None:
         """Does nothing: no files or windows are open."""
@@ -107,9 +128,9 @@ class Vector:
     def _seeds(self, seed: int | Sequence[int] | None) -> list[int | None]:
         if seed is None:
             return [None] * self.num_envs
-        if not isinstance(seed, Iterable) or isinstance(seed, str):
+        if not _check.is_several(seed):
             return [_check.seed(seed) + k for k in range(self.num_envs)]
-        each = list(seed)
+        each = list(cast(Iterable[Any], seed))
         if len(each) != self.num_envs:
             raise InputError(f"{len(each)} seeds for {self.num_envs} environments")
         return [None if one is None else _check.seed(one, "each seed") for one in each]
