@@ -33,15 +33,15 @@ std::string correction_note(const machine::Projector& projector) {
 }
 
 void tell_files(const ExportOptions& options, const std::vector<std::filesystem::path>& written,
-                const std::string& note) {
+                const std::vector<std::string>& notes) {
     if (options.output.json) {
         nlohmann::json root{{"files", nlohmann::json::array()}};
         for (const auto& path : written) root["files"].push_back(path.string());
-        if (!note.empty()) root["notes"] = {note};
+        if (!notes.empty()) root["notes"] = notes;
         fmt::print("{}\n", root.dump(1));
     } else if (!options.output.quiet) {
         for (const auto& path : written) fmt::print("{}\n", path.string());
-        if (!note.empty()) fmt::print("  note: {}\n", note);
+        for (const std::string& note : notes) fmt::print("  note: {}\n", note);
     }
 }
 
@@ -55,7 +55,9 @@ Status export_robot(const ExportOptions& options) {
     const auto written = job::export_job(job->archive, *format, options.folder, *progress);
     progress.reset();
     if (!written) return tl::unexpected(written.error());
-    tell_files(options, *written, correction_note(job->printer.projector));
+    std::vector<std::string> notes = job::exposure_notes(job->archive.manifest(), *format);
+    if (std::string note = correction_note(job->printer.projector); !note.empty()) notes.push_back(std::move(note));
+    tell_files(options, *written, notes);
     return {};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "base/core/counted.hpp"
 #include "base/core/files.hpp"
 #include "base/zip/zip_file.hpp"
 #include "printing/job/export_texts.hpp"
@@ -145,6 +146,18 @@ Result<Format> format_from(const std::string& name) {
     if (name == "zip") return Format::zip;
     if (name == "vats") return Format::vats;
     return input_error("format \"{}\": must be sl1, nanodlp, zip or vats", name);
+}
+
+std::vector<std::string> exposure_notes(const Manifest& manifest, Format format) {
+    std::vector<std::string> notes;
+    if (format != Format::sl1) return notes;
+    for (std::size_t m = 0; m < manifest.materials.size(); ++m) {
+        const int other = layers_of_other_light(facts_of(manifest, static_cast<int>(m), ""));
+        if (other == 0) continue;
+        notes.push_back(fmt::format("material \"{}\": {} of it should get other light than an .sl1 file can say",
+                                    manifest.materials[m].name, counted(static_cast<std::size_t>(other), "layer")));
+    }
+    return notes;
 }
 
 Result<std::vector<fs::path>> export_job(const Archive& archive, Format format, const fs::path& folder,

@@ -20,6 +20,9 @@ enum class Format {
 /// "sl1", "nanodlp", "zip" or "vats"; the error lists them.
 [[nodiscard]] Result<Format> format_from(const std::string& name);
 
+/// What the format cannot say about this job, a line for each material: exposures.
+[[nodiscard]] std::vector<std::string> exposure_notes(const Manifest& manifest, Format format);
+
 /// Writes into `folder`, which is created if missing: NAME_MATERIAL.sl1, .nanodlp or .zip for each material; `vats`
 /// instead replaces `folder` itself by the vat folders (only if it is empty or an earlier export). Returns the files
 /// written. Equal jobs give equal bytes. Errors: the job's images, more than 26 materials (vats), the disk,

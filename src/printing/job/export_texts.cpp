@@ -1,6 +1,7 @@
 #include "printing/job/export_texts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace pliant::job {
@@ -99,6 +100,20 @@ StackFacts facts_of(const Manifest& manifest, int material, const std::string& i
         }
     }
     return facts;
+}
+
+int layers_of_other_light(const StackFacts& s) {
+    constexpr double rounding = 1e-3;
+    const double normal = s.of().exposure_s, first = s.first_light_s();
+    const int fading = s.fading_layers();
+    int count = 0;
+    for (std::size_t k = 0; k < s.light_s.size(); ++k) {
+        if (s.area_mm2[k] == 0) continue;
+        const double left = std::max(0.0, 1 - static_cast<double>(k) / (fading + 1));
+        const double said = normal + left * (first - normal);
+        count += std::fabs(s.light_s[k] - said) > rounding * normal ? 1 : 0;
+    }
+    return count;
 }
 
 std::vector<NamedText> sl1_texts(const StackFacts& s) {

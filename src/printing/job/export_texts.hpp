@@ -32,6 +32,10 @@ struct StackFacts {
 /// From the material's images and the job's layers.
 [[nodiscard]] StackFacts facts_of(const Manifest& manifest, int material, const std::string& image_prefix);
 
+/// Lit layers whose exposure is not what an .sl1 file says: that of the first layer, falling to that of all others over
+/// the fading layers.
+[[nodiscard]] int layers_of_other_light(const StackFacts& stack);
+
 [[nodiscard]] std::vector<NamedText> sl1_texts(const StackFacts& stack);
 /// `areas`: per layer image.
 [[nodiscard]] std::vector<NamedText> nanodlp_texts(const StackFacts& stack, const std::vector<ImageAreas>& areas);

@@ -123,7 +123,7 @@ std::vector<Finding> listed(const slice::Findings& findings, const std::vector<s
     for (const slice::ThinSpot& t : thin)
         spots.push_back({"thin",
                          t.layer,
-                         t.layer,
+                         t.last_layer,
                          t.row,
                          t.column,
                          static_cast<double>(t.pixels) * pixel_mm2,

@@ -374,7 +374,7 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
     job.summary = tally.summary();
     measure(bodies, *slicer, job.summary, job.manifest.materials);
     job.manifest.warnings = job.summary.warnings;
-    if (auto status = keep_findings(inspector.finish(), thin, source, settings, job.manifest, writer); !status)
+    if (auto status = keep_findings(inspector.finish(), joined(thin), source, settings, job.manifest, writer); !status)
         return tl::unexpected(status.error());
     return job;
 }
@@ -422,7 +422,7 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
                             stacks[i].material, lost_mm3[i]));
     }
     job.summary.layer_count = source.count;
-    if (auto status = keep_findings(inspector.finish(), thin, source, settings, job.manifest, writer); !status)
+    if (auto status = keep_findings(inspector.finish(), joined(thin), source, settings, job.manifest, writer); !status)
         return tl::unexpected(status.error());
     return job;
 }

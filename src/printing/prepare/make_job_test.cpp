@@ -113,8 +113,8 @@ TEST_CASE("features narrower than asked for are named with material, layers and 
     REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
     REQUIRE(made->manifest.warnings.size() == 1);
     CHECK(made->manifest.warnings.front() ==
-          "material \"soft one\": features narrower than 0.6 mm in 4 layers from 10 to 13; most, 0.4 mm^2, in layer 10 "
-          "from row 14, column 31 on");
+          "material \"soft one\": 1 feature narrower than 0.6 mm in layers 10 to 13; the largest, 0.4 mm^2, begins in "
+          "layer 10 at row 14, column 31");
 }
 
 TEST_CASE("exposures of layers, layer heights, bonds and findings are written to the manifest") {

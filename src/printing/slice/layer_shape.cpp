@@ -123,6 +123,19 @@ std::span<const Stretch> PieceMap::row(int row) const {
     return std::span(stretches).subspan(starts[r], starts[r + 1] - starts[r]);
 }
 
+PieceMap pieces_of(const RunSet& set) {
+    PieceMap map;
+    map.first_row = set.first_row();
+    map.starts.push_back(0);
+    for (int row = set.first_row(); row < set.end_row(); ++row) {
+        for (const PixelSpan& span : set.row(row))
+            map.stretches.push_back({static_cast<std::uint16_t>(span.begin), static_cast<std::uint16_t>(span.end), 0});
+        map.starts.push_back(static_cast<std::uint32_t>(map.stretches.size()));
+    }
+    number_pieces(map, false, set.width_px());
+    return map;
+}
+
 LayerShape shape_of(const ComposedLayer& layer, int width_px) {
     LayerShape shape;
     int first = INT32_MAX, end = 0;

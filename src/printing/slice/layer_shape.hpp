@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "printing/slice/compose.hpp"
+#include "printing/slice/run_set.hpp"
 
 namespace pliant::slice {
 
@@ -37,6 +38,9 @@ struct LayerShape {
     std::vector<int> void_row, void_column;    ///< the same for voids
     bool faint = false;                        ///< there is light, but no pixel is solid
 };
+
+/// The connected components of a set.
+[[nodiscard]] PieceMap pieces_of(const RunSet& set);
 
 /// Cost: the runs of the images.
 [[nodiscard]] LayerShape shape_of(const ComposedLayer& layer, int width_px);

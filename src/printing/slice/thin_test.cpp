@@ -30,8 +30,8 @@ TEST_CASE("a wall of 0.2 mm is thinner than 0.3 mm and not than 0.2 mm") {
     CHECK(spots[0].column == 44);
     CHECK(
         describe(spots, {"soft"}, 300, fine_raster).front() ==
-        "material \"soft\": features narrower than 0.3 mm in 1 layer from 0 to 0; most, 0.4 mm^2, in layer 0 from row "
-        "46, column 44 on");
+        "material \"soft\": 1 feature narrower than 0.3 mm in layers 0 to 0; the largest, 0.4 mm^2, begins in layer 0 "
+        "at row 46, column 44");
     CHECK(thin_in({{"soft", box({-1000, -150, 0}, {1000, 150, 500}), ""}}, 250).empty());
     CHECK(thin_in(wall, 50).empty());
 }
@@ -45,6 +45,27 @@ TEST_CASE("corners, discs and triangles are not thin; a fin on a block and the t
     REQUIRE(thin_in(fin, 400).size() == 1);
     CHECK(thin_in(fin, 400)[0].pixels > 0.7 * 30 * 2);
     CHECK(thin_in({{"soft", prism({{-1500, -200}, {1500, 0}, {-1500, 200}}, 0, 500), ""}}, 300).size() == 1);
+}
+
+TEST_CASE("walls are features of their own, from their first layer to their last") {
+    // Two walls beside a block, of which the second begins higher.
+    const auto slicer = Slicer::prepare(std::vector<Body>{{"soft", box({-1500, -1000, 0}, {-500, 1000, 500}), ""},
+                                                          {"soft", box({0, -1000, 0}, {100, 1000, 500}), ""},
+                                                          {"soft", box({1000, -500, 200}, {1100, 500, 500}), ""}},
+                                        {fine_raster, 50, {}});
+    REQUIRE(slicer.has_value());
+    std::vector<ThinSpot> all;
+    for (int k = 0; k < slicer->layer_count(); ++k) {
+        const auto own = thin_spots(slicer->layer(k), k, 300, fine_raster);
+        all.insert(all.end(), own.begin(), own.end());
+    }
+    const std::vector<ThinSpot> features = joined(all);
+    REQUIRE(features.size() == 2);
+    CHECK(features[0].layer == 0);
+    CHECK(features[1].layer == 4);
+    for (const ThinSpot& feature : features) CHECK(feature.last_layer == 9);
+    CHECK(features[0].pixels == 2 * 40);
+    CHECK(features[1].pixels == 2 * 20);
 }
 
 TEST_CASE("thin features are found per material") {
