@@ -17,7 +17,7 @@ namespace {
 constexpr std::int64_t passed_on_ms = 30;
 
 // A signal handler can only access globals.
-std::atomic<OnSignal> wanted = OnSignal::end;
+std::atomic<OnSignal> reaction = OnSignal::end;
 std::atomic<std::int64_t> first_ms = 0;  // 0: there was none
 std::atomic<bool> again = false, key_again = false;
 std::atomic<pid_t> owner = 0;
@@ -38,7 +38,7 @@ std::int64_t monotonic_ms() {
 }
 
 void handle(int signal) {
-    const OnSignal what = wanted;
+    const OnSignal what = reaction;
     if (::getpid() != owner) {  // a child process that tests a STEP file: its parent prints the message
         if (what == OnSignal::leave) ::_exit(1);
         return;
@@ -71,7 +71,7 @@ bool is_ignored(int signal) {
 void on_signal(OnSignal what) {
     owner = ::getpid();
     on_terminal = ::isatty(STDERR_FILENO) == 1;
-    wanted = what;
+    reaction = what;
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, what == OnSignal::end ? SIG_DFL : handle);
     if (!is_ignored(SIGHUP)) std::signal(SIGHUP, what == OnSignal::end ? SIG_DFL : handle);
     if (what == OnSignal::leave && interrupted()) leave();

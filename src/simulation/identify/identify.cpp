@@ -176,8 +176,10 @@ private:
             const auto j = static_cast<Index>(k);
             Found found{unknowns_[k], unknowns_[k].value_at(end.u[j]), {}, {}, held[k], known.matters[k]};
             if (std::isfinite(known.half_width[j])) {
-                found.low = unknowns_[k].value_at(end.u[j] - known.half_width[j]);
-                found.high = unknowns_[k].value_at(end.u[j] + known.half_width[j]);
+                // The formula knows no bounds, between which the value is known to be.
+                const auto& [lowest, highest] = std::pair(unknowns_[k].low, unknowns_[k].high);
+                found.low = std::clamp(unknowns_[k].value_at(end.u[j] - known.half_width[j]), lowest, highest);
+                found.high = std::clamp(unknowns_[k].value_at(end.u[j] + known.half_width[j]), lowest, highest);
             }
             result.found.push_back(std::move(found));
         }
@@ -214,6 +216,9 @@ private:
             else if (found.at_bound)
                 result.warnings.push_back(fmt::format("{}: is at its bound, {}; the data ask for a value beyond it",
                                                       found.unknown.key, found.unknown.shown(found.value)));
+            else if (found.low && *found.low <= found.unknown.low && *found.high >= found.unknown.high)
+                result.warnings.push_back(fmt::format(
+                    "{}: these data hardly determine it: its interval reaches from bound to bound", found.unknown.key));
         }
         for (const auto& group : known.mixed) {
             std::vector<std::string> names;
