@@ -5,7 +5,10 @@
 #include <limits>
 #include <mutex>
 #include <numeric>
+#include <utility>
+#include <vector>
 
+#include "base/core/boxes.hpp"
 #include "simulation/contact/ccd.hpp"
 #include "simulation/contact/contact_search.hpp"
 
@@ -14,6 +17,21 @@ namespace {
 
 /// A tenth: share of its present distance that every pair keeps in a step.
 constexpr double kept_share = 0.1;
+
+double longest_move(std::span<const double> dx) {
+    double squared = 0;
+    for (std::size_t node = 0; 3 * node < dx.size(); ++node) {
+        const Vec3 move = node_at(dx, static_cast<int>(node));
+        squared = std::max(squared, dot(move, move));
+    }
+    return std::sqrt(squared);
+}
+
+double extent(std::span<const double> x) {
+    Box3 box;
+    for (std::size_t node = 0; 3 * node < x.size(); ++node) box.add(node_at(x, static_cast<int>(node)));
+    return box.diagonal();
+}
 
 /// A clearance that answers fewer calls than this has cost more than it saved.
 constexpr int worth_knowing = 4;
@@ -91,8 +109,20 @@ void Contact::note_clearance(std::span<const double> x) const {
     memory_->clear.served = 0;
 }
 
+/// Of a motion that is longer than the robot all pairs would have to be followed for a long way, although it ends
+/// early: the search begins with a part of it that is blocked.
 double Contact::largest_step(std::span<const double> x, std::span<const double> dx) const {
-    return free_step(x, dx, 0);
+    constexpr double shorter = 1.0 / 16;
+    std::vector<double> part;
+    double share = 1;
+    for (double length = longest_move(dx), size = extent(x); length * share > size;) {
+        std::vector<double> next(dx.begin(), dx.end());
+        for (double& d : next) d *= shorter * share;
+        if (is_free(x, next)) break;
+        part = std::move(next);
+        share *= shorter;
+    }
+    return share == 1 ? free_step(x, dx, 0) : share * free_step(x, part, 0);
 }
 
 bool Contact::is_free(std::span<const double> x, std::span<const double> dx) const {

@@ -236,6 +236,11 @@ TEST_CASE("cached data change nothing: pairs and steps equal those of a new cont
         const double step = contact_of(body, usual).largest_step(span(x), span(dx));
         CHECK(contact.largest_step(span(x), span(dx)) == step);
         CHECK(contact.is_free(span(x), span(dx)) == (step == 1));
+        const Vector far_beyond = 1e6 * dx;
+        const double early = contact.largest_step(span(x), span(far_beyond));
+        const double blocked = 1e6 * early;  // in units of dx
+        if (early < 1)
+            CHECK(2 * contact.largest_step(span(x), span(Vector(2 * blocked * dx))) == near(1, {.relative = 0.02}));
         CHECK(contact.meets(span(x), span(dx)) == (step < 1));
         check_pairs(x + 0.3 * dx);
     }
