@@ -245,7 +245,7 @@ TEST_CASE("a second signal while files are written leaves no partial results") {
 }
 
 TEST_CASE("interrupted slicing leaves neither a job nor a partial file") {
-    for (const int signal : {SIGINT, SIGTERM}) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         CAPTURE(signal);
         const test::Folder folder("interrupt");
         Program program(

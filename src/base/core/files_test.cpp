@@ -27,6 +27,51 @@ TEST_CASE("a file is written whole and read back") {
     CHECK_FALSE(write_file(scratch / "no" / "folder", bytes));
 }
 
+TEST_CASE("what one program writes under a temporary name no other gets, until it is done") {
+    using namespace std::chrono_literals;
+    const test::Folder scratch("files");
+    const fs::path target = scratch / "a.zip", aside = scratch / "a.zip.partial";
+    REQUIRE(write_file(aside, "left by a program that was killed"));
+    auto first = open_aside(aside, AsideKind::file, target, 0ms);
+    REQUIRE(first);
+    CHECK(fs::file_size(aside) == 0);
+    CHECK(holds(open_aside(aside, AsideKind::file, target, 30ms).error().message, "another program is writing it"));
+    CHECK(holds(open_aside(aside, AsideKind::file, target, 0ms).error().message, target.string()));
+    fs::rename(aside, target);
+    auto second = open_aside(aside, AsideKind::file, target, 0ms);
+    REQUIRE(second);  // another file now
+    first->close();
+    second->close();
+    CHECK(open_aside(aside, AsideKind::file, target, 0ms));
+    const fs::path results = scratch / "out", filled = scratch / "out.partial";
+    fs::create_directory(filled);
+    REQUIRE(write_file(filled / "old", "1"));
+    const auto folder = open_aside(filled, AsideKind::folder, results, 0ms);
+    REQUIRE(folder);
+    CHECK(fs::is_empty(filled));
+    CHECK_FALSE(open_aside(filled, AsideKind::folder, results, 0ms));
+}
+
+TEST_CASE("it is told before the work where nothing can be written") {
+    const test::Folder scratch("files");
+    REQUIRE(write_file(scratch / "file", "1"));
+    fs::create_directory(scratch / "mine");
+    REQUIRE(write_file(scratch / "mine" / "notes", "1"));
+    CHECK(check_file_place(scratch / "new"));
+    CHECK(check_file_place(scratch / "file"));
+    CHECK(check_file_place("/dev/null"));
+    CHECK(holds(check_file_place(scratch / "none" / "new").error().message, "there is no folder"));
+    CHECK(holds(check_file_place(scratch / "file" / "new").error().message, "is a file, a folder is needed"));
+    CHECK(holds(check_file_place(scratch / "mine").error().message, "is a folder, a file is needed"));
+    CHECK(holds(check_file_place(scratch / std::string(255, 'x')).error().message, "the name is too long"));
+    CHECK(check_folder_place(scratch / "new" / "deeper", "summary.json"));
+    CHECK(holds(check_folder_place(scratch / "file", "summary.json").error().message, "is a file"));
+    CHECK(holds(check_folder_place(scratch / "file" / "new", "summary.json").error().message, "is a file"));
+    CHECK(holds(check_folder_place(scratch / "mine", "summary.json").error().message, "holds other files"));
+    CHECK(check_folder_place(scratch / "mine", "notes"));
+    CHECK(holds(check_folder_place(scratch / "a" / std::string(300, 'x'), "notes").error().message, "too long"));
+}
+
 TEST_CASE("a symbolic link keeps pointing to the file that is written; devices and pipes are not replaced") {
     const test::Folder scratch("files");
     REQUIRE(write_file(scratch / "real.txt", "old"));
