@@ -161,3 +161,30 @@ def test_torch_differentiates_through_an_equilibrium(model):
     assert torch.autograd.gradcheck(lambda x: 1e3 * pliant.torch.markers(model, x), [lengths], eps=1e-6, atol=1e-4)
     positions = pliant.torch.positions(model, lengths)
     assert positions.shape == (model.node_count, 3) and positions.requires_grad
+
+
+def test_a_motion_has_gradients_by_its_dampings_and_by_torques():
+    def found(damping=0.5, torque=0.02):
+        model = bar(
+            cable=[],
+            plate=[{"name": "end", "box": [[60, 0, 0], [60, 10, 10]]}],
+            load=[{"name": "twist", "plate": "end", "torque": ["0 N m", f"{torque} N m", "0 N m"]}],
+            program={
+                "duration": "0.04 s",
+                "time_step": "10 ms",
+                "mass_damping": damping,
+                "stiffness_damping": 0.002,
+                "tolerance": 1e-10,
+            },
+        )
+        tip = pliant.Measure("marker", "tip", [0, 0, 1])
+        return pliant.gradient(model, [tip], lambda step, values: (values[0], [1.0]))
+
+    gradient = found()
+    by = dict(zip([p.name for p in gradient.parameters], gradient.by_parameters))
+    assert "damping by stiffness" in by
+    for name, more, less, step in (
+        ("damping by mass", found(damping=0.51), found(damping=0.49), 0.02),
+        ('load "twist": torque, y', found(torque=0.0201), found(torque=0.0199), 0.0002),
+    ):
+        assert by[name] == pytest.approx((more.value - less.value) / step, rel=1e-3)
