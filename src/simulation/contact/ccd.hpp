@@ -11,4 +11,12 @@ namespace pliant::sim::contact {
 /// already touches. Conservative: it may stop early, never late.
 [[nodiscard]] double largest_step(Features features, const Stencil& x, const Stencil& dx, double keep, double limit);
 
+/// The same with a limit to the number of distances that are computed; not ended: a lower bound.
+struct Advance {
+    double step = 0;
+    bool ended = false;
+};
+[[nodiscard]] Advance advance(Features features, const Stencil& x, const Stencil& dx, double keep, double limit,
+                              int most_looks);
+
 }  // namespace pliant::sim::contact

@@ -18,6 +18,8 @@ namespace {
 /// A tenth: share of its present distance that every pair keeps in a step.
 constexpr double kept_share = 0.1;
 
+constexpr int few_looks = 8;
+
 double longest_move(std::span<const double> dx) {
     double squared = 0;
     for (std::size_t node = 0; 3 * node < dx.size(); ++node) {
@@ -136,9 +138,15 @@ double Contact::free_step(std::span<const double> x, std::span<const double> dx,
     std::atomic<bool> ended = false;
     const auto limit = [&](const Search::Candidate& c, double& step) {
         if (ended.load(std::memory_order_relaxed) || !c.comes_near(x, dx, margin)) return;
-        const double t =
-            contact::largest_step(c.features(), stencil_at(c.nodes, x), stencil_at(c.nodes, dx), kept_share, step);
-        if (t >= step || left_out(c.first_nodes(), c.second_nodes(), std::sqrt(c.squared_distance(rest_)))) return;
+        const Stencil from = stencil_at(c.nodes, x), by = stencil_at(c.nodes, dx);
+        const auto counts = [&] {
+            return !left_out(c.first_nodes(), c.second_nodes(), std::sqrt(c.squared_distance(rest_)));
+        };
+        // Neighbours, which do not count, are followed the longest, since they stay near each other.
+        const Advance first = advance(c.features(), from, by, kept_share, step, few_looks);
+        if (!first.ended && !counts()) return;
+        const double t = first.ended ? first.step : contact::largest_step(c.features(), from, by, kept_share, step);
+        if (t >= step || (first.ended && !counts())) return;
         step = t;
         if (t < enough) ended.store(true, std::memory_order_relaxed);
     };
