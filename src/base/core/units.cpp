@@ -133,7 +133,10 @@ Result<double> parse_quantity(std::string_view text, Dimension dimension) {
     }
     const std::string_view unit = trim(std::string_view(end, static_cast<std::size_t>(last - end)));
     if (unit.empty()) return input_error("\"{}\" has no unit; write {}", text, describe(dimension));
-    return unit_factor(unit, dimension).map([&](double factor) { return value * factor; });
+    const Result<double> factor = unit_factor(unit, dimension);
+    if (!factor) return factor;
+    if (!std::isfinite(value * *factor)) return input_error("\"{}\" is too large", text);
+    return value * *factor;
 }
 
 }  // namespace pliant
