@@ -171,6 +171,12 @@ Manifest read_manifest(const Json& root, std::string& problem) {
     return m;
 }
 
+/// "line 3, column 7", from the library's text about an error.
+std::string place_in(std::string_view error) {
+    const std::size_t begin = error.find("line ");
+    return begin == std::string_view::npos ? "" : std::string(error.substr(begin, error.find(':', begin) - begin));
+}
+
 Result<Json> parse(std::string_view text, std::string_view where) {
     // No valid manifest is nested deeper; without the limit a file of brackets would take sixty times its size in
     // memory.
@@ -185,7 +191,9 @@ Result<Json> parse(std::string_view text, std::string_view where) {
         if (too_deep) return input_error("{}: nested deeper than {} levels", where, max_depth);
         return root;
     } catch (const Json::exception& e) {
-        return input_error("{}: {}", where, e.what());
+        const std::string place = place_in(e.what());
+        if (place.empty()) return input_error("{}: {}", where, e.what());
+        return input_error("{}: is not JSON: an error at {}", where, place);
     }
 }
 

@@ -135,7 +135,7 @@ TEST_CASE("a thickness other than the step of z_um, and names with control chara
 
 TEST_CASE("JSON of another shape is refused with the key") {
     const std::string good = to_json(example());
-    CHECK(refused_json("").find("parse error") != std::string::npos);
+    CHECK(refused_json("").find("is not JSON: an error at line 1, column 1") != std::string::npos);
     CHECK(refused_json(good.substr(0, good.size() / 2)).find("line") != std::string::npos);
     CHECK(refused_json("[]").find("an object is needed") != std::string::npos);
     CHECK(refused_json("3").find("an object is needed") != std::string::npos);
