@@ -180,7 +180,10 @@ Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,
                Progress& progress) {
     if (!drawing.stacks.empty()) return {};
     const bool supported = !order.support.empty();
-    for (const auto& [option, text] : {std::pair{"--raft", &order.raft}, std::pair{"--lift", &order.lift}}) {
+    for (const auto& [option, text] :
+         {std::pair{"--raft", &order.raft}, std::pair{"--lift", &order.lift},
+          std::pair{"--support-angle", &order.support_angle}, std::pair{"--support-spacing", &order.support_spacing},
+          std::pair{"--support-tip", &order.support_tip}, std::pair{"--support-pillar", &order.support_pillar}}) {
         if (!supported && !text->empty()) return input_error("{}: needs --support MATERIAL", option);
     }
     std::vector<slice::SupportTouch> touches;

@@ -150,6 +150,7 @@ TEST_CASE("--support, --lift and --raft add supports") {
     CHECK(refused(supported("", "21 mm")).find("raft of") != std::string::npos);
     CHECK(refused([](Order& o) { o.lift = "2 mm"; }) == "--lift: needs --support MATERIAL");
     CHECK(refused([](Order& o) { o.raft = "2 mm"; }) == "--raft: needs --support MATERIAL");
+    CHECK(refused([](Order& o) { o.support_angle = "30"; }) == "--support-angle: needs --support MATERIAL");
 }
 
 TEST_CASE("--support-angle, -spacing, -tip and -pillar change the supports") {

@@ -266,7 +266,7 @@ private:
                                                          Progress& progress) const {
         Tally tally(slicer);
         Inspector inspector;
-        constexpr int batch = layers_at_once;
+        constexpr int batch = 16;  // layers with many supports take a while each
         for (int first = 0; first < slicer.layer_count(); first += batch) {
             if (progress.cancelled()) return cancelled();
             progress.advance("supports", static_cast<double>(first) / slicer.layer_count());
@@ -436,6 +436,9 @@ Status check(const SupportSettings& s) {
     }
     if (s.tip_um > s.pillar_um)
         return input_error("supports: a tip of {:.6g} um is wider than its pillar of {:.6g} um", s.tip_um, s.pillar_um);
+    if (s.spacing_um < s.tip_um)
+        return input_error("supports: a spacing of {:.6g} um is less than the diameter of a tip, {:.6g} um",
+                           s.spacing_um, s.tip_um);
     if (!(s.raft_um >= 0 && s.raft_um <= thickest_raft_um))
         return input_error("supports: raft of {:.6g} um: must be 0 to 20 mm", s.raft_um);
     if (!(s.angle_deg >= 0 && s.angle_deg <= 89))

@@ -242,6 +242,9 @@ TEST_CASE("invalid supports are refused") {
     s.tip_um = 2000;
     CHECK(refused(s) == "supports: a tip of 2000 um is wider than its pillar of 1000 um");
     s = in_wax();
+    s.spacing_um = 200;
+    CHECK(refused(s) == "supports: a spacing of 200 um is less than the diameter of a tip, 400 um");
+    s = in_wax();
     s.angle_deg = 90;
     CHECK(refused(s) == "supports: angle of 90 degrees: must be 0 to 89");
     CHECK(refused({}) == "supports: a material is needed");
