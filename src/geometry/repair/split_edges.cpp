@@ -38,8 +38,8 @@ std::vector<std::array<int, 3>> pieces_of(const TriMesh& surface, std::array<int
                 {middle[0], middle[1], middle[2]}};
     // Turned so that edge 01 is the only one that is split, or 20 the only one that is not.
     while (count == 1 ? middle[0] < 0 : middle[2] >= 0) {
-        std::ranges::rotate(t, t.begin() + 1);
-        std::ranges::rotate(middle, middle.begin() + 1);
+        std::rotate(t.begin(), t.begin() + 1, t.end());
+        std::rotate(middle.begin(), middle.begin() + 1, middle.end());
     }
     if (count == 1) return {{t[0], middle[0], t[2]}, {middle[0], t[1], t[2]}};
     const auto apart = [&](int a, int b) {

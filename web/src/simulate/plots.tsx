@@ -203,7 +203,7 @@ function Plot({ shown, onClose }: { shown: Shown; onClose?: () => void }) {
               </span>
             ))}
             <span class="grow" />
-            <span class="quiet">over {x ? `${x.label}${x.unit && `, ${x.unit}`}` : 's of motion'}</span>
+            <span class="quiet">over {x ? `${x.label}${x.unit && `, ${x.unit}`}` : 'time in motion, s'}</span>
           </p>
         </>
       )}
