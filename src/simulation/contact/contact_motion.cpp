@@ -114,17 +114,18 @@ void Contact::note_clearance(std::span<const double> x) const {
 /// Of a motion that is longer than the robot all pairs would have to be followed for a long way, although it ends
 /// early: the search begins with a part of it that is blocked.
 double Contact::largest_step(std::span<const double> x, std::span<const double> dx) const {
-    constexpr double shorter = 1.0 / 16;
-    std::vector<double> part;
+    if (!(longest_move(dx) > extent(x))) return free_step(x, dx, 0);
+    constexpr double shorter = 1.0 / 16, least = 1e-12;
+    std::vector<double> part(dx.begin(), dx.end());
     double share = 1;
-    for (double length = longest_move(dx), size = extent(x); length * share > size;) {
-        std::vector<double> next(dx.begin(), dx.end());
-        for (double& d : next) d *= shorter * share;
+    while (share > least) {
+        std::vector<double> next = part;
+        for (double& d : next) d *= shorter;
         if (is_free(x, next)) break;
         part = std::move(next);
         share *= shorter;
     }
-    return share == 1 ? free_step(x, dx, 0) : share * free_step(x, part, 0);
+    return share * free_step(x, part, 0);
 }
 
 bool Contact::is_free(std::span<const double> x, std::span<const double> dx) const {

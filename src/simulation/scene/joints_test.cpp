@@ -153,9 +153,13 @@ TEST_CASE("a soft body on a free hinge or ball swings to where it hangs in one s
         const std::string body =
             "[material.heavy]\nyoungs_modulus = \"1 MPa\"\npoisson_ratio = 0.3\ndensity = \"1000 kg/m^3\"\n"
             "[[body]]\nname = \"flap\"\nmaterial = \"heavy\"\ngeometry = { box = [[0, -5, -5], [100, 5, 5]] }\n";
-        return run_jointed(jointed_world(
+        std::string text = jointed_world(
             body + joint(kind, "world", "flap", 0, 0, more) + "[[marker]]\nname = \"tip\"\npoint = [95, 0, 0]\n",
-            fmt::format("steps = 1\ngravity = [0, 0, {}]\n", -g)));
+            fmt::format("steps = 1\ngravity = [0, 0, {}]\n", -g));
+        // Nothing touches, and looking for it takes most of the time.
+        const std::string contact = "[contact]\ndistance = \"0.2 mm\"\n";
+        text.erase(text.find(contact), contact.size());
+        return run_jointed(text);
     };
     const JointedRun hinge = swung("hinge", about_y), ball = swung("ball", "");
     for (const JointedRun* run : {&hinge, &ball}) {
