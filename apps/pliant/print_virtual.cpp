@@ -3,8 +3,11 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/core/counted.hpp"
 #include "base/core/files.hpp"
@@ -43,7 +46,17 @@ Status write_records(const LiveOptions& options, rehearse::Rehearsal& rehearsal,
     return options.report.empty() ? Status{} : write_page(options.report, rehearsal, judgement);
 }
 
-/// With -q the reasons alone, as an error.
+/// A failed print may have a reason for every layer.
+std::string first_of(const std::vector<std::string>& reasons) {
+    constexpr std::size_t most = 6;
+    const std::size_t shown = std::min(most, reasons.size());
+    std::string text =
+        fmt::format("{}", fmt::join(reasons.begin(), reasons.begin() + static_cast<std::ptrdiff_t>(shown), "; "));
+    if (shown < reasons.size()) text += fmt::format("; and {} more, in the report (-o)", reasons.size() - shown);
+    return text;
+}
+
+/// With -q the first reasons alone, as an error.
 void show_result(const LiveOptions& options, const rehearse::VirtualPrint& print, const twin::Report& report,
                  const std::string& json) {
     if (options.output.json)
@@ -52,7 +65,7 @@ void show_result(const LiveOptions& options, const rehearse::VirtualPrint& print
         fmt::print("{} sent, {}\n{}", counted(static_cast<std::size_t>(print.snapshot().lines_sent), "line"),
                    counted(print.lights().size(), "exposure"), twin::report_text(report));
     else if (!report.passed)
-        fmt::print(stderr, "{}: the virtual print failed: {}\n", options.job, fmt::join(report.reasons, "; "));
+        fmt::print(stderr, "{}: the virtual print failed: {}\n", options.job, first_of(report.reasons));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 const std::string program = PLIANT_PROGRAM;
-const std::string slice = program + " slice examples/tutorial/finger.toml --printer tower --layer '400 um' -q -o ";
+const std::string slice = program + " slice examples/tutorial/finger.toml --printer tower --layer '100 um' -q -o ";
 
 /// Exit status of a line of the shell.
 int status_of(const std::string& line) {
@@ -39,7 +39,7 @@ TEST_CASE("nothing that is printed gets into a file that takes the place of a cl
     const test::Folder folder("streams");
     const std::string job = folder / "job.zip";
     // The summary cannot be printed, which is told by the status; the job is whole.
-    CHECK(status_of(program + " slice examples/tutorial/finger.toml --printer tower --layer '400 um' -o " + job +
+    CHECK(status_of(program + " slice examples/tutorial/finger.toml --printer tower --layer '100 um' -o " + job +
                     " >&- 2>/dev/null") == 1);
     CHECK(status_of(program + " check " + job + " -q") == 0);
     // A virtual print comes to its end, with its records.

@@ -3,7 +3,6 @@
 #include <zip.h>
 
 #include <algorithm>
-#include <set>
 
 namespace pliant {
 namespace {
@@ -45,14 +44,7 @@ Result<ZipReader> ZipReader::open(const std::filesystem::path& path) {
     int code = 0;
     Handle archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
     if (!archive) return input_error("{}: {}", path.string(), text_of(code));
-    ZipReader reader(std::make_unique<State>(State{path.string(), std::move(archive), bytes}));
-    // Another program might read the other entry of that name.
-    std::set<std::string> names;
-    for (std::uint64_t k = 0; k < reader.entry_count(); ++k) {
-        if (!names.insert(reader.name(k)).second)
-            return input_error("{}: {}: is in it twice", path.string(), reader.name(k));
-    }
-    return reader;
+    return ZipReader(std::make_unique<State>(State{path.string(), std::move(archive), bytes}));
 }
 
 std::uint64_t ZipReader::entry_count() const {

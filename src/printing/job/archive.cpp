@@ -16,10 +16,13 @@ constexpr std::uint64_t max_file_bytes = std::uint64_t{1} << 30;
 Status check_entries(const ZipReader& zip, const std::string& path) {
     if (zip.entry_count() > max_entries)
         return input_error("{}: {} entries, at most {} are allowed", path, zip.entry_count(), max_entries);
+    std::set<std::string> names;
     for (std::uint64_t i = 0; i < zip.entry_count(); ++i) {
         std::string name = zip.name(i);
         if (name.ends_with('/')) name.pop_back();  // a folder
         if (!is_safe_entry_name(name)) return input_error("{}: entry '{}' must be a plain relative path", path, name);
+        // Another program might read the other one.
+        if (!names.insert(name).second) return input_error("{}: entry '{}' is there twice", path, name);
     }
     return {};
 }

@@ -224,6 +224,11 @@ TEST_CASE("invalid or incomplete archives are refused") {
     CHECK(refused(path).find("entry '../evil' must be a plain relative path") != std::string::npos);
     write_raw(path, {{"manifest.json", to_json(manifest())}, {"/etc/evil", "x"}});
     CHECK(refused(path).find("plain relative path") != std::string::npos);
+    write_raw(path, {{"manifest.json", to_json(manifest())}, {"manifest.jsox", "{}"}});
+    std::string bytes = read_file(path).value();
+    for (std::size_t at = 0; (at = bytes.find("manifest.jsox", at)) != std::string::npos;) bytes[at + 12] = 'n';
+    REQUIRE(write_file(path, bytes));
+    CHECK(refused(path).find("entry 'manifest.json' is there twice") != std::string::npos);
 }
 
 TEST_CASE("cutting an archive short anywhere is refused, never a crash") {

@@ -141,6 +141,7 @@ TEST_CASE("tasks before a layer are asked for once, in the order of layers") {
     Job job;
     const double uses_ml = plan::make_plan(job.manifest, job.printer)->vats.front().resin_ml;
     job.set("fill", fmt::format("\"{} ml\"", 0.6 * uses_ml));
+    job.set("least", "\"0 ml\"");
     job.printer = machine::parse_printer(job.printer_text, "tower.toml").value();
     const auto plan = plan::make_plan(job.manifest, job.printer);
     REQUIRE_MESSAGE(plan, (plan ? "" : plan.error().message));
