@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include "base/core/parallel.hpp"
 #include "printing/slice/braces.hpp"
@@ -196,10 +197,12 @@ private:
     }
 
     /// Supports what hangs over. Both outlines are rounded to pixels: on a short way only flat undersides exceed that,
-    /// and the longer it is, the nearer to the angle.
+    /// and the longer it is, the nearer to the angle. Long ways are slow, and need not be gone from every layer.
     void hold_undersides(int k) {
         RunSet hanging = hanging_over(k, 1);
-        for (const double way_px : {4.0, 16.0, 32.0}) hanging = united(hanging, hanging_over(k, way_px));
+        for (const auto& [way_px, layers] : {std::pair(4.0, 1), std::pair(16.0, 4), std::pair(32.0, 8)}) {
+            if (k % layers == 0) hanging = united(hanging, hanging_over(k, way_px));
+        }
         for (int row = hanging.first_row(); row < hanging.end_row(); ++row) {
             for (const PixelSpan& span : hanging.row(row)) {
                 for (int column = span.begin; column < span.end; ++column) {
