@@ -137,11 +137,11 @@ MISTAKES = {
     ),
     "a quantity is too large": (
         lambda m: pliant.quantity("1e308 GPa", "Pa"),
-        '"1e308 GPa" is too large for a number in Pa',
+        '"1e308 GPa" is too large',
     ),
     "a target is too large": (
         lambda m: m.step(m.rest(), {"flexor": {"tension": "1e308 kN"}}),
-        'cable "flexor": tension: "1e308 kN" is inf, which is not finite',
+        'cable "flexor": tension: "1e308 kN" is too large',
     ),
     "a time is too large": (lambda m: m.program(10**400), "time is 1000"),
     "measures are forgotten": (

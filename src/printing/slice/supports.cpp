@@ -196,12 +196,20 @@ private:
         return without(solids_[static_cast<std::size_t>(k)], grown(solids_[static_cast<std::size_t>(j)], reach_px));
     }
 
+    /// True for the layers in which one of eight equal parts of such a way's height begins.
+    [[nodiscard]] bool is_due(int k, double way_px) const {
+        const double slope = std::tan(wanted_.angle_deg * std::numbers::pi / 180);
+        const double part_um = way_px * settings_.raster.pixel_um * slope / 8;
+        const auto part_of = [&](int layer) { return std::floor(layers_.middle2_um(layer) / 2.0 / part_um); };
+        return part_of(k) > part_of(k - 1);
+    }
+
     /// Supports what hangs over. Both outlines are rounded to pixels: on a short way only flat undersides exceed that,
     /// and the longer it is, the nearer to the angle. Long ways are slow, and need not be gone from every layer.
     void hold_undersides(int k) {
         RunSet hanging = hanging_over(k, 1);
-        for (const auto& [way_px, layers] : {std::pair(4.0, 1), std::pair(16.0, 4), std::pair(32.0, 8)}) {
-            if (k % layers == 0) hanging = united(hanging, hanging_over(k, way_px));
+        for (const double way_px : {4.0, 16.0, 32.0}) {
+            if (is_due(k, way_px)) hanging = united(hanging, hanging_over(k, way_px));
         }
         for (int row = hanging.first_row(); row < hanging.end_row(); ++row) {
             for (const PixelSpan& span : hanging.row(row)) {

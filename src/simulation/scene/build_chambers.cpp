@@ -89,8 +89,8 @@ sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const C
                                   100 * material));
         return {};
     }
-    // Half the distance of the nodes, of which quadratic tets have some in the middle of their edges.
-    const double share = draft.description.mesh.order == 2 ? 0.25 : 0.5;
+    // Quadratic tets have nodes in the middle of their edges.
+    const double share = draft.description.mesh.order == 2 ? 0.5 : 1;
     surface =
         mesh::with_short_edges(std::move(surface), [&](const Vec3& p) { return share * attacher.edge_of_tet(p); });
     sim::Wall wall;

@@ -48,11 +48,13 @@ steps = 2
     const std::string inside = "inside = [10, 10, 10]", surface = fmt::format("surface = \"{}\"", file);
     for (const int order : {1, 2}) {
         CAPTURE(order);
+        const double error = order == 1 ? 0.15 : 0.06;  // at nodes 5 and 2.5 mm apart
         const auto drawn = inflated(inside, "pressure = \"10 kPa\"", order);
         const auto read = inflated(surface, "pressure = \"10 kPa\"", order);
         CHECK(drawn.volume_m3 > 1.05 * 1.728e-6);
-        CHECK(read.volume_m3 / 1.728e-6 - 1 == near(drawn.volume_m3 / 1.728e-6 - 1, {.relative = 0.06}));
+        CHECK(read.volume_m3 / 1.728e-6 - 1 == near(drawn.volume_m3 / 1.728e-6 - 1, {.relative = error}));
         const auto held = inflated(inside, "volume_ratio = 1.2", order);
-        CHECK(inflated(surface, "volume_ratio = 1.2", order).pressure_Pa == near(held.pressure_Pa, {.relative = 0.06}));
+        CHECK(inflated(surface, "volume_ratio = 1.2", order).pressure_Pa ==
+              near(held.pressure_Pa, {.relative = error}));
     }
 }
