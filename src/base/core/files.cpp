@@ -102,12 +102,6 @@ bool is_there(const FileHandle& open, const fs::path& path) {
 FileHandle opened(const fs::path& path, AsideKind kind) {
     constexpr mode_t usual = 0666;
     if (kind == AsideKind::file) return FileHandle(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, usual));
-    std::error_code code;
-    fs::create_directories(path, code);
-    if (code) {
-        errno = code.value();
-        return {};
-    }
     return FileHandle(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
 }
 
@@ -148,18 +142,20 @@ Result<FileHandle> open_aside(const fs::path& aside, AsideKind kind, const fs::p
                               std::chrono::milliseconds patience) {
     constexpr auto pause = 20ms;
     const auto refuse = [&](const char* why) { return failure("{}: cannot be written: {}", target.string(), why); };
-    for (std::chrono::milliseconds waited{}; waited <= patience;) {
+    for (std::chrono::milliseconds waited{}; waited <= patience; waited += pause) {
+        std::error_code code;
+        if (kind == AsideKind::folder) fs::create_directories(aside, code);
+        if (code) return refuse(code.message().c_str());
         FileHandle open = opened(aside, kind);
-        if (!open.is_open() && !(kind == AsideKind::folder && errno == ENOENT)) return refuse(std::strerror(errno));
-        if (!open.is_open()) continue;  // renamed in between
-        const bool is_free = ::flock(open.number(), LOCK_EX | LOCK_NB) == 0;
-        if (is_free && !is_there(open, aside)) continue;
-        if (is_free || errno != EWOULDBLOCK) {  // some file systems have no locks
+        // A folder may have been renamed just now, by the program that had it.
+        if (!open.is_open() && (kind == AsideKind::file || errno != ENOENT)) return refuse(std::strerror(errno));
+        const bool is_free = open.is_open() && ::flock(open.number(), LOCK_EX | LOCK_NB) == 0;
+        const bool has_locks = is_free || errno == EWOULDBLOCK || errno == ENOENT;  // some file systems have none
+        if ((is_free && is_there(open, aside)) || !has_locks) {
             empty(open, aside, kind);
             return open;
         }
-        std::this_thread::sleep_for(pause);
-        waited += pause;
+        if (waited + pause <= patience) std::this_thread::sleep_for(pause);
     }
     return refuse("another program is writing it; wait for it, or choose another name");
 }

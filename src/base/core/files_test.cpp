@@ -46,6 +46,8 @@ TEST_CASE("what one program writes under a temporary name no other gets, until i
     const fs::path results = scratch / "out", filled = scratch / "out.partial";
     fs::create_directory(filled);
     REQUIRE(write_file(filled / "old", "1"));
+    fs::create_symlink(scratch / "nowhere", scratch / "dangling");
+    CHECK_FALSE(open_aside(scratch / "dangling" / "x", AsideKind::folder, results, 10min));
     const auto folder = open_aside(filled, AsideKind::folder, results, 0ms);
     REQUIRE(folder);
     CHECK(fs::is_empty(filled));
