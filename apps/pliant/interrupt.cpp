@@ -56,10 +56,6 @@ void handle(int signal) {
     errno = error;
 }
 
-}  // namespace
-
-namespace {
-
 /// SIGHUP: the terminal is gone. nohup asks to go on then.
 bool is_ignored(int signal) {
     struct sigaction now {};

@@ -138,6 +138,10 @@ Status check_folder_place(const fs::path& path, std::string_view marker) {
     return check_parent(made.parent_path(), made);
 }
 
+fs::path aside_of(const fs::path& target) {
+    return target.string() + aside_ending;
+}
+
 Result<FileHandle> open_aside(const fs::path& aside, AsideKind kind, const fs::path& target,
                               std::chrono::milliseconds patience) {
     constexpr auto pause = 20ms;
@@ -165,7 +169,7 @@ Status write_file(const fs::path& path, std::string_view bytes) {
     if (is_special(path, fs::status(path, code).type())) return write_through(path, bytes, path);
     const Result<fs::path> target = replaceable_file(path);
     if (!target) return tl::unexpected(target.error());
-    const fs::path aside = target->string() + aside_ending;
+    const fs::path aside = aside_of(*target);
     const Result<FileHandle> mine = open_aside(aside, AsideKind::file, path, 30s);
     if (!mine) return tl::unexpected(mine.error());
     Status status = write_through(aside, bytes, path);
@@ -212,7 +216,7 @@ Status write_folder(const fs::path& folder, std::string_view marker,
     std::error_code code;
     const fs::path target = absolute_place(folder);
     if (Status place = check_folder_place(folder, marker); !place) return place;
-    const fs::path aside = target.string() + aside_ending;
+    const fs::path aside = aside_of(target);
     const Result<FileHandle> mine = open_aside(aside, AsideKind::folder, folder, 30min);
     if (!mine) return tl::unexpected(mine.error());
     if (const Status filled = fill(aside); !filled) {

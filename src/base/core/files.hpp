@@ -27,9 +27,12 @@ namespace pliant {
 /// `marker`: as of write_folder().
 [[nodiscard]] Status check_folder_place(const std::filesystem::path& path, std::string_view marker);
 
+/// `TARGET.partial`: what is written there is renamed to `target` once it is whole.
+[[nodiscard]] std::filesystem::path aside_of(const std::filesystem::path& target);
+
+enum class AsideKind { file, folder };
 /// Makes a file or folder that will be renamed to `target`, or empties what a program that was killed left there. No
 /// other program gets it before the handle is closed; waits for one that has it, at most for `patience`.
-enum class AsideKind { file, folder };
 [[nodiscard]] Result<FileHandle> open_aside(const std::filesystem::path& aside, AsideKind kind,
                                             const std::filesystem::path& target, std::chrono::milliseconds patience);
 

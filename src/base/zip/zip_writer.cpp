@@ -141,7 +141,7 @@ ZipWriter::~ZipWriter() = default;
 Result<ZipWriter> ZipWriter::create(const std::filesystem::path& path) {
     const Result<std::filesystem::path> target = replaceable_file(path);
     if (!target) return tl::unexpected(target.error());
-    const std::filesystem::path aside = target->string() + ".partial";
+    const std::filesystem::path aside = aside_of(*target);
     Result<FileHandle> mine = open_aside(aside, AsideKind::file, path, std::chrono::milliseconds(0));
     if (!mine) return tl::unexpected(mine.error());
     std::FILE* file = ::fdopen(mine->number(), "wb");

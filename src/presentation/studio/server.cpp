@@ -107,10 +107,6 @@ bool read_body(mg_connection* wire, long long length, std::string& body) {
     return false;
 }
 
-}  // namespace
-
-namespace {
-
 /// Each page that watches keeps a thread of the server; the others are for requests, such as an emergency stop.
 constexpr const char* threads = "96";
 constexpr int most_pages = 64;

@@ -13,6 +13,10 @@ double WorkingCurve::depth_um(double dose_J_m2) const {
     return dose_J_m2 > critical_J_m2 ? penetration_um * std::log(dose_J_m2 / critical_J_m2) : 0;
 }
 
+double cure_depth_um(const Printer& printer, const Resin& resin, double exposure_s) {
+    return working_curve(printer, resin).depth_um(irradiance_W_m2(printer) * exposure_s);
+}
+
 WorkingCurve working_curve(const Printer& printer, const Resin& resin) {
     if (resin.penetration_um > 0) return {resin.penetration_um, resin.critical_J_m2};
     const double dose = irradiance_W_m2(printer) * resin.exposure_s;

@@ -16,6 +16,9 @@ struct WorkingCurve {
 /// its critical share to one layer.
 [[nodiscard]] WorkingCurve working_curve(const Printer& printer, const Resin& resin);
 
+/// How deep an exposure cures by that curve.
+[[nodiscard]] double cure_depth_um(const Printer& printer, const Resin& resin, double exposure_s);
+
 /// An irradiance not given in the printer file is taken as 1: only ratios of doses matter then.
 [[nodiscard]] double irradiance_W_m2(const Printer& printer);
 

@@ -145,11 +145,10 @@ void choose_order(Plan& plan, const std::vector<VatList>& layers, const Printer&
 }
 
 /// How deep the k-th image of a layer cures: by the resin's own working curve, or as the printer file says.
-double cure_depth_um(const job::Manifest& job, std::size_t layer, std::size_t k, const Printer& printer,
-                     const machine::Resin& resin) {
+double depth_of_image_um(const job::Manifest& job, std::size_t layer, std::size_t k, const Printer& printer,
+                         const machine::Resin& resin) {
     if (!(resin.penetration_um > 0)) return resin.cure_depth_um;
-    const double dose = machine::irradiance_W_m2(printer) * job::exposure_s(job, layer, k);
-    return machine::working_curve(printer, resin).depth_um(dose);
+    return machine::cure_depth_um(printer, resin, job::exposure_s(job, layer, k));
 }
 
 /// A blank layer below a printed one leaves a gap that curing must bridge.
@@ -162,7 +161,7 @@ void warn_of_gaps(const job::Manifest& job, const Printer& printer, Plan& plan) 
         for (std::size_t k = 0; k < layer.images.size(); ++k) {
             const auto material = static_cast<std::size_t>(layer.images[k].material);
             const auto* resin = printer.find_resin(job.materials[material].resin);
-            if (resin == nullptr || layer.z_um - below_um <= cure_depth_um(job, i, k, printer, *resin)) continue;
+            if (resin == nullptr || layer.z_um - below_um <= depth_of_image_um(job, i, k, printer, *resin)) continue;
             ++gaps;
             break;
         }
@@ -181,8 +180,7 @@ void warn_of_curves(const job::Manifest& job, const Printer& printer, Plan& plan
     for (const job::Material& material : job.materials) {
         const auto* resin = printer.find_resin(material.resin);
         if (resin == nullptr || !(resin->penetration_um > 0) || !seen.insert(resin->name).second) continue;
-        const double depth =
-            machine::working_curve(printer, *resin).depth_um(machine::irradiance_W_m2(printer) * resin->exposure_s);
+        const double depth = machine::cure_depth_um(printer, *resin, resin->exposure_s);
         if (depth * far >= resin->cure_depth_um && depth <= far * resin->cure_depth_um) continue;
         plan.warnings.push_back(
             fmt::format("resin \"{}\": the printer file gives a cure_depth of {} um, but by the working curve its "

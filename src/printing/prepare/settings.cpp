@@ -140,9 +140,8 @@ void note_far_exposure(const std::string& option, double seconds, double usual_s
         fmt::format("--exposure {}: {:.4g} s is {:.3g} times the {:.4g} s that the printer file gives resin \"{}\"",
                     option, seconds, seconds / usual_s, usual_s, resin.name);
     if (resin.penetration_um > 0 || (resin.cure_depth_um > 0 && resin.critical_share > 0))
-        text += fmt::format(
-            "; it cures {:.3g} um deep, layers are {:.4g} um",
-            machine::working_curve(printer, resin).depth_um(machine::irradiance_W_m2(printer) * seconds), layer_um);
+        text += fmt::format("; it cures {:.3g} um deep, layers are {:.4g} um",
+                            machine::cure_depth_um(printer, resin, seconds), layer_um);
     warnings.push_back(text);
 }
 

@@ -182,14 +182,16 @@ private:
         return best;
     }
 
+    /// Height over a pixel at the angle.
+    [[nodiscard]] double rise_um() const {
+        return settings_.raster.pixel_um * std::tan(wanted_.angle_deg * std::numbers::pi / 180);
+    }
+
     /// What of layer k extends beyond a layer below by more than the angle allows; from the nearest one on to which it
     /// may extend by `way_px`.
     [[nodiscard]] RunSet hanging_over(int k, double way_px) const {
-        const double slope = std::tan(wanted_.angle_deg * std::numbers::pi / 180);
-        const double pixel_um = settings_.raster.pixel_um;
-        const auto allowed_px = [&](int j) {
-            return (layers_.middle2_um(k) - layers_.middle2_um(j)) / 2.0 / slope / pixel_um;
-        };
+        const double rise = rise_um();
+        const auto allowed_px = [&](int j) { return (layers_.middle2_um(k) - layers_.middle2_um(j)) / 2.0 / rise; };
         int j = k - 1;
         while (j > 0 && allowed_px(j) < way_px) --j;
         const int reach_px = static_cast<int>(std::ceil(allowed_px(j) + 0.5));
@@ -198,8 +200,7 @@ private:
 
     /// True for the layers in which one of eight equal parts of such a way's height begins.
     [[nodiscard]] bool is_due(int k, double way_px) const {
-        const double slope = std::tan(wanted_.angle_deg * std::numbers::pi / 180);
-        const double part_um = way_px * settings_.raster.pixel_um * slope / 8;
+        const double part_um = way_px * rise_um() / 8;
         const auto part_of = [&](int layer) { return std::floor(layers_.middle2_um(layer) / 2.0 / part_um); };
         return part_of(k) > part_of(k - 1);
     }

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <mutex>
 #include <numeric>
 #include <utility>
@@ -140,14 +139,12 @@ double Contact::free_step(std::span<const double> x, std::span<const double> dx,
     const auto limit = [&](const Search::Candidate& c, double& step) {
         if (ended.load(std::memory_order_relaxed) || !c.comes_near(x, dx, margin)) return;
         const Stencil from = stencil_at(c.nodes, x), by = stencil_at(c.nodes, dx);
-        const auto counts = [&] {
-            return !left_out(c.first_nodes(), c.second_nodes(), std::sqrt(c.squared_distance(rest_)));
-        };
         // Neighbours, which do not count, are followed the longest, since they stay near each other.
         const Advance first = advance(c.features(), from, by, kept_share, step, few_looks);
-        if (!first.ended && !counts()) return;
+        if (first.ended && first.step >= step) return;
+        if (left_out(c.first_nodes(), c.second_nodes(), std::sqrt(c.squared_distance(rest_)))) return;
         const double t = first.ended ? first.step : contact::largest_step(c.features(), from, by, kept_share, step);
-        if (t >= step || (first.ended && !counts())) return;
+        if (t >= step) return;
         step = t;
         if (t < enough) ended.store(true, std::memory_order_relaxed);
     };

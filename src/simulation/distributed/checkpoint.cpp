@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/core/digest.hpp"
+#include "base/core/files.hpp"
 #include "simulation/distributed/h5_file.hpp"
 #include "simulation/run/step_record.hpp"
 
@@ -144,7 +145,7 @@ Status Checkpoint::keep(const RunState& run) const {
               {"past", Json::array()}};
     for (const Moment& before : run.past)
         json["past"].push_back({{"along", before.along}, {"multiplier", numbers_of(before.state.multiplier)}});
-    const std::filesystem::path aside = file().string() + ".partial";
+    const std::filesystem::path aside = aside_of(file());
     Result<H5File> out = H5File::create(&system_.ranks(), aside);
     if (!out) return tl::unexpected(out.error());
     const Rows rows{nodes_.total(), nodes_.first(), nodes_.rows()};
