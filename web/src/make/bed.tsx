@@ -14,7 +14,7 @@ import { area, copies, fields, printer, printerInfo, scale, shift, support, turn
 import { painted, paintTable, readPaint, refined, strokes, touches, wishColours, type Touch, type Wish } from './paint';
 import { layOnFace, placed, rotationOf, type Degrees } from './place';
 import { clock } from './plan';
-import { platformMesh } from './stack';
+import { disposePlatform, platformMesh } from './platform';
 
 /// "2", "2 mm" or "0.2 cm" in millimetres; the default for texts that the slicer will refuse.
 function millimetres(text: string | undefined, usual: number): number {
@@ -134,10 +134,22 @@ class BedView {
     this.geometry.computeBoundingSphere();
   }
 
-  show(where: ReturnType<typeof placed>, degrees: Degrees, size: number, at: [number, number], p: PrinterInfo) {
-    if (this.platform) this.world.remove(this.platform);
-    this.platform = platformMesh(...area(p));
+  /// The platform under the part; it is made again when its size is another.
+  private stand(width: number, depth: number) {
+    if (this.platform?.userData.width === width && this.platform.userData.depth === depth) return;
+    this.leave();
+    this.platform = platformMesh(width, depth);
     this.world.add(this.platform);
+  }
+  private leave() {
+    if (!this.platform) return;
+    this.world.remove(this.platform);
+    disposePlatform(this.platform);
+    this.platform = null;
+  }
+
+  show(where: ReturnType<typeof placed>, degrees: Degrees, size: number, at: [number, number], p: PrinterInfo) {
+    this.stand(...area(p));
     this.parts.clear();
     const turned = rotationOf(degrees);
     for (const [x, y] of where.shifts.slice(0, 200)) {
@@ -321,6 +333,7 @@ class BedView {
     cancelAnimationFrame(this.frame);
     for (const [name, listener, early] of this.listeners) this.canvas.removeEventListener(name, listener, early);
     this.resize.disconnect();
+    this.leave();
     this.geometry.dispose();
     this.material.dispose();
     this.controls.dispose();

@@ -9,9 +9,10 @@ import { orbitHelp, orbitKeys, turnAround } from '../orbit_keys';
 import { partOf, type Part } from '../print/part';
 import { PartMesh } from '../print/part_mesh';
 import { api, say } from '../store';
-import { cssColour, theme } from '../theme';
+import { theme } from '../theme';
 import type { Job } from '../types';
 import { goal, layer, load } from './layers';
+import { disposePlatform, platformMesh } from './platform';
 
 const mostMarks = 40;
 type Issue = Job['issues'][number];
@@ -60,6 +61,7 @@ class StackView {
   private readonly pivot = new THREE.Group(); // the part is shown upright, but modelled as it hangs
   private readonly resize: ResizeObserver;
   private readonly sheet: THREE.Mesh;
+  private readonly platform: THREE.Group;
   private readonly keys: (e: KeyboardEvent) => void;
   private bounds = { x0: 0, y0: 0, x1: 1, y1: 1 };
   private labels: Label[] = [];
@@ -78,7 +80,8 @@ class StackView {
     this.pivot.add(this.mesh.group);
     this.world.add(this.pivot);
     const { width_mm, depth_mm } = job.platform;
-    this.world.add(platformMesh(width_mm, depth_mm));
+    this.platform = platformMesh(width_mm, depth_mm);
+    this.world.add(this.platform);
     this.sheet = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), new THREE.MeshBasicMaterial({ alphaTest: 0.5, side: THREE.DoubleSide }));
     this.sheet.visible = false;
     this.mesh.group.add(this.sheet);
@@ -168,27 +171,10 @@ class StackView {
     this.canvas.removeEventListener('keydown', this.keys);
     this.resize.disconnect();
     this.mesh.dispose();
+    disposePlatform(this.platform);
     this.controls.dispose();
     this.renderer.dispose();
   }
-}
-
-/// The platform with its border and a grid of 10 mm.
-export function platformMesh(width: number, depth: number) {
-  const group = new THREE.Group();
-  const plate = new THREE.Mesh(new THREE.PlaneGeometry(width, depth), new THREE.MeshBasicMaterial({ color: 0x8a93a0, transparent: true, opacity: 0.14, side: THREE.DoubleSide, depthWrite: false }));
-  const points: THREE.Vector3[] = [];
-  const lines = (size: number, line: (t: number) => [THREE.Vector3, THREE.Vector3]) => {
-    for (let t = -Math.floor(size / 20) * 10; t <= size / 2; t += 10) points.push(...line(t));
-  };
-  lines(width, (x) => [new THREE.Vector3(x, -depth / 2, 0), new THREE.Vector3(x, depth / 2, 0)]);
-  lines(depth, (y) => [new THREE.Vector3(-width / 2, y, 0), new THREE.Vector3(width / 2, y, 0)]);
-  const grid = new THREE.LineSegments(new THREE.BufferGeometry().setFromPoints(points), new THREE.LineBasicMaterial({ color: 0x8a93a0, transparent: true, opacity: 0.35 }));
-  const rim = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) => new THREE.Vector3((x * width) / 2, (y * depth) / 2, 0));
-  const border = new THREE.LineLoop(new THREE.BufferGeometry().setFromPoints(rim), new THREE.LineBasicMaterial({ color: new THREE.Color(cssColour('--faint') || '#8a93a0') }));
-  group.add(plate, grid, border);
-  group.position.z = -0.05;
-  return group;
 }
 
 /// Markers are buttons that open the layer and pixel.
