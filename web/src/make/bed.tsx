@@ -9,6 +9,7 @@ import { orbitHelp, orbitKeys, turnAround } from '../orbit_keys';
 import { mayDrive, say, scene } from '../store';
 import { theme } from '../theme';
 import type { Scene } from '../types';
+import { AxesCorner, turnAxes } from './axes_corner';
 import { estimate } from './estimate';
 import { area, copies, fields, printer, printerInfo, scale, shift, support, turn, type PrinterInfo } from './order';
 import { painted, paintTable, readPaint, refined, strokes, touches, wishColours, type Touch, type Wish } from './paint';
@@ -61,7 +62,7 @@ class BedView {
   private held: { at: THREE.Vector3 } | null = null;
   private last: Touch | null = null;
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly part: Scene, private readonly hands: Hands) {
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly axes: SVGSVGElement, private readonly part: Scene, private readonly hands: Hands) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.camera.up.set(0, 0, 1);
     this.world.add(new THREE.HemisphereLight(0xffffff, 0x8a8f98, 1.9));
@@ -326,6 +327,7 @@ class BedView {
     this.frame = requestAnimationFrame(() => {
       this.frame = 0;
       this.renderer.render(this.world, this.camera);
+      turnAxes(this.axes, this.camera);
     });
   }
 
@@ -419,6 +421,7 @@ function Brush({ materials, lookUp }: { materials: string[]; lookUp: () => void 
 
 export function Bed() {
   const canvas = useRef<HTMLCanvasElement>(null);
+  const axes = useRef<SVGSVGElement>(null);
   const shown = useRef<BedView | null>(null);
   const s = scene.value;
   const p = printerInfo.value;
@@ -434,7 +437,7 @@ export function Bed() {
     if (!s) return;
     let view: BedView;
     try {
-      view = new BedView(canvas.current!, s, {
+      view = new BedView(canvas.current!, axes.current!, s, {
         move: (dx, dy) => (shift.value = [shift.value[0] + dx, shift.value[1] + dy].map((v) => Math.round(10 * v) / 10) as [number, number]),
         face: (normal) => {
           tool.value = 'move';
@@ -469,6 +472,7 @@ export function Bed() {
     <div class="layers" data-testid="bed" data-fits={where?.fits ?? true} data-tool={tool.value}>
       <div class={`canvas ${tool.value === 'move' ? '' : 'picking'}`}>
         <canvas ref={canvas} tabIndex={0} aria-label={`The robot on the platform. ${help}`} data-testid="bed-view" />
+        <AxesCorner drawing={axes} />
       </div>
       <div class="bed-foot">
         {isBrush(tool.value) ? (
@@ -515,6 +519,7 @@ export function Bed() {
       {where && (
         <div class="layer-info">
           <b>{where.size.map((v) => v.toFixed(1)).join(' × ')} mm</b>
+          {where.fits && <span class="quiet">on {area(p!).map((v) => +v.toFixed(1)).join(' × ')} mm, grid of 10 mm</span>}
           {!where.fits && <span class="problems-inline" role="alert">does not fit {area(p!).map((v) => v.toFixed(1)).join(' × ')} × {p!.platform.height_mm.toFixed(0)} mm{shift.value.some((v) => v !== 0) && ' there'}</span>}
         </div>
       )}

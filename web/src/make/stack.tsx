@@ -11,6 +11,7 @@ import { PartMesh } from '../print/part_mesh';
 import { api, say } from '../store';
 import { theme } from '../theme';
 import type { Job } from '../types';
+import { AxesCorner, turnAxes } from './axes_corner';
 import { goal, layer, load } from './layers';
 import { disposePlatform, platformMesh } from './platform';
 
@@ -68,7 +69,7 @@ class StackView {
   private frame = 0;
   private sized = false; // the window size is known
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly job: Job) {
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly axes: SVGSVGElement, private readonly job: Job) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.camera.up.set(0, 0, 1);
     this.world.add(new THREE.HemisphereLight(0xffffff, 0x8a8f98, 1.9));
@@ -162,6 +163,7 @@ class StackView {
     this.frame = requestAnimationFrame(() => {
       this.frame = 0;
       this.renderer.render(this.world, this.camera);
+      turnAxes(this.axes, this.camera);
       placeLabels(this.labels, this.camera, this.canvas.clientWidth, this.canvas.clientHeight);
     });
   }
@@ -203,6 +205,7 @@ function Marks({ issues, marks, open }: { issues: Issue[]; marks: { current: (HT
 
 export function Stack({ job, openLayers }: { job: Job; openLayers: () => void }) {
   const canvas = useRef<HTMLCanvasElement>(null);
+  const axes = useRef<SVGSVGElement>(null);
   const shown = useRef<StackView | null>(null);
   const marks = useRef<(HTMLElement | null)[]>([]);
   const [state, setState] = useState<'loading' | 'shown' | 'failed'>('loading');
@@ -214,7 +217,7 @@ export function Stack({ job, openLayers }: { job: Job; openLayers: () => void })
     let gone = false;
     let view: StackView;
     try {
-      view = new StackView(canvas.current!, job);
+      view = new StackView(canvas.current!, axes.current!, job);
     } catch {
       setState('failed');
       return;
@@ -256,6 +259,7 @@ export function Stack({ job, openLayers }: { job: Job; openLayers: () => void })
     <div class="layers">
       <div class="canvas">
         <canvas ref={canvas} tabIndex={0} aria-label={`The job in 3D. ${orbitHelp}`} data-testid="stack-view" data-state={state} />
+        <AxesCorner drawing={axes} />
         <Marks issues={issues} marks={marks} open={openLayers} />
       </div>
       <div class="layer-info">
