@@ -9,7 +9,7 @@ import { Compare } from './compare';
 import { jobFileName } from './file_name';
 import { goal, Layers, layer } from './layers';
 import { SliceForm } from './order';
-import { PlanView } from './plan';
+import { clock, PlanView } from './plan';
 import { Stack } from './stack';
 import { changes, staleText } from './stale';
 import { UnderWay } from './under_way';
@@ -66,6 +66,17 @@ function Issues() {
         </p>
       )}
     </div>
+  );
+}
+
+/// What people ask first: how long it takes.
+function Summary() {
+  const { manifest, plan } = job.value!;
+  if (!plan) return null;
+  return (
+    <p class="job-summary" data-testid="job-summary">
+      <b>{clock(plan.seconds.total)}</b> <span class="quiet">{counted(manifest.layers.length, 'layer')}, {counted(plan.swaps, 'swap')}</span>
+    </p>
   );
 }
 
@@ -128,6 +139,7 @@ export function Make() {
         {j && (
           <>
             <Stale />
+            <Summary />
             <Volumes />
             <Issues />
             <div class="job-file">
