@@ -1,6 +1,7 @@
 // Placement of the part, and supports under it.
 #include "printing/slice/arrange.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -131,6 +132,11 @@ std::vector<slice::SupportTouch> take_paint(Drawing& drawing, const std::vector<
     return placed;
 }
 
+bool enforces(const std::vector<slice::SupportTouch>& touches) {
+    return std::any_of(touches.begin(), touches.end(),
+                       [](const slice::SupportTouch& t) { return t.wish == slice::SupportWish::enforce; });
+}
+
 /// With a raft the part must be above it, or there is nothing to break away.
 Status lift(const Order& order, double raft_um, Drawing& drawing) {
     constexpr double usual_um = 5000, most_um = 100000;
@@ -207,6 +213,8 @@ Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,
                                 number(supports->tips, "tip"), supports->on_part, number(supports->struts, "strut"),
                                 supports->volume_mm3));
     if (!wanted.paint.empty()) notes.push_back(fmt::format("painted supports: {} of the tips", supports->painted));
+    if (supports->painted == 0 && enforces(wanted.paint))
+        drawing.warnings.push_back("painted supports: no place to be supported lies on an underside of the part");
     if (supports->islands_left > 0)
         drawing.warnings.push_back(fmt::format("supports do not reach {}", number(supports->islands_left, "island")));
     drawing.bodies.insert(drawing.bodies.begin(), std::make_move_iterator(supports->bodies.begin()),

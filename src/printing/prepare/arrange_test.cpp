@@ -270,6 +270,10 @@ TEST_CASE("--support-paint is turned, scaled and copied with the part") {
         o.turn = {180, 0, 0};
     });
     CHECK(supports_of(over).empty());
+    REQUIRE(!over.drawing.warnings.empty());
+    CHECK(over.drawing.warnings.back() ==
+          "painted supports: no place to be supported lies on an underside of the part");
+    for (const std::string& warning : plain.drawing.warnings) CHECK(warning.find("painted") == std::string::npos);
 }
 
 TEST_CASE("--support-paint without --support, or with an invalid table, is refused") {
