@@ -15,6 +15,10 @@
 #include "simulation/elements/element_kernels.hpp"
 #include "simulation/elements/node_sums.hpp"
 
+namespace pliant::material {
+struct RestModuli;
+}
+
 namespace pliant::sim {
 
 struct Description;
@@ -40,6 +44,10 @@ public:
     /// Adds the tangent stiffness to the `values` of the pattern of the sums, in blocks of 3. With `project`, every
     /// integration point contributes the nearest positive semi-definite matrix instead. Precondition: min_J > 0.
     void add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values, bool project) const;
+
+    /// Adds the stiffness at rest of every point (Hooke's law with rest_moduli()), rotated as the point is at `x`: it
+    /// resists changes of shape, and no rotation of the body as it stands at `x`. Positive semi-definite.
+    void add_turned_stiffness(std::span<const double> x, const BlockSums& sums, std::span<double> values) const;
 
     /// Adds the skew part of the tangent, which add_tangent leaves out and only laws without an energy have, to a
     /// pattern of block 3; `index` (n) of each node in it, or -1. The blocks at and below the diagonal are set; those
@@ -140,6 +148,8 @@ private:
                                                 double* forces) const;
     void tangent_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law, bool project,
                             double* blocks) const;
+    void turned_one_by_one(std::size_t batch, std::span<const double> x, const material::RestModuli& moduli,
+                           double* blocks) const;
     /// Masses of the tets of a batch, kg; 0 in empty lanes.
     struct LaneMasses {
         alignas(64) double values[lanes] = {};

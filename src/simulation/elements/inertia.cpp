@@ -16,6 +16,10 @@ Bdf2Weights bdf2_weights(double r) {
     return {(1 + r) * (1 + r) / (1 + 2 * r), -r * r / (1 + 2 * r)};
 }
 
+bool is_as_long_as_the_last(const History& history, double dt) {
+    return history.dt_before > 0 && std::fabs(dt / history.dt_before - 1) < 1e-9;
+}
+
 }  // namespace
 
 Inertia::Inertia(const Elements& elements, const std::vector<int>& free_index, History begin, double dt,
@@ -37,9 +41,15 @@ Inertia::Inertia(const Elements& elements, const std::vector<int>& free_index, H
     }
 }
 
+double Inertia::ahead(const History& history, double dt, Scheme scheme) {
+    const bool is_bdf2 = (scheme == Scheme::bdf2 && history.dt_before > 0) ||
+                         (scheme == Scheme::even && is_as_long_as_the_last(history, dt));
+    return is_bdf2 ? dt : 0.5 * dt;
+}
+
 void Inertia::set_even() {
     const History& history = start_;
-    even_ = scheme_ == Scheme::even && history.dt_before > 0 && std::fabs(dt_ / history.dt_before - 1) < 1e-9;
+    even_ = scheme_ == Scheme::even && is_as_long_as_the_last(history, dt_);
     rate_ = even_ ? 1.5 / dt_ : 1 / dt_;
     from_ = history.x;
     Eigen::VectorXd velocity = history.v;

@@ -33,8 +33,12 @@ void add_obstacles(const Linearisation& at, const Eigen::VectorXd& by_position, 
 void carry_inertia(const Linearisation& at, const Eigen::VectorXd& force_weights, Carried& carried) {
     const History by = at.controls().inertia->start_weights(force_weights, carried.v);
     carried.x = carried.x_before + by.x;
-    if (const auto damped = damped_step(at)) carried.x += damping_start_weights(*damped, force_weights);
     carried.v = carried.v_before + by.v;
+    if (const auto damped = damped_step(at)) {
+        const Eigen::VectorXd turned = damping_turn_weights(*damped, force_weights);
+        carried.x += turned;
+        carried.v += at.controls().inertia->ahead_s() * turned;
+    }
     carried.x_before = by.x_before;
     carried.v_before = by.v_before;
 }

@@ -150,7 +150,8 @@ private:
         if (at.controls().inertia) {
             VectorXd inertia = VectorXd::Zero(h.x.size());
             (void)from(at, unknown).evaluate(VectorXd::Zero(h.x.size()), inertia);
-            if (const auto damped = sim::damped_step(at)) sim::add_damping_start_product(*damped, h.x, inertia);
+            if (const auto damped = sim::damped_step(at))
+                sim::add_damping_turn_product(*damped, h.x + at.controls().inertia->ahead_s() * h.v, inertia);
             force.head(h.x.size()) += inertia;
             add_joint_force(at, h.x, force);
         }

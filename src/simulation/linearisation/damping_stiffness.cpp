@@ -1,29 +1,28 @@
 #include "simulation/linearisation/damping_stiffness.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
-#include <span>
-#include <utility>
 #include <vector>
 
 #include "base/core/parallel.hpp"
 #include "base/linalg/vectors.hpp"
 #include "simulation/linearisation/element_derivatives.hpp"
 #include "simulation/material/law_parameters.hpp"
+#include "simulation/material/rest_moduli.hpp"
 
 namespace pliant::sim {
 namespace {
 
 using linalg::Matrix3;
-using linalg::Matrix9;
 using linalg::view;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
-/// Steps of the central differences of the tangent: in F, and relative in a constant. Their error is some 1e-10.
-constexpr double step_of_F = 1e-5, step_of_constant = 1e-5;
+/// Relative step of the central differences of the moduli in a constant. Their error is some 1e-10.
+constexpr double step_of_constant = 1e-5;
 
 constexpr std::size_t damped_tets_at_once = 64;
+
+using material::RestModuli;
 
 Vector9 stacked(const Matrix3& A) {
     return Eigen::Map<const Vector9>(A.data());
@@ -33,118 +32,100 @@ Matrix3 unstacked(const Vector9& a) {
     return Eigen::Map<const Matrix3>(a.data());
 }
 
-Matrix9 symmetric_tangent(const material::Law& law, const Matrix3& F) {
-    const Matrix9 H = material::tangent(law, F);
-    return 0.5 * (H + H.transpose());
+Matrix3 symmetric(const Matrix3& A) {
+    return 0.5 * (A + A.transpose());
 }
 
-/// dH/dF along `direction`.
-Matrix9 tangent_rate(const material::Law& law, const Matrix3& F, const Matrix3& direction) {
-    const double length = direction.norm();
-    if (!(length > 0)) return Matrix9::Zero();
-    const Matrix3 step = step_of_F / length * direction;
-    return length / (2 * step_of_F) * (symmetric_tangent(law, F + step) - symmetric_tangent(law, F - step));
+/// Stress of Hooke's law.
+Matrix3 hooke(const RestModuli& moduli, const Matrix3& strain) {
+    return moduli.lame_Pa * strain.trace() * Matrix3::Identity() + 2 * moduli.shear_Pa * strain;
 }
 
-/// The tangent H at a point, its projection to a positive semi-definite one, and the derivative of the projection.
-class ProjectedTangent {
+/// Hooke's law in the frame that rotates with a point: P = R hooke(sym R^T A), linear in A and symmetric, with R the
+/// rotation nearest to F.
+class TurnedHooke {
 public:
-    ProjectedTangent(const material::Law& law, const Matrix3& F) : law_(law), F_(F), H_(symmetric_tangent(law, F)) {
-        if (H_.llt().info() == Eigen::Success) return;
-        is_clamped_ = true;
-        const Eigen::SelfAdjointEigenSolver<Matrix9> eigen(H_);
-        vectors_ = eigen.eigenvectors();
-        const Vector9 values = eigen.eigenvalues();
-        for (int i = 0; i < 9; ++i) {
-            for (int j = 0; j < 9; ++j) {
-                const double high = std::max(values[i], values[j]), low = std::min(values[i], values[j]);
-                shares_(i, j) = low >= 0 ? 1 : high <= 0 ? 0 : high / (high - low);
-            }
-        }
-        H_ = vectors_ * values.cwiseMax(0.0).asDiagonal() * vectors_.transpose();
-    }
+    TurnedHooke(const RestModuli& moduli, const Matrix3& F)
+        : moduli_(moduli), svd_(linalg::signed_svd(F)), R_(svd_.U * svd_.V.transpose()) {}
 
-    [[nodiscard]] const Matrix9& value() const { return H_; }
-    /// Derivative of the projection along a symmetric dH; as an operator on matrices it is symmetric (Daleckii and
-    /// Krein 1965).
-    [[nodiscard]] Matrix9 rate(const Matrix9& dH) const {
-        if (!is_clamped_) return dH;
-        const Matrix9 inside = vectors_.transpose() * dH * vectors_;
-        return vectors_ * shares_.cwiseProduct(inside) * vectors_.transpose();
+    [[nodiscard]] Matrix3 stress(const Matrix3& A) const { return R_ * in_frame(A); }
+    /// a . P for the stress P of A with other moduli.
+    [[nodiscard]] double product(const RestModuli& moduli, const Matrix3& a, const Matrix3& A) const {
+        return symmetric(R_.transpose() * a).cwiseProduct(hooke(moduli, symmetric(R_.transpose() * A))).sum();
     }
-    /// The matrix whose product with dH is the change of a . H b.
-    [[nodiscard]] Matrix9 weights(const Vector9& a, const Vector9& b) const {
-        return rate(0.5 * (a * b.transpose() + b * a.transpose()));
+    [[nodiscard]] Matrix3 stress(const RestModuli& moduli, const Matrix3& A) const {
+        return R_ * hooke(moduli, symmetric(R_.transpose() * A));
     }
-    /// Gradient of a . H b by F.
-    [[nodiscard]] Matrix3 slope(const Vector9& a, const Vector9& b) const {
-        // Third derivatives of an energy are symmetric.
-        if (!is_clamped_ && material::has_energy(law_)) return unstacked(tangent_rate(law_, F_, unstacked(b)) * a);
-        const Matrix9 by = weights(a, b);
-        Matrix3 slope;
-        for (Eigen::Index k = 0; k < 9; ++k)
-            slope.data()[k] = by.cwiseProduct(tangent_rate(law_, F_, unstacked(Vector9::Unit(k)))).sum();
-        return slope;
+    /// Change of the stress of A with F.
+    [[nodiscard]] Matrix3 rate(const Matrix3& dF, const Matrix3& A) const {
+        const Matrix3 dR = unstacked(linalg::nearest_rotation_gradient(svd_) * stacked(dF));
+        return dR * in_frame(A) + R_ * hooke(moduli_, symmetric(dR.transpose() * A));
+    }
+    /// Gradient by F of a . P for the stress P of A.
+    [[nodiscard]] Matrix3 slope(const Matrix3& a, const Matrix3& A) const {
+        const Matrix3 by_R = a * in_frame(A) + A * in_frame(a);
+        return unstacked(linalg::nearest_rotation_gradient(svd_).transpose() * stacked(by_R));
     }
 
 private:
-    const material::Law& law_;
-    Matrix3 F_;
-    Matrix9 H_, vectors_, shares_;
-    bool is_clamped_ = false;
+    [[nodiscard]] Matrix3 in_frame(const Matrix3& A) const { return hooke(moduli_, symmetric(R_.transpose() * A)); }
+
+    RestModuli moduli_;
+    linalg::Svd3 svd_;
+    Matrix3 R_;
 };
 
-/// For each constant of a law: the law with a little more and a little less of it, and the difference.
-struct Neighbours {
-    material::Law more, less;
-    double apart = 0;
-};
-
-std::vector<Neighbours> neighbours_of(const material::Law& law) {
-    const std::vector<material::LawParameter> all = material::parameters(law);
-    std::vector<Neighbours> neighbours;
-    for (std::size_t c = 0; c < all.front().direction.size(); ++c) {
-        const double typical = all[c].value != 0     ? std::fabs(all[c].value)
-                               : all[c].unit.empty() ? 1
-                                                     : 1 / step_of_constant;
-        const double step = step_of_constant * typical;
-        neighbours.push_back({material::with_parameter(law, c, all[c].value + step),
-                              material::with_parameter(law, c, all[c].value - step), 2 * step});
-    }
-    return neighbours;
-}
-
-/// Of the law of each material, computed when first asked for.
-class LawNeighbours {
+/// Of each law: its moduli, and how they change with each of its constants.
+class LawModuli {
 public:
-    explicit LawNeighbours(const Elements& elements) {
+    explicit LawModuli(const Elements& elements) {
         for (std::size_t t = 0; t < elements.tet_count(); ++t) {
             const auto material = static_cast<std::size_t>(elements.material(t));
             if (material >= of_.size()) of_.resize(material + 1);
-            if (of_[material].empty()) of_[material] = neighbours_of(elements.law(t));
+            if (!of_[material]) of_[material] = {material::rest_moduli(elements.law(t)), rates_of(elements.law(t))};
         }
     }
-    [[nodiscard]] const std::vector<Neighbours>& of(int material) const {
-        return of_[static_cast<std::size_t>(material)];
+    [[nodiscard]] const RestModuli& of(int material) const { return of_[static_cast<std::size_t>(material)]->moduli; }
+    /// (constants of the law)
+    [[nodiscard]] const std::vector<RestModuli>& rates(int material) const {
+        return of_[static_cast<std::size_t>(material)]->rates;
     }
 
 private:
-    std::vector<std::vector<Neighbours>> of_;
-};
+    struct Entry {
+        RestModuli moduli;
+        std::vector<RestModuli> rates;
+    };
 
-Matrix9 tangent_rate(const Neighbours& by, const Matrix3& F) {
-    return (symmetric_tangent(by.more, F) - symmetric_tangent(by.less, F)) / by.apart;
-}
+    static std::vector<RestModuli> rates_of(const material::Law& law) {
+        const std::vector<material::LawParameter> all = material::parameters(law);
+        std::vector<RestModuli> rates;
+        for (std::size_t c = 0; c < all.front().direction.size(); ++c) {
+            const double typical = all[c].value != 0     ? std::fabs(all[c].value)
+                                   : all[c].unit.empty() ? 1
+                                                         : 1 / step_of_constant;
+            const double step = step_of_constant * typical;
+            const RestModuli more = material::rest_moduli(material::with_parameter(law, c, all[c].value + step)),
+                             less = material::rest_moduli(material::with_parameter(law, c, all[c].value - step));
+            rates.push_back({(more.lame_Pa - less.lame_Pa) / (2 * step), (more.shear_Pa - less.shear_Pa) / (2 * step)});
+        }
+        return rates;
+    }
+
+    std::vector<std::optional<Entry>> of_;
+};
 
 /// What the force depends on at an integration point.
 struct DampedPoint {
-    Matrix3 F;         ///< at the start
+    TurnedHooke law;
+    Matrix3 F;         ///< at the positions at which the stiffness is rotated
     Matrix3 velocity;  ///< gradient of u
     double volume;     ///< with the factor beta
 };
 
-DampedPoint point_of(const DampedStep& step, std::size_t t, int q) {
-    return {step.elements->deformation_gradient(t, q, view(step.start)),
+DampedPoint point_of(const DampedStep& step, const LawModuli& moduli, std::size_t t, int q) {
+    const Matrix3 F = step.elements->deformation_gradient(t, q, view(step.turned));
+    return {TurnedHooke(moduli.of(step.elements->material(t)), F), F,
             step.elements->deformation_gradient(t, q, view(step.velocity)),
             step.factor * step.elements->point_volume(t, q)};
 }
@@ -174,100 +155,97 @@ void add_stresses(const Elements& elements, const StressOf& stress_of, Eigen::Ve
 std::optional<DampedStep> damped_step(const Linearisation& at) {
     const auto& inertia = at.controls().inertia;
     if (!inertia || inertia->is_tether() || !(inertia->damping().stiffness_s > 0)) return std::nullopt;
-    return DampedStep{&at.system().model().elements(), inertia->start().x, inertia->damped_velocity(at.state().x),
-                      inertia->damping().stiffness_s};
+    return DampedStep{&at.system().model().elements(), inertia->damped_positions(),
+                      inertia->damped_velocity(at.state().x), inertia->damping().stiffness_s};
 }
 
-void add_damping_start_product(const DampedStep& step, const Eigen::VectorXd& motion, Eigen::VectorXd& forces) {
+void add_damping_turn_product(const DampedStep& step, const Eigen::VectorXd& motion, Eigen::VectorXd& forces) {
+    const LawModuli moduli(*step.elements);
     add_stresses(
         *step.elements,
         [&](std::size_t t, int q) -> Matrix3 {
-            const DampedPoint at = point_of(step, t, q);
-            const material::Law& law = step.elements->law(t);
-            const Matrix9 dH = tangent_rate(law, at.F, step.elements->deformation_gradient(t, q, view(motion)));
-            return at.volume * unstacked(ProjectedTangent(law, at.F).rate(dH) * stacked(at.velocity));
+            const DampedPoint at = point_of(step, moduli, t, q);
+            const Matrix3 dF = step.elements->deformation_gradient(t, q, view(motion));
+            return at.volume * at.law.rate(dF, at.velocity);
         },
         forces);
 }
 
-Eigen::VectorXd damping_start_weights(const DampedStep& step, const Eigen::VectorXd& weights) {
+Eigen::VectorXd damping_turn_weights(const DampedStep& step, const Eigen::VectorXd& weights) {
+    const LawModuli moduli(*step.elements);
     Eigen::VectorXd result = Eigen::VectorXd::Zero(weights.size());
     add_stresses(
         *step.elements,
         [&](std::size_t t, int q) -> Matrix3 {
-            const DampedPoint at = point_of(step, t, q);
+            const DampedPoint at = point_of(step, moduli, t, q);
             const Matrix3 G = step.elements->deformation_gradient(t, q, view(weights));
-            const ProjectedTangent tangent(step.elements->law(t), at.F);
-            return at.volume * tangent.slope(stacked(G), stacked(at.velocity));
+            return at.volume * at.law.slope(G, at.velocity);
         },
         result);
     return result;
 }
 
 void add_damping_law_force(const DampedStep& step, const Eigen::MatrixXd& direction, Eigen::VectorXd& forces) {
-    const LawNeighbours neighbours(*step.elements);
+    const LawModuli moduli(*step.elements);
     add_stresses(
         *step.elements,
         [&](std::size_t t, int q) -> Matrix3 {
             const auto changes = direction.col(static_cast<Eigen::Index>(t));
             if (changes.isZero(0)) return Matrix3::Zero();
-            const DampedPoint at = point_of(step, t, q);
-            const auto& constants = neighbours.of(step.elements->material(t));
-            Matrix9 dH = Matrix9::Zero();
-            for (std::size_t c = 0; c < constants.size(); ++c)
-                dH += changes[static_cast<Eigen::Index>(c)] * tangent_rate(constants[c], at.F);
-            const ProjectedTangent tangent(step.elements->law(t), at.F);
-            return at.volume * unstacked(tangent.rate(dH) * stacked(at.velocity));
+            const DampedPoint at = point_of(step, moduli, t, q);
+            const std::vector<RestModuli>& rates = moduli.rates(step.elements->material(t));
+            RestModuli change{0, 0};
+            for (std::size_t c = 0; c < rates.size(); ++c) {
+                change.lame_Pa += changes[static_cast<Eigen::Index>(c)] * rates[c].lame_Pa;
+                change.shear_Pa += changes[static_cast<Eigen::Index>(c)] * rates[c].shear_Pa;
+            }
+            return at.volume * at.law.stress(change, at.velocity);
         },
         forces);
 }
 
 void add_damping_law_products(const DampedStep& step, const Eigen::VectorXd& weights, Eigen::MatrixXd& products) {
     const Elements& elements = *step.elements;
-    const LawNeighbours neighbours(elements);
+    const LawModuli moduli(elements);
     parallel_for(elements.tet_count(), damped_tets_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
-            const auto& constants = neighbours.of(elements.material(t));
+            const std::vector<RestModuli>& rates = moduli.rates(elements.material(t));
             for (int q = 0; q < elements.points_per_tet(); ++q) {
-                const DampedPoint at = point_of(step, t, q);
+                const DampedPoint at = point_of(step, moduli, t, q);
                 const Matrix3 G = elements.deformation_gradient(t, q, view(weights));
-                const Matrix9 by = ProjectedTangent(elements.law(t), at.F).weights(stacked(G), stacked(at.velocity));
-                for (std::size_t c = 0; c < constants.size(); ++c)
+                for (std::size_t c = 0; c < rates.size(); ++c)
                     products(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(t)) +=
-                        at.volume * by.cwiseProduct(tangent_rate(constants[c], at.F)).sum();
+                        at.volume * at.law.product(rates[c], G, at.velocity);
             }
         }
     });
 }
 
 void add_damping_rest_product(const DampedStep& step, const Eigen::VectorXd& motion, Eigen::VectorXd& forces) {
+    const LawModuli moduli(*step.elements);
     add_stresses(
         *step.elements,
         [&](std::size_t t, int q) -> Matrix3 {
-            const DampedPoint at = point_of(step, t, q);
-            const material::Law& law = step.elements->law(t);
+            const DampedPoint at = point_of(step, moduli, t, q);
             const Matrix3 L = step.elements->deformation_gradient(t, q, view(motion));
-            const ProjectedTangent tangent(law, at.F);
-            const Matrix3 P = unstacked(tangent.value() * stacked(at.velocity));
-            const Vector9 change = tangent.rate(tangent_rate(law, at.F, -at.F * L)) * stacked(at.velocity) -
-                                   tangent.value() * stacked(at.velocity * L);
-            return at.volume * (L.trace() * P + unstacked(change) - P * L.transpose());
+            const Matrix3 P = at.law.stress(at.velocity);
+            const Matrix3 change = at.law.rate(-at.F * L, at.velocity) - at.law.stress(at.velocity * L);
+            return at.volume * (L.trace() * P + change - P * L.transpose());
         },
         forces);
 }
 
 void add_damping_rest_weights(const DampedStep& step, const Eigen::VectorXd& weights, Eigen::VectorXd& result) {
+    const LawModuli moduli(*step.elements);
     add_stresses(
         *step.elements,
         [&](std::size_t t, int q) -> Matrix3 {
-            const DampedPoint at = point_of(step, t, q);
+            const DampedPoint at = point_of(step, moduli, t, q);
             const Matrix3 G = step.elements->deformation_gradient(t, q, view(weights));
-            const ProjectedTangent tangent(step.elements->law(t), at.F);
-            const Matrix3 P = unstacked(tangent.value() * stacked(at.velocity));
-            const Matrix3 M = unstacked(tangent.value() * stacked(G));
-            const Matrix3 slope = tangent.slope(stacked(G), stacked(at.velocity));
-            return at.volume * (P.cwiseProduct(G).sum() * Matrix3::Identity() - at.F.transpose() * slope -
-                                G.transpose() * P - at.velocity.transpose() * M);
+            const Matrix3 P = at.law.stress(at.velocity);
+            return at.volume *
+                   (P.cwiseProduct(G).sum() * Matrix3::Identity() - at.F.transpose() * at.law.slope(G, at.velocity) -
+                    G.transpose() * P - at.velocity.transpose() * at.law.stress(G));
         },
         result);
 }

@@ -38,8 +38,8 @@ std::shared_ptr<const Inertia> MotionInTime::inertia(const History& history, dou
         stiffness = std::make_shared<StiffnessMatrix>();
         stiffness->pattern = {body_layout_, &body_layout_->pattern};
         stiffness->values.assign(body_layout_->pattern.entries(), 0.0);
-        const std::span<const double> x(history.x.data(), static_cast<std::size_t>(history.x.size()));
-        model_.elements().add_tangent(x, body_layout_->element_sums, stiffness->values, true);
+        const Eigen::VectorXd x = Inertia::damped_positions(history, dt, scheme);
+        model_.elements().add_turned_stiffness(linalg::view(x), body_layout_->element_sums, stiffness->values);
     }
     return std::make_shared<const Inertia>(model_.elements(), model_.free_index(), history, dt, damping_,
                                            std::move(stiffness), scheme);
