@@ -175,7 +175,9 @@ bool RunChecks::is_unstable(const RobotState& robot, const Step& step) {
     Eigen::Index a = 0;
     for (const CableState& cable : step.cables) state.multiplier[a++] = cable.tension_N;
     for (const ChamberState& chamber : step.chambers) state.multiplier[a++] = -chamber.pressure_Pa;
-    const Controls controls = stepper_.controls(robot, step.time);
+    Controls controls = stepper_.controls(robot, step.time);
+    for (std::size_t j = 0; j < step.joints.size(); ++j)  // with their whole turns in that step
+        controls.joint_start[j] = step.joints[j].coordinate;
     state.multiplier = system_.evaluate(state, controls).multiplier;
     return stability_.falling_motion(state, controls).has_value();
 }

@@ -242,6 +242,24 @@ TEST_CASE("a motor follows its angle over several turns") {
     }
 }
 
+TEST_CASE("a motor turns a bar that nothing resists, and past half a turn it is as stable as before") {
+    for (const char* gravity : {"", "gravity = [0, 0, -9.81]\n"}) {
+        CAPTURE(gravity);
+        for (const int steps : {20, 40}) {
+            const JointedRun r = run_jointed(jointed_world(
+                bar("bar", false) + joint("motor", "world", "bar", 0, 0, "axis = [0, 1, 0]\nangle = \"360 deg\""),
+                fmt::format("steps = {}\n{}", steps, gravity)));
+            CAPTURE(steps);
+            CHECK(r.joint().coordinate == near(2 * pi, {.absolute = 1e-3}));
+            for (const std::string& warning : r.result.warnings)
+                CHECK_MESSAGE(warning.find("unstable") == std::string::npos, warning);
+            int iterations = 0;
+            for (const sim::Step& step : r.result.steps) iterations += step.iterations;
+            CHECK(iterations < 30 * steps);
+        }
+    }
+}
+
 TEST_CASE("a ball joint transmits a force and no torque") {
     const JointedRun r = run_jointed(jointed_world(bar("bar", true) + joint("ball", "world", "bar", 0, 0), at_rest()));
     CHECK(r.joint().force_N.z == near(bar_kg * g, {.relative = 1e-3}));

@@ -112,8 +112,12 @@ Equilibrium::Equilibrium(const Model& model) : model_(&model) {
                                 .norm();
         energy_rounding_ += 1e-16 * object.node_stiffness() * edge * edge;
     }
+    // A motor that turns a thing which nothing resists ends without any force: so small an opening of its joint is
+    // none.
+    constexpr double negligible_opening = 1e-7;
     for (const Joint& joint : d.joints) {
         joints_.emplace_back(joint);
+        force_floor_ += negligible_opening * joint.stiffness_N_m * joint.arm_m;
         energy_rounding_ += 1e-16 * joint.stiffness_N_m * joint.arm_m * joint.arm_m;
     }
     // Rounding moves a node by a fraction of its coordinate, which causes a force of that times a tet's stiffness times

@@ -109,6 +109,7 @@ RobotState Stepper::rest() const {
 Controls Stepper::controls(const RobotState& robot, double time) const {
     Controls controls = system_.controls(time);
     controls.met = robot.controls.met;
+    controls.joint_start = system_.joint_coordinates(robot.x(), robot.controls);
     return controls;
 }
 
