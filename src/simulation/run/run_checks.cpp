@@ -195,6 +195,9 @@ std::string advice(Stepper& stepper, const Program& program, const RobotState& r
                 material.name, 1 / blend->a, extremely_soft);
     }
     if (program.dynamics || !d.growths.empty()) return {};
+    if (stepper.system().has_friction() && stepper.has_inertia())
+        return ". Only friction holds something here: where it is too weak there is no equilibrium, and the thing "
+               "slides; with program.time_step its motion is computed";
     const auto limit =
         find_pressure_limit(stepper.system(), stepper.solvers(), robot.controls, stepper.controls(robot, time),
                             {program.tolerance, program.iteration_limit}, robot.now.state, progress);
