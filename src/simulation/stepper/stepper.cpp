@@ -444,6 +444,10 @@ StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Sche
     std::optional<Prediction> expected;
     if (target.expected != nullptr) expected = start_from(system_, robot, *target.expected, controls);
     Prediction start = expected ? *std::move(expected) : predict(system_, laplacian_, robot, controls, along, progress);
+    // What nothing holds would go on as it moved before, since the tether is too weak to be noticed.
+    const bool as_found = start.reason.empty() && start.evaluation.error() <= options_.tolerance;
+    if (tether_dt_s_ > 0 && along && !expected && as_found)
+        start = predict(system_, laplacian_, robot, controls, {}, progress);
     if (!start.reason.empty()) {
         StepOutcome outcome;
         outcome.reason = std::move(start.reason);
