@@ -7,7 +7,7 @@
 
 namespace pliant::robot {
 
-/// Rayleigh damping: C = mass * M + stiffness * K, K the positive part of the tangent at the start of each step.
+/// Rayleigh damping: C = mass * M + stiffness * K, K the stiffness to changes of strain (theory.md).
 struct Damping {
     double mass_per_s = 0;
     double stiffness_s = 0;

@@ -19,14 +19,6 @@ using linalg::Vector3;
 
 constexpr std::size_t places_per_piece = 1024;
 
-/// Change of the force on node a with a motion of node b, for gradients of their shape functions that are rotated with
-/// the point.
-Matrix3 hooke_block(const material::RestModuli& moduli, const Vector3& a, const Vector3& b) {
-    Matrix3 K = moduli.lame_Pa * a * b.transpose() + moduli.shear_Pa * b * a.transpose();
-    K.diagonal().array() += moduli.shear_Pa * a.dot(b);
-    return K;
-}
-
 }  // namespace
 
 BlockSums Elements::block_sums(const std::vector<int>& free_index, const linalg::SymmetricPattern& pattern) const {
@@ -93,20 +85,25 @@ void Elements::add_tangent(std::span<const double> x, const BlockSums& sums, std
     sums.add(fill, 9, values, scratch_);
 }
 
-void Elements::turned_one_by_one(std::size_t batch, std::span<const double> x, const material::RestModuli& moduli,
+void Elements::strain_one_by_one(std::size_t batch, std::span<const double> x, const material::RestModuli& moduli,
                                  double* blocks) const {
     std::fill_n(blocks, pairs() * 9 * lanes, 0.0);
     for (std::size_t lane = 0; lane < lanes; ++lane) {
         const std::size_t tet = tet_[batch * lanes + lane];
         for (int q = 0; tet != no_tet && q < points_per_tet_; ++q) {
-            const Matrix3 R = linalg::nearest_rotation(deformation_gradient(tet, q, x));
-            std::array<Vector3, 10> turned;
-            for (std::size_t a = 0; a < width(); ++a)
-                turned[a] = R * linalg::vector(shape_gradient(tet, q, static_cast<int>(a)));
+            const Matrix3 F = deformation_gradient(tet, q, x), stretch = F * F.transpose();
+            const double volume = point_volume(tet, q), lame = volume * moduli.lame_Pa,
+                         shear = volume * moduli.shear_Pa;
+            std::array<Vector3, 10> rest, now;
+            for (std::size_t a = 0; a < width(); ++a) {
+                rest[a] = linalg::vector(shape_gradient(tet, q, static_cast<int>(a)));
+                now[a] = F * rest[a];
+            }
             double* block = blocks + lane;
             for (std::size_t b = 0; b < width(); ++b) {
                 for (std::size_t a = 0; a <= b; ++a, block += 9 * lanes) {
-                    const Matrix3 K = point_volume(tet, q) * hooke_block(moduli, turned[a], turned[b]);
+                    const Matrix3 K = lame * now[a] * now[b].transpose() + shear * now[b] * now[a].transpose() +
+                                      shear * rest[a].dot(rest[b]) * stretch;
                     for (std::size_t k = 0; k < 9; ++k) block[k * lanes] += K.data()[k];
                 }
             }
@@ -114,11 +111,11 @@ void Elements::turned_one_by_one(std::size_t batch, std::span<const double> x, c
     }
 }
 
-void Elements::add_turned_stiffness(std::span<const double> x, const BlockSums& sums, std::span<double> values) const {
+void Elements::add_strain_stiffness(std::span<const double> x, const BlockSums& sums, std::span<double> values) const {
     std::vector<material::RestModuli> moduli;
     for (const material::Law& law : laws_) moduli.push_back(material::rest_moduli(law));
     const auto fill = [&](std::size_t b, double* blocks) {
-        turned_one_by_one(b, x, moduli[static_cast<std::size_t>(batch_law_[b])], blocks);
+        strain_one_by_one(b, x, moduli[static_cast<std::size_t>(batch_law_[b])], blocks);
     };
     sums.add(fill, 9, values, scratch_);
 }

@@ -45,9 +45,10 @@ public:
     /// integration point contributes the nearest positive semi-definite matrix instead. Precondition: min_J > 0.
     void add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values, bool project) const;
 
-    /// Adds the stiffness at rest of every point (Hooke's law with rest_moduli()), rotated as the point is at `x`: it
-    /// resists changes of shape, and no rotation of the body as it stands at `x`. Positive semi-definite.
-    void add_turned_stiffness(std::span<const double> x, const BlockSums& sums, std::span<double> values) const;
+    /// Adds Hooke's law with rest_moduli() for the Green-Lagrange strain that a motion u causes at `x`: w . K u = sum
+    /// of volume times (lame tr(a) tr(e) + 2 shear a:e), e = sym(F^T grad u), a = sym(F^T grad w). It resists changes
+    /// of shape, and no rotation of the body as it is at `x`. Positive semi-definite.
+    void add_strain_stiffness(std::span<const double> x, const BlockSums& sums, std::span<double> values) const;
 
     /// Adds the skew part of the tangent, which add_tangent leaves out and only laws without an energy have, to a
     /// pattern of block 3; `index` (n) of each node in it, or -1. The blocks at and below the diagonal are set; those
@@ -148,7 +149,7 @@ private:
                                                 double* forces) const;
     void tangent_one_by_one(std::size_t batch, std::span<const double> x, const material::Law& law, bool project,
                             double* blocks) const;
-    void turned_one_by_one(std::size_t batch, std::span<const double> x, const material::RestModuli& moduli,
+    void strain_one_by_one(std::size_t batch, std::span<const double> x, const material::RestModuli& moduli,
                            double* blocks) const;
     /// Masses of the tets of a batch, kg; 0 in empty lanes.
     struct LaneMasses {

@@ -41,10 +41,13 @@ Inertia::Inertia(const Elements& elements, const std::vector<int>& free_index, H
     }
 }
 
-double Inertia::ahead(const History& history, double dt, Scheme scheme) {
+Inertia::Place Inertia::damping_place(const History& history, double dt, Scheme scheme) {
     const bool is_bdf2 = (scheme == Scheme::bdf2 && history.dt_before > 0) ||
                          (scheme == Scheme::even && is_as_long_as_the_last(history, dt));
-    return is_bdf2 ? dt : 0.5 * dt;
+    if (is_bdf2) return {1, dt, 0};
+    if (scheme != Scheme::conserving || !(history.dt_before > 0)) return {1, 0.5 * dt, 0};
+    const double share = 0.5 * dt / history.dt_before;
+    return {1 + share, 0, -share};
 }
 
 void Inertia::set_even() {

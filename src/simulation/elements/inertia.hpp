@@ -69,15 +69,17 @@ public:
     };
     /// Two-point Gauss rule, exact for energies of fourth order in the positions (such as that of a rigid object).
     static constexpr std::array<Mean, 2> gauss{{{0.21132486540518712, 0.5}, {0.78867513459481288, 0.5}}};
-    /// (3n) positions at which the stiffness used for damping is rotated: in the middle of the step where velocities
-    /// are differences of its ends, else at its end, as the velocity at its start foretells them. From a stiffness
-    /// rotated as at the start, a body that turns would be braked, the more the longer the step is.
-    [[nodiscard]] static Eigen::VectorXd damped_positions(const History& history, double dt, Scheme scheme) {
-        return history.x + ahead(history, dt, scheme) * history.v;
-    }
-    [[nodiscard]] Eigen::VectorXd damped_positions() const { return start_.x + ahead_s() * start_.v; }
-    /// Time from the start of the step to those positions.
-    [[nodiscard]] double ahead_s() const { return ahead(start_, dt_, scheme_); }
+    /// Positions as a sum of those of a history: from x on for a time.
+    struct Place {
+        double x, v, x_before;  ///< factors
+        [[nodiscard]] Eigen::VectorXd of(const History& h) const { return x * h.x + v * h.v + x_before * h.x_before; }
+    };
+    /// Where the stiffness used for damping is taken: in the middle of the step where velocities are differences of its
+    /// ends, else at its end, foretold by the velocity at the start. With a stiffness taken at the start a body that
+    /// turns would be braked, the more the longer the step is. The velocities of conserving steps oscillate about their
+    /// mean over a step: there it is that of the last one.
+    [[nodiscard]] static Place damping_place(const History& history, double dt, Scheme scheme);
+    [[nodiscard]] Place damping_place() const { return damping_place(start_, dt_, scheme_); }
     /// Points at which forces are evaluated; empty: at the end only.
     [[nodiscard]] std::span<const Mean> means() const {
         return scheme_ == Scheme::conserving ? std::span<const Mean>(gauss) : std::span<const Mean>();
@@ -133,7 +135,6 @@ public:
     }
 
 private:
-    [[nodiscard]] static double ahead(const History& history, double dt, Scheme scheme);
     [[nodiscard]] Eigen::VectorXd damping_force(const Eigen::VectorXd& motion) const;
     [[nodiscard]] Eigen::VectorXd off(const Eigen::VectorXd& x) const;
     void set_even();

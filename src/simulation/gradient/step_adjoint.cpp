@@ -34,13 +34,15 @@ void carry_inertia(const Linearisation& at, const Eigen::VectorXd& force_weights
     const History by = at.controls().inertia->start_weights(force_weights, carried.v);
     carried.x = carried.x_before + by.x;
     carried.v = carried.v_before + by.v;
-    if (const auto damped = damped_step(at)) {
-        const Eigen::VectorXd turned = damping_turn_weights(*damped, force_weights);
-        carried.x += turned;
-        carried.v += at.controls().inertia->ahead_s() * turned;
-    }
     carried.x_before = by.x_before;
     carried.v_before = by.v_before;
+    const auto damped = damped_step(at);
+    if (!damped) return;
+    const Inertia::Place place = at.controls().inertia->damping_place();
+    const Eigen::VectorXd weights = damping_place_weights(*damped, force_weights);
+    carried.x += place.x * weights;
+    carried.v += place.v * weights;
+    carried.x_before += place.x_before * weights;
 }
 
 /// Joint damping acts against the coordinate at the start of the step.

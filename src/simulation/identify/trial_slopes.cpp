@@ -151,7 +151,7 @@ private:
             VectorXd inertia = VectorXd::Zero(h.x.size());
             (void)from(at, unknown).evaluate(VectorXd::Zero(h.x.size()), inertia);
             if (const auto damped = sim::damped_step(at))
-                sim::add_damping_turn_product(*damped, h.x + at.controls().inertia->ahead_s() * h.v, inertia);
+                sim::add_damping_place_product(*damped, at.controls().inertia->damping_place().of(h), inertia);
             force.head(h.x.size()) += inertia;
             add_joint_force(at, h.x, force);
         }

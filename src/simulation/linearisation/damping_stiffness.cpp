@@ -15,7 +15,6 @@ namespace {
 
 using linalg::Matrix3;
 using linalg::view;
-using Vector9 = Eigen::Matrix<double, 9, 1>;
 
 /// Relative step of the central differences of the moduli in a constant. Their error is some 1e-10.
 constexpr double step_of_constant = 1e-5;
@@ -23,14 +22,6 @@ constexpr double step_of_constant = 1e-5;
 constexpr std::size_t damped_tets_at_once = 64;
 
 using material::RestModuli;
-
-Vector9 stacked(const Matrix3& A) {
-    return Eigen::Map<const Vector9>(A.data());
-}
-
-Matrix3 unstacked(const Vector9& a) {
-    return Eigen::Map<const Matrix3>(a.data());
-}
 
 Matrix3 symmetric(const Matrix3& A) {
     return 0.5 * (A + A.transpose());
@@ -41,38 +32,34 @@ Matrix3 hooke(const RestModuli& moduli, const Matrix3& strain) {
     return moduli.lame_Pa * strain.trace() * Matrix3::Identity() + 2 * moduli.shear_Pa * strain;
 }
 
-/// Hooke's law in the frame that rotates with a point: P = R hooke(sym R^T A), linear in A and symmetric, with R the
-/// rotation nearest to F.
-class TurnedHooke {
+/// The stress of a velocity gradient A: P = F hooke(sym F^T A), linear in A and symmetric.
+class StrainRateLaw {
 public:
-    TurnedHooke(const RestModuli& moduli, const Matrix3& F)
-        : moduli_(moduli), svd_(linalg::signed_svd(F)), R_(svd_.U * svd_.V.transpose()) {}
+    StrainRateLaw(const RestModuli& moduli, const Matrix3& F) : moduli_(moduli), F_(F) {}
 
-    [[nodiscard]] Matrix3 stress(const Matrix3& A) const { return R_ * in_frame(A); }
+    [[nodiscard]] Matrix3 stress(const Matrix3& A) const { return F_ * hooke(moduli_, strain(A)); }
+    /// With other moduli.
+    [[nodiscard]] Matrix3 stress(const RestModuli& moduli, const Matrix3& A) const {
+        return F_ * hooke(moduli, strain(A));
+    }
     /// a . P for the stress P of A with other moduli.
     [[nodiscard]] double product(const RestModuli& moduli, const Matrix3& a, const Matrix3& A) const {
-        return symmetric(R_.transpose() * a).cwiseProduct(hooke(moduli, symmetric(R_.transpose() * A))).sum();
-    }
-    [[nodiscard]] Matrix3 stress(const RestModuli& moduli, const Matrix3& A) const {
-        return R_ * hooke(moduli, symmetric(R_.transpose() * A));
+        return strain(a).cwiseProduct(hooke(moduli, strain(A))).sum();
     }
     /// Change of the stress of A with F.
     [[nodiscard]] Matrix3 rate(const Matrix3& dF, const Matrix3& A) const {
-        const Matrix3 dR = unstacked(linalg::nearest_rotation_gradient(svd_) * stacked(dF));
-        return dR * in_frame(A) + R_ * hooke(moduli_, symmetric(dR.transpose() * A));
+        return dF * hooke(moduli_, strain(A)) + F_ * hooke(moduli_, symmetric(dF.transpose() * A));
     }
     /// Gradient by F of a . P for the stress P of A.
     [[nodiscard]] Matrix3 slope(const Matrix3& a, const Matrix3& A) const {
-        const Matrix3 by_R = a * in_frame(A) + A * in_frame(a);
-        return unstacked(linalg::nearest_rotation_gradient(svd_).transpose() * stacked(by_R));
+        return a * hooke(moduli_, strain(A)) + A * hooke(moduli_, strain(a));
     }
 
 private:
-    [[nodiscard]] Matrix3 in_frame(const Matrix3& A) const { return hooke(moduli_, symmetric(R_.transpose() * A)); }
+    [[nodiscard]] Matrix3 strain(const Matrix3& A) const { return symmetric(F_.transpose() * A); }
 
     RestModuli moduli_;
-    linalg::Svd3 svd_;
-    Matrix3 R_;
+    Matrix3 F_;
 };
 
 /// Of each law: its moduli, and how they change with each of its constants.
@@ -117,15 +104,15 @@ private:
 
 /// What the force depends on at an integration point.
 struct DampedPoint {
-    TurnedHooke law;
-    Matrix3 F;         ///< at the positions at which the stiffness is rotated
+    StrainRateLaw law;
+    Matrix3 F;         ///< at the positions of the stiffness
     Matrix3 velocity;  ///< gradient of u
     double volume;     ///< with the factor beta
 };
 
 DampedPoint point_of(const DampedStep& step, const LawModuli& moduli, std::size_t t, int q) {
-    const Matrix3 F = step.elements->deformation_gradient(t, q, view(step.turned));
-    return {TurnedHooke(moduli.of(step.elements->material(t)), F), F,
+    const Matrix3 F = step.elements->deformation_gradient(t, q, view(step.place));
+    return {StrainRateLaw(moduli.of(step.elements->material(t)), F), F,
             step.elements->deformation_gradient(t, q, view(step.velocity)),
             step.factor * step.elements->point_volume(t, q)};
 }
@@ -155,11 +142,11 @@ void add_stresses(const Elements& elements, const StressOf& stress_of, Eigen::Ve
 std::optional<DampedStep> damped_step(const Linearisation& at) {
     const auto& inertia = at.controls().inertia;
     if (!inertia || inertia->is_tether() || !(inertia->damping().stiffness_s > 0)) return std::nullopt;
-    return DampedStep{&at.system().model().elements(), inertia->damped_positions(),
+    return DampedStep{&at.system().model().elements(), inertia->damping_place().of(inertia->start()),
                       inertia->damped_velocity(at.state().x), inertia->damping().stiffness_s};
 }
 
-void add_damping_turn_product(const DampedStep& step, const Eigen::VectorXd& motion, Eigen::VectorXd& forces) {
+void add_damping_place_product(const DampedStep& step, const Eigen::VectorXd& motion, Eigen::VectorXd& forces) {
     const LawModuli moduli(*step.elements);
     add_stresses(
         *step.elements,
@@ -171,7 +158,7 @@ void add_damping_turn_product(const DampedStep& step, const Eigen::VectorXd& mot
         forces);
 }
 
-Eigen::VectorXd damping_turn_weights(const DampedStep& step, const Eigen::VectorXd& weights) {
+Eigen::VectorXd damping_place_weights(const DampedStep& step, const Eigen::VectorXd& weights) {
     const LawModuli moduli(*step.elements);
     Eigen::VectorXd result = Eigen::VectorXd::Zero(weights.size());
     add_stresses(

@@ -1,5 +1,5 @@
-// A motion in time is damped by beta K u, where K is the stiffness at rest, rotated with each point, and u the velocity:
-// the derivatives of that force with everything that K depends on. Elsewhere K is held fixed.
+// A motion in time is damped by beta K u, where K is Elements::add_strain_stiffness and u the velocity: the derivatives
+// of that force with everything that K depends on. Elsewhere K is held fixed.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,17 +13,17 @@ namespace pliant::sim {
 /// A step that is damped by stiffness.
 struct DampedStep {
     const Elements* elements;
-    Eigen::VectorXd turned;    ///< (3n) positions at which K is rotated, Inertia::damped_positions
+    Eigen::VectorXd place;     ///< (3n) positions at which K is taken, Inertia::damped_positions
     Eigen::VectorXd velocity;  ///< (3n) u, m/s
     double factor = 0;         ///< beta, s
 };
 /// Empty for a static step, and for one without damping by stiffness.
 [[nodiscard]] std::optional<DampedStep> damped_step(const Linearisation& at);
 
-/// forces (3n) += change of the damping force with a motion (3n) of the positions at which K is rotated.
-void add_damping_turn_product(const DampedStep& step, const Eigen::VectorXd& motion, Eigen::VectorXd& forces);
+/// forces (3n) += change of the damping force with a motion (3n) of the positions at which K is taken.
+void add_damping_place_product(const DampedStep& step, const Eigen::VectorXd& motion, Eigen::VectorXd& forces);
 /// (3n) the transpose of the same, times `weights` (3n) of the forces.
-[[nodiscard]] Eigen::VectorXd damping_turn_weights(const DampedStep& step, const Eigen::VectorXd& weights);
+[[nodiscard]] Eigen::VectorXd damping_place_weights(const DampedStep& step, const Eigen::VectorXd& weights);
 
 /// forces (3n) += change of the damping force with the constants of each tet: a column of `direction` (constants,
 /// tets).

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double damping_s = 0.01;
 
-/// A block pressed together along its axis and disturbed: every point is rotated by another amount.
+/// A block pressed together along its axis and disturbed: every point is deformed by another amount.
 Eigen::VectorXd pressed(const Equilibrium& system) {
     Eigen::VectorXd x = disturbed(system, 0, 0).x;
     for (Eigen::Index node = 0; node < x.size() / 3; ++node) x[3 * node] *= 0.85;
@@ -55,7 +55,8 @@ Description with_law(Description d, const material::Law& law) {
 
 }  // namespace
 
-TEST_CASE("the damping force changes with the positions at which it is rotated, the constants and the rest positions as told") {
+TEST_CASE(
+    "the damping force changes with the positions at which it is taken, the constants and the rest positions as told") {
     double worst = 0;
     for (const int order : {1, 2}) {
         for (const auto& [name, law] : laws) {
@@ -64,7 +65,7 @@ TEST_CASE("the damping force changes with the positions at which it is rotated, 
             const Description d = block(order, law);
             Damped damped(d);
             const DampedStep& step = damped.at;
-            const Eigen::Index size = step.turned.size();
+            const Eigen::Index size = step.place.size();
             const Eigen::VectorXd motion = damped.noise.vector(size), weights = damped.noise.vector(size);
             const auto check = [&](const char* what, double error) {
                 INFO(what);
@@ -77,11 +78,11 @@ TEST_CASE("the damping force changes with the positions at which it is rotated, 
             };
 
             Eigen::VectorXd change = Eigen::VectorXd::Zero(size);
-            add_damping_turn_product(step, motion, change);
-            check("rotation", error_of(change, 0.01 * edge, [&](double h) {
-                      return damping_force(d, step.turned + h * motion, step.velocity);
+            add_damping_place_product(step, motion, change);
+            check("place", error_of(change, 0.01 * edge, [&](double h) {
+                      return damping_force(d, step.place + h * motion, step.velocity);
                   }));
-            is_transpose(weights.dot(change), damping_turn_weights(step, weights).dot(motion), change);
+            is_transpose(weights.dot(change), damping_place_weights(step, weights).dot(motion), change);
 
             const auto parameters = material::parameters(law);
             Eigen::MatrixXd products = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(parameters[0].direction.size()),
@@ -94,7 +95,7 @@ TEST_CASE("the damping force changes with the positions at which it is rotated, 
                 if (change.norm() == 0) continue;
                 check("constant", error_of(change, 0.01 * std::fabs(parameters[k].value), [&](double h) {
                           const auto other = material::with_parameter(law, k, parameters[k].value + h);
-                          return damping_force(with_law(d, other), step.turned, step.velocity);
+                          return damping_force(with_law(d, other), step.place, step.velocity);
                       }));
                 is_transpose(weights.dot(change), products.row(static_cast<Eigen::Index>(k)).sum(), change);
             }
@@ -107,7 +108,7 @@ TEST_CASE("the damping force changes with the positions at which it is rotated, 
                           for (std::size_t axis = 0; axis < 3; ++axis)
                               other.mesh.points[n][axis] += h * motion[static_cast<Eigen::Index>(3 * n + axis)];
                       }
-                      return damping_force(other, step.turned, step.velocity);
+                      return damping_force(other, step.place, step.velocity);
                   }));
             Eigen::VectorXd by_rest = Eigen::VectorXd::Zero(size);
             add_damping_rest_weights(step, weights, by_rest);

@@ -38,8 +38,8 @@ std::shared_ptr<const Inertia> MotionInTime::inertia(const History& history, dou
         stiffness = std::make_shared<StiffnessMatrix>();
         stiffness->pattern = {body_layout_, &body_layout_->pattern};
         stiffness->values.assign(body_layout_->pattern.entries(), 0.0);
-        const Eigen::VectorXd x = Inertia::damped_positions(history, dt, scheme);
-        model_.elements().add_turned_stiffness(linalg::view(x), body_layout_->element_sums, stiffness->values);
+        const Eigen::VectorXd x = Inertia::damping_place(history, dt, scheme).of(history);
+        model_.elements().add_strain_stiffness(linalg::view(x), body_layout_->element_sums, stiffness->values);
     }
     return std::make_shared<const Inertia>(model_.elements(), model_.free_index(), history, dt, damping_,
                                            std::move(stiffness), scheme);

@@ -18,8 +18,8 @@ public:
     [[nodiscard]] History at_rest(const Eigen::VectorXd& x) const;
     /// With zero velocity everywhere.
     [[nodiscard]] static History still(const Eigen::VectorXd& x);
-    /// For a step of `dt` from the end of `history`. Stiffness damping uses the stiffness at rest, rotated as at
-    /// Inertia::damped_positions.
+    /// For a step of `dt` from the end of `history`. Stiffness damping uses Elements::add_strain_stiffness at
+    /// Inertia::damping_place.
     [[nodiscard]] std::shared_ptr<const Inertia> inertia(const History& history, double dt,
                                                          Scheme scheme = Scheme::even);
     /// The history after a step that ends at `x`.
