@@ -12,10 +12,11 @@
 
 namespace pliant {
 
-/// Calls `work(i)` for 0 <= i < n on the given number of threads (0: one per core). Parallel loops inside `work` run on
-/// its thread alone and give the same bits. The Watch is called on the calling thread; once it asks to stop, no further
-/// work is started.
-/// @throws Failure of kind `cancelled`, or the exception of `work` with the lowest i.
+/// Calls `work(i)` for 0 <= i < n on the given number of threads (0: one per core), so that `work` must be safe to call
+/// from several threads at once. Parallel loops inside `work` run on its thread alone and give the same bits. Once the
+/// Watch asks to stop or `work` throws, no further work is started.
+/// @throws Failure if the number of threads is negative, or when cancelled. If `work` throws, the exception with the
+/// lowest i of those that were thrown.
 PLIANT_API void on_each_core(std::size_t n, const std::function<void(std::size_t)>& work, int threads = 0,
                              const Watch& watch = {});
 
@@ -23,8 +24,9 @@ PLIANT_API void on_each_core(std::size_t n, const std::function<void(std::size_t
 /// all cores. The results have the same bits as those of separate Steppers, on any number of threads.
 class PLIANT_API Batch {
 public:
-    /// One stepper for each model; the same model may occur several times.
-    /// @throws Failure if the options are invalid.
+    /// One stepper for each model; the same model may occur several times. `threads`: 0 for one per core; never more
+    /// than there are models.
+    /// @throws Failure if an option is out of range, or the number of threads is negative.
     explicit Batch(const std::vector<Model>& models, const StepOptions& options = {}, int threads = 0);
     /// Moves; the moved-from batch may only be assigned to or destroyed.
     Batch(Batch&&) noexcept;
@@ -50,6 +52,8 @@ public:
     std::vector<StepResult> step(std::vector<State>& states, const std::vector<Inputs>& inputs,
                                  const Watch& watch = {});
     /// (robots) Stepper::observe of each.
+    /// @throws Failure if the number of states differs from that of the robots, or as for Stepper::observe: the message
+    /// names the robot.
     [[nodiscard]] std::vector<Observation> observe(const std::vector<State>& states);
 
 private:

@@ -24,7 +24,8 @@ struct Judgement {
 /// An objective of a program: the sum of `judge` over its steps, from step 1.
 struct Objective {
     std::vector<Measure> measures;  ///< the values passed to `judge`
-    /// Called at least once per step, in any order; must be deterministic. `values`: (measures), SI.
+    /// Called at least once per step, in any order, on the thread that called gradient(); must be deterministic.
+    /// `values`: (measures), SI.
     std::function<Judgement(int step, std::span<const double> values)> judge;
 };
 
@@ -37,8 +38,8 @@ struct GradientOptions {
     /// one is included: the shape, whose mesh moves along with unchanged topology, positions, constants, targets. Only
     /// for quasi-static programs without friction.
     std::vector<std::string> numbers{};
-    /// Number of states kept if steps depend on earlier ones. The others are solved again, so that memory does not grow
-    /// with the number of steps.
+    /// Number of states kept if steps depend on earlier ones, at least 1. The others are solved again, so that memory
+    /// does not grow with the number of steps.
     int kept = 8;
 };
 
@@ -55,12 +56,13 @@ struct ProgramGradient {
     std::vector<std::vector<double>> values;  ///< (steps, measures) SI
     std::vector<Parameter> parameters;        ///< of the robot and its surroundings
     std::vector<double> by_parameters;        ///< (parameters)
-    /// (nodes), if requested. Lengths and volumes prescribed as ratios change with their rest values.
+    /// (nodes), if requested. Prescribed lengths, volumes and amounts of gas change with the rest length or volume: by
+    /// the same amount where the target in the robot file is `shortening` or `volume_change`, otherwise in proportion.
     std::vector<Point> by_rest_positions;
     std::vector<GuidePoint> guide_points;  ///< of cables, then of springs; if requested
     /// (guide_points) with respect to the rest position of each guide point: it is re-attached to the mesh as it moves,
-    /// and lengths prescribed as ratios change with their rest values. Gap elements that a cable acts through are
-    /// unchanged.
+    /// and prescribed lengths change with the rest length as for by_rest_positions. Gap elements that a cable acts
+    /// through are unchanged.
     std::vector<Point> by_guide_points;
     std::vector<TetGradient> by_tets;  ///< if requested
     std::vector<double> by_numbers;    ///< (GradientOptions::numbers) in the units of the robot file
@@ -75,9 +77,12 @@ struct ProgramGradient {
 };
 
 /// Runs the robot's program and differentiates it backwards, with the adjoint of each step; also for a motion in time.
-/// Lagged quantities of friction are held constant.
-/// @throws Failure if a measure or number does not exist, the mesh cannot follow a number, or a step does not converge
-/// or has no derivative; or when cancelled. Exceptions of `judge` are passed on.
+/// Lagged quantities of friction are held constant, as in a Linearisation: with friction, the gradient may differ from
+/// differences of two programs.
+/// @throws Failure if a measure or number does not exist, `kept` is below 1, `judge` is empty or returns the wrong
+/// number of slopes or a number that is not finite, the mesh cannot follow a number, a guide point is not attached to a
+/// tetrahedron, or a step does not converge or has no derivative; or when cancelled. Exceptions of `judge` are passed
+/// on.
 [[nodiscard]] PLIANT_API ProgramGradient gradient(const Model& model, const Objective& objective,
                                                   const GradientOptions& options = {}, const Watch& watch = {});
 

@@ -86,6 +86,7 @@ public:
     /// All estimates as KEY=VALUE, as Robot::load() takes them.
     [[nodiscard]] std::vector<std::string> changes() const;
     /// The robot with the estimated parameters.
+    /// @throws Failure if a file that the robot file is based on can no longer be read, or has become invalid.
     [[nodiscard]] Robot robot() const;
     /// Text for people: tables of the estimates and errors.
     [[nodiscard]] std::string text() const;
@@ -93,7 +94,7 @@ public:
     [[nodiscard]] std::string json() const;
     /// Writes the folder that `pliant identify -o` writes, whole or not at all, replacing an older one:
     /// identified.toml, summary.json, comparison.csv and plots.
-    /// @throws Failure if a file cannot be written.
+    /// @throws Failure as for robot(), or if a file cannot be written.
     void write(const std::filesystem::path& folder) const;
 
     /// @cond

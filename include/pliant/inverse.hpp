@@ -14,10 +14,12 @@
 
 namespace pliant {
 
-/// An actuator with a range, which inverse() and workspace() may vary.
+/// An actuator with a range, which inverse(), workspace() and reduce() may vary. Its values are those of the quantity
+/// that its `target` in the robot file gives: length ratio, shortening (m) or tension (N) of a cable; volume ratio,
+/// volume change (m^3), pressure (Pa above ambient) or gas ratio of a chamber. They are not the values of a Drive.
 struct SteeredInput {
     std::string name;  ///< of the cable or chamber
-    std::string unit;  ///< SI unit of its target; "" for a ratio
+    std::string unit;  ///< SI unit of that quantity; "" for a ratio
     double low = 0;    ///< lower end of its range
     double high = 0;   ///< upper end of its range
 };
@@ -25,7 +27,7 @@ struct SteeredInput {
 /// Options of inverse().
 struct InverseOptions {
     /// Number of starting points, spread over the ranges, that are tried if the search from rest does not reach the
-    /// first waypoint.
+    /// first waypoint; not negative.
     int starts = 6;
 };
 
@@ -44,7 +46,7 @@ struct Waypoint {
     bool reached = false;             ///< all of its goals are reached
     double time = 0;                  ///< program time, which sets everything that is not steered
     std::vector<GoalResult> goals;    ///< in the order of the robot file
-    std::vector<double> inputs;       ///< (InverseResult::inputs()) SI
+    std::vector<double> inputs;       ///< (InverseResult::inputs()) value of each, in its SteeredInput::unit
     std::vector<std::string> limits;  ///< if not reached: the limits that prevent it, or that it was cancelled
     StepResult result;                ///< of the equilibrium
     Observation observed;             ///< measurable quantities of the state
@@ -79,9 +81,11 @@ public:
     /// Writes the folder that `pliant inverse -o` writes, whole or not at all, replacing an older one: program.toml,
     /// which leads through the waypoints, the results of that program, inverse.json and waypoints.csv; also robot.toml
     /// if the robot was given as text. The program of a search that was cancelled leads through the waypoints that were
-    /// finished. `enough_pictures` is polled while drawing; true leaves out all pictures. Returns warnings if the
-    /// program, run from rest, ends up elsewhere.
-    /// @throws Failure if there is no waypoint, the program fails, or a file cannot be written; or when cancelled.
+    /// finished. `enough_pictures` is polled while drawing, by several threads at once, and must not throw; true leaves
+    /// out all pictures. Returns warnings, one sentence each: that the program, run from rest, stops early or ends up
+    /// elsewhere, or that nothing could be drawn.
+    /// @throws Failure if there is no waypoint, the program cannot be read back or meshed, or a file cannot be written;
+    /// or when cancelled.
     std::vector<std::string> write(const std::filesystem::path& folder, const Watch& watch = {},
                                    const std::function<bool()>& enough_pictures = {}) const;
 
@@ -97,8 +101,8 @@ private:
 /// Searches for the inputs that take the robot to its goals, one waypoint after the other, each search starting from
 /// the previous result. Every answer is an equilibrium. A goal out of reach is not a Failure: the result is the closest
 /// state that was found.
-/// @throws Failure if the robot has no goals or no actuator with a range, or moves in time; or when cancelled before
-/// the first waypoint is done.
+/// @throws Failure if the robot has no goals or no actuator with a range, or moves in time, or `starts` is negative; or
+/// when cancelled before the first waypoint is done. Cancelled later, it returns the waypoints found so far.
 [[nodiscard]] PLIANT_API InverseResult inverse(const Model& model, const InverseOptions& options = {},
                                                const Watch& watch = {});
 

@@ -1,8 +1,8 @@
 /// @file
 /// Multi-resin printing: from bodies to a job file, its plan, its verification, and a print on the virtual printer.
 ///
-/// Micrometres internally, millimetres and seconds where a name says so. A job is a file (.zip) that holds layer
-/// images, the printer, the plan and the G-code; nothing else is kept between calls.
+/// Names end in their unit: mm, ml, s. A job is a file (.zip) that holds layer images, the printer, the plan and the
+/// G-code; nothing else is kept between calls.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ struct SliceOptions {
     std::vector<std::string> changes;  ///< overrides of the robot file, KEY=VALUE
     std::vector<std::string> resins;   ///< MATERIAL=RESIN: the resin each material is printed in
     std::string layer;                 ///< layer height
-    int copies = 1;                    ///< placed side by side
+    int copies = 1;                    ///< placed side by side; at least 1
     bool any_vat = false;              ///< fill a resin that no vat holds into a free vat
     std::string support;               ///< material of the supports; empty: no supports
 };
@@ -43,7 +43,7 @@ struct PrintPlan {
     };
     int layers = 0;                     ///< number of layers of the part
     int swaps = 0;                      ///< number of vat swaps
-    double seconds = 0;                 ///< total printing time
+    double seconds = 0;                 ///< total printing time, s
     double swap_s = 0;                  ///< of this: swaps
     double clean_s = 0;                 ///< of this: cleaning
     double expose_s = 0;                ///< of this: exposure
@@ -63,8 +63,9 @@ PLIANT_API PrintPlan slice_job(const SliceOptions& options, const std::filesyste
 [[nodiscard]] PLIANT_API PrintPlan plan_job(const std::filesystem::path& job);
 
 /// Verifies a job as is done before every print: each image against its checksum, the G-code against the machine.
-/// Returns warnings about what could not be verified.
-/// @throws Failure that names the file, the entry or line, and the layer.
+/// Returns warnings about what could not be verified, one sentence each.
+/// @throws Failure if the file cannot be read or the job does not pass; the message names the file and, where it
+/// applies, the entry or line and the layer.
 PLIANT_API std::vector<std::string> check_job(const std::filesystem::path& job);
 
 /// The cured part as voxels: one projector pixel wide, one cured layer high; just large enough to hold everything.
@@ -75,7 +76,7 @@ struct CuredBlock {
     std::vector<double> bottoms_mm;     ///< (z) lower side of each layer
     std::vector<double> tops_mm;        ///< (z) upper side of each layer
     std::vector<std::string> resins;    ///< resins that have cured
-    std::vector<std::uint8_t> resin;    ///< (z, y, x) 0: none, k: the k-th of `resins`; if several cured, the largest
+    std::vector<std::uint8_t> resin;    ///< (z, y, x) k: the k-th of `resins`, that with the largest share; 0: none
     std::vector<std::uint8_t> share;    ///< (z, y, x) solid fraction of the voxel, 255: all of it
 };
 

@@ -19,7 +19,7 @@ namespace pliant {
 /// A step of a program.
 struct ProgramStep {
     int index = 0;                 ///< 0: the rest state
-    double time = 0;               ///< program time
+    double time = 0;               ///< program time; in seconds for a motion in time
     StepResult result;             ///< result of the solver
     Observation observed;          ///< measurable quantities of the state
     std::vector<Point> positions;  ///< (nodes) m
@@ -31,13 +31,16 @@ struct RunOptions {
     std::function<void(const ProgramStep&)> on_step{};
     /// CSV of measured marker positions, with the columns of markers.csv, for comparison with the simulated ones.
     std::filesystem::path measured{};
-    /// Folder in which the run is saved as it proceeds, so that it can be resumed; empty: the run is not saved.
+    /// Folder in which the run is saved as it proceeds, so that it can be resumed; empty: the run is not saved. An
+    /// older checkpoint there is replaced, unless the run resumes from it.
     std::filesystem::path checkpoint{};
-    /// Steps between checkpoints; 0 with `resume`: as in the checkpoint.
+    /// Steps between checkpoints, not negative; 0: a checkpoint after every step or, with `resume`, as often as before.
+    /// A run that stops early or is cancelled saves nothing more: the steps since the last checkpoint are solved again
+    /// when it is resumed.
     int checkpoint_every = 0;
     /// Resumes from the checkpoint; the results are those of an uninterrupted run.
     bool resume = false;
-    /// Called once, with the last step stored in the checkpoint.
+    /// Called once if the run resumes, with the last step stored in the checkpoint.
     std::function<void(int step)> on_resume{};
 };
 
@@ -56,7 +59,8 @@ struct ResultsOptions {
     bool film = false;                            ///< also film.gif, the motion as an animated GIF
     std::optional<Point> towards_eye{};           ///< direction from the robot to the camera; default: where the motion
                                                   ///< shows best
-    std::function<bool()> enough_pictures{};      ///< polled while drawing; true leaves out all pictures
+    std::function<bool()> enough_pictures{};      ///< polled while drawing, by several threads at once; must not throw;
+                                                  ///< true leaves out all pictures
 };
 
 /// Result of a program. A value; copies share the steps, which are kept in a file if they are large.
@@ -66,7 +70,7 @@ public:
     [[nodiscard]] bool converged() const;
     /// Where and why the program stopped early; otherwise empty.
     [[nodiscard]] const std::string& message() const;
-    /// Reasons not to trust the result, one sentence each.
+    /// Reasons not to trust the result, one sentence each. write() adds one if nothing could be drawn.
     [[nodiscard]] const std::vector<std::string>& warnings() const;
     /// Name of the solver that was requested or chosen.
     [[nodiscard]] const std::string& solver() const;
@@ -101,9 +105,10 @@ private:
     /// @endcond
 };
 
-/// Runs the robot's program from rest, or from a checkpoint. A program that stops early or is cancelled is not a
-/// Failure: the result says so and holds the steps up to then.
-/// @throws Failure if the measured markers or the checkpoint are invalid.
+/// Runs the robot's program from rest, or from a checkpoint. A program that stops early, is cancelled, or can no longer
+/// write its checkpoint is not a Failure: the result says so and holds the steps up to then.
+/// @throws Failure if the measured markers cannot be read or are invalid, `checkpoint_every` is negative, no folder is
+/// named for a checkpoint that is asked for, or the checkpoint cannot be made or resumed.
 PLIANT_API ProgramResult run(const Model& model, const RunOptions& options = {}, const Watch& watch = {});
 
 }  // namespace pliant

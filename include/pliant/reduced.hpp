@@ -23,18 +23,19 @@ namespace pliant {
 
 /// Options of reduce().
 struct ReductionOptions {
-    /// Equilibria to learn from, spread over the ranges of the actuators; 0: 24 for each actuator, 240 at most.
+    /// Equilibria to learn from, spread over the ranges of the actuators, at most 100,000; 0: 24 for each actuator, but
+    /// at most 240.
     int samples = 0;
-    double basis_error = 1e-4;  ///< share of the motion of the samples that the modes may leave out
-    double force_error = 1e-4;  ///< share of the forces in the modes that the weighted tets may miss
-    int most_modes = 60;        ///< largest number of modes
+    double basis_error = 1e-4;  ///< share of the motion of the samples that the modes may leave out, above 0, below 1
+    double force_error = 1e-4;  ///< share of the forces in the modes that the weighted tets may miss, above 0, below 1
+    int most_modes = 60;        ///< largest number of modes, 1 to 1000
 };
 
 /// A reduced model of a robot. A value; copies share immutable data.
 class PLIANT_API ReducedModel {
 public:
     /// Reads a model that save() wrote.
-    /// @throws Failure if the file is damaged, or was made for another robot or with other settings.
+    /// @throws Failure if the file cannot be read, is damaged, or was made for another robot or with other settings.
     [[nodiscard]] static ReducedModel load(const Model& model, const std::filesystem::path& file);
     /// Writes the reduced model to a file, whole or not at all.
     /// @throws Failure if the file cannot be written.
@@ -52,7 +53,8 @@ public:
     [[nodiscard]] std::size_t sample_count() const;
     /// Share of the forces of the samples that the weighted tetrahedra miss.
     [[nodiscard]] double force_error() const;
-    /// Remarks on how it was made, one sentence each: samples that were left out, a target that was not reached.
+    /// Remarks on how it was made, one sentence each: samples that were left out, a target that was not reached. A
+    /// model that was loaded has none.
     [[nodiscard]] const std::vector<std::string>& notes() const;
 
     /// @cond
@@ -100,15 +102,15 @@ struct ReducedStep {
 /// Estimated difference between a reduced state and the equilibrium of the whole robot at the same inputs.
 struct ReducedError {
     double error_m = 0;                ///< largest of any node; infinite if the whole robot cannot be there
-    std::vector<double> markers_m;     ///< (Model::markers())
-    std::vector<double> tensions_N;    ///< (Model::cables())
-    std::vector<double> pressures_Pa;  ///< (Model::chambers())
+    std::vector<double> markers_m;     ///< (Model::markers()); empty if error_m is infinite
+    std::vector<double> tensions_N;    ///< (Model::cables()); likewise
+    std::vector<double> pressures_Pa;  ///< (Model::chambers()); likewise
 };
 
 /// A reduced model beside the whole robot, at inputs that it was not made from.
 struct ReductionCheck {
-    std::vector<double> inputs;  ///< (ReducedModel::inputs()) SI
-    bool found = false;          ///< both have an equilibrium; otherwise what follows is not known
+    std::vector<double> inputs;  ///< (ReducedModel::inputs()) value of each, in its SteeredInput::unit
+    bool found = false;          ///< both have an equilibrium; otherwise the values below have no meaning
     bool touching = false;       ///< the whole robot touches itself there, which the reduced model does not know
     double motion_m = 0;         ///< largest motion of a node of the whole robot, from rest
     double error_m = 0;          ///< largest difference of a node
@@ -119,7 +121,8 @@ struct ReductionCheck {
     double whole_s = 0;          ///< of the step of the whole robot
 };
 
-/// Solves a reduced model. Not thread-safe; any number of steppers may share a model.
+/// Solves a reduced model. Not thread-safe; any number of steppers may share a model. It takes states of its model and
+/// of copies of that.
 class PLIANT_API ReducedStepper {
 public:
     /// Sets up the solver.
@@ -136,12 +139,14 @@ public:
     /// results.
     /// @throws Failure of kind `input` if the state belongs to another model, or the inputs do not match the robot.
     ReducedStep step(ReducedState& state, const Inputs& inputs);
-    /// Estimates the error by one step of Newton's method on the whole robot, with a factor that is kept: some tens of
-    /// times as expensive as a step of the reduced model, and much cheaper than exact().
+    /// Estimates the error by one step of Newton's method on the whole robot, projected on all modes of the samples:
+    /// some tens of times as expensive as a step of the reduced model, and much cheaper than exact(). It does not see
+    /// motions that no sample has.
     /// @throws Failure of kind `input` if the state belongs to another model.
     [[nodiscard]] ReducedError estimate(const ReducedState& state);
-    /// The equilibrium of the whole robot at the same inputs, searched from the reduced one.
-    /// @throws Failure if none is found, or when cancelled.
+    /// The equilibrium of the whole robot at the same inputs, searched from the reduced one; a state of whole().
+    /// @throws Failure of kind `input` if the state belongs to another model, of kind `failed` if no equilibrium is
+    /// found, or when cancelled.
     [[nodiscard]] State exact(const ReducedState& state, const Watch& watch = {});
 
 private:
@@ -152,13 +157,14 @@ private:
 /// Makes a reduced model: solves for equilibria of the whole robot within the ranges of its actuators, finds the modes
 /// of which they are made (proper orthogonal decomposition), and a few tetrahedra whose weighted forces stand for all
 /// (energy-conserving sampling and weighting).
-/// @throws Failure if no actuator has a range; if the robot has contact, friction, moving supports, joints or motion in
-/// time, which reduced models do not cover; if no equilibrium is found; or when cancelled.
+/// @throws Failure if an option is out of range; if no actuator has a range; if the robot has contact, friction, moving
+/// supports, joints or motion in time, which reduced models do not cover; if no equilibrium is found; or when
+/// cancelled.
 [[nodiscard]] PLIANT_API ReducedModel reduce(const Model& model, const ReductionOptions& options = {},
                                              const Watch& watch = {});
 
 /// Compares a reduced model with the whole robot at `count` inputs spread over the ranges.
-/// @throws Failure if `count` is negative, or when cancelled.
+/// @throws Failure if `count` is negative or above 100,000, or when cancelled.
 [[nodiscard]] PLIANT_API std::vector<ReductionCheck> check_reduction(const ReducedModel& model, int count,
                                                                      const Watch& watch = {});
 

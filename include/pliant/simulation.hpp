@@ -1,9 +1,9 @@
 /// @file
 /// Simulation of soft robots driven by cables and chambers: from a robot file to a sequence of states.
 ///
-/// SI units throughout: metres, newtons, pascals, seconds. All classes are values: a copy of a Robot, a Model or a
-/// State is independent of the original, and cheap because immutable data are shared. Nothing is drawn, printed or
-/// logged. Different objects may be used from different threads at the same time.
+/// SI units throughout: metres, newtons, pascals, seconds. Robot, Model and State are values: a copy is independent of
+/// the original, and cheap because immutable data are shared. Nothing is drawn, printed or logged. Different objects
+/// may be used from different threads at the same time.
 #pragma once
 
 #include <cstddef>
@@ -25,10 +25,13 @@ class PLIANT_API Robot {
 public:
     /// Reads a robot file (TOML). `changes` override keys of the file, written KEY=VALUE, as in "mesh.order=1" or
     /// "cable.flexor.target.length_ratio=0.8".
-    /// @throws Failure with one line for each problem in the file.
+    /// @throws Failure if the file cannot be read, or it or a change is invalid: one line for each mistake, at most a
+    /// dozen, and then how many more there are.
     [[nodiscard]] static Robot load(const std::filesystem::path& file, const std::vector<std::string>& changes = {});
     /// Reads a robot from the text of a robot file. Files that it names are looked up relative to `folder`, or to the
-    /// working directory if that is empty.
+    /// working directory if that is empty. Its name in messages and in Failure::file() is
+    /// "robot text", in `folder`.
+    /// @throws Failure if the text or a change is invalid, as for load().
     [[nodiscard]] static Robot parse(std::string_view toml, const std::filesystem::path& folder = {},
                                      const std::vector<std::string>& changes = {});
 
@@ -40,6 +43,7 @@ public:
     [[nodiscard]] int steps() const;
     /// Text of a robot file for `folder` that describes this robot with its changes; files that it names are looked up
     /// relative to that folder.
+    /// @throws Failure if a file that the robot file is based on can no longer be read, or has become invalid.
     [[nodiscard]] std::string text(const std::filesystem::path& folder) const;
 
     /// @cond
@@ -67,27 +71,31 @@ struct Mesh {
 struct StepOptions {
     std::optional<double> tolerance{};     ///< largest residual of a converged step: 1e-10 to 0.1 for a Model, above
                                            ///< 0 and below 1 for a Stepper
-    std::optional<int> iteration_limit{};  ///< for each substep; 0: that of the solver
+    std::optional<int> iteration_limit{};  ///< for each substep, not negative; 0: that of the solver
 };
 
-/// A meshed robot, ready to be simulated. Immutable.
+/// A meshed robot, ready to be simulated. Immutable. References and spans that it returns are valid as long as it or a
+/// copy of it exists.
 class PLIANT_API Model {
 public:
     /// Meshes the bodies, or reads the mesh file that the robot names, and attaches actuators, supports and markers to
     /// the mesh. Meshing is done by the program `pliant-mesh`, which must be installed; a robot with a mesh file does
     /// not need it.
-    /// @throws Failure if the geometry or the mesh is invalid, or something in the robot does not fit the mesh.
+    /// @throws Failure if the geometry or the mesh is invalid, `pliant-mesh` is not found or fails, or parts of the
+    /// robot do not fit the mesh, with one line for each; or when cancelled.
     explicit Model(const Robot& robot, const Watch& watch = {});
     /// Uses the given mesh for a robot that says `mesh.file = "memory:"` and names its regions as for any mesh file.
     /// Points that no tetrahedron uses are dropped and inverted tetrahedra are reoriented; nodes are therefore
     /// renumbered, in the order of rest_positions().
-    /// @throws Failure if the robot's bodies are drawn rather than taken from a mesh, or `mesh` is not a valid mesh.
+    /// @throws Failure if the robot's bodies are drawn rather than taken from a mesh, `mesh` is not a valid mesh, or
+    /// parts of the robot do not fit it, with one line for each.
     Model(const Robot& robot, const Mesh& mesh);
     /// The same with options that replace `program.tolerance` (1e-10 to 0.1) and `program.max_iterations` of the robot
     /// in everything that is done with the model: steps, batches, programs, searches, gradients, reduced models.
-    /// @throws Failure if an option is not possible, or as above.
+    /// @throws Failure if an option is out of range, or as for Model(robot, watch).
     Model(const Robot& robot, const StepOptions& options, const Watch& watch = {});
     /// The same with options, for a given mesh.
+    /// @throws Failure if an option is out of range, or as for Model(robot, mesh).
     Model(const Robot& robot, const Mesh& mesh, const StepOptions& options);
 
     /// Number of nodes of the mesh.
@@ -98,8 +106,7 @@ public:
     [[nodiscard]] int order() const;
     /// (nodes) rest positions, m.
     [[nodiscard]] std::vector<Point> rest_positions() const;
-    /// (3 nodes) rest positions without a copy: x, y and z of each node, m; valid as long as a copy of this model
-    /// exists.
+    /// (3 nodes) rest positions without a copy: x, y and z of each node, m.
     [[nodiscard]] std::span<const double> rest_coordinates() const;
     /// (tets * 4 or 10) node indices of each tetrahedron, corners first.
     [[nodiscard]] const std::vector<int>& tets() const;
@@ -138,7 +145,8 @@ struct Drive {
         gas,       ///< of a sealed chamber: absolute pressure times volume, J
     };
     By by = By::length;  ///< which quantity is prescribed
-    double value = 0;    ///< its value, in the unit given above
+    double value = 0;    ///< in the unit given above: a length or tension not negative, a volume or amount of gas above
+                         ///< 0, a pressure not below a vacuum
 
     /// Same quantity and same value.
     friend bool operator==(const Drive&, const Drive&) = default;
@@ -146,7 +154,7 @@ struct Drive {
 
 /// All inputs to a robot at one instant.
 struct Inputs {
-    double time = 0;              ///< program time, which sets supports, loads, gravity and obstacles
+    double time = 0;              ///< program time, which sets supports, loads, gravity, obstacles and driven joints
     std::vector<Drive> cables;    ///< in the order of Model::cables()
     std::vector<Drive> chambers;  ///< in the order of Model::chambers()
 };
@@ -163,10 +171,12 @@ public:
     [[nodiscard]] std::span<const double> coordinates() const;
     /// (nodes) node velocities, m/s; all zero in a quasi-static simulation.
     [[nodiscard]] std::vector<Point> velocities() const;
-    /// The inputs at which this state is in equilibrium.
+    /// The inputs at which this state is in equilibrium; of the rest state, those at the start of the program. A state
+    /// that a stepper of a robot with other constants has loaded keeps its inputs, but is not in equilibrium until its
+    /// next step.
     [[nodiscard]] Inputs inputs() const;
 
-    /// The whole state in binary form, for storage; can be read back only for the same model.
+    /// The whole state in binary form, for storage. Stepper::state_from() says which steppers can read it back.
     [[nodiscard]] std::string bytes() const;
     /// Writes bytes() to a file, whole or not at all.
     /// @throws Failure if the file cannot be written.
@@ -263,7 +273,9 @@ struct Observation {
     std::vector<Joint> joints;      ///< in the order of the robot file
     std::vector<Object> objects;    ///< in the order of the robot file
     double self_contact_N = 0;      ///< sum of the magnitudes of the self-contact forces
-    /// Smallest distance between surfaces within contact range; infinite if there are none.
+    /// Smallest distance between surfaces that are near enough to repel each other, m; infinite if there are none. That
+    /// to a plane or a closed obstacle is measured from its drawn surface, which lies 0.9 of the contact distance
+    /// outside the one that repels: where the robot is pressed hard on it, the value is negative, by less than that.
     double smallest_distance_m = std::numeric_limits<double>::infinity();
     double energy_J = 0;          ///< elastic and contact energy, minus the work of loads and gravity
     double kinetic_energy_J = 0;  ///< of a motion in time, otherwise 0
@@ -278,10 +290,13 @@ struct Fields {
     std::vector<double> energy_density_Pa;  ///< J/m^3 of rest volume; 0 if the law has no energy
 };
 
-/// Advances a robot from one state to the next. Not thread-safe; any number of steppers may share a model.
+/// Advances a robot from one state to the next. Not thread-safe; any number of steppers may share a model. It accepts
+/// states of its model and of copies of that model. A state of any other Model, even one of the same robot, is brought
+/// over with State::bytes() and state_from().
 class PLIANT_API Stepper {
 public:
     /// Sets up the solver; costs about as much as one or two steps.
+    /// @throws Failure if an option is out of range.
     explicit Stepper(const Model& model, const StepOptions& options = {});
     /// Moves; the moved-from stepper may only be assigned to or destroyed.
     Stepper(Stepper&&) noexcept;
@@ -292,26 +307,39 @@ public:
     /// The rest state: undeformed and, for a motion in time, with zero velocity.
     [[nodiscard]] State rest() const;
     /// The inputs that the robot's program prescribes at `time`.
+    /// @throws Failure if the time is not finite.
     [[nodiscard]] Inputs program(double time) const;
     /// Solves for equilibrium at `inputs` and stores the new state in `state`. The inputs are ramped linearly from
     /// those of the state, in as many substeps as needed. A motion in time is integrated up to `inputs.time`, which
-    /// must be later than the time of the state, in equal time steps no longer than the program's.
-    /// @throws Failure of kind `input` if the state belongs to another model, the number of drives differs from that of
-    /// the cables and chambers, or a value is impossible; of kind `cancelled`: `state` is then as far as the solver
+    /// must be later than the time of the state, in equal time steps no longer than the program's. A step that finds no
+    /// equilibrium is not a Failure: the result says so, and `state` is as far as the solver got.
+    /// @throws Failure of kind `input`, with `state` unchanged, if the state belongs to another model, the number of
+    /// drives differs from that of the cables and chambers, a value is not possible, or a motion in time does not lead
+    /// to a later time or takes more than 10,000 time steps; of kind `cancelled`: `state` is then as far as the solver
     /// got.
     StepResult step(State& state, const Inputs& inputs, const Watch& watch = {});
     /// All measurable quantities of a state.
+    /// @throws Failure if the state belongs to another model.
     [[nodiscard]] Observation observe(const State& state) const;
     /// Strains and stresses of a state.
+    /// @throws Failure if the state belongs to another model.
     [[nodiscard]] Fields fields(const State& state) const;
     /// (nodes) contact force on each node, normal force and friction, N; zero for nodes without contact.
+    /// @throws Failure if the state belongs to another model.
     [[nodiscard]] std::vector<Point> contact_forces(const State& state) const;
     /// (cables)(points) m, the path of each cable in this state.
+    /// @throws Failure if the state belongs to another model.
     [[nodiscard]] std::vector<std::vector<Point>> cable_paths(const State& state) const;
-    /// Restores a state from State::bytes().
-    /// @throws Failure if the bytes are damaged, are not a state, or belong to another version or model.
+    /// Restores a state from State::bytes(). It may be a state of another robot if the mesh, also of objects, is the
+    /// same, node for node, and so are names and places of supports, cables, chambers, pressure loads, springs and
+    /// joints, the numbers of corners of obstacles and of torques, and whether there is motion in time. Material
+    /// constants, masses, forces, gravity, targets, stiffness and friction may differ: the state is then not in
+    /// equilibrium until its next step.
+    /// @throws Failure of kind `input` if the bytes are damaged, are not a state, are of another version of the format,
+    /// or belong to a robot that differs in more than that.
     [[nodiscard]] State state_from(std::string_view bytes) const;
     /// Restores a state from a file written by State::save().
+    /// @throws Failure if the file cannot be read, or as for state_from().
     [[nodiscard]] State load(const std::filesystem::path& file) const;
 
 private:

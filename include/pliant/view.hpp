@@ -30,7 +30,8 @@ public:
     /// @throws Failure if the state belongs to another model.
     [[nodiscard]] std::string frame(const State& state) const;
     /// Arbitrary node positions, (nodes) m, such as those of a ProgramStep; obstacles are placed as at `time`.
-    /// @throws Failure if the number of positions differs from that of the nodes, or one is not finite.
+    /// @throws Failure if the number of positions differs from that of the nodes, or one of them or the time is not
+    /// finite.
     [[nodiscard]] std::string frame(const std::vector<Point>& positions, double time) const;
 
 private:

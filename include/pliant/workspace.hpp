@@ -18,9 +18,10 @@ namespace pliant {
 
 /// Options of workspace().
 struct WorkspaceOptions {
-    int side = 9;       ///< samples along each input of a sheet; at least 2
-    int between = 100;  ///< number of further samples, spread over the ranges; none with one input
-    /// Folder in which completed pieces are stored, so that the search can be resumed; empty: nothing is stored.
+    int side = 9;       ///< samples along each input of a sheet, 2 to 1000
+    int between = 100;  ///< number of further samples, spread over the ranges, 0 to 1,000,000; none with one input
+    /// Folder in which completed pieces are stored, so that the search can be resumed; empty: nothing is stored. An
+    /// older checkpoint there is replaced, unless the search resumes from it.
     std::filesystem::path checkpoint{};
     /// Resumes from the checkpoint; the results are those of an uninterrupted search.
     bool resume = false;
@@ -29,7 +30,7 @@ struct WorkspaceOptions {
 /// One equilibrium of a workspace.
 struct WorkspaceSample {
     std::size_t piece = 0;             ///< the piece it belongs to: a sheet, or a group of the further samples
-    std::vector<double> inputs;        ///< (Workspace::inputs()) SI
+    std::vector<double> inputs;        ///< (Workspace::inputs()) value of each, in its SteeredInput::unit
     bool found = false;                ///< an equilibrium was found; otherwise everything below is empty
     std::vector<Point> markers;        ///< (Model::markers()) m
     std::vector<double> tensions_N;    ///< (Model::cables())
@@ -76,7 +77,8 @@ private:
 };
 
 /// Solves for equilibria on sheets of the input ranges and at further samples between them.
-/// @throws Failure if no actuator has a range, the options or the checkpoint are invalid, or when cancelled.
+/// @throws Failure if no actuator has a range, the robot moves in time, the options or the checkpoint are invalid, or
+/// the checkpoint cannot be written; or when cancelled.
 [[nodiscard]] PLIANT_API Workspace workspace(const Model& model, const WorkspaceOptions& options = {},
                                              const Watch& watch = {});
 
