@@ -278,7 +278,8 @@ struct Fields {
     std::vector<double> energy_density_Pa;  ///< J/m^3 of rest volume; 0 if the law has no energy
 };
 
-/// Advances a robot from one state to the next. Not thread-safe; any number of steppers may share a model.
+/// Advances a robot from one state to the next. Any number of steppers may share a model; each works for one caller at
+/// a time: while it does, on another thread or in a Watch, its other members throw a Failure.
 class PLIANT_API Stepper {
 public:
     /// Sets up the solver; costs about as much as one or two steps.
@@ -295,7 +296,8 @@ public:
     [[nodiscard]] Inputs program(double time) const;
     /// Solves for equilibrium at `inputs` and stores the new state in `state`. The inputs are ramped linearly from
     /// those of the state, in as many substeps as needed. A motion in time is integrated up to `inputs.time`, which
-    /// must be later than the time of the state, in equal time steps no longer than the program's.
+    /// must be later than the time of the state, in equal time steps no longer than the program's; at the same time, up
+    /// to rounding, nothing moves. The Watch is told the share of the way that is done.
     /// @throws Failure of kind `input` if the state belongs to another model, the number of drives differs from that of
     /// the cables and chambers, or a value is impossible; of kind `cancelled`: `state` is then as far as the solver
     /// got.

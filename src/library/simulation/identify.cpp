@@ -47,7 +47,7 @@ Identification identify(const Robot& robot, const std::vector<std::string>& unkn
                         JudgeOn judge, const std::optional<Mesh>& mesh, const Watch& watch) {
     const robot::Robot& given = robot.data().robot;
     const auto wanted = library::value_of(sim::identify::find_unknowns(given, unknowns));
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "identify");
     const sim::identify::Source source = source_of(robot.shared(), mesh, progress);
     const auto start = library::value_of(source.with({}, {}));
     const auto measurements =

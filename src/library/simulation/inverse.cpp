@@ -43,7 +43,7 @@ InverseResult inverse(const Model& model, const InverseOptions& options, const W
     sim::StepperOptions stepping = sim::stepper_options(scene.robot.program);
     stepping.tolerance = robot::goal_tolerance(scene.robot.program);
     sim::Stepper stepper(scene.model, stepping);
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "finding inputs");
     sim::inverse::InverseResult found = sim::inverse::follow(stepper, task, {options.starts}, progress);
     progress.rethrow();
     if (found.cancelled && found.waypoints.empty()) library::check(cancelled());

@@ -119,7 +119,7 @@ std::vector<std::string> InverseResult::write(const fs::path& folder, const Watc
                                               const std::function<bool()>& enough_pictures) const {
     if (data_->result.waypoints.empty())
         throw Failure(Failure::Kind::failed, "there is nothing to write: " + message());
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "results");
     library::Drawing drawing(progress, enough_pictures);
     std::vector<std::string> warnings;
     std::exception_ptr thrown;

@@ -89,7 +89,7 @@ Model::Model(const Robot& robot, const Mesh& mesh, const StepOptions& options) {
 
 Model::Model(const Robot& robot, const StepOptions& options, const Watch& watch) {
     std::shared_ptr<const Robot::Data> solved = with_options(robot.shared(), options);
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "mesh");
     auto scene = robot::build_scene(solved->robot, progress);
     progress.rethrow();
     data_ = std::make_shared<const Data>(Data{library::value_of(std::move(scene)), std::move(solved)});

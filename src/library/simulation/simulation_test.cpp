@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <optional>
+#include <stdexcept>
+#include <thread>
 
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
@@ -242,7 +244,102 @@ TEST_CASE("in dynamics a released bar swings, and a step back in time is refused
     for (const Point& v : state.velocities()) fastest = std::max(fastest, std::fabs(v[2]));
     CHECK(fastest > 1e-4);
     CHECK(stepper.observe(state).kinetic_energy_J > 0);
-    CHECK_THROWS_AS(stepper.step(state, inputs), Failure);
+    inputs.time = 0.008;
+    CHECK_THROWS_WITH_AS(stepper.step(state, inputs), "a step in time from 0.01 s to 0.008 s does not lead on",
+                         Failure);
+}
+
+TEST_CASE("a step in time that is as short as rounding changes nothing, and drives cannot jump in it") {
+    const Model model(bar("program = { duration = \"1 s\", time_step = \"10 ms\", gravity = [0, 0, -9.81] }\n"));
+    Stepper stepper(model);
+    State state = stepper.rest();
+    Inputs inputs = state.inputs();
+    inputs.time = 0.3;
+    REQUIRE(stepper.step(state, inputs).arrived);
+    const State there = state;
+    for (const double time : {0.1 + 0.2, 0.3, std::nextafter(0.3, 0)}) {
+        CAPTURE(time);
+        inputs.time = time;
+        const StepResult result = stepper.step(state, inputs);
+        CHECK(result.arrived);
+        CHECK(result.pieces == 0);
+        CHECK((state == there));
+    }
+    inputs.time = 0.1 + 0.2;
+    inputs.cables[0].value -= 1e-3;
+    CHECK_THROWS_WITH_AS(stepper.step(state, inputs),
+                         "the inputs change, but a step in time from 0.3 s to 0.30000000000000004 s does not lead on",
+                         Failure);
+    CHECK((state == there));
+    inputs = there.inputs();
+    inputs.time = 0.299999999;  // more than rounding of a time step of 10 ms
+    CHECK_THROWS_WITH_AS(stepper.step(state, inputs), "a step in time from 0.3 s to 0.299999999 s does not lead on",
+                         Failure);
+    inputs.time = 0.31;
+    CHECK(stepper.step(state, inputs).arrived);
+    double moved = 0;
+    const std::vector<Point> now = state.positions(), before = there.positions(), velocities = there.velocities();
+    for (std::size_t n = 0; n < now.size(); ++n)
+        moved = std::max(moved, std::fabs(now[n][2] - before[n][2] - 0.01 * velocities[n][2]));
+    CHECK(moved < 1e-3);  // by its velocity, and at most gravity during 10 ms
+}
+
+TEST_CASE("a step tells the share of its time steps that is done") {
+    const Model model(bar("program = { duration = \"1 s\", time_step = \"10 ms\", gravity = [0, 0, -9.81] }\n"));
+    Stepper stepper(model);
+    State state = stepper.rest();
+    Inputs inputs = state.inputs();
+    inputs.time = 0.1;
+    std::vector<double> shares;
+    const Watch watch = [&](std::string_view stage, double share) {
+        CHECK(stage == "step");
+        if (shares.empty() || shares.back() != share) shares.push_back(share);
+        return true;
+    };
+    REQUIRE(stepper.step(state, inputs, watch).arrived);
+    REQUIRE(shares.size() == 11);
+    for (std::size_t k = 0; k < shares.size(); ++k)
+        CHECK(shares[k] == near(0.1 * static_cast<double>(k), {.absolute = 1e-9}));
+}
+
+TEST_CASE("a stepper that is at work refuses a second use: in its own watch, or on another thread") {
+    const Model model(bar());
+    Stepper stepper(model);
+    State state = stepper.rest();
+    State other = state;
+    const Inputs inputs = pulled(state, 0.003);
+    const auto tried = [&] {
+        try {
+            (void)stepper.step(other, inputs);
+        } catch (const Failure& failure) {
+            return std::string(failure.what());
+        }
+        return std::string();
+    };
+    constexpr const char* refused = "the stepper is at work";
+    bool asked = false;
+    const Watch watch = [&](std::string_view, double) {
+        if (asked) return true;
+        asked = true;
+        CHECK(tried().find(refused) == 0);
+        CHECK_THROWS_WITH_AS((void)stepper.observe(other), doctest::Contains(refused), Failure);
+        CHECK_THROWS_WITH_AS((void)stepper.rest(), doctest::Contains(refused), Failure);
+        CHECK_THROWS_WITH_AS((void)stepper.program(1), doctest::Contains(refused), Failure);
+        std::string elsewhere;
+        std::thread([&] { elsewhere = tried(); }).join();
+        CHECK(elsewhere.find(refused) == 0);
+        Stepper another(model);
+        CHECK((another.rest() == other));
+        return true;
+    };
+    CHECK(stepper.step(state, inputs, watch).arrived);
+    CHECK(asked);
+    // Free again, also after an exception; and the result is that of an undisturbed step.
+    const Watch throws = [](std::string_view, double) -> bool { throw std::logic_error("mine"); };
+    State third = stepper.rest();
+    CHECK_THROWS_AS(stepper.step(third, inputs, throws), std::logic_error);
+    CHECK(stepper.step(other, inputs).arrived);
+    CHECK((other == state));
 }
 
 TEST_CASE("errors are thrown with their kind, line and key") {

@@ -103,7 +103,7 @@ Workspace workspace(const Model& model, const WorkspaceOptions& options, const W
     const robot::Scene& scene = model.data()->scene;
     sim::InverseTask task = library::value_of(robot::build_goals(scene.robot, scene.model, false));
     const std::optional<KeptPieces> kept = open_pieces(*model.data(), options);
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "workspace");
     auto found = sim::inverse::find_workspace(
         scene.model, sim::stepper_options(scene.robot.program), task, {options.side, options.between},
         [&](std::size_t k) { return kept ? kept->read(k) : std::nullopt; },
@@ -157,7 +157,7 @@ std::string Workspace::json() const {
 }
 
 void Workspace::write(const fs::path& folder, const Watch& watch) const {
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "results");
     const Status written = report::write_workspace(folder, data_->model->scene.robot, data_->report(), progress);
     progress.rethrow();
     library::check(written);
