@@ -4,9 +4,11 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 /// Marks the symbols that the shared library exports.
 #define PLIANT_API __attribute__((visibility("default")))
@@ -54,6 +56,19 @@ private:
 /// Progress callback: called many times a second with the current stage and the completed share, 0 to 1. Returning
 /// false cancels, which ends in a Failure of kind `cancelled`. May be empty.
 using Watch = std::function<bool(std::string_view stage, double share)>;
+
+/// @cond
+/// A pointer to shared, immutable data. Moving copies it: what was moved from keeps its value, and can still be used.
+template <class T>
+class SharedData : public std::shared_ptr<T> {
+public:
+    SharedData() = default;
+    SharedData(std::shared_ptr<T> data) noexcept : std::shared_ptr<T>(std::move(data)) {}
+    SharedData(const SharedData&) noexcept = default;
+    SharedData& operator=(const SharedData&) noexcept = default;
+    ~SharedData() = default;
+};
+/// @endcond
 
 /// Converts a text with a unit, as in robot files, to SI: quantity("4 mm", "m") is 0.004. `unit` is the required unit:
 /// m, s, N, Pa, m^3, kg/m^3 or N/m.

@@ -90,7 +90,7 @@ public:
     explicit InverseResult(std::shared_ptr<const Data> data);
 
 private:
-    std::shared_ptr<const Data> data_;
+    SharedData<const Data> data_;
     /// @endcond
 };
 

@@ -2,8 +2,8 @@
 /// Simulation of soft robots driven by cables and chambers: from a robot file to a sequence of states.
 ///
 /// SI units throughout: metres, newtons, pascals, seconds. All classes are values: a copy of a Robot, a Model or a
-/// State is independent of the original, and cheap because immutable data are shared. Nothing is drawn, printed or
-/// logged. Different objects may be used from different threads at the same time.
+/// State is independent of the original, and cheap because immutable data are shared; what was moved from keeps its
+/// value. Nothing is drawn, printed or logged. Different objects may be used from different threads at the same time.
 #pragma once
 
 #include <cstddef>
@@ -49,7 +49,7 @@ public:
     [[nodiscard]] const std::shared_ptr<const Data>& shared() const { return data_; }
 
 private:
-    std::shared_ptr<const Data> data_;
+    SharedData<const Data> data_;
     /// @endcond
 };
 
@@ -123,7 +123,7 @@ public:
     [[nodiscard]] const std::shared_ptr<const Data>& data() const { return data_; }
 
 private:
-    std::shared_ptr<const Data> data_;
+    SharedData<const Data> data_;
     /// @endcond
 };
 
@@ -181,7 +181,7 @@ public:
     [[nodiscard]] const Data& data() const { return *data_; }
 
 private:
-    std::shared_ptr<const Data> data_;
+    SharedData<const Data> data_;
     /// @endcond
 };
 

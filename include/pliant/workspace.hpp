@@ -71,7 +71,7 @@ public:
     explicit Workspace(std::shared_ptr<const Data> data);
 
 private:
-    std::shared_ptr<const Data> data_;
+    SharedData<const Data> data_;
     /// @endcond
 };
 

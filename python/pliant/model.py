@@ -302,9 +302,8 @@ class Model:
         """Solves for equilibrium at the controls and stores the new state in `state`.
 
         The inputs are ramped linearly from those of the state, in as many substeps as needed. A motion in time
-        (``program.time_step``) is integrated up to `time`, which must be later than the time of the state (at the
-        same time, up to rounding, nothing moves), in equal
-        time steps no longer than ``program.time_step``.
+        (``program.time_step``) is integrated up to `time`, which must be later than the time of the state, in equal
+        time steps no longer than ``program.time_step``; at the same time, up to rounding, nothing moves.
 
         Args:
             state: changed in place; :meth:`State.copy` keeps the state before.

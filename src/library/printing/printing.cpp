@@ -60,6 +60,8 @@ prepare::Order order_of(const SliceOptions& options) {
 
 PrintPlan slice_job(const SliceOptions& options, const std::filesystem::path& job, const Watch& watch) {
     if (options.inputs.empty()) throw Failure(Failure::Kind::input, "nothing is given to be sliced");
+    if (options.printer.empty()) throw Failure(Failure::Kind::input, "no printer file is named to slice for");
+    if (job.empty()) throw Failure(Failure::Kind::input, "the name of the job file is empty");
     const prepare::PrinterFile printer = printer_of(options.printer);
     library::WatchedProgress progress(watch, "slice");
     auto drawing = prepare::read_drawing(options.inputs, options.changes, progress);

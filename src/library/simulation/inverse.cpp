@@ -37,7 +37,10 @@ GoalResult goal_result(const sim::Goal& goal, const sim::inverse::GoalState& sta
 }  // namespace
 
 InverseResult inverse(const Model& model, const InverseOptions& options, const Watch& watch) {
-    if (options.starts < 0) throw Failure(Failure::Kind::input, "the number of starts is negative");
+    constexpr int most_starts = 100000;
+    if (options.starts < 0 || options.starts > most_starts)
+        throw Failure(Failure::Kind::input,
+                      fmt::format("{} starts are not possible; 0 to {} are", options.starts, most_starts));
     const robot::Scene& scene = model.data()->scene;
     sim::InverseTask task = library::value_of(robot::build_goals(scene.robot, scene.model));
     sim::StepperOptions stepping = sim::stepper_options(scene.robot.program);

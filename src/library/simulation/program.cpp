@@ -177,12 +177,14 @@ bool ProgramResult::write(const std::filesystem::path& folder, const ResultsOpti
     const Status status = write_folder(folder, "summary.json", [&](const std::filesystem::path& path) -> Status {
         const auto written = report::write_results(path, *data_->report, choice, writing, drawing);
         if (!written) return tl::unexpected(written.error());
+        if (drawing.failed()) return cancelled();
         data_->report->timing = written->timing;
         stopped = written->drawing_stopped;
         if (!written->warning.empty()) data_->trajectory.warnings.push_back(written->warning);
         return {};
     });
     writing.rethrow();
+    drawing.rethrow();
     library::check(status);
     return !stopped;
 }

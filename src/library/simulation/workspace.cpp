@@ -31,16 +31,18 @@ public:
         fs::remove_all(folder, code);
         fs::create_directories(folder, code);
         if (code)
-            throw Failure(Failure::Kind::failed,
-                          fmt::format("{}: cannot be made: {}", folder.string(), code.message()));
+            throw Failure(Failure::Kind::failed, fmt::format("{}: cannot be made: {}", folder.string(), code.message()),
+                          folder.string());
         library::check(write_file(folder / origin_name, origin));
         return KeptPieces(folder);
     }
     static KeptPieces open(const fs::path& folder, const std::string& origin) {
         const Result<std::string> known = read_file(folder / origin_name);
-        if (!known) throw Failure(Failure::Kind::input, folder.string() + ": holds no search to go on with");
+        if (!known)
+            throw Failure(Failure::Kind::input, folder.string() + ": holds no search to go on with", folder.string());
         if (*known != origin)
-            throw Failure(Failure::Kind::input, folder.string() + ": is of another robot file, or of other options");
+            throw Failure(Failure::Kind::input, folder.string() + ": is of another robot file, or of other options",
+                          folder.string());
         return KeptPieces(folder);
     }
 
@@ -169,7 +171,8 @@ void Workspace::remove_checkpoint() const {
     fs::remove_all(data_->checkpoint, code);
     if (code)
         throw Failure(Failure::Kind::failed,
-                      fmt::format("{}: cannot be deleted: {}", data_->checkpoint.string(), code.message()));
+                      fmt::format("{}: cannot be deleted: {}", data_->checkpoint.string(), code.message()),
+                      data_->checkpoint.string());
 }
 
 }  // namespace pliant
