@@ -41,10 +41,10 @@ struct GoalResult {
 
 /// Result at one waypoint: the state closest to its goals.
 struct Waypoint {
-    bool reached = false;             ///< all of its goals are reached
-    double time = 0;                  ///< program time, which sets everything that is not steered
-    std::vector<GoalResult> goals;    ///< in the order of the robot file
-    std::vector<double> inputs;       ///< (InverseResult::inputs()) SI
+    bool reached = false;           ///< all of its goals are reached
+    double time = 0;                ///< program time, which sets everything that is not steered
+    std::vector<GoalResult> goals;  ///< in the order of the robot file
+    std::vector<double> inputs;     ///< (InverseResult::inputs()) in their units; InverseResult::inputs_at() for steps
     std::vector<std::string> limits;  ///< if not reached: the limits that prevent it, or that it was cancelled
     StepResult result;                ///< of the equilibrium
     Observation observed;             ///< measurable quantities of the state
@@ -71,6 +71,10 @@ public:
     /// One waypoint, counted from 0.
     /// @throws Failure if the index is out of range.
     [[nodiscard]] Waypoint waypoint(std::size_t index) const;
+    /// All inputs of the robot at a waypoint, as Stepper::step() takes them: the values that were found, and for
+    /// everything that is not steered those of the program at its time.
+    /// @throws Failure if the index is out of range.
+    [[nodiscard]] Inputs inputs_at(std::size_t index) const;
     /// Text for people: one line per waypoint, and the active limits of those that were not reached.
     [[nodiscard]] std::string text() const;
     /// All figures, as in inverse.json.

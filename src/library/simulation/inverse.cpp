@@ -34,6 +34,10 @@ GoalResult goal_result(const sim::Goal& goal, const sim::inverse::GoalState& sta
             library::points_of(state.got)};
 }
 
+[[noreturn]] void no_waypoint(std::size_t index, std::size_t count) {
+    throw Failure(Failure::Kind::input, fmt::format("there is no waypoint {}; there are {}", index, count));
+}
+
 }  // namespace
 
 InverseResult inverse(const Model& model, const InverseOptions& options, const Watch& watch) {
@@ -52,7 +56,8 @@ InverseResult inverse(const Model& model, const InverseOptions& options, const W
     if (found.cancelled && found.waypoints.empty()) library::check(cancelled());
     std::vector<SteeredInput> inputs = library::steered_inputs(scene.model, task);
     return InverseResult(std::make_shared<const InverseResult::Data>(
-        InverseResult::Data{model.data(), std::move(task), std::move(found), std::move(inputs)}));
+        InverseResult::Data{model.data(), std::move(task), std::move(found), std::move(inputs),
+                            std::make_shared<const sim::Equilibrium>(scene.model)}));
 }
 
 InverseResult::InverseResult(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
@@ -77,9 +82,7 @@ std::size_t InverseResult::waypoint_count() const {
 }
 
 Waypoint InverseResult::waypoint(std::size_t index) const {
-    if (index >= waypoint_count())
-        throw Failure(Failure::Kind::input,
-                      fmt::format("there is no waypoint {}; there are {}", index, waypoint_count()));
+    if (index >= waypoint_count()) no_waypoint(index, waypoint_count());
     const sim::inverse::Waypoint& at = data_->result.waypoints[index];
     Waypoint out;
     out.reached = at.reached;
@@ -94,6 +97,12 @@ Waypoint InverseResult::waypoint(std::size_t index) const {
     out.forward_solutions = at.work.forward;
     out.wall_s = at.wall_s;
     return out;
+}
+
+Inputs InverseResult::inputs_at(std::size_t index) const {
+    if (index >= waypoint_count()) no_waypoint(index, waypoint_count());
+    const sim::inverse::Waypoint& at = data_->result.waypoints[index];
+    return library::inputs_at(*data_->system, data_->task, at.values, at.state.time);
 }
 
 std::string InverseResult::text() const {

@@ -7,6 +7,8 @@
 #include <optional>
 #include <stdexcept>
 #include <thread>
+#include <type_traits>
+#include <utility>
 
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
@@ -164,6 +166,16 @@ TEST_CASE("a mesh made by a program takes the place of a file") {
     wrong.regions = {0, 0, 0, 0, 0, 1};
     CHECK(problem(wrong) == "the mesh: a tetrahedron is in region 1 of 1");
     CHECK(problem({}) == "the mesh: holds no tetrahedra");
+    wrong = cube;
+    wrong.regions.assign(6, 0);
+    wrong.region_names = {"all", "other", "all"};
+    CHECK(problem(wrong) == "the mesh: two regions are named \"all\"; each needs a name of its own");
+    wrong = cube;
+    for (const double x : {0.1, 0.2, 0.3, 0.4}) {  // flat, and attached to nothing
+        wrong.tets.push_back(static_cast<int>(wrong.points.size()));
+        wrong.points.push_back({x, x * x, 0});
+    }
+    CHECK(problem(wrong) == "tetrahedron 6 of the mesh is flat or inside out at rest (volume 0 m^3)");
     CHECK_THROWS_WITH_AS((void)Model(robot), doctest::Contains("can only be given by a program"), Failure);
     CHECK_THROWS_WITH_AS((void)Model(bar(), cube), doctest::Contains("the bodies are drawn"), Failure);
 }
@@ -208,6 +220,35 @@ TEST_CASE("a state is a value: copies, bytes and other steppers continue with th
     const test::Folder folder;
     kept.save(folder / "bar.state");
     CHECK(other.load(folder / "bar.state") == kept);
+}
+
+TEST_CASE("what was moved from keeps its value") {
+    Robot robot = bar();
+    const Robot taken = std::move(robot);
+    CHECK(robot.name() == "bar");
+    Model model(robot);
+    const Model moved = std::move(model);
+    CHECK(model.node_count() == moved.node_count());
+    Stepper stepper(model);
+    State state = stepper.rest();
+    State other = std::move(state);
+    CHECK((state == other));
+    CHECK(state.coordinates().size() == 3 * moved.node_count());
+    (void)stepper.step(state, pulled(other, 0.001));
+    CHECK_FALSE((state == other));
+    other = std::move(state);
+    CHECK((state == other));
+    static_assert(std::is_nothrow_move_constructible_v<State> && std::is_nothrow_move_assignable_v<State>);
+}
+
+TEST_CASE("a state of a motion in time is told apart from one without") {
+    const Model still(bar());
+    const Model moving(bar("program = { duration = \"1 s\", time_step = \"10 ms\" }\n"));
+    const Stepper one(still), other(moving);
+    CHECK_THROWS_WITH_AS((void)other.state_from(one.rest().bytes()),
+                         "a state of a robot without program.time_step, and this one has it", Failure);
+    CHECK_THROWS_WITH_AS((void)one.state_from(other.rest().bytes()),
+                         "a state of a robot with program.time_step, and this one has none", Failure);
 }
 
 TEST_CASE("a cable pulled and released, by length or by tension, returns to the same state") {
