@@ -4,16 +4,19 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 /// Marks the symbols that the shared library exports.
 #define PLIANT_API __attribute__((visibility("default")))
 
 /// Simulates multi-material soft robots, and slices, plans and prints them.
 ///
-/// A moved-from object of any class of this namespace may only be assigned to or destroyed.
+/// Robot, Model, State and results keep their value when they are moved from; what holds a solver or a view may then
+/// only be assigned to or destroyed.
 namespace pliant {
 
 /// x, y and z.
@@ -66,6 +69,19 @@ private:
 /// gets the exception unchanged. Exceptions of other callbacks also reach the caller unchanged, unless a callback must
 /// not throw.
 using Watch = std::function<bool(std::string_view stage, double share)>;
+
+/// @cond
+/// A pointer to shared, immutable data. Moving copies it: what was moved from keeps its value, and can still be used.
+template <class T>
+class SharedData : public std::shared_ptr<T> {
+public:
+    SharedData() = default;
+    SharedData(std::shared_ptr<T> data) noexcept : std::shared_ptr<T>(std::move(data)) {}
+    SharedData(const SharedData&) noexcept = default;
+    SharedData& operator=(const SharedData&) noexcept = default;
+    ~SharedData() = default;
+};
+/// @endcond
 
 /// Converts a text with a unit, as in robot files, to SI: quantity("4 mm", "m") is 0.004. `unit` is the required unit:
 /// m, s, N, Pa, m^3, kg/m^3 or N/m.

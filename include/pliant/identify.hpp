@@ -102,7 +102,7 @@ public:
     explicit Identification(std::shared_ptr<const Data> data);
 
 private:
-    std::shared_ptr<const Data> data_;
+    SharedData<const Data> data_;
     /// @endcond
 };
 

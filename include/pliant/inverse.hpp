@@ -46,7 +46,8 @@ struct Waypoint {
     bool reached = false;             ///< all of its goals are reached
     double time = 0;                  ///< program time, which sets everything that is not steered
     std::vector<GoalResult> goals;    ///< in the order of the robot file
-    std::vector<double> inputs;       ///< (InverseResult::inputs()) value of each, in its SteeredInput::unit
+    std::vector<double> inputs;       ///< (InverseResult::inputs()) value of each, in its SteeredInput::unit;
+                                      ///< InverseResult::inputs_at() gives them to a Stepper
     std::vector<std::string> limits;  ///< if not reached: the limits that prevent it, or that it was cancelled
     StepResult result;                ///< of the equilibrium
     Observation observed;             ///< measurable quantities of the state
@@ -73,6 +74,10 @@ public:
     /// One waypoint, counted from 0.
     /// @throws Failure if the index is out of range.
     [[nodiscard]] Waypoint waypoint(std::size_t index) const;
+    /// All inputs of the robot at a waypoint, as Stepper::step() takes them: the values that were found, and for
+    /// everything that is not steered those of the program at its time.
+    /// @throws Failure if the index is out of range.
+    [[nodiscard]] Inputs inputs_at(std::size_t index) const;
     /// Text for people: one line per waypoint, and the active limits of those that were not reached.
     [[nodiscard]] std::string text() const;
     /// All figures, as in inverse.json.
@@ -94,7 +99,7 @@ public:
     explicit InverseResult(std::shared_ptr<const Data> data);
 
 private:
-    std::shared_ptr<const Data> data_;
+    SharedData<const Data> data_;
     /// @endcond
 };
 

@@ -101,7 +101,7 @@ public:
     explicit ProgramResult(std::shared_ptr<Data> data);
 
 private:
-    std::shared_ptr<Data> data_;
+    SharedData<Data> data_;
     /// @endcond
 };
 

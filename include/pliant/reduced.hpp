@@ -63,7 +63,7 @@ public:
     [[nodiscard]] const std::shared_ptr<const Data>& data() const { return data_; }
 
 private:
-    std::shared_ptr<const Data> data_;
+    SharedData<const Data> data_;
     /// @endcond
 };
 
@@ -89,7 +89,7 @@ public:
     [[nodiscard]] const Data& data() const { return *data_; }
 
 private:
-    std::shared_ptr<const Data> data_;
+    SharedData<const Data> data_;
     /// @endcond
 };
 

@@ -2,8 +2,8 @@
 /// Simulation of soft robots driven by cables and chambers: from a robot file to a sequence of states.
 ///
 /// SI units throughout: metres, newtons, pascals, seconds. Robot, Model and State are values: a copy is independent of
-/// the original, and cheap because immutable data are shared. Nothing is drawn, printed or logged. Different objects
-/// may be used from different threads at the same time.
+/// the original, and cheap because immutable data are shared; what was moved from keeps its value. Nothing is drawn,
+/// printed or logged. Different objects may be used from different threads at the same time.
 #pragma once
 
 #include <cstddef>
@@ -53,7 +53,7 @@ public:
     [[nodiscard]] const std::shared_ptr<const Data>& shared() const { return data_; }
 
 private:
-    std::shared_ptr<const Data> data_;
+    SharedData<const Data> data_;
     /// @endcond
 };
 
@@ -130,7 +130,7 @@ public:
     [[nodiscard]] const std::shared_ptr<const Data>& data() const { return data_; }
 
 private:
-    std::shared_ptr<const Data> data_;
+    SharedData<const Data> data_;
     /// @endcond
 };
 
@@ -191,7 +191,7 @@ public:
     [[nodiscard]] const Data& data() const { return *data_; }
 
 private:
-    std::shared_ptr<const Data> data_;
+    SharedData<const Data> data_;
     /// @endcond
 };
 
@@ -290,9 +290,10 @@ struct Fields {
     std::vector<double> energy_density_Pa;  ///< J/m^3 of rest volume; 0 if the law has no energy
 };
 
-/// Advances a robot from one state to the next. Not thread-safe; any number of steppers may share a model. It accepts
-/// states of its model and of copies of that model. A state of any other Model, even one of the same robot, is brought
-/// over with State::bytes() and state_from().
+/// Advances a robot from one state to the next. Any number of steppers may share a model; each works for one caller at
+/// a time: while it does, on another thread or in a Watch, its other members throw a Failure. It accepts states of its
+/// model and of copies of that model. A state of any other Model, even one of the same robot, is brought over with
+/// State::bytes() and state_from().
 class PLIANT_API Stepper {
 public:
     /// Sets up the solver; costs about as much as one or two steps.
@@ -311,8 +312,9 @@ public:
     [[nodiscard]] Inputs program(double time) const;
     /// Solves for equilibrium at `inputs` and stores the new state in `state`. The inputs are ramped linearly from
     /// those of the state, in as many substeps as needed. A motion in time is integrated up to `inputs.time`, which
-    /// must be later than the time of the state, in equal time steps no longer than the program's. A step that finds no
-    /// equilibrium is not a Failure: the result says so, and `state` is as far as the solver got.
+    /// must be later than the time of the state, in equal time steps no longer than the program's; at the same time, up
+    /// to rounding, nothing moves. A step that finds no equilibrium is not a Failure: the result says so, and `state`
+    /// is as far as the solver got. The Watch is told the share of the way that is done.
     /// @throws Failure of kind `input`, with `state` unchanged, if the state belongs to another model, the number of
     /// drives differs from that of the cables and chambers, a value is not possible, or a motion in time does not lead
     /// to a later time or takes more than 10,000 time steps; of kind `cancelled`: `state` is then as far as the solver

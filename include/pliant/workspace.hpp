@@ -30,7 +30,8 @@ struct WorkspaceOptions {
 /// One equilibrium of a workspace.
 struct WorkspaceSample {
     std::size_t piece = 0;             ///< the piece it belongs to: a sheet, or a group of the further samples
-    std::vector<double> inputs;        ///< (Workspace::inputs()) value of each, in its SteeredInput::unit
+    std::vector<double> inputs;        ///< (Workspace::inputs()) value of each, in its SteeredInput::unit;
+                                       ///< Workspace::inputs_at() gives them to a Stepper
     bool found = false;                ///< an equilibrium was found; otherwise everything below is empty
     std::vector<Point> markers;        ///< (Model::markers()) m
     std::vector<double> tensions_N;    ///< (Model::cables())
@@ -53,6 +54,10 @@ public:
     /// One sample, counted from 0.
     /// @throws Failure if the index is out of range.
     [[nodiscard]] WorkspaceSample sample(std::size_t index) const;
+    /// All inputs of the robot at a sample, as Stepper::step() takes them: its values, and for everything that is not
+    /// varied those at the end of the robot's program.
+    /// @throws Failure if the index is out of range.
+    [[nodiscard]] Inputs inputs_at(std::size_t index) const;
     /// The sheets reached by a marker: on each, two inputs vary and all others are at one end of their range. Empty if
     /// there are none.
     /// @throws Failure if there is no such marker.
@@ -72,7 +77,7 @@ public:
     explicit Workspace(std::shared_ptr<const Data> data);
 
 private:
-    std::shared_ptr<const Data> data_;
+    SharedData<const Data> data_;
     /// @endcond
 };
 

@@ -303,7 +303,7 @@ class Model:
 
         The inputs are ramped linearly from those of the state, in as many substeps as needed. A motion in time
         (``program.time_step``) is integrated up to `time`, which must be later than the time of the state, in equal
-        time steps no longer than ``program.time_step``.
+        time steps no longer than ``program.time_step``; at the same time, up to rounding, nothing moves.
 
         Args:
             state: changed in place; :meth:`State.copy` keeps the state before.

@@ -39,8 +39,7 @@ class ProgramStep(Value):
 OnStep = Callable[[ProgramStep], Any]
 
 _ARGUMENTS = {
-    "it is made by --checkpoint-every": "run(checkpoint=FOLDER) makes one",
-    "what --set changes or --solver has changed": "its changes or its solver have changed",
+    "a run makes one where it is told to keep checkpoints": "run(checkpoint=FOLDER) makes one",
 }
 
 

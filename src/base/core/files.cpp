@@ -15,7 +15,22 @@ namespace pliant {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
+namespace {
+
+template <class... Args>
+tl::unexpected<Error> failure_at(std::string file, fmt::format_string<Args...> text, Args&&... args) {
+    return tl::unexpected(
+        error_of(Cause::failed, {{std::move(file), 0, "", fmt::format(text, std::forward<Args>(args)...)}}));
+}
+
+tl::unexpected<Error> no_name() {
+    return input_error("the name of a file is empty");
+}
+
+}  // namespace
+
 Result<std::string> read_file(const fs::path& path, std::uintmax_t limit_bytes) {
+    if (path.empty()) return no_name();
     std::error_code code;
     const fs::file_status status = fs::status(path, code);
     if (!fs::exists(status)) return input_error_at(path.string(), 0, "no such file");
@@ -50,7 +65,7 @@ Status write_through(const fs::path& path, std::string_view bytes, const fs::pat
     std::ofstream out(path, std::ios::binary | std::ios::trunc);
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     out.flush();
-    if (!out) return failure("{}: cannot be written: {}", shown.string(), std::strerror(errno));
+    if (!out) return failure_at(shown.string(), "cannot be written: {}", std::strerror(errno));
     return {};
 }
 
@@ -60,10 +75,10 @@ Result<fs::path> replaceable_file(const fs::path& path) {
     std::error_code code;
     const fs::file_type type = fs::status(path, code).type();
     if (type == fs::file_type::directory) return input_error_at(path.string(), 0, "is a folder, a file is needed");
-    if (is_special(path, type)) return input_error("{}: is not a regular file, and is not replaced", path.string());
+    if (is_special(path, type)) return input_error_at(path.string(), 0, "is not a regular file, and is not replaced");
     if (type == fs::file_type::not_found || !fs::is_symlink(fs::symlink_status(path, code))) return path;
     fs::path target = fs::canonical(path, code);
-    if (code) return failure("{}: {}", path.string(), code.message());
+    if (code) return failure_at(path.string(), "{}", code.message());
     return target;
 }
 
@@ -76,13 +91,13 @@ constexpr const char* aside_ending = ".partial";
 Status check_parent(const fs::path& folder, const fs::path& made) {
     std::error_code code;
     if (!fs::is_directory(folder, code))
-        return input_error("{}: {} is a file, a folder is needed", made.string(), folder.string());
+        return input_error_at(made.string(), 0, "{} is a file, a folder is needed", folder.string());
     if (::access(folder.c_str(), W_OK | X_OK) != 0)
-        return input_error("{}: cannot be made in {}: {}", made.string(), folder.string(), std::strerror(errno));
+        return input_error_at(made.string(), 0, "cannot be made in {}: {}", folder.string(), std::strerror(errno));
     const long longest = ::pathconf(folder.c_str(), _PC_NAME_MAX);
     const auto room = static_cast<long>(std::strlen(aside_ending));
     if (longest > 0 && static_cast<long>(made.filename().string().size()) + room > longest)
-        return input_error("{}: the name is too long", made.string());
+        return input_error_at(made.string(), 0, "the name is too long");
     return {};
 }
 
@@ -114,6 +129,7 @@ void empty(const FileHandle& open, const fs::path& path, AsideKind kind) {
 }  // namespace
 
 Status check_file_place(const fs::path& path) {
+    if (path.empty()) return no_name();
     std::error_code code;
     const fs::file_type type = fs::status(path, code).type();
     if (type != fs::file_type::directory && is_special(path, type)) return {};
@@ -121,17 +137,18 @@ Status check_file_place(const fs::path& path) {
     if (!target) return tl::unexpected(target.error());
     const fs::path place = absolute_place(*target);
     if (!fs::exists(place.parent_path(), code))
-        return input_error("{}: there is no folder {}", path.string(), place.parent_path().string());
+        return input_error_at(path.string(), 0, "there is no folder {}", place.parent_path().string());
     return check_parent(place.parent_path(), place);
 }
 
 Status check_folder_place(const fs::path& path, std::string_view marker) {
+    if (path.empty()) return input_error("the name of a folder is empty");
     std::error_code code;
     const fs::path place = absolute_place(path);
     if (fs::exists(place, code) && !fs::is_directory(place, code))
-        return input_error("{}: is a file, a folder is needed", path.string());
+        return input_error_at(path.string(), 0, "is a file, a folder is needed");
     if (!may_replace_folder(place, marker))
-        return input_error("{}: holds other files (no {}); name an empty or new folder", path.string(), marker);
+        return input_error_at(path.string(), 0, "holds other files (no {}); name an empty or new folder", marker);
     fs::path made = place;
     while (made.has_relative_path() && !fs::exists(made.parent_path(), code)) made = made.parent_path();
     if (Status last = place == made ? Status{} : check_parent(made.parent_path(), place); !last) return last;
@@ -145,7 +162,7 @@ fs::path aside_of(const fs::path& target) {
 Result<FileHandle> open_aside(const fs::path& aside, AsideKind kind, const fs::path& target,
                               std::chrono::milliseconds patience) {
     constexpr auto pause = 20ms;
-    const auto refuse = [&](const char* why) { return failure("{}: cannot be written: {}", target.string(), why); };
+    const auto refuse = [&](const char* why) { return failure_at(target.string(), "cannot be written: {}", why); };
     for (std::chrono::milliseconds waited{}; waited <= patience; waited += pause) {
         std::error_code code;
         if (kind == AsideKind::folder) fs::create_directories(aside, code);
@@ -165,6 +182,7 @@ Result<FileHandle> open_aside(const fs::path& aside, AsideKind kind, const fs::p
 }
 
 Status write_file(const fs::path& path, std::string_view bytes) {
+    if (path.empty()) return no_name();
     std::error_code code;
     if (is_special(path, fs::status(path, code).type())) return write_through(path, bytes, path);
     const Result<fs::path> target = replaceable_file(path);
@@ -175,7 +193,7 @@ Status write_file(const fs::path& path, std::string_view bytes) {
     Status status = write_through(aside, bytes, path);
     if (status) {
         fs::rename(aside, *target, code);
-        if (code) status = failure("{}: cannot be written: {}", path.string(), code.message());
+        if (code) status = failure_at(path.string(), "cannot be written: {}", code.message());
     }
     if (!status) fs::remove(aside, code);
     return status;
@@ -203,8 +221,8 @@ Status put_in_place(const fs::path& fresh, const fs::path& target) {
         if (code && replaces) fs::rename(old, target, ignored);
     }
     if (code)
-        return failure("{}: cannot be replaced: {}; the new results are in {}", target.string(), code.message(),
-                       fresh.string());
+        return failure_at(target.string(), "cannot be replaced: {}; the new results are in {}", code.message(),
+                          fresh.string());
     fs::remove_all(old, ignored);
     return {};
 }
@@ -219,9 +237,14 @@ Status write_folder(const fs::path& folder, std::string_view marker,
     const fs::path aside = aside_of(target);
     const Result<FileHandle> mine = open_aside(aside, AsideKind::folder, folder, 30min);
     if (!mine) return tl::unexpected(mine.error());
-    if (const Status filled = fill(aside); !filled) {
+    try {
+        if (const Status filled = fill(aside); !filled) {
+            fs::remove_all(aside, code);
+            return filled;
+        }
+    } catch (...) {  // of the caller: nothing is left of what was begun
         fs::remove_all(aside, code);
-        return filled;
+        throw;
     }
     return put_in_place(aside, target);
 }

@@ -186,7 +186,10 @@ void pass_on(const std::string& bytes, Progress& progress) {
 std::filesystem::path folder_of_this_code() {
     Dl_info found{};
     if (::dladdr(reinterpret_cast<const void*>(&mesher_limits), &found) == 0 || found.dli_fname == nullptr) return {};
-    return std::filesystem::path(found.dli_fname).parent_path();
+    const std::filesystem::path file = found.dli_fname;
+    if (!file.has_parent_path()) return {};  // a program as it was typed, found on PATH
+    std::error_code error;
+    return std::filesystem::absolute(file, error).parent_path();
 }
 
 /// Possible paths of the program relative to a folder of programs or libraries (which may be two levels below lib).
@@ -207,7 +210,28 @@ std::filesystem::path mesher_of(const std::filesystem::path& folder) {
     return {};
 }
 
+/// That of the build tree that a folder is in: tests, benchmarks and Python modules run where they were built.
+std::filesystem::path mesher_of_build(std::filesystem::path folder) {
+    std::error_code error;
+    for (;; folder = folder.parent_path()) {
+        std::filesystem::path path = folder / "apps/pliant/pliant-mesh";
+        if (std::filesystem::is_regular_file(folder / "CMakeCache.txt", error) &&
+            std::filesystem::is_regular_file(path, error))
+            return path;
+        if (!folder.has_relative_path()) return {};
+    }
+}
+
 }  // namespace
+
+std::filesystem::path mesher_from(std::span<const std::filesystem::path> folders) {
+    for (const std::filesystem::path& folder : folders) {
+        if (!folder.is_absolute()) continue;  // the result must not depend on the current folder
+        if (std::filesystem::path path = mesher_of(folder); !path.empty()) return path;
+        if (std::filesystem::path path = mesher_of_build(folder.lexically_normal()); !path.empty()) return path;
+    }
+    return {};
+}
 
 std::filesystem::path mesher_on(std::string_view search_path) {
     while (!search_path.empty()) {
@@ -236,11 +260,7 @@ Result<std::filesystem::path> mesher_program() {
         return input_error("PLIANT_MESH names \"{}\", which is not a file; it must be the program pliant-mesh", named);
     }
     const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (const fs::path& folder : {here, folder_of_this_code()}) {
-        if (fs::path path = mesher_of(folder); !path.empty()) return path;
-    }
-    // Empty in packages.
-    if (fs::is_regular_file(PLIANT_MESH_BUILT, error)) return fs::path(PLIANT_MESH_BUILT);
+    if (fs::path path = mesher_from(std::array{folder_of_this_code(), here}); !path.empty()) return path;
     if (const char* const search_path = std::getenv("PATH"); search_path != nullptr) {
         if (fs::path path = mesher_on(search_path); !path.empty()) return path;
     }

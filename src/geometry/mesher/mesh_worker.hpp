@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "base/core/error.hpp"
 #include "base/core/progress.hpp"
@@ -19,9 +21,14 @@ struct MesherLimits {
 };
 [[nodiscard]] MesherLimits mesher_limits();
 
-/// Where pliant-mesh is: the path in PLIANT_MESH, else beside the running program or the library that contains this
-/// code, else where it was built, else where it is installed beside a program on PATH.
+/// Where pliant-mesh is: the path in PLIANT_MESH, else mesher_from() the folders of the library that contains this code
+/// and of the running program, else mesher_on() PATH. No path of where it was built is known.
 [[nodiscard]] Result<std::filesystem::path> mesher_program();
+
+/// That of the first folder of programs or libraries which has one: in it, in libexec/pliant or bin beside it, or in
+/// the build tree around it, which has CMakeCache.txt and apps/pliant/pliant-mesh. Relative folders are left out;
+/// empty: none.
+[[nodiscard]] std::filesystem::path mesher_from(std::span<const std::filesystem::path> folders);
 
 /// The first one that belongs to a folder of `search_path`, which has the format of PATH; empty: none.
 [[nodiscard]] std::filesystem::path mesher_on(std::string_view search_path);

@@ -164,6 +164,43 @@ TEST_CASE("a mesher is found with an installation that PATH names") {
     CHECK(mesher_on((folder / "empty/bin").string()).empty());
 }
 
+TEST_CASE("a mesher is found from where a program or library is, or in the build tree around it") {
+    namespace fs = std::filesystem;
+    const pliant::test::Folder folder("places");
+    const auto put = [&](const fs::path& file) {
+        fs::create_directories((folder / file).parent_path());
+        REQUIRE(write_file(folder / file, "program"));
+    };
+    const auto from = [&](std::vector<fs::path> places) {
+        for (fs::path& place : places) place = folder / place;
+        return mesher_from(places);
+    };
+    const auto is = [&](const fs::path& found, const char* file) {
+        REQUIRE(!found.empty());
+        CHECK(fs::equivalent(found, folder / file));
+    };
+    put("usr/bin/program");
+    put("usr/lib/x86_64-linux-gnu/libpliant.so");
+    put("build/python/pliant/module.so");
+    put("build/apps/pliant/pliant-mesh");
+    CHECK(from({"usr/bin", "usr/lib/x86_64-linux-gnu"}).empty());
+    CHECK(from({"build/python/pliant"}).empty());  // no build tree: it was not configured by cmake
+    put("build/CMakeCache.txt");
+    is(from({"build/python/pliant"}), "build/apps/pliant/pliant-mesh");
+    is(from({"build"}), "build/apps/pliant/pliant-mesh");
+    CHECK(from({"usr/bin"}).empty());
+    put("usr/libexec/pliant/pliant-mesh");
+    is(from({"usr/bin"}), "usr/libexec/pliant/pliant-mesh");
+    is(from({"usr/lib/x86_64-linux-gnu"}), "usr/libexec/pliant/pliant-mesh");
+    // The first folder decides, which is the library's: a module of the build tree takes no mesher of its interpreter.
+    is(from({"build/python/pliant", "usr/bin"}), "build/apps/pliant/pliant-mesh");
+    is(from({"usr/lib/x86_64-linux-gnu", "build/python/pliant"}), "usr/libexec/pliant/pliant-mesh");
+    put("usr/bin/pliant-mesh");
+    is(from({"usr/bin"}), "usr/bin/pliant-mesh");
+    CHECK(mesher_from({}).empty());
+    CHECK(mesher_from(std::vector<fs::path>{"", "relative"}).empty());
+}
+
 TEST_CASE("cached answers need no mesher, are identical, and are removed when the cache is full") {
     Progress silent;
     const Result<TetMesh> first = mesh_cube(5, silent);

@@ -27,8 +27,8 @@ inline void check(const Status& status) {
 /// An exception from the Watch cancels the work, and is thrown again by rethrow().
 class WatchedProgress final : public Progress {
 public:
-    /// `watch` must outlive it.
-    explicit WatchedProgress(const Watch& watch) : watch_(watch) {}
+    /// `watch` must outlive it. `stage`: that of the work until it tells its own.
+    WatchedProgress(const Watch& watch, std::string stage) : watch_(watch), stage_(std::move(stage)) {}
     void advance(std::string_view stage, double fraction) override;
     /// Calls the Watch again, but only on its own thread.
     [[nodiscard]] bool cancelled() const override;

@@ -94,6 +94,7 @@ private:
 
 void on_each_core(std::size_t n, const std::function<void(std::size_t)>& work, int threads, const Watch& watch) {
     if (threads < 0) throw Failure(Failure::Kind::input, "the number of threads is negative");
+    if (!work) throw Failure(Failure::Kind::input, "the work for each core is an empty function");
     const std::size_t most = threads > 0 ? static_cast<std::size_t>(threads) : static_cast<std::size_t>(core_count());
     Crew crew(n, work, watch);
     crew.run(static_cast<int>(std::min({most, n, std::size_t{1024}})));

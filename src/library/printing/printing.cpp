@@ -60,8 +60,10 @@ prepare::Order order_of(const SliceOptions& options) {
 
 PrintPlan slice_job(const SliceOptions& options, const std::filesystem::path& job, const Watch& watch) {
     if (options.inputs.empty()) throw Failure(Failure::Kind::input, "nothing is given to be sliced");
+    if (options.printer.empty()) throw Failure(Failure::Kind::input, "no printer file is named to slice for");
+    if (job.empty()) throw Failure(Failure::Kind::input, "the name of the job file is empty");
     const prepare::PrinterFile printer = printer_of(options.printer);
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "slice");
     auto drawing = prepare::read_drawing(options.inputs, options.changes, progress);
     progress.rethrow();
     auto made = prepare::slice_job(order_of(options), printer, value_of(std::move(drawing)), job, progress);
@@ -79,7 +81,7 @@ std::vector<std::string> check_job(const std::filesystem::path& job) {
 }
 
 VirtualPrint print_virtually(const std::filesystem::path& job, const Watch& watch, const VirtualPrintOptions& options) {
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "print");
     auto rehearsal = value_of(rehearse::Rehearsal::make(value_of(operate::load_job(job)), {}));
     const Status printed = rehearsal.print().print(progress);
     progress.rethrow();

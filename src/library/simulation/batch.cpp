@@ -10,12 +10,14 @@
 
 #include "base/core/own_core.hpp"
 #include "library/base/calls.hpp"
+#include "library/base/in_use.hpp"
 
 namespace pliant {
 
 struct Batch::Work {
     std::vector<Stepper> steppers;
     int threads = 1;
+    library::InUse in_use{"batch"};
 };
 
 namespace {
@@ -93,6 +95,7 @@ Stepper& Batch::stepper(std::size_t index) {
 }
 
 std::vector<State> Batch::rest() const {
+    const library::Use use(work_->in_use);
     std::vector<State> states;
     for (const Stepper& stepper : work_->steppers) states.push_back(stepper.rest());
     return states;
@@ -101,6 +104,7 @@ std::vector<State> Batch::rest() const {
 std::vector<StepResult> Batch::step(std::vector<State>& states, const std::vector<Inputs>& inputs, const Watch& watch) {
     expect_count(states.size(), size(), "states");
     expect_count(inputs.size(), size(), "inputs");
+    const library::Use use(work_->in_use);
     std::vector<State> next = states;
     std::vector<StepResult> results(size());
     SharedWatch shared(watch, size());
@@ -125,6 +129,7 @@ std::vector<StepResult> Batch::step(std::vector<State>& states, const std::vecto
 
 std::vector<Observation> Batch::observe(const std::vector<State>& states) {
     expect_count(states.size(), size(), "states");
+    const library::Use use(work_->in_use);
     std::vector<Observation> seen(size());
     const auto observe_one = [&](std::size_t i) {
         try {

@@ -135,3 +135,26 @@ TEST_CASE("options of a model that are not possible are refused") {
                              Failure);
     CHECK_THROWS_WITH_AS((void)Model(bar(), {.iteration_limit = -1}), "the iteration limit is negative", Failure);
 }
+
+TEST_CASE("an empty function is no work for the cores") {
+    CHECK_THROWS_WITH_AS(on_each_core(10, {}), "the work for each core is an empty function", Failure);
+}
+
+TEST_CASE("a batch that is at work refuses a second use") {
+    const Model model(bar());
+    Batch batch({model, model}, {}, 2);
+    std::vector<State> states = batch.rest(), others = states;
+    const std::vector<Inputs> inputs = pulled_each(states, 1e-3);
+    bool asked = false;
+    const Watch watch = [&](std::string_view, double) {
+        if (asked) return true;
+        asked = true;
+        CHECK_THROWS_WITH_AS((void)batch.step(others, inputs), doctest::Contains("the batch is at work"), Failure);
+        CHECK_THROWS_WITH_AS((void)batch.observe(others), doctest::Contains("the batch is at work"), Failure);
+        return true;
+    };
+    (void)batch.step(states, inputs, watch);
+    CHECK(asked);
+    (void)batch.step(others, inputs);
+    CHECK((states == others));
+}

@@ -174,7 +174,7 @@ ProgramGradient gradient(const Model& model, const Objective& objective, const G
     const robot::Scene& scene = model.data()->scene;
     if (options.kept < 1) throw Failure(Failure::Kind::input, "at least one state has to be kept");
     Judge judge(scene.model, objective);
-    library::WatchedProgress watched(watch);
+    library::WatchedProgress watched(watch, "gradient");
     JudgedProgress progress(watched, judge);
     const Numbers numbers = numbers_around(*model.data(), options.numbers, progress);
     library::Guides guides;

@@ -42,6 +42,22 @@ double value_with(const std::string& change) {
 
 }  // namespace
 
+TEST_CASE("a gradient names its stage from the first call of the watch, and a measure of no kind is refused") {
+    const Model model(bar(four_steps));
+    double last = 0;
+    const Watch watch = [&](std::string_view stage, double share) {
+        CHECK(stage == "gradient");
+        last = share;
+        return true;
+    };
+    (void)gradient(model, at_end(), {}, watch);
+    CHECK(last == 1);
+    Objective wrong = at_end();
+    wrong.measures[0].of = static_cast<Measure::Of>(99);
+    CHECK_THROWS_WITH_AS((void)gradient(model, wrong), "there is no measure of kind 99; take one of Measure::Of",
+                         Failure);
+}
+
 TEST_CASE("the gradient of a program agrees with finite differences") {
     const ProgramGradient of = gradient(Model(bar(four_steps)), at_end(), {.rest_positions = true, .tets = true});
     REQUIRE(of.values.size() == 4);

@@ -31,6 +31,19 @@ std::vector<FitError> fit_errors(const std::vector<sim::identify::Errors>& error
     return out;
 }
 
+sim::identify::JudgeOn judge_for(JudgeOn judge) {
+    switch (judge) {
+        case JudgeOn::nothing:
+            return sim::identify::JudgeOn::nothing;
+        case JudgeOn::every_second:
+            return sim::identify::JudgeOn::every_second;
+        case JudgeOn::second_half:
+            return sim::identify::JudgeOn::second_half;
+    }
+    throw Failure(Failure::Kind::input,
+                  fmt::format("rows cannot be judged on {}; take one of JudgeOn", static_cast<int>(judge)));
+}
+
 }  // namespace
 
 struct Identification::Data {
@@ -46,17 +59,18 @@ Measurements Measurements::load(const fs::path& file) {
 Identification identify(const Robot& robot, const std::vector<std::string>& unknowns, const Measurements& measured,
                         JudgeOn judge, const std::optional<Mesh>& mesh, const Watch& watch) {
     const robot::Robot& given = robot.data().robot;
+    const sim::identify::JudgeOn judge_on = judge_for(judge);
     const auto wanted = library::value_of(sim::identify::find_unknowns(given, unknowns));
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "identify");
     const sim::identify::Source source = source_of(robot.shared(), mesh, progress);
     const auto start = library::value_of(source.with({}, {}));
-    const auto measurements =
-        library::value_of(sim::identify::parse_measurements(measured.csv, measured.file, start->model.description(),
-                                                            given.program, static_cast<sim::identify::JudgeOn>(judge)));
+    const auto measurements = library::value_of(sim::identify::parse_measurements(
+        measured.csv, measured.file, start->model.description(), given.program, judge_on));
     auto found = sim::identify::identify(source, wanted, measurements, progress);
     progress.rethrow();
     if (!found && found.error().cause == Cause::failed)
-        throw Failure(Failure::Kind::failed, robot.data().file.string() + ": " + found.error().message);
+        throw Failure(Failure::Kind::failed, robot.data().file.string() + ": " + found.error().message,
+                      robot.data().file.string());
     return Identification(std::make_shared<const Identification::Data>(
         Identification::Data{robot.shared(), measured.file, library::value_of(std::move(found))}));
 }

@@ -75,4 +75,15 @@ TEST_CASE("identification refuses an unknown key and unusable measurements") {
     CHECK_THROWS_AS((void)identify(bar(program), {"material.soft.youngs_module"}, measured()), Failure);
     CHECK_THROWS_AS((void)identify(bar(program), {"material.soft.youngs_modulus"}, {"step,nothing\n1,2\n"}), Failure);
     CHECK_THROWS_AS((void)Measurements::load("/nowhere.csv"), Failure);
+    CHECK_THROWS_WITH_AS((void)Measurements::load(""), "the name of a file is empty", Failure);
+    CHECK_THROWS_WITH_AS(
+        (void)identify(bar(program), {"material.soft.youngs_modulus"}, measured(), static_cast<JudgeOn>(99)),
+        "rows cannot be judged on 99; take one of JudgeOn", Failure);
+    try {
+        (void)identify(bar(program), {"material.soft.youngs_modulus"}, {"step,tip_z_mm\n1,5\n9,5\n", "m.csv"});
+        FAIL("a step after the end passed");
+    } catch (const Failure& failure) {
+        CHECK(failure.file() == "m.csv");
+        CHECK(failure.line() == 3);
+    }
 }

@@ -34,22 +34,30 @@ GoalResult goal_result(const sim::Goal& goal, const sim::inverse::GoalState& sta
             library::points_of(state.got)};
 }
 
+[[noreturn]] void no_waypoint(std::size_t index, std::size_t count) {
+    throw Failure(Failure::Kind::input, fmt::format("there is no waypoint {}; there are {}", index, count));
+}
+
 }  // namespace
 
 InverseResult inverse(const Model& model, const InverseOptions& options, const Watch& watch) {
-    if (options.starts < 0) throw Failure(Failure::Kind::input, "the number of starts is negative");
+    constexpr int most_starts = 100000;
+    if (options.starts < 0 || options.starts > most_starts)
+        throw Failure(Failure::Kind::input,
+                      fmt::format("{} starts are not possible; 0 to {} are", options.starts, most_starts));
     const robot::Scene& scene = model.data()->scene;
     sim::InverseTask task = library::value_of(robot::build_goals(scene.robot, scene.model));
     sim::StepperOptions stepping = sim::stepper_options(scene.robot.program);
     stepping.tolerance = robot::goal_tolerance(scene.robot.program);
     sim::Stepper stepper(scene.model, stepping);
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "finding inputs");
     sim::inverse::InverseResult found = sim::inverse::follow(stepper, task, {options.starts}, progress);
     progress.rethrow();
     if (found.cancelled && found.waypoints.empty()) library::check(cancelled());
     std::vector<SteeredInput> inputs = library::steered_inputs(scene.model, task);
     return InverseResult(std::make_shared<const InverseResult::Data>(
-        InverseResult::Data{model.data(), std::move(task), std::move(found), std::move(inputs)}));
+        InverseResult::Data{model.data(), std::move(task), std::move(found), std::move(inputs),
+                            std::make_shared<const sim::Equilibrium>(scene.model)}));
 }
 
 InverseResult::InverseResult(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
@@ -74,9 +82,7 @@ std::size_t InverseResult::waypoint_count() const {
 }
 
 Waypoint InverseResult::waypoint(std::size_t index) const {
-    if (index >= waypoint_count())
-        throw Failure(Failure::Kind::input,
-                      fmt::format("there is no waypoint {}; there are {}", index, waypoint_count()));
+    if (index >= waypoint_count()) no_waypoint(index, waypoint_count());
     const sim::inverse::Waypoint& at = data_->result.waypoints[index];
     Waypoint out;
     out.reached = at.reached;
@@ -91,6 +97,12 @@ Waypoint InverseResult::waypoint(std::size_t index) const {
     out.forward_solutions = at.work.forward;
     out.wall_s = at.wall_s;
     return out;
+}
+
+Inputs InverseResult::inputs_at(std::size_t index) const {
+    if (index >= waypoint_count()) no_waypoint(index, waypoint_count());
+    const sim::inverse::Waypoint& at = data_->result.waypoints[index];
+    return library::inputs_at(*data_->system, data_->task, at.values, at.state.time);
 }
 
 std::string InverseResult::text() const {

@@ -7,6 +7,7 @@
 #include "pliant/inverse.hpp"
 #include "presentation/report/inverse_tables.hpp"
 #include "simulation/inverse/follow.hpp"
+#include "simulation/solver/equilibrium.hpp"
 
 namespace pliant {
 
@@ -15,6 +16,7 @@ struct InverseResult::Data {
     sim::InverseTask task;
     sim::inverse::InverseResult result;
     std::vector<SteeredInput> inputs;
+    std::shared_ptr<const sim::Equilibrium> system{};
 
     [[nodiscard]] report::InverseReport report() const {
         return {model->scene.robot.name, model->scene.model, task, result};

@@ -93,7 +93,7 @@ std::vector<std::string> departures(const InverseResult::Data& found, const sim:
 /// Writes the program, runs it from its file, and writes all results. Returns the warnings of departures(), and one if
 /// nothing could be drawn.
 std::vector<std::string> fill(const InverseResult::Data& found, const fs::path& folder, const fs::path& final_folder,
-                              Progress& progress, Progress& drawing) {
+                              Progress& progress, library::Drawing& drawing) {
     const int steps_each = steps_per_waypoint(found);
     const ProgramFiles files = program_files(found, final_folder, steps_each);
     if (!files.robot.empty()) library::check(write_file(folder / robot_name, files.robot));
@@ -105,6 +105,7 @@ std::vector<std::string> fill(const InverseResult::Data& found, const fs::path& 
     simulation.measured = report::wanted_paths(found.report());
     simulation.measured_as = "wanted";
     const auto written = library::value_of(report::write_results(folder, simulation, {}, progress, drawing));
+    drawing.rethrow();
     if (progress.cancelled()) library::check(cancelled());
     library::check(write_file(folder / "inverse.json", report::inverse_json(found.report())));
     library::check(write_file(folder / "waypoints.csv", report::waypoints_csv(found.report())));
@@ -119,7 +120,7 @@ std::vector<std::string> InverseResult::write(const fs::path& folder, const Watc
                                               const std::function<bool()>& enough_pictures) const {
     if (data_->result.waypoints.empty())
         throw Failure(Failure::Kind::failed, "there is nothing to write: " + message());
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "results");
     library::Drawing drawing(progress, enough_pictures);
     std::vector<std::string> warnings;
     std::exception_ptr thrown;

@@ -55,7 +55,17 @@ TEST_CASE("a goal is reached, and a step with the inputs that were found leads t
     inputs.cables[0] = {Drive::By::length, 0.06 - at.inputs[0]};
     REQUIRE(stepper.step(state, inputs).arrived);
     CHECK(stepper.observe(state).markers[0].position_m[2] == near(0.008, {.absolute = 2e-5}));
+    const Inputs found = result.inputs_at(0);
+    CHECK(found.time == at.time);
+    REQUIRE(found.cables.size() == 1);
+    CHECK(found.cables[0].by == Drive::By::length);
+    CHECK(found.cables[0].value == near(inputs.cables[0].value, {.relative = 1e-12}));
+    State again = stepper.rest();
+    REQUIRE(stepper.step(again, found).arrived);
+    CHECK(stepper.observe(again).markers[0].position_m[2] ==
+          near(at.observed.markers[0].position_m[2], {.absolute = 2e-5}));
     CHECK_THROWS_WITH_AS((void)result.waypoint(1), "there is no waypoint 1; there are 1", Failure);
+    CHECK_THROWS_WITH_AS((void)result.inputs_at(1), "there is no waypoint 1; there are 1", Failure);
 }
 
 TEST_CASE("an unreachable goal ends at the nearest point and names the limit") {
@@ -71,9 +81,11 @@ TEST_CASE("an unreachable goal ends at the nearest point and names the limit") {
     CHECK(result.json().find("\"reached\": false") != std::string::npos);
 }
 
-TEST_CASE("a robot without a goal, a negative number of starts and a cancelled search throw") {
+TEST_CASE("a robot without a goal, an impossible number of starts and a cancelled search throw") {
     CHECK_THROWS_AS((void)inverse(Model(bar())), Failure);
-    CHECK_THROWS_AS((void)inverse(Model(with_goal(reachable)), {.starts = -1}), Failure);
+    for (const int starts : {-1, 2000000000})
+        CHECK_THROWS_WITH_AS((void)inverse(Model(with_goal(reachable)), {.starts = starts}),
+                             doctest::Contains("starts are not possible; 0 to 100000 are"), Failure);
     const Model model(with_goal(reachable));
     CHECK_THROWS_AS((void)inverse(model, {}, [](std::string_view, double) { return false; }), Failure);
 }
@@ -122,7 +134,14 @@ TEST_CASE("a cancelled workspace search resumes from its checkpoint to the same 
         CHECK(sample.found);
         CHECK((sample.tensions_N[0] > 1e-9) == (sample.inputs[0] > 0));
         CHECK((sample.markers[0][2] > 0.0051) == (sample.inputs[0] > 0));
+        const Inputs inputs = whole.inputs_at(k);
+        CHECK(inputs.cables[0].value == near(0.06 - sample.inputs[0], {.relative = 1e-12}));
+        Stepper stepper(model);
+        State state = stepper.rest();
+        REQUIRE(stepper.step(state, inputs).arrived);
+        CHECK(stepper.observe(state).markers[0].position_m[2] == near(sample.markers[0][2], {.absolute = 2e-5}));
     }
+    CHECK_THROWS_WITH_AS((void)whole.inputs_at(4), "there is no sample 4; there are 4", Failure);
     WorkspaceOptions kept = small;
     kept.checkpoint = folder / "kept";
     CHECK_THROWS_AS((void)workspace(model, kept, [](std::string_view, double share) { return share < 0.5; }), Failure);

@@ -9,6 +9,7 @@
 
 #include "base/linalg/vectors.hpp"
 #include "library/base/calls.hpp"
+#include "library/base/in_use.hpp"
 #include "library/simulation/data.hpp"
 #include "library/simulation/guides.hpp"
 #include "library/simulation/measures.hpp"
@@ -62,6 +63,7 @@ struct Linearisation::Work {
     std::vector<sim::Parameter> inputs, parameters;
     std::vector<Parameter> shown_inputs, shown_parameters;
     std::optional<library::Guides> guides;  ///< created on first request
+    library::InUse in_use{"linearisation"};
 };
 
 /// Multipliers of chambers are minus their pressures; those of pressure loads are internal.
@@ -123,9 +125,11 @@ std::vector<double> Linearisation::multiply_transposed(std::span<const double> w
     return library::list_of(work_->at.multiply_transposed(work_->unknowns(w)));
 }
 std::vector<double> Linearisation::solve(std::span<const double> b) {
+    const library::Use use(work_->in_use);
     return library::list_of(library::value_of(work_->at.solve(work_->unknowns(b))));
 }
 std::vector<double> Linearisation::solve_transposed(std::span<const double> b) {
+    const library::Use use(work_->in_use);
     return library::list_of(library::value_of(work_->at.solve_transposed(work_->unknowns(b))));
 }
 Change Linearisation::change(std::span<const double> unknowns) const {
@@ -140,17 +144,21 @@ const std::vector<Parameter>& Linearisation::parameters() const {
 }
 
 const std::vector<GuidePoint>& Linearisation::guide_points() {
+    const library::Use use(work_->in_use);
     return work_->all_guides().shown;
 }
 
 Change Linearisation::response_to_input(std::size_t input) {
+    const library::Use use(work_->in_use);
     return work_->response(work_->inputs, input, "input");
 }
 Change Linearisation::response_to_parameter(std::size_t parameter) {
+    const library::Use use(work_->in_use);
     return work_->response(work_->parameters, parameter, "parameter");
 }
 
 Linearisation::Gradient Linearisation::gradient(const Quantity& quantity, const StateGradientOptions& options) {
+    const library::Use use(work_->in_use);
     const sim::Adjoint adjoint = library::value_of(work_->at.adjoint(work_->quantity(quantity)));
     Gradient out;
     out.inputs = library::list_of(sim::derivatives(work_->at, adjoint, work_->inputs));
@@ -169,6 +177,7 @@ double Linearisation::value(const Measure& measure) const {
 }
 
 Linearisation::Gradient Linearisation::gradient(const Measure& measure, const StateGradientOptions& options) {
+    const library::Use use(work_->in_use);
     const sim::Slope slope = sim::slope(work_->at, library::measure_for(work_->model->scene.model, measure));
     sim::By wanted{.rest = true};
     if (options.guide_points) wanted.guides = work_->all_guides().points;

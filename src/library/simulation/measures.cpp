@@ -60,9 +60,10 @@ Choice choice_of(const sim::Description& d, Measure::Of of) {
         case Measure::Of::contact_force:
             return {MeasureKind::contact_force, "obstacle", obstacles_of(d)};
         case Measure::Of::self_contact:
-            break;
+            return {MeasureKind::self_contact, "self-contact", {}};
     }
-    return {MeasureKind::self_contact, "self-contact", {}};
+    throw Failure(Failure::Kind::input,
+                  fmt::format("there is no measure of kind {}; take one of Measure::Of", static_cast<int>(of)));
 }
 
 [[noreturn]] void refuse_name(const Choice& choice, const std::string& name) {

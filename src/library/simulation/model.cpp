@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <utility>
@@ -22,6 +23,20 @@ std::vector<std::string> names_of(const std::vector<T>& all) {
 
 [[noreturn]] void refuse(const std::string& why) {
     throw Failure(Failure::Kind::input, "the mesh: " + why);
+}
+
+/// Before anything else is said of the body that has one: it hangs on nothing, or cannot be simulated.
+void refuse_flat_tets(const mesh::TetMesh& mesh) {
+    const auto width = static_cast<std::size_t>(mesh.nodes_per_tet());
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t) {
+        const int* n = mesh.nodes.data() + t * width;
+        const auto at = [&](int corner) { return mesh.points[static_cast<std::size_t>(n[corner])]; };
+        const double volume = mesh::signed_tet_volume(at(0), at(1), at(2), at(3));
+        if (!(volume > 0))
+            throw Failure(
+                Failure::Kind::input,
+                fmt::format("tetrahedron {} of the mesh is flat or inside out at rest (volume {:.3g} m^3)", t, volume));
+    }
 }
 
 void check_step_options(const StepOptions& options) {
@@ -73,10 +88,14 @@ mesh::TetMesh library::tet_mesh(const Mesh& given) {
                                               given.tets.begin() + static_cast<std::ptrdiff_t>((t + 1) * width));
         if (const Status status = collector.add(nodes, region); !status) refuse(status.error().message);
     }
+    for (auto name = given.region_names.begin(); name != given.region_names.end(); ++name)
+        if (std::find(given.region_names.begin(), name, *name) != name)
+            refuse(fmt::format("two regions are named \"{}\"; each needs a name of its own", *name));
     std::map<std::int64_t, std::string> names;
     for (const std::string& name : given.region_names) names.emplace(names.size(), name);
     auto mesh = collector.finish(names);
     if (!mesh) refuse(mesh.error().message);
+    refuse_flat_tets(*mesh);
     return std::move(*mesh);
 }
 
@@ -89,7 +108,7 @@ Model::Model(const Robot& robot, const Mesh& mesh, const StepOptions& options) {
 
 Model::Model(const Robot& robot, const StepOptions& options, const Watch& watch) {
     std::shared_ptr<const Robot::Data> solved = with_options(robot.shared(), options);
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "mesh");
     auto scene = robot::build_scene(solved->robot, progress);
     progress.rethrow();
     data_ = std::make_shared<const Data>(Data{library::value_of(std::move(scene)), std::move(solved)});

@@ -108,7 +108,7 @@ ProgramResult run(const Model& model, const RunOptions& options, const Watch& wa
     const Model::Data& data = *model.data();
     Measured measured = read_measured(options.measured, data.scene.model);
     Kept kept = open_checkpoint(data, options);
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "simulate");
     sim::RunOptions run;
     run.begin = std::move(kept.begin);
     if (options.on_step) run.on_step = [&](const sim::Step& step) { options.on_step(program_step(step)); };
@@ -171,18 +171,20 @@ std::string ProgramResult::summary_json() const {
 bool ProgramResult::write(const std::filesystem::path& folder, const ResultsOptions& options, const Watch& watch) {
     if (folder.empty()) throw Failure(Failure::Kind::input, "the name of the folder for the results is empty");
     const report::PictureChoice choice = picture_choice(options);
-    library::WatchedProgress writing(watch);
+    library::WatchedProgress writing(watch, "results");
     library::Drawing drawing(writing, options.enough_pictures);
     bool stopped = false;
     const Status status = write_folder(folder, "summary.json", [&](const std::filesystem::path& path) -> Status {
         const auto written = report::write_results(path, *data_->report, choice, writing, drawing);
         if (!written) return tl::unexpected(written.error());
+        if (drawing.failed()) return cancelled();
         data_->report->timing = written->timing;
         stopped = written->drawing_stopped;
         if (!written->warning.empty()) data_->trajectory.warnings.push_back(written->warning);
         return {};
     });
     writing.rethrow();
+    drawing.rethrow();
     library::check(status);
     return !stopped;
 }

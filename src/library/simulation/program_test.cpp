@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
+#include <string>
 
 #include "base/core/files.hpp"
 #include "base/core/near.hpp"
@@ -78,6 +80,12 @@ TEST_CASE("results are written whole, without pictures if they are not wanted, o
     CHECK(fs::exists(folder / "all" / "summary.json"));
     CHECK_THROWS_AS(result.write(folder / "none", {}, [](std::string_view, double) { return false; }), Failure);
     CHECK_FALSE(fs::exists(folder / "none"));
+    const auto throws = []() -> bool { throw std::logic_error("mine"); };
+    CHECK_THROWS_AS(result.write(folder / "none", {.enough_pictures = throws}), std::logic_error);
+    CHECK_FALSE(fs::exists(folder / "none"));
+    CHECK_FALSE(fs::exists(folder / "none.partial"));
+    CHECK_THROWS_AS(result.write(folder / "all", {.enough_pictures = throws}), std::logic_error);
+    CHECK(fs::exists(folder / "all" / "summary.json"));  // the older results stay
     fs::create_directory(folder / "foreign");
     std::ofstream(folder / "foreign" / "letter.txt") << "mine";
     CHECK_THROWS_AS(result.write(folder / "foreign"), Failure);
@@ -96,6 +104,13 @@ TEST_CASE("measured markers are read before anything is solved, and compared wit
     REQUIRE(write_file(folder / "bad.csv", "nose_x_mm\n60\n"));
     bool solved = false;
     const RunOptions options{.on_step = [&](const ProgramStep&) { solved = true; }, .measured = folder / "bad.csv"};
-    CHECK_THROWS_AS((void)run(model, options), Failure);
+    try {
+        (void)run(model, options);
+        FAIL("a column of no marker passed");
+    } catch (const Failure& failure) {
+        CHECK(failure.file() == (folder / "bad.csv").string());
+        CHECK(failure.line() == 1);
+        CHECK(std::string(failure.what()).find(failure.file() + ":1: \"nose\" is not a marker") == 0);
+    }
     CHECK_FALSE(solved);
 }

@@ -8,6 +8,7 @@
 #include "base/core/files.hpp"
 #include "base/linalg/vectors.hpp"
 #include "library/base/calls.hpp"
+#include "library/base/in_use.hpp"
 #include "library/simulation/data.hpp"
 #include "library/simulation/steering.hpp"
 #include "simulation/reduced/error_estimate.hpp"
@@ -99,7 +100,7 @@ ReducedModel reduce(const Model& model, const ReductionOptions& options, const W
     check_reduction_options(options);
     const Model::Data& data = *model.data();
     const sim::InverseTask task = task_for(data);
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "reduce: samples");
     auto reduction =
         sim::reduced::reduce(data.scene.model, options_of_program(data), task,
                              {options.samples, options.basis_error, options.force_error, options.most_modes}, progress);
@@ -205,6 +206,7 @@ struct ReducedStepper::Work {
 
     std::shared_ptr<const ReducedModel::Data> model;
     sim::reduced::ReducedSolver solver;
+    library::InUse in_use{"stepper of the reduced model"};
 
 private:
     std::unique_ptr<Whole> whole_;
@@ -221,6 +223,7 @@ ReducedState ReducedStepper::start() const {
 }
 
 ReducedStep ReducedStepper::step(ReducedState& state, const Inputs& inputs) {
+    const library::Use use(work_->in_use);
     sim::reduced::ReducedState next = work_->state_of(state);
     const auto report = work_->solver.solve(next, library::inputs_for(work_->model->model.whole(), inputs));
     if (report.found) state = work_->state_of(std::move(next));
@@ -228,6 +231,7 @@ ReducedStep ReducedStepper::step(ReducedState& state, const Inputs& inputs) {
 }
 
 ReducedError ReducedStepper::estimate(const ReducedState& state) {
+    const library::Use use(work_->in_use);
     const sim::reduced::ReducedState& at = work_->state_of(state);
     const sim::reduced::Estimate found = work_->whole().estimator.estimate(at);
     ReducedError error;
@@ -243,8 +247,9 @@ ReducedError ReducedStepper::estimate(const ReducedState& state) {
 }
 
 State ReducedStepper::exact(const ReducedState& state, const Watch& watch) {
+    const library::Use use(work_->in_use);
     const sim::reduced::ReducedState& at = work_->state_of(state);
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "exact state");
     sim::reduced::ErrorEstimator& estimator = work_->whole().estimator;
     auto robot = estimator.exact(at, estimator.estimate(at), progress);
     progress.rethrow();
@@ -258,7 +263,7 @@ std::vector<ReductionCheck> check_reduction(const ReducedModel& model, int count
     if (count < 0 || count > most)
         throw Failure(Failure::Kind::input, fmt::format("{} checks are not possible; 0 to {} are", count, most));
     const Model::Data& data = *model.data()->whole.data();
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "reduce: checks");
     auto rows =
         sim::reduced::check_reduction(model.data()->model, options_of_program(data), task_for(data), count, progress);
     progress.rethrow();

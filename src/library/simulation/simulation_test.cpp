@@ -5,6 +5,10 @@
 
 #include <cmath>
 #include <optional>
+#include <stdexcept>
+#include <thread>
+#include <type_traits>
+#include <utility>
 
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
@@ -162,6 +166,16 @@ TEST_CASE("a mesh made by a program takes the place of a file") {
     wrong.regions = {0, 0, 0, 0, 0, 1};
     CHECK(problem(wrong) == "the mesh: a tetrahedron is in region 1 of 1");
     CHECK(problem({}) == "the mesh: holds no tetrahedra");
+    wrong = cube;
+    wrong.regions.assign(6, 0);
+    wrong.region_names = {"all", "other", "all"};
+    CHECK(problem(wrong) == "the mesh: two regions are named \"all\"; each needs a name of its own");
+    wrong = cube;
+    for (const double x : {0.1, 0.2, 0.3, 0.4}) {  // flat, and attached to nothing
+        wrong.tets.push_back(static_cast<int>(wrong.points.size()));
+        wrong.points.push_back({x, x * x, 0});
+    }
+    CHECK(problem(wrong) == "tetrahedron 6 of the mesh is flat or inside out at rest (volume 0 m^3)");
     CHECK_THROWS_WITH_AS((void)Model(robot), doctest::Contains("can only be given by a program"), Failure);
     CHECK_THROWS_WITH_AS((void)Model(bar(), cube), doctest::Contains("the bodies are drawn"), Failure);
 }
@@ -208,6 +222,35 @@ TEST_CASE("a state is a value: copies, bytes and other steppers continue with th
     CHECK(other.load(folder / "bar.state") == kept);
 }
 
+TEST_CASE("what was moved from keeps its value") {
+    Robot robot = bar();
+    const Robot taken = std::move(robot);
+    CHECK(robot.name() == "bar");
+    Model model(robot);
+    const Model moved = std::move(model);
+    CHECK(model.node_count() == moved.node_count());
+    Stepper stepper(model);
+    State state = stepper.rest();
+    State other = std::move(state);
+    CHECK((state == other));
+    CHECK(state.coordinates().size() == 3 * moved.node_count());
+    (void)stepper.step(state, pulled(other, 0.001));
+    CHECK_FALSE((state == other));
+    other = std::move(state);
+    CHECK((state == other));
+    static_assert(std::is_nothrow_move_constructible_v<State> && std::is_nothrow_move_assignable_v<State>);
+}
+
+TEST_CASE("a state of a motion in time is told apart from one without") {
+    const Model still(bar());
+    const Model moving(bar("program = { duration = \"1 s\", time_step = \"10 ms\" }\n"));
+    const Stepper one(still), other(moving);
+    CHECK_THROWS_WITH_AS((void)other.state_from(one.rest().bytes()),
+                         "a state of a robot without program.time_step, and this one has it", Failure);
+    CHECK_THROWS_WITH_AS((void)one.state_from(other.rest().bytes()),
+                         "a state of a robot with program.time_step, and this one has none", Failure);
+}
+
 TEST_CASE("a cable pulled and released, by length or by tension, returns to the same state") {
     const Model model(bar());
     Stepper stepper(model, {.tolerance = 1e-9});
@@ -242,7 +285,102 @@ TEST_CASE("in dynamics a released bar swings, and a step back in time is refused
     for (const Point& v : state.velocities()) fastest = std::max(fastest, std::fabs(v[2]));
     CHECK(fastest > 1e-4);
     CHECK(stepper.observe(state).kinetic_energy_J > 0);
-    CHECK_THROWS_AS(stepper.step(state, inputs), Failure);
+    inputs.time = 0.008;
+    CHECK_THROWS_WITH_AS(stepper.step(state, inputs), "a step in time from 0.01 s to 0.008 s does not lead on",
+                         Failure);
+}
+
+TEST_CASE("a step in time that is as short as rounding changes nothing, and drives cannot jump in it") {
+    const Model model(bar("program = { duration = \"1 s\", time_step = \"10 ms\", gravity = [0, 0, -9.81] }\n"));
+    Stepper stepper(model);
+    State state = stepper.rest();
+    Inputs inputs = state.inputs();
+    inputs.time = 0.3;
+    REQUIRE(stepper.step(state, inputs).arrived);
+    const State there = state;
+    for (const double time : {0.1 + 0.2, 0.3, std::nextafter(0.3, 0)}) {
+        CAPTURE(time);
+        inputs.time = time;
+        const StepResult result = stepper.step(state, inputs);
+        CHECK(result.arrived);
+        CHECK(result.pieces == 0);
+        CHECK((state == there));
+    }
+    inputs.time = 0.1 + 0.2;
+    inputs.cables[0].value -= 1e-3;
+    CHECK_THROWS_WITH_AS(stepper.step(state, inputs),
+                         "the inputs change, but a step in time from 0.3 s to 0.30000000000000004 s does not lead on",
+                         Failure);
+    CHECK((state == there));
+    inputs = there.inputs();
+    inputs.time = 0.299999999;  // more than rounding of a time step of 10 ms
+    CHECK_THROWS_WITH_AS(stepper.step(state, inputs), "a step in time from 0.3 s to 0.299999999 s does not lead on",
+                         Failure);
+    inputs.time = 0.31;
+    CHECK(stepper.step(state, inputs).arrived);
+    double moved = 0;
+    const std::vector<Point> now = state.positions(), before = there.positions(), velocities = there.velocities();
+    for (std::size_t n = 0; n < now.size(); ++n)
+        moved = std::max(moved, std::fabs(now[n][2] - before[n][2] - 0.01 * velocities[n][2]));
+    CHECK(moved < 1e-3);  // by its velocity, and at most gravity during 10 ms
+}
+
+TEST_CASE("a step tells the share of its time steps that is done") {
+    const Model model(bar("program = { duration = \"1 s\", time_step = \"10 ms\", gravity = [0, 0, -9.81] }\n"));
+    Stepper stepper(model);
+    State state = stepper.rest();
+    Inputs inputs = state.inputs();
+    inputs.time = 0.1;
+    std::vector<double> shares;
+    const Watch watch = [&](std::string_view stage, double share) {
+        CHECK(stage == "step");
+        if (shares.empty() || shares.back() != share) shares.push_back(share);
+        return true;
+    };
+    REQUIRE(stepper.step(state, inputs, watch).arrived);
+    REQUIRE(shares.size() == 11);
+    for (std::size_t k = 0; k < shares.size(); ++k)
+        CHECK(shares[k] == near(0.1 * static_cast<double>(k), {.absolute = 1e-9}));
+}
+
+TEST_CASE("a stepper that is at work refuses a second use: in its own watch, or on another thread") {
+    const Model model(bar());
+    Stepper stepper(model);
+    State state = stepper.rest();
+    State other = state;
+    const Inputs inputs = pulled(state, 0.003);
+    const auto tried = [&] {
+        try {
+            (void)stepper.step(other, inputs);
+        } catch (const Failure& failure) {
+            return std::string(failure.what());
+        }
+        return std::string();
+    };
+    constexpr const char* refused = "the stepper is at work";
+    bool asked = false;
+    const Watch watch = [&](std::string_view, double) {
+        if (asked) return true;
+        asked = true;
+        CHECK(tried().find(refused) == 0);
+        CHECK_THROWS_WITH_AS((void)stepper.observe(other), doctest::Contains(refused), Failure);
+        CHECK_THROWS_WITH_AS((void)stepper.rest(), doctest::Contains(refused), Failure);
+        CHECK_THROWS_WITH_AS((void)stepper.program(1), doctest::Contains(refused), Failure);
+        std::string elsewhere;
+        std::thread([&] { elsewhere = tried(); }).join();
+        CHECK(elsewhere.find(refused) == 0);
+        Stepper another(model);
+        CHECK((another.rest() == other));
+        return true;
+    };
+    CHECK(stepper.step(state, inputs, watch).arrived);
+    CHECK(asked);
+    // Free again, also after an exception; and the result is that of an undisturbed step.
+    const Watch throws = [](std::string_view, double) -> bool { throw std::logic_error("mine"); };
+    State third = stepper.rest();
+    CHECK_THROWS_AS(stepper.step(third, inputs, throws), std::logic_error);
+    CHECK(stepper.step(other, inputs).arrived);
+    CHECK((other == state));
 }
 
 TEST_CASE("errors are thrown with their kind, line and key") {

@@ -41,4 +41,13 @@ std::vector<SteeredInput> steered_inputs(const sim::Model& model, const sim::Inv
     return inputs;
 }
 
+Inputs inputs_at(const sim::Equilibrium& system, const sim::InverseTask& task, std::span<const double> values,
+                 double time) {
+    sim::Inputs inputs{time, system.controls(time).drives};
+    inputs.drives.resize(system.model().description().steered_count());  // pressure loads follow the program
+    for (std::size_t i = 0; i < values.size(); ++i)
+        inputs.drives[task.inputs[i].actuator] = system.drive(task.inputs[i].actuator, values[i]);
+    return inputs_of(system.model(), inputs);
+}
+
 }  // namespace pliant::library

@@ -6,6 +6,7 @@
 #include "base/core/files.hpp"
 #include "base/linalg/vectors.hpp"
 #include "library/base/calls.hpp"
+#include "library/base/in_use.hpp"
 #include "library/simulation/data.hpp"
 #include "simulation/run/describe.hpp"
 #include "simulation/run/fields.hpp"
@@ -26,6 +27,11 @@ sim::StepperOptions options_for(const sim::Program& program, const StepOptions& 
                       fmt::format("a tolerance of {:g} is not possible: it is between 0 and 1", options.tolerance));
     if (options.iteration_limit < 0) throw Failure(Failure::Kind::input, "the iteration limit is negative");
     return options;
+}
+
+[[noreturn]] void refuse_time(const char* why, double from_s, double to_s) {
+    throw Failure(Failure::Kind::input,
+                  fmt::format("{}a step in time from {} s to {} s does not lead on", why, from_s, to_s));
 }
 
 /// One call may take many time steps, but it must end.
@@ -54,6 +60,7 @@ struct Stepper::Work {
 
     std::shared_ptr<const Model::Data> model;
     sim::Stepper stepper;
+    library::InUse in_use{"stepper"};
 };
 
 Stepper::Stepper(const Model& model, const StepOptions& options)
@@ -63,24 +70,30 @@ Stepper& Stepper::operator=(Stepper&&) noexcept = default;
 Stepper::~Stepper() = default;
 
 State Stepper::rest() const {
+    const library::Use use(work_->in_use);
     return work_->state_of(work_->stepper.rest());
 }
 
 Inputs Stepper::program(double time) const {
     if (!std::isfinite(time)) throw Failure(Failure::Kind::input, "the time is not finite");
+    const library::Use use(work_->in_use);
     return library::inputs_of(work_->model->scene.model, work_->stepper.program(time));
 }
 
 StepResult Stepper::step(State& state, const Inputs& inputs, const Watch& watch) {
+    const library::Use use(work_->in_use);
     sim::RobotState robot = work_->robot_of(state);
     const sim::Inputs wanted = library::inputs_for(work_->model->scene.model, inputs);
-    if (work_->stepper.options().dynamics && !(wanted.time > robot.inputs.time))
-        throw Failure(Failure::Kind::input, fmt::format("a step in time from {:g} s to {:g} s does not lead on",
-                                                        robot.inputs.time, wanted.time));
-    check_time_steps(work_->stepper, robot.inputs.time, wanted.time);
-    library::WatchedProgress progress(watch);
+    const double from = robot.inputs.time;
+    const bool in_time = work_->stepper.options().dynamics.has_value();
+    const bool stays = in_time && work_->stepper.is_same_time(from, wanted.time);
+    if (in_time && !stays && !(wanted.time > from)) refuse_time("", from, wanted.time);
+    check_time_steps(work_->stepper, from, wanted.time);
+    library::WatchedProgress progress(watch, "step");
     progress.advance("step", 0);
-    const sim::StepReport report = work_->stepper.drive(robot, wanted, progress);
+    const sim::StepReport report =
+        work_->stepper.drive(robot, wanted, progress, nullptr, [&](double share) { progress.advance("step", share); });
+    if (stays && !report.arrived) refuse_time("the inputs change, but ", from, wanted.time);
     const double residual = robot.evaluation.residual;
     state = work_->state_of(std::move(robot));
     progress.rethrow();
@@ -89,6 +102,7 @@ StepResult Stepper::step(State& state, const Inputs& inputs, const Watch& watch)
 }
 
 Observation Stepper::observe(const State& state) const {
+    const library::Use use(work_->in_use);
     const sim::RobotState& robot = work_->robot_of(state);
     sim::Step step;
     sim::describe(work_->model->scene.model, work_->stepper.system(), robot.now.state, robot.controls, robot.evaluation,
@@ -105,6 +119,7 @@ Fields Stepper::fields(const State& state) const {
 }
 
 std::vector<Point> Stepper::contact_forces(const State& state) const {
+    const library::Use use(work_->in_use);
     const sim::RobotState& robot = work_->robot_of(state);
     return library::points_of(
         linalg::points_of(work_->stepper.system().contact_node_forces(robot.now.state, robot.controls)));
@@ -119,10 +134,12 @@ std::vector<std::vector<Point>> Stepper::cable_paths(const State& state) const {
 }
 
 State Stepper::state_from(std::string_view bytes) const {
+    const library::Use use(work_->in_use);
     return work_->state_of(library::value_of(sim::state_from_bytes(work_->stepper, bytes)));
 }
 
 State Stepper::load(const std::filesystem::path& file) const {
+    const library::Use use(work_->in_use);
     const std::string bytes = library::value_of(read_file(file));
     auto robot = sim::state_from_bytes(work_->stepper, bytes);
     if (!robot)

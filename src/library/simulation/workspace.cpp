@@ -26,21 +26,24 @@ public:
     static KeptPieces create(const fs::path& folder, const std::string& origin) {
         if (!may_replace_folder(folder, origin_name))
             throw Failure(Failure::Kind::input,
-                          folder.string() + ": is there already, and is not a checkpoint; move it away");
+                          folder.string() + ": is there already, and is not a checkpoint; move it away",
+                          folder.string());
         std::error_code code;
         fs::remove_all(folder, code);
         fs::create_directories(folder, code);
         if (code)
-            throw Failure(Failure::Kind::failed,
-                          fmt::format("{}: cannot be made: {}", folder.string(), code.message()));
+            throw Failure(Failure::Kind::failed, fmt::format("{}: cannot be made: {}", folder.string(), code.message()),
+                          folder.string());
         library::check(write_file(folder / origin_name, origin));
         return KeptPieces(folder);
     }
     static KeptPieces open(const fs::path& folder, const std::string& origin) {
         const Result<std::string> known = read_file(folder / origin_name);
-        if (!known) throw Failure(Failure::Kind::input, folder.string() + ": holds no search to go on with");
+        if (!known)
+            throw Failure(Failure::Kind::input, folder.string() + ": holds no search to go on with", folder.string());
         if (*known != origin)
-            throw Failure(Failure::Kind::input, folder.string() + ": is of another robot file, or of other options");
+            throw Failure(Failure::Kind::input, folder.string() + ": is of another robot file, or of other options",
+                          folder.string());
         return KeptPieces(folder);
     }
 
@@ -83,6 +86,10 @@ void check_options(const WorkspaceOptions& options) {
                                                         options.between, most_between));
 }
 
+[[noreturn]] void no_sample(std::size_t index, std::size_t count) {
+    throw Failure(Failure::Kind::input, fmt::format("there is no sample {}; there are {}", index, count));
+}
+
 }  // namespace
 
 struct Workspace::Data {
@@ -92,6 +99,7 @@ struct Workspace::Data {
     std::vector<SteeredInput> inputs;
     std::vector<std::pair<std::size_t, const sim::inverse::WorkspaceSample*>> samples;  ///< with their piece
     fs::path checkpoint;
+    std::shared_ptr<const sim::Equilibrium> system;
 
     [[nodiscard]] report::WorkspaceReport report() const {
         return {model->scene.robot.name, model->scene.model, task, found};
@@ -103,7 +111,7 @@ Workspace workspace(const Model& model, const WorkspaceOptions& options, const W
     const robot::Scene& scene = model.data()->scene;
     sim::InverseTask task = library::value_of(robot::build_goals(scene.robot, scene.model, false));
     const std::optional<KeptPieces> kept = open_pieces(*model.data(), options);
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "workspace");
     auto found = sim::inverse::find_workspace(
         scene.model, sim::stepper_options(scene.robot.program), task, {options.side, options.between},
         [&](std::size_t k) { return kept ? kept->read(k) : std::nullopt; },
@@ -116,6 +124,7 @@ Workspace workspace(const Model& model, const WorkspaceOptions& options, const W
     data->task = std::move(task);
     data->inputs = library::steered_inputs(scene.model, data->task);
     data->checkpoint = options.checkpoint;
+    data->system = std::make_shared<const sim::Equilibrium>(scene.model);
     for (std::size_t p = 0; p < data->found.pieces.size(); ++p) {
         for (const sim::inverse::WorkspaceSample& sample : data->found.pieces[p].samples)
             data->samples.emplace_back(p, &sample);
@@ -133,8 +142,7 @@ std::size_t Workspace::sample_count() const {
 }
 
 WorkspaceSample Workspace::sample(std::size_t index) const {
-    if (index >= sample_count())
-        throw Failure(Failure::Kind::input, fmt::format("there is no sample {}; there are {}", index, sample_count()));
+    if (index >= sample_count()) no_sample(index, sample_count());
     const auto& [piece, sample] = data_->samples[index];
     return {piece,
             sample->values,
@@ -142,6 +150,12 @@ WorkspaceSample Workspace::sample(std::size_t index) const {
             library::points_of(sample->markers),
             sample->tensions_N,
             sample->pressures_Pa};
+}
+
+Inputs Workspace::inputs_at(std::size_t index) const {
+    if (index >= sample_count()) no_sample(index, sample_count());
+    return library::inputs_at(*data_->system, data_->task, data_->samples[index].second->values,
+                              data_->task.times.back());
 }
 
 Surface Workspace::sheets(std::size_t marker) const {
@@ -157,7 +171,7 @@ std::string Workspace::json() const {
 }
 
 void Workspace::write(const fs::path& folder, const Watch& watch) const {
-    library::WatchedProgress progress(watch);
+    library::WatchedProgress progress(watch, "results");
     const Status written = report::write_workspace(folder, data_->model->scene.robot, data_->report(), progress);
     progress.rethrow();
     library::check(written);
@@ -169,7 +183,8 @@ void Workspace::remove_checkpoint() const {
     fs::remove_all(data_->checkpoint, code);
     if (code)
         throw Failure(Failure::Kind::failed,
-                      fmt::format("{}: cannot be deleted: {}", data_->checkpoint.string(), code.message()));
+                      fmt::format("{}: cannot be deleted: {}", data_->checkpoint.string(), code.message()),
+                      data_->checkpoint.string());
 }
 
 }  // namespace pliant

@@ -204,19 +204,19 @@ Status read_table_rows(const CsvTable& table, Plan& plan) {
         for (std::size_t k = 0; k < plan.keys.size(); ++k) {
             const bool there = k < row.cells.size() && !row.cells[k].empty();
             if (!there)
-                return input_error("{}: has no value of \"{}\"; every row needs one for each column",
-                                   table.place(row.line), plan.keys[k].name);
+                return input_error_at(table.file, row.line,
+                                      "has no value of \"{}\"; every row needs one for each column", plan.keys[k].name);
             values.push_back(row.cells[k]);
             const auto measure = read_measure(row.cells[k]);
             const bool number = measure && measure->unit.empty();
             if (!number && !plan.keys[k].unit.empty())
-                return input_error("{}: \"{}\" is not a number, but the column \"{}\" has a unit",
-                                   table.place(row.line), row.cells[k], plan.keys[k].name);
+                return input_error_at(table.file, row.line, "\"{}\" is not a number, but the column \"{}\" has a unit",
+                                      row.cells[k], plan.keys[k].name);
             plan.keys[k].numeric = plan.keys[k].numeric && number;
         }
         if (row.cells.size() > plan.keys.size())
-            return input_error("{}: has {} values; there are {} columns", table.place(row.line), row.cells.size(),
-                               plan.keys.size());
+            return input_error_at(table.file, row.line, "has {} values; there are {} columns", row.cells.size(),
+                                  plan.keys.size());
         plan.rows.push_back(std::move(values));
     }
     return {};
@@ -234,14 +234,14 @@ Status take_table(const std::string& text, const std::string& file, Draft& draft
         if (!key) return tl::unexpected(key.error());
         for (const Key& other : plan.keys) {
             if (other.name == key->name)
-                return input_error("{}: two columns are named \"{}\"", table->place(table->header_line), key->name);
+                return input_error_at(table->file, table->header_line, "two columns are named \"{}\"", key->name);
         }
         plan.keys.push_back(std::move(*key));
     }
     for (const KeyChoice& key : draft.keys) {
         if (std::none_of(plan.keys.begin(), plan.keys.end(), [&](const Key& k) { return k.name == key.key.name; }))
-            return input_error("{}: has no column \"{}\", which is a key of the study",
-                               table->place(table->header_line), key.key.name);
+            return input_error_at(table->file, table->header_line, "has no column \"{}\", which is a key of the study",
+                                  key.key.name);
     }
     return read_table_rows(*table, plan);
 }

@@ -43,16 +43,16 @@ Result<std::vector<Columns>> read_header(const CsvTable& table, const std::vecto
             name.remove_suffix(suffixes[axis].size());
             const std::size_t marker = index_of(markers, name);
             if (marker == markers.size())
-                return input_error("{}: \"{}\" is not a marker of the robot; it has {}", table.place(table.header_line),
-                                   name, known_names(markers));
+                return input_error_at(table.file, table.header_line, "\"{}\" is not a marker of the robot; it has {}",
+                                      name, known_names(markers));
             auto of = std::find_if(found.begin(), found.end(), [&](const Columns& f) { return f.marker == marker; });
             if (of == found.end()) of = found.insert(found.end(), Columns{marker, {}});
             of->at[axis] = c;
         }
     }
     if (found.empty())
-        return input_error("{}: no column is named as in \"tip_x_mm\"; markers of the robot: {}",
-                           table.place(table.header_line), known_names(markers));
+        return input_error_at(table.file, table.header_line,
+                              "no column is named as in \"tip_x_mm\"; markers of the robot: {}", known_names(markers));
     return found;
 }
 
@@ -101,7 +101,7 @@ Result<std::vector<MeasuredPath>> parse_measured(std::string_view text, const st
             if (!point) return tl::unexpected(point.error());
             if (*point) path.points.push_back(**point);
         }
-        if (path.points.empty()) return input_error("{}: {} has no point in any row", file, marker.name);
+        if (path.points.empty()) return input_error_at(file, 0, "{} has no point in any row", marker.name);
         paths.push_back(std::move(path));
     }
     return paths;

@@ -18,7 +18,7 @@ Result<Columns> columns_of(const CsvTable& table) {
     for (std::size_t i = 0; i < column_names.size(); ++i) {
         const auto found = std::find(table.columns.begin(), table.columns.end(), column_names[i]);
         if (found == table.columns.end())
-            return input_error("{}: there is no column \"{}\"", table.place(table.header_line), column_names[i]);
+            return input_error_at(table.file, table.header_line, "there is no column \"{}\"", column_names[i]);
         columns[i] = static_cast<std::size_t>(found - table.columns.begin());
     }
     return columns;
@@ -28,7 +28,7 @@ Result<slice::SupportWish> wish_of(const CsvTable& table, const CsvRow& row, std
     if (word == "enforce") return slice::SupportWish::enforce;
     if (word == "block") return slice::SupportWish::block;
     if (word == "usual") return slice::SupportWish::usual;
-    return input_error("{}: \"{}\" must be enforce, block or usual", table.place(row.line), word);
+    return input_error_at(table.file, row.line, "\"{}\" must be enforce, block or usual", word);
 }
 
 Result<slice::SupportTouch> touch_of(const CsvTable& table, const CsvRow& row, const Columns& columns) {
@@ -45,7 +45,7 @@ Result<slice::SupportTouch> touch_of(const CsvTable& table, const CsvRow& row, c
     constexpr double um = 1000;
     const slice::SupportTouch touch{*wish, {um * n[0], um * n[1], um * n[2]}, {n[3], n[4], n[5]}, um * n[6]};
     if (Status status = slice::check(touch); !status)
-        return input_error("{}: {}", table.place(row.line), status.error().message);
+        return input_error_at(table.file, row.line, "{}", status.error().message);
     return touch;
 }
 

@@ -69,17 +69,19 @@ std::vector<std::string> path_columns(const Context& context, const GoalSpec& go
 Status check_columns(const CsvTable& table, const std::vector<std::string>& known) {
     std::vector<std::string> names;
     for (const std::string& column : table.columns) {
-        const std::string name = bare_name(column), place = table.place(table.header_line);
-        if (std::ranges::count(names, name) > 0) return input_error("{}: there are two columns \"{}\"", place, name);
+        const std::string name = bare_name(column);
+        if (std::ranges::count(names, name) > 0)
+            return input_error_at(table.file, table.header_line, "there are two columns \"{}\"", name);
         names.push_back(name);
         if (name != column && csv_unit(column).empty())
-            return input_error("{}: column \"{}\": its brackets hold no unit", place, column);
+            return input_error_at(table.file, table.header_line, "column \"{}\": its brackets hold no unit", column);
         if (std::ranges::count(known, name) > 0) continue;
         const std::string nearest = nearest_name(name, known);
         if (nearest.empty())
-            return input_error("{}: column \"{}\" has no meaning in a path; possible are {}", place, column,
-                               join_names(known));
-        return input_error("{}: column \"{}\" has no meaning in a path; did you mean \"{}\"?", place, column, nearest);
+            return input_error_at(table.file, table.header_line,
+                                  "column \"{}\" has no meaning in a path; possible are {}", column, join_names(known));
+        return input_error_at(table.file, table.header_line,
+                              "column \"{}\" has no meaning in a path; did you mean \"{}\"?", column, nearest);
     }
     return {};
 }
@@ -91,8 +93,8 @@ Result<std::vector<double>> read_column(const CsvTable& table, std::size_t colum
     if (const std::string_view unit = csv_unit(table.columns[column]); !unit.empty()) {
         const Result<double> si = unit_factor(unit, dimension);
         if (!si)
-            return input_error("{}: column \"{}\": {}", table.place(table.header_line), table.columns[column],
-                               si.error().message);
+            return input_error_at(table.file, table.header_line, "column \"{}\": {}", table.columns[column],
+                                  si.error().message);
         factor = *si / unit_si;
     }
     std::vector<double> values;
@@ -122,8 +124,8 @@ Status read_path_table(const CsvTable& table, double unit_m, GoalSpec& goal) {
             const std::string name = count == 1 ? axis_name : goal.markers[m] + "_" + axis_name;
             const std::optional<std::size_t> column = find_column(table, name);
             if (!column)
-                return input_error("{}: there is no column \"{}\"; a path needs {}", table.place(table.header_line),
-                                   name, count == 1 ? "x, y and z" : "MARKER_x, MARKER_y and MARKER_z of every marker");
+                return input_error_at(table.file, table.header_line, "there is no column \"{}\"; a path needs {}", name,
+                                      count == 1 ? "x, y and z" : "MARKER_x, MARKER_y and MARKER_z of every marker");
             const Result<std::vector<double>> values = read_column(table, *column, Dimension::length, unit_m);
             if (!values) return tl::unexpected(values.error());
             for (std::size_t w = 0; w < values->size(); ++w) goal.wanted[w][m][axis] = (*values)[w];

@@ -25,18 +25,19 @@ struct ElongationColumns {
 
 Result<ElongationColumns> read_elongation_header(const CsvTable& table) {
     ElongationColumns columns;
-    const std::string place = table.place(table.header_line);
     for (std::size_t i = 0; i < ElongationColumns::names.size(); ++i) {
         const std::string_view name = ElongationColumns::names[i];
         const auto found = std::find_if(table.columns.begin(), table.columns.end(), [&](const std::string& column) {
             return lower_case(column).starts_with(name);
         });
         if (found == table.columns.end())
-            return input_error("{}: no column is named \"{}\", as in \"{} (mm)\"", place, name, name);
+            return input_error_at(table.file, table.header_line, "no column is named \"{}\", as in \"{} (mm)\"", name,
+                                  name);
         const std::string_view unit = csv_unit(*found);
-        if (unit.empty()) return input_error("{}: {} has no unit; write \"{} (mm)\"", place, name, name);
+        if (unit.empty())
+            return input_error_at(table.file, table.header_line, "{} has no unit; write \"{} (mm)\"", name, name);
         const Result<double> factor = unit_factor(unit, Dimension::length);
-        if (!factor) return input_error("{}: {}: {}", place, name, factor.error().message);
+        if (!factor) return input_error_at(table.file, table.header_line, "{}: {}", name, factor.error().message);
         columns.at[i] = static_cast<std::size_t>(found - table.columns.begin());
         columns.factor[i] = *factor;
     }
@@ -51,7 +52,7 @@ Result<ElongationRow> read_elongation_row(const CsvTable& table, const CsvRow& r
         m[i] = *value * columns.factor[i];
     }
     Result<ElongationRow> result = evaluate({m[0], m[1], m[2], m[3]});
-    if (!result) return input_error("{}: {}", table.place(row.line), result.error().message);
+    if (!result) return input_error_at(table.file, row.line, "{}", result.error().message);
     return result;
 }
 

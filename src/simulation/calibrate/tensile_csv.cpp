@@ -33,7 +33,6 @@ std::optional<std::size_t> find_column(const std::vector<std::string>& cells, st
 
 Result<Columns> read_header(const CsvTable& table) {
     Columns columns;
-    const std::string place = table.place(table.header_line);
     std::vector<std::string> low;
     low.reserve(table.columns.size());
     for (const std::string& column : table.columns) low.push_back(lower_case(column));
@@ -41,11 +40,11 @@ Result<Columns> read_header(const CsvTable& table) {
     const auto strain = stretch ? stretch : find_column(low, "strain");
     const auto stress = find_column(low, "stress");
     if (!strain)
-        return input_error("{}: no column is named \"stretch\" or \"strain\" (engineering strain, not true strain)",
-                           place);
+        return input_error_at(table.file, table.header_line,
+                              "no column is named \"stretch\" or \"strain\" (engineering strain, not true strain)");
     if (!stress)
-        return input_error("{}: no column is named \"stress\", as in \"stress (MPa)\" (nominal, not true stress)",
-                           place);
+        return input_error_at(table.file, table.header_line,
+                              "no column is named \"stress\", as in \"stress (MPa)\" (nominal, not true stress)");
     columns.strain = *strain;
     columns.stress = *stress;
     columns.is_stretch = stretch.has_value();
@@ -53,11 +52,13 @@ Result<Columns> read_header(const CsvTable& table) {
     if (strain_unit == "%")
         columns.strain_factor = 0.01;
     else if (!strain_unit.empty() && strain_unit != "-" && strain_unit != "1" && strain_unit != "mm/mm")
-        return input_error("{}: unknown unit \"{}\" of strain; it is a pure number, or %", place, strain_unit);
+        return input_error_at(table.file, table.header_line, "unknown unit \"{}\" of strain; it is a pure number, or %",
+                              strain_unit);
     const std::string_view unit = csv_unit(table.columns[*stress]);
-    if (unit.empty()) return input_error("{}: the stress has no unit; write \"stress (MPa)\"", place);
+    if (unit.empty())
+        return input_error_at(table.file, table.header_line, "the stress has no unit; write \"stress (MPa)\"");
     const Result<double> factor = unit_factor(unit, Dimension::pressure);
-    if (!factor) return input_error("{}: stress: {}", place, factor.error().message);
+    if (!factor) return input_error_at(table.file, table.header_line, "stress: {}", factor.error().message);
     columns.stress_factor = *factor;
     return columns;
 }
@@ -69,9 +70,9 @@ Status read_row(const CsvTable& table, const CsvRow& row, const Columns& columns
     if (!stress) return tl::unexpected(stress.error());
     const double stretch = *strain * columns.strain_factor + (columns.is_stretch ? 0 : 1);
     if (!(stretch > 0 && stretch <= 100))
-        return input_error("{}: the stretch is {:.4g}; it is length over rest length, between 0 and 100{}",
-                           table.place(row.line), stretch,
-                           columns.is_stretch ? "" : ", and the strain is the stretch less 1");
+        return input_error_at(table.file, row.line,
+                              "the stretch is {:.4g}; it is length over rest length, between 0 and 100{}", stretch,
+                              columns.is_stretch ? "" : ", and the strain is the stretch less 1");
     test.stretch.push_back(stretch);
     test.stress_Pa.push_back(*stress * columns.stress_factor);
     return {};

@@ -58,8 +58,8 @@ private:
 
     /// Advances the robot from the end of step k - 1 to that of step k.
     [[nodiscard]] Status forward(RobotState& robot, int k, std::vector<Piece>* pieces) {
-        if (progress_.cancelled()) return cancelled();
         progress_.advance(stage, std::min(1.0, result_.steps_taken / expected_steps()));
+        if (progress_.cancelled()) return cancelled();
         StepPath path = program_path(stepper_, program_, robot, k);
         if (pieces != nullptr)
             path.after_piece = [&](const RobotState& at) {

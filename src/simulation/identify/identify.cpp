@@ -170,11 +170,18 @@ private:
         return all;
     }
 
+    /// At a bound exactly the bound, without the rounding of its scale.
+    [[nodiscard]] static double value_of(const Unknown& unknown, double u, bool at_bound) {
+        const double value = unknown.value_at(u);
+        if (!at_bound) return std::clamp(value, unknown.low, unknown.high);
+        return value - unknown.low < unknown.high - value ? unknown.low : unknown.high;
+    }
+
     void find(const LeastSquaresEnd& end, const Confidence& known, const std::vector<bool>& held,
               Identification& result) const {
         for (std::size_t k = 0; k < unknowns_.size(); ++k) {
             const auto j = static_cast<Index>(k);
-            Found found{unknowns_[k], unknowns_[k].value_at(end.u[j]), {}, {}, held[k], known.matters[k]};
+            Found found{unknowns_[k], value_of(unknowns_[k], end.u[j], held[k]), {}, {}, held[k], known.matters[k]};
             if (std::isfinite(known.half_width[j])) {
                 // The formula knows no bounds, between which the value is known to be.
                 const auto& [lowest, highest] = std::pair(unknowns_[k].low, unknowns_[k].high);

@@ -34,10 +34,11 @@ tl::unexpected<Error> no_such_column(const CsvTable& table, const sim::Descripti
     for (const Channel& channel : plain_channels(robot)) names.push_back(channel.column);
     const std::string nearest = nearest_name(column, names);
     if (!nearest.empty())
-        return input_error("{}: the robot has nothing that column \"{}\" could be; did you mean \"{}\"?",
-                           table.place(table.header_line), column, nearest);
-    return input_error("{}: the robot has nothing that column \"{}\" could be; it has {}",
-                       table.place(table.header_line), column, join_names(names));
+        return input_error_at(table.file, table.header_line,
+                              "the robot has nothing that column \"{}\" could be; did you mean \"{}\"?", column,
+                              nearest);
+    return input_error_at(table.file, table.header_line, "the robot has nothing that column \"{}\" could be; it has {}",
+                          column, join_names(names));
 }
 
 Status read_scatters(const CsvTable& table, Header& header) {
@@ -47,8 +48,9 @@ Status read_scatters(const CsvTable& table, Header& header) {
         name.remove_suffix(scatter_ending.size());
         const auto of = std::ranges::find(header.channels, name, &Channel::column);
         if (of == header.channels.end())
-            return input_error("{}: column \"{}\" is the scatter of \"{}\", which is not a column of the table",
-                               table.place(table.header_line), table.columns[c], name);
+            return input_error_at(table.file, table.header_line,
+                                  "column \"{}\" is the scatter of \"{}\", which is not a column of the table",
+                                  table.columns[c], name);
         header.columns[static_cast<std::size_t>(of - header.channels.begin())].scatter = c;
     }
     return {};
@@ -57,7 +59,7 @@ Status read_scatters(const CsvTable& table, Header& header) {
 Status read_column(const CsvTable& table, std::size_t c, const sim::Description& robot, Header& header) {
     const std::string& name = table.columns[c];
     if (std::ranges::count(table.columns, name) > 1)
-        return input_error("{}: there are two columns \"{}\"", table.place(table.header_line), name);
+        return input_error_at(table.file, table.header_line, "there are two columns \"{}\"", name);
     if (name == "time") return header.time = c, Status{};
     if (name == "step") return header.step = c, Status{};
     if (name == "use") return header.use = c, Status{};
@@ -80,15 +82,15 @@ Result<Header> read_header(const CsvTable& table, const sim::Description& robot)
     if (!header.time && !header.step) {
         const auto index = std::ranges::find(table.columns, "index");
         if (index == table.columns.end())
-            return input_error("{}: no column \"time\" or \"step\" says when each row was measured",
-                               table.place(table.header_line));
+            return input_error_at(table.file, table.header_line,
+                                  "no column \"time\" or \"step\" says when each row was measured");
         header.step = static_cast<std::size_t>(index - table.columns.begin());
     }
     if (header.channels.empty()) {
         std::vector<std::string> names;
         for (const Channel& channel : plain_channels(robot)) names.push_back(channel.column);
-        return input_error("{}: no column holds a measured value; possible are {}", table.place(table.header_line),
-                           join_names(names));
+        return input_error_at(table.file, table.header_line, "no column holds a measured value; possible are {}",
+                              join_names(names));
     }
     if (Status status = read_scatters(table, header); !status) return tl::unexpected(status.error());
     return header;
@@ -101,14 +103,14 @@ Result<double> read_time(const CsvTable& table, const CsvRow& row, const Header&
     const std::string& name = table.columns[column];
     const auto cell = table.cell(row, column);
     if (!cell) return tl::unexpected(cell.error());
-    if (cell->empty()) return input_error("{}: {} is empty; every row needs one", table.place(row.line), name);
+    if (cell->empty()) return input_error_at(table.file, row.line, "{} is empty; every row needs one", name);
     const auto number = table.number(row, column, name);
     if (!number) return number;
     const double end = in_time ? program.duration : program.steps;
     const double rounding = 1e-9 * end;
     if (!(*number >= 0 && *number <= end + rounding))
-        return input_error("{}: {} {:g} is outside the program, which goes from 0 to {:g}", table.place(row.line), name,
-                           *number, end);
+        return input_error_at(table.file, row.line, "{} {:g} is outside the program, which goes from 0 to {:g}", name,
+                              *number, end);
     return std::min(in_time ? *number : *number * program.duration / program.steps, program.duration);
 }
 
@@ -116,7 +118,7 @@ Result<bool> read_use(const CsvTable& table, const CsvRow& row, std::size_t colu
     const auto cell = table.cell(row, column);
     if (!cell) return tl::unexpected(cell.error());
     if (*cell == "fit" || *cell == "judge") return *cell == "judge";
-    return input_error("{}: use \"{}\" is neither fit nor judge", table.place(row.line), cell->substr(0, 40));
+    return input_error_at(table.file, row.line, "use \"{}\" is neither fit nor judge", cell->substr(0, 40));
 }
 
 /// Empty if the cell is empty.
@@ -133,8 +135,8 @@ Result<std::optional<MeasuredValue>> read_value(const CsvTable& table, const Csv
     const auto scatter = table.number(row, *at.scatter, table.columns[*at.scatter]);
     if (!scatter) return tl::unexpected(scatter.error());
     if (!(*scatter > 0))
-        return input_error("{}: {} {:g} is not possible; a scatter is above zero", table.place(row.line),
-                           table.columns[*at.scatter], *scatter);
+        return input_error_at(table.file, row.line, "{} {:g} is not possible; a scatter is above zero",
+                              table.columns[*at.scatter], *scatter);
     measured.scatter = *scatter;
     return measured;
 }
@@ -148,8 +150,8 @@ Status read_row(const CsvTable& table, std::size_t r, const Header& header, cons
                 JudgeOn judge, std::vector<MeasuredValue>& values) {
     const CsvRow& row = table.rows[r];
     if (row.cells.size() > table.columns.size())
-        return input_error("{}: {} columns, the first line names {}", table.place(row.line), row.cells.size(),
-                           table.columns.size());
+        return input_error_at(table.file, row.line, "{} columns, the first line names {}", row.cells.size(),
+                              table.columns.size());
     const auto time = read_time(table, row, header, program);
     if (!time) return tl::unexpected(time.error());
     bool judged = is_judged(judge, r, table.rows.size());

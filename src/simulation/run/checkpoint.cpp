@@ -90,24 +90,24 @@ void take_crossings(Reader& in, std::vector<Step>& steps) {
 Status read_steps(const fs::path& file, std::uintmax_t bytes, std::size_t count, std::size_t nodes, Trajectory& into) {
     std::error_code code;
     const std::uintmax_t size = fs::file_size(file, code);
-    if (code || size < bytes) return input_error("{}: damaged: it is shorter than it was", file.string());
+    if (code || size < bytes) return input_error_at(file.string(), 0, "damaged: it is shorter than it was");
     std::ifstream in(file, std::ios::binary);
     std::uintmax_t left = bytes;
     for (std::size_t k = 0; k < count; ++k) {
         std::uint64_t length = 0;
         in.read(reinterpret_cast<char*>(&length), sizeof length);
         if (!in || left < sizeof length || length > left - sizeof length)
-            return input_error("{}: damaged: it ends in step {}", file.string(), k);
+            return input_error_at(file.string(), 0, "damaged: it ends in step {}", k);
         left -= sizeof length + length;
         std::string record(length, '\0');
         in.read(record.data(), static_cast<std::streamsize>(length));
-        if (!in) return input_error("{}: damaged: it ends in step {}", file.string(), k);
+        if (!in) return input_error_at(file.string(), 0, "damaged: it ends in step {}", k);
         const Result<std::string_view> content = cbor::unsealed(record);
-        if (!content) return input_error("{}: step {}: {}", file.string(), k, content.error().message);
+        if (!content) return input_error_at(file.string(), 0, "step {}: {}", k, content.error().message);
         auto step = step_from_bytes(*content, nodes);
-        if (!step) return input_error("{}: step {}: {}", file.string(), k, step.error().message);
+        if (!step) return input_error_at(file.string(), 0, "step {}: {}", k, step.error().message);
         if (step->step.index != static_cast<int>(k))
-            return input_error("{}: damaged: step {} is where step {} should be", file.string(), step->step.index, k);
+            return input_error_at(file.string(), 0, "damaged: step {} is where step {} should be", step->step.index, k);
         into.steps.push_back(std::move(step->step));
         into.iterations.insert(into.iterations.end(), step->iterations.begin(), step->iterations.end());
     }
@@ -119,7 +119,7 @@ Status read_steps(const fs::path& file, std::uintmax_t bytes, std::size_t count,
 Result<Checkpoint> Checkpoint::create(const fs::path& folder, std::string origin, int every) {
     std::error_code code;
     if (!may_replace_folder(folder, steps_name))
-        return input_error("{}: is there already, and is not a checkpoint; move it away", folder.string());
+        return input_error_at(folder.string(), 0, "is there already, and is not a checkpoint; move it away");
     fs::remove_all(folder, code);
     fs::create_directories(folder, code);
     if (code) return failure("{}: cannot be made: {}", folder.string(), code.message());
@@ -173,13 +173,14 @@ Result<Checkpoint::Resumed> Checkpoint::open(const fs::path& folder, std::string
     const fs::path state = folder / state_name;
     std::error_code code;
     if (!fs::exists(state, code) && fs::exists(folder / steps_name, code))
-        return input_error("{}: the run ended before its first checkpoint; there is nothing to resume",
-                           folder.string());
+        return input_error_at(folder.string(), 0,
+                              "the run ended before its first checkpoint; there is nothing to resume");
     if (!fs::exists(state, code))
-        return input_error("{}: no checkpoint is there; it is made by --checkpoint-every", folder.string());
+        return input_error_at(folder.string(), 0,
+                              "no checkpoint is there; a run makes one where it is told to keep checkpoints");
     const auto text = read_file(state);
     if (!text) return tl::unexpected(text.error());
-    const auto wrong = [&](const std::string& why) { return input_error("{}: {}", state.string(), why); };
+    const auto wrong = [&](const std::string& why) { return input_error_at(state.string(), 0, "{}", why); };
     const Result<std::string_view> content = cbor::unsealed(*text);
     const Json json = content ? cbor::parsed(*content) : Json();
     if (!json.is_object() || json.value("format", Json()) != format_name)
@@ -189,8 +190,7 @@ Result<Checkpoint::Resumed> Checkpoint::open(const fs::path& folder, std::string
     if (in.status() && own_version != version)
         return wrong(fmt::format("a checkpoint of version {}; this Pliant reads version {}", own_version, version));
     if (in.text("origin") != origin && in.status())
-        return wrong(
-            "a checkpoint of another robot file, or the file, what --set changes or --solver has changed since");
+        return wrong("a checkpoint of another robot file, or the file, its changes or its solver have changed since");
     RunState run;
     run.step = in.integer("step", 0, program.steps);
     const int every = in.integer("every", 1, std::numeric_limits<int>::max());

@@ -184,10 +184,7 @@ public:
             take(one);
         }
         if (robot.past.size() > RotatingStep::most_past) fail("more states of the past than there can be");
-        const bool in_time = stepper_.options().dynamics.has_value();
-        if (in_time != in.has("history"))
-            fail(in_time ? "no velocities" : "velocities of a robot without a motion in time");
-        if (in_time) robot.history = history(in.at("history"));
+        if (stepper_.options().dynamics) robot.history = history(in.at("history"));
         if (in.has("memory")) robot.memory = memory(in.at("memory"));
         take(in);
         return robot;
@@ -520,6 +517,10 @@ Result<RobotState> state_from_bytes(const Stepper& stepper, std::string_view byt
         return input_error("a state of another robot, or of another mesh of it");
     if (json.contains("parts") && text("parts") != parts_digest(stepper.model().description()))
         return input_error("a state of another robot: its supports, cables, chambers, springs or joints are others");
+    const bool in_time = stepper.options().dynamics.has_value();
+    if (in_time != json.contains("history"))
+        return input_error("a state of a robot with{} program.time_step, and this one has {}", in_time ? "out" : "",
+                           in_time ? "it" : "none");
     StateReader reader(stepper);
     RobotState robot = reader.robot(json);
     if (!reader.status()) return tl::unexpected(reader.status().error());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <utility>
 
 #include "simulation/elements/elements.hpp"
@@ -149,7 +150,24 @@ bool Stepper::set_course(RobotState& robot, const Inputs& wanted) const {
     return known;
 }
 
-StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progress& progress, const State* expected) {
+bool Stepper::is_same_time(double a, double b) const {
+    constexpr double share = 1e-9;  // of a time step
+    constexpr double last_bits = 8 * std::numeric_limits<double>::epsilon();
+    return std::fabs(b - a) <= std::max(share * options_.time_unit, last_bits * std::max(std::fabs(a), std::fabs(b)));
+}
+
+/// No time passes: there is nothing to do, or the drives would have to jump.
+StepReport Stepper::stay(const RobotState& robot, Inputs wanted) const {
+    constexpr double no_change = 1e-8;  // in input units: what the program's inputs change by in that time
+    wanted.time = robot.inputs.time;
+    StepReport report;
+    report.arrived = units_.distance(robot.inputs, wanted) <= no_change;
+    if (!report.arrived) report.reason = "the inputs change, but a step in time must lead to a later time";
+    return report;
+}
+
+StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progress& progress, const State* expected,
+                          const std::function<void(double share)>& after_piece) {
     for (std::size_t a = 0; a < steered(); ++a) {
         Drive& drive = robot.inputs.drives[a];
         if (drive.kind == wanted.drives[a].kind) continue;
@@ -158,6 +176,7 @@ StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progres
     }
     const Inputs begin = robot.inputs;
     const bool in_time = options_.dynamics.has_value();
+    if (in_time && is_same_time(begin.time, wanted.time)) return stay(robot, wanted);
     if (in_time && !(wanted.time > begin.time)) {
         StepReport report;
         report.reason = "a step in time must lead to a later time";
@@ -170,6 +189,7 @@ StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progres
     const auto inputs_at = [&](double along) { return between(begin, wanted, (along - from) / length); };
     StepPath path{from + length, [&](double along) { return controls(robot, inputs_at(along)); },
                   (is_adaptive() ? smallest_adaptive_share : smallest_share) * length, onward, expected};
+    if (after_piece) path.after_piece = [&](const RobotState& at) { after_piece((at.now.along - from) / length); };
     if (in_time) path.longest_piece = length / std::max(1.0, std::ceil(length / options_.time_unit - rounding));
     StepReport report = step(robot, path, progress);
     robot.inputs = report.arrived ? wanted : inputs_at(robot.now.along);

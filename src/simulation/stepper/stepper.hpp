@@ -86,10 +86,15 @@ public:
     [[nodiscard]] StepReport settle_beside(RobotState& robot, State guess, const Progress& progress);
     /// Steps to the wanted inputs on a straight path from the current ones, halving pieces that do not converge; an
     /// actuator driven by another kind than before starts from its current value. With dynamics the step takes the time
-    /// until `wanted.time`, which must be later. If it does not arrive, `robot` and its inputs are as far as they got.
-    /// `expected`: approximate final state; null: unknown.
+    /// until `wanted.time`, which must be later; at the same time, up to rounding, it arrives without a change of
+    /// `robot` if the drives are the same too. If it does not arrive, `robot` and its inputs are as far as they got.
+    /// `expected`: approximate final state; null: unknown. `after_piece` is told the share of the path that is done;
+    /// may be empty.
     [[nodiscard]] StepReport drive(RobotState& robot, const Inputs& wanted, const Progress& progress,
-                                   const State* expected = nullptr);
+                                   const State* expected = nullptr,
+                                   const std::function<void(double share)>& after_piece = {});
+    /// True if two times differ by no more than rounding: a step in time so short would divide rounding errors by it.
+    [[nodiscard]] bool is_same_time(double a, double b) const;
     /// Tries to find an equilibrium at `controls` from `state`. False: none was found, and `state` is unusable.
     [[nodiscard]] bool find(const Controls& controls, State& state, const Progress& progress);
 
@@ -112,6 +117,7 @@ public:
 private:
     struct Target;
     [[nodiscard]] std::size_t steered() const;
+    [[nodiscard]] StepReport stay(const RobotState& robot, Inputs wanted) const;
     [[nodiscard]] StepOutcome go(RobotState& robot, const Target& target, StepReport& report, const Progress& progress);
     [[nodiscard]] StepOutcome attempt(const RobotState& robot, const Target& target, Scheme scheme, Controls& controls,
                                       State& next, const Progress& progress);
