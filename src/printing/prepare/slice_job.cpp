@@ -54,7 +54,7 @@ Result<SlicedJob> slice_job(const Order& order, const PrinterFile& printer, Draw
     Result<job::JobSettings> settings = job_settings(order, printer.printer, printer.mask, drawing);
     if (!settings) return tl::unexpected(settings.error());
     settings->watch = std::move(watch);
-    std::vector<std::string> notes;
+    std::vector<std::string> notes = drawing.notes;
     if (Status s = arrange(order, *settings, drawing, notes, progress); !s) return tl::unexpected(s.error());
     Result<job::Writer> writer = job::Writer::create(file);
     if (!writer) return tl::unexpected(writer.error());

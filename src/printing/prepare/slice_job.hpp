@@ -20,7 +20,7 @@ struct PrinterFile {
 struct SlicedJob {
     job::Manifest manifest;
     plan::Plan plan;
-    std::vector<std::string> notes;  ///< remarks on what was added: supports, cavities
+    std::vector<std::string> notes;  ///< remarks: overlaps of drawn bodies; what was added, supports, cavities
 };
 
 /// Writes `file` atomically. `watch` is called for each layer as it is made. Errors: in the order, from the slicer, the
