@@ -60,6 +60,7 @@ prepare::Order order_of(const SliceOptions& options) {
 
 PrintPlan slice_job(const SliceOptions& options, const std::filesystem::path& job, const Watch& watch) {
     if (options.inputs.empty()) throw Failure(Failure::Kind::input, "nothing is given to be sliced");
+    library::check(prepare::check_job_name(job, options.inputs, options.printer));
     const prepare::PrinterFile printer = printer_of(options.printer);
     library::WatchedProgress progress(watch);
     auto drawing = prepare::read_drawing(options.inputs, options.changes, progress);

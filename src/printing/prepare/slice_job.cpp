@@ -49,6 +49,23 @@ Status check_spans(const job::JobSettings& settings, job::Manifest& manifest) {
 
 }  // namespace
 
+Status check_job_name(const std::filesystem::path& job, const std::vector<std::string>& inputs,
+                      const std::filesystem::path& printer) {
+    if (job.extension() != ".zip")
+        return input_error("{}: a job ends in .zip, as in {}", job.string(),
+                           std::filesystem::path(job).replace_extension(".zip").string());
+    std::error_code none;  // of files that do not exist
+    for (const std::string& input : inputs) {
+        for (const std::string& file : {input, input.substr(input.find('=') + 1)}) {
+            if (std::filesystem::equivalent(job, file, none))
+                return input_error("{}: is an input, which the job would replace; give it another name", job.string());
+        }
+    }
+    if (std::filesystem::equivalent(job, printer, none))
+        return input_error("{}: is the printer file, which the job would replace; give it another name", job.string());
+    return {};
+}
+
 Result<SlicedJob> slice_job(const Order& order, const PrinterFile& printer, Drawing drawing,
                             const std::filesystem::path& file, Progress& progress, job::LayerWatch watch) {
     Result<job::JobSettings> settings = job_settings(order, printer.printer, printer.mask, drawing);

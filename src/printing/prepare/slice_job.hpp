@@ -17,6 +17,11 @@ struct PrinterFile {
     std::optional<job::Image> mask{};  ///< of its projector
 };
 
+/// Errors: the name of a job that does not end in .zip, or that is one of the inputs ("MATERIAL=FILE" as in an order)
+/// or the printer file, which it would replace.
+[[nodiscard]] Status check_job_name(const std::filesystem::path& job, const std::vector<std::string>& inputs,
+                                    const std::filesystem::path& printer);
+
 struct SlicedJob {
     job::Manifest manifest;
     plan::Plan plan;
