@@ -95,6 +95,10 @@ TEST_CASE("a part, its copies and its supports must stand on the platform, not o
     CHECK(message([](Order&) {}).empty());
     CHECK(message([](Order& o) { o.at = {5, -1}; }).empty());
     CHECK(message([](Order& o) {
+              o.at = {1e9, 10};
+          }) == "--at 1e+09 10: must be -1000 to 1000 mm from the middle of the platform");
+    CHECK(message([](Order& o) { o.at = {5}; }).find("two numbers in mm are needed") != std::string::npos);
+    CHECK(message([](Order& o) {
               o.at = {0, -1.5};
           }) ==
           "body 'left' (soft): lies 0.500 mm beyond the platform at -y, which reaches from -3.000 to 3.000 mm there; "
