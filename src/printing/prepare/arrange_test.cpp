@@ -184,7 +184,9 @@ TEST_CASE("--least-layer gives layers of different heights, and --hollow a cavit
     REQUIRE(!a.settings.slicing.tops_um.empty());
     CHECK(a.settings.slicing.tops_um.back() >= 3000);
     CHECK(refused([](Order& o) { o.least_layer = "10.5 um"; }).find("--least-layer 10.5 um: a whole number") == 0);
-    CHECK(refused([](Order& o) { o.least_layer = "60 um"; }).find("--least-layer: layers of 60 to 50 um") == 0);
+    CHECK(refused([](Order& o) {
+              o.least_layer = "60 um";
+          }).find("--least-layer 60 um: must be 1 um to the layer height, 50 um") == 0);
     const Arranged hollow = done([](Order& o) {
         o.hollow = "0.5 mm";
         o.drain = "0.6 mm";

@@ -351,3 +351,16 @@ TEST_CASE("a job is named .zip, and is neither an input nor the printer file") {
     CHECK(check_job_name(printer, {"soft=" + stack}, printer).error().message ==
           printer + ": is the printer file, which the job would replace; give it another name");
 }
+
+TEST_CASE("an exposure of the robot file over the printer's limit names the material, or the material of the body") {
+    Drawing drawing = two_blocks();
+    drawing.exposure_of_material["soft"] = {61, 0};
+    machine::Printer limited = printer();
+    limited.name = "tower";
+    limited.limits.exposure_s = 60;
+    const Result<job::JobSettings> refused = job_settings(Order{}, limited, {}, drawing);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message == "material \"soft\": exposure of 61 s, the limit of tower is 60 s");
+    drawing.exposure_of_material["soft"] = {60, 0};
+    CHECK(job_settings(Order{}, limited, {}, drawing));
+}
