@@ -56,6 +56,8 @@ Status export_robot(const ExportOptions& options) {
     progress.reset();
     if (!written) return tl::unexpected(written.error());
     std::vector<std::string> notes = job::exposure_notes(job->archive.manifest(), *format);
+    if (std::string note = job::height_note(job->archive.manifest(), *format); !note.empty())
+        notes.push_back(std::move(note));
     if (std::string note = correction_note(job->printer.projector); !note.empty()) notes.push_back(std::move(note));
     tell_files(options, *written, notes);
     return {};

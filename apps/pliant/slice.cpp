@@ -137,6 +137,7 @@ Status slice(SliceOptions& options) {
     Status named = check_ending("-o", options.job, "a job", ".zip");
     if (named) named = check_ending("--picture", options.picture, "a picture", ".png");
     if (named) named = check_file_places({options.job, options.picture});
+    if (named) named = prepare::check_job_name(options.job, options.order.inputs, options.printer);
     if (named) named = read_paint(options.paint, options.order);
     if (!named) return named;
     auto progress = terminal_progress(options.output);

@@ -62,6 +62,7 @@ PrintPlan slice_job(const SliceOptions& options, const std::filesystem::path& jo
     if (options.inputs.empty()) throw Failure(Failure::Kind::input, "nothing is given to be sliced");
     if (options.printer.empty()) throw Failure(Failure::Kind::input, "no printer file is named to slice for");
     if (job.empty()) throw Failure(Failure::Kind::input, "the name of the job file is empty");
+    library::check(prepare::check_job_name(job, options.inputs, options.printer));
     const prepare::PrinterFile printer = printer_of(options.printer);
     library::WatchedProgress progress(watch, "slice");
     auto drawing = prepare::read_drawing(options.inputs, options.changes, progress);

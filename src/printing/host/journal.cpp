@@ -155,6 +155,7 @@ std::string write_record(long number, std::string_view kind, const JournalValues
 
 Result<JournalText> parse_journal(std::string_view text, std::string_view where) {
     JournalText journal;
+    const std::string_view all = text;
     int bad_line = 0;
     for (int number = 1; !text.empty(); ++number) {
         const std::size_t end = text.find('\n');
@@ -173,6 +174,8 @@ Result<JournalText> parse_journal(std::string_view text, std::string_view where)
         }
         text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     }
+    if (journal.records.empty() && !all.empty() && !may_begin_record(all))
+        return input_error("{}: this is not a journal; give another name with --journal", where);
     return journal;
 }
 
@@ -203,8 +206,6 @@ Status Journal::read_all() {
     }
     auto parsed = parse_journal(text, path_.string());
     if (!parsed) return tl::unexpected(parsed.error());
-    if (parsed->records.empty() && !text.empty() && !may_begin_record(text))
-        return input_error("{}: this is not a journal; give another name with --journal", path_.string());
     if (parsed->good_bytes < text.size() && ::ftruncate(file_.number(), static_cast<off_t>(parsed->good_bytes)) != 0)
         return failure("{}: {}", path_.string(), std::strerror(errno));
     good_bytes_ = parsed->good_bytes;

@@ -43,7 +43,7 @@ struct JournalText {
 };
 
 /// Parses a journal. A damaged end is what a power cut leaves and is ignored; a damaged record followed by good ones is
-/// an error, and so is a gap in the numbers.
+/// an error, and so are a gap in the numbers, and a text that cannot be the beginning of a journal.
 [[nodiscard]] Result<JournalText> parse_journal(std::string_view text, std::string_view where);
 
 /// An open journal, locked against other hosts. Movable.

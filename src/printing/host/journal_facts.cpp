@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 #include "printing/machine/gcode.hpp"
@@ -49,6 +50,7 @@ public:
     explicit Reader(JournalFacts& facts) : facts_(facts) {}
 
     Status take(const JournalRecord& r) {
+        if (Status once = keys_once(r); !once) return once;
         if (r.kind == "begin") return begin(r);
         if (!facts_.begun) return input_error("journal record {} ({}) stands before the beginning", r.number, r.kind);
         if (r.kind == "session") return session(r);
@@ -61,11 +63,40 @@ public:
         if (r.kind == "stop") return stop(r);
         if (r.kind == "end") facts_.ended = true;
         if (r.kind == "cancel") facts_.cancelled = true;
-        return {};  // additions of later versions, and records for people: pause, resume, suspend, note
+        constexpr std::array<std::string_view, 7> others{"end", "cancel", "pause", "resume", "door", "suspend", "note"};
+        if (std::ranges::find(others, r.kind) != others.end()) return {};
+        return input_error(
+            "journal record {}: no kind \"{}\" is known; it is of another version of Pliant, or no journal", r.number,
+            r.kind);
     }
 
 private:
+    static Status keys_once(const JournalRecord& r) {
+        for (const auto& [key, value] : r.values) {
+            if (std::ranges::count(r.values, key, &std::pair<std::string, std::string>::first) > 1)
+                return input_error("journal record {} ({}): {} stands there twice", r.number, r.kind, key);
+        }
+        return {};
+    }
+    /// A whole number that may count layers, steps or materials.
+    static Result<int> index(const JournalRecord& r, std::string_view key) {
+        const auto value = r.whole(key);
+        if (!value) return tl::unexpected(value.error());
+        if (*value < 0 || *value > 1'000'000'000)
+            return input_error("journal record {} ({}): {}={} is out of range", r.number, r.kind, key, *value);
+        return static_cast<int>(*value);
+    }
+    static Result<double> seconds(const JournalRecord& r, std::string_view key) {
+        const auto value = r.number_of(key);
+        if (value && !(*value >= 0))
+            return input_error("journal record {} ({}): {}={:g} is below 0", r.number, r.kind, key, *value);
+        return value;
+    }
     Status begin(const JournalRecord& r) {
+        const std::string* format = r.find("format");  // the first journals had none
+        if (format != nullptr && *format != "1")
+            return input_error("journal record {} (begin): format {} is not known, this program writes 1", r.number,
+                               format->substr(0, 40));
         const auto job = r.text("job"), digest = r.text("digest"), printer = r.text("printer");
         for (const auto* value : {&job, &digest, &printer}) {
             if (!*value) return tl::unexpected(value->error());
@@ -115,7 +146,7 @@ private:
             most = std::max(0L, *given);
         }
         facts_.moved = true;
-        facts_.go = GoFact{*program, static_cast<std::size_t>(*step), *line, *state, most};
+        facts_.go = GoFact{*program, static_cast<std::size_t>(*step), *line, *state, most, r.number};
         return {};
     }
     Status light(const JournalRecord& r) {
@@ -125,11 +156,12 @@ private:
             if (**value < 0 || **value > 1'000'000'000)
                 return input_error("journal record {} (light): out of range", r.number);
         }
-        const auto planned = r.number_of("planned"), at = r.number_of("at");
+        const auto planned = seconds(r, "planned"), at = r.number_of("at");
         if (!planned) return tl::unexpected(planned.error());
         if (!at) return tl::unexpected(at.error());
         const auto index = static_cast<std::size_t>(*step);
         LightFact& fact = facts_.lights[index];
+        fact.record = r.number;
         fact.layer = static_cast<int>(*layer);
         fact.material = static_cast<int>(*material);
         fact.planned_s = *planned;
@@ -144,6 +176,8 @@ private:
         if (!light) return tl::unexpected(light.error());
         if (!done) return tl::unexpected(done.error());
         if (!on) return tl::unexpected(on.error());
+        constexpr double clock_step_s = 1;  // back, which a light that was just switched on may be measured across
+        if (!(*on > -clock_step_s)) return input_error("journal record {} (dark): on={:g} is below 0", r.number, *on);
         for (auto& [step, fact] : facts_.lights) {
             if (fact.open_light != *light || *light == 0) continue;
             fact.open_light = 0;
@@ -154,18 +188,19 @@ private:
         return input_error("journal record {} (dark): light {} was not on", r.number, *light);
     }
     Status exposure(const JournalRecord& r) {
-        const auto material = r.whole("material"), from = r.whole("from");
-        const auto seconds = r.number_of("seconds");
+        const auto material = index(r, "material"), from = index(r, "from");
+        const auto light_s = seconds(r, "seconds");
         if (!material) return tl::unexpected(material.error());
         if (!from) return tl::unexpected(from.error());
-        if (!seconds) return tl::unexpected(seconds.error());
-        facts_.changes.push_back({static_cast<int>(*material), *seconds, static_cast<int>(*from)});
+        if (!light_s) return tl::unexpected(light_s.error());
+        facts_.changes.push_back({*material, *light_s, *from, r.number});
         return {};
     }
     Status skip(const JournalRecord& r) {
-        const auto layer = r.whole("layer");
+        const auto layer = index(r, "layer");
         if (!layer) return tl::unexpected(layer.error());
-        facts_.skipped_layers.push_back(static_cast<int>(*layer));
+        facts_.skipped_layers.push_back(*layer);
+        facts_.skip_records.push_back(r.number);
         return {};
     }
     Status stop(const JournalRecord& r) {

@@ -27,6 +27,7 @@ struct LightFact {
     bool complete = false;
     long open_light = 0;      ///< number of the record of an exposure without an end in the journal; 0: none
     double open_since_s = 0;  ///< when it began, on the devices' clock
+    long record = 0;          ///< of its last piece
 };
 
 /// The last point where the machine stood still, and what was sent from there on.
@@ -36,12 +37,14 @@ struct GoFact {
     long line = 0;         ///< line number of that step on the wire; each further step has the next number
     machine::Interlock::State state;
     long most = 0;  ///< maximum number of steps sent from there before the next entry; 0: up to the next phase
+    long record = 0;
 };
 
 struct ChangeFact {
     int material = 0;
     double seconds = 0;
     int from_layer = 0;
+    long record = 0;
 };
 
 struct JournalFacts {
@@ -61,6 +64,7 @@ struct JournalFacts {
     std::optional<GoFact> go;
     std::vector<ChangeFact> changes;
     std::vector<int> skipped_layers;
+    std::vector<long> skip_records;  ///< parallel to those that the journal holds
 };
 
 /// Whether there is a print to resume. One without any motion or exposure has not begun: its port may have been the

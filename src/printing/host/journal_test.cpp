@@ -11,6 +11,7 @@
 #include "base/core/files.hpp"
 #include "base/core/test_folder.hpp"
 #include "printing/host/journal_facts.hpp"
+#include "printing/host/resume_point.hpp"
 
 using namespace pliant;
 using namespace pliant::host;
@@ -168,4 +169,69 @@ TEST_CASE("the facts of a journal: parts of an exposure add up, an open exposure
         const auto read = read_state(bad);
         CHECK((!read || read->slots.empty()));
     }
+}
+
+TEST_CASE("records of another format, of an unknown kind or with nonsense are refused, and named") {
+    const std::string begin = write_record(1, "begin", {{"job", "x"}, {"digest", ""}, {"printer", "x"}});
+    const std::string light =
+        write_record(2, "light", {{"step", "3"}, {"layer", "0"}, {"material", "1"}, {"planned", "2.5"}, {"at", "10"}});
+    const auto error_of = [](const std::string& text) {
+        const auto facts = facts_of(parse_journal(text, "x").value().records);
+        return facts ? std::string() : facts.error().message;
+    };
+    CHECK(error_of(begin + light).empty());  // the first journals state no format
+    const auto format = [](const char* name) {
+        return write_record(1, "begin", {{"job", "x"}, {"digest", ""}, {"printer", "x"}, {"format", name}});
+    };
+    CHECK(error_of(format("1") + light).empty());
+    CHECK(error_of(format("2")) == "journal record 1 (begin): format 2 is not known, this program writes 1");
+    for (const char* kind : {"pause", "resume", "door", "suspend", "cancel", "end"})
+        CHECK(error_of(begin + write_record(2, kind, {})).empty());
+    CHECK(error_of(begin + write_record(2, "zzz", {})).find("journal record 2: no kind \"zzz\" is known") == 0);
+    const auto third = [&](std::string_view kind, const JournalValues& values) {
+        return error_of(begin + light + write_record(3, kind, values));
+    };
+    CHECK(third("dark", {{"light", "2"}, {"on", "-5"}, {"done", "1"}}) == "journal record 3 (dark): on=-5 is below 0");
+    CHECK(third("skip", {{"layer", "-1"}}) == "journal record 3 (skip): layer=-1 is out of range");
+    CHECK(third("exposure", {{"material", "0"}, {"seconds", "-3"}, {"from", "0"}}) ==
+          "journal record 3 (exposure): seconds=-3 is below 0");
+    CHECK(third("exposure", {{"material", "-1"}, {"seconds", "3"}, {"from", "0"}}).find("material=-1") !=
+          std::string::npos);
+    CHECK(third("skip", {{"layer", "1"}, {"layer", "2"}}) == "journal record 3 (skip): layer stands there twice");
+}
+
+TEST_CASE("records about steps, layers and materials that the job does not have are refused, and named") {
+    Script script;
+    script.steps = {std::string("G28"), machine::Expose{0, 0, 2.5, "a.png"}, machine::Expose{1, 0, 2.5, "b.png"}};
+    PrintJob job;
+    job.layers = 3;  // the last one is dark
+    job.materials = {"soft"};
+    const auto error_of = [&](const JournalFacts& facts) {
+        const Status fits = check_fits(facts, script, job);
+        return fits ? std::string() : fits.error().message;
+    };
+    JournalFacts facts;
+    facts.lights[2].layer = 1;
+    facts.skipped_layers = {2};
+    facts.skip_records = {7};
+    facts.changes = {{0, 3, 2, 8}};
+    facts.go = GoFact{0, 3, 1, {}, 0, 9};
+    CHECK(error_of(facts).empty());
+    facts.go->step = 4;
+    CHECK(error_of(facts) == "journal record 9 (go): this job has no step 4");
+    facts.changes[0].material = 1;
+    CHECK(error_of(facts) == "journal record 8 (exposure): this job has no material 1");
+    facts.skipped_layers[0] = 3;
+    CHECK(error_of(facts) == "journal record 7 (skip): this job has no layer 3");
+    facts.lights[2].record = 6;
+    facts.lights[2].layer = 2;
+    CHECK(error_of(facts) == "journal record 6 (light): this job has no exposure of layer 2, material 0 at step 2");
+}
+
+TEST_CASE("what cannot be the beginning of a journal is none, whoever reads it") {
+    for (const std::string& text :
+         {std::string(1000, '\0'), std::string("name = \"finger\"\n"), std::string("05ec23b6 1 end\r\n")})
+        CHECK(parse_journal(text, "x").error().message == "x: this is not a journal; give another name with --journal");
+    CHECK(parse_journal("", "x")->records.empty());
+    CHECK(parse_journal("05ec2", "x")->records.empty());
 }

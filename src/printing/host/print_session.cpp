@@ -189,6 +189,7 @@ Status Control::Private::check_journal(const JournalFacts& facts) const {
     if (facts.printer != setup.printer.name)
         return input_error("{}: this print was begun on \"{}\", this printer is \"{}\"", where, facts.printer,
                            setup.printer.name);
+    if (Status fits = check_fits(facts, script, *job); !fits) return input_error("{}: {}", where, fits.error().message);
     return {};
 }
 
@@ -223,7 +224,7 @@ Result<Ending> Control::Private::print_anew(Journal* journal) {
 
 Result<Ending> Control::Private::go_on(const StartOptions& options, bool abandon, Journal& journal) {
     auto facts = facts_of(journal.records());
-    if (!facts) return tl::unexpected(facts.error());
+    if (!facts) return input_error("{}: {}", job->journal.string(), facts.error().message);
     if (Status status = check_journal(*facts); !status) return tl::unexpected(status.error());
     const auto open_light = close_open_light(*facts, setup.guard, options.assume);
     if (!open_light) return tl::unexpected(open_light.error());

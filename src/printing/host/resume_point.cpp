@@ -1,5 +1,7 @@
 #include "printing/host/resume_point.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "printing/host/machine.hpp"
@@ -57,6 +59,22 @@ Status check_lights(const JournalFacts& facts, const machine::Printer& printer) 
     return {};
 }
 
+/// One past the highest layer and material of the job, lit or not.
+struct JobEnds {
+    int layers = 0, materials = 0;
+};
+
+JobEnds ends_of(const Script& script, const PrintJob& job) {
+    JobEnds ends{job.layers, static_cast<int>(job.materials.size())};
+    for (std::size_t i = 0; i < script.steps.size(); ++i) {
+        const machine::Expose* light = script.light(i);
+        if (light == nullptr) continue;
+        ends.layers = std::max(ends.layers, light->layer + 1);
+        ends.materials = std::max(ends.materials, light->material + 1);
+    }
+    return ends;
+}
+
 Interlock without_position(const Interlock& state) {
     Interlock lost = state;
     lost.stopped_at(state.position());
@@ -64,6 +82,32 @@ Interlock without_position(const Interlock& state) {
 }
 
 }  // namespace
+
+Status check_fits(const JournalFacts& facts, const Script& script, const PrintJob& job) {
+    const auto wrong = [](long record, std::string_view kind, const std::string& what) {
+        return input_error("journal record {} ({}): this job has no {}", record, kind, what);
+    };
+    const JobEnds ends = ends_of(script, job);
+    for (const auto& [step, fact] : facts.lights) {
+        const machine::Expose* light = step < script.steps.size() ? script.light(step) : nullptr;
+        if (light == nullptr || light->layer != fact.layer || light->material != fact.material)
+            return wrong(fact.record, "light",
+                         fmt::format("exposure of layer {}, material {} at step {}", fact.layer, fact.material, step));
+    }
+    for (std::size_t i = 0; i < facts.skip_records.size(); ++i) {
+        if (facts.skipped_layers[i] >= ends.layers)
+            return wrong(facts.skip_records[i], "skip", fmt::format("layer {}", facts.skipped_layers[i]));
+    }
+    for (const ChangeFact& change : facts.changes) {
+        if (change.material >= ends.materials)
+            return wrong(change.record, "exposure", fmt::format("material {}", change.material));
+        if (change.from_layer > ends.layers)  // one past the last: it was changed too late to matter
+            return wrong(change.record, "exposure", fmt::format("layer {}", change.from_layer));
+    }
+    if (facts.go && facts.go->program == 0 && facts.go->step > script.steps.size())
+        return wrong(facts.go->record, "go", fmt::format("step {}", facts.go->step));
+    return {};
+}
 
 Result<Standing> standing_of(const JournalFacts& facts, const Script& script, const machine::Printer& printer,
                              long last_line, const Assume& assume) {

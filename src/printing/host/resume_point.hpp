@@ -11,6 +11,9 @@
 
 namespace pliant::host {
 
+/// Errors: a record about a step, layer or material that the job does not have.
+[[nodiscard]] Status check_fits(const JournalFacts& facts, const Script& script, const PrintJob& job);
+
 /// The machine's present state. `state` has no axis homed if the controller has lost its position.
 struct Standing {
     machine::Interlock state;

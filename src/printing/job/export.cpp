@@ -160,6 +160,15 @@ std::vector<std::string> exposure_notes(const Manifest& manifest, Format format)
     return notes;
 }
 
+std::string height_note(const Manifest& manifest, Format format) {
+    if (is_even(manifest) || (format != Format::zip && format != Format::vats)) return "";
+    const auto [low, high] =
+        std::minmax_element(manifest.layers.begin(), manifest.layers.end(),
+                            [](const Layer& a, const Layer& b) { return a.thickness_um < b.thickness_um; });
+    return fmt::format("the layers are {} to {} um thick, which {} does not say; manifest.json of the job does",
+                       low->thickness_um, high->thickness_um, format == Format::zip ? "a .zip" : "a folder of vats");
+}
+
 Result<std::vector<fs::path>> export_job(const Archive& archive, Format format, const fs::path& folder,
                                          Progress& progress) {
     if (auto status = check_alike(archive.manifest(), format); !status) return tl::unexpected(status.error());

@@ -23,6 +23,9 @@ enum class Format {
 /// What the format cannot say about this job, a line for each material: exposures.
 [[nodiscard]] std::vector<std::string> exposure_notes(const Manifest& manifest, Format format);
 
+/// That the layers differ in height, if the format does not say so; "": it has nothing to say.
+[[nodiscard]] std::string height_note(const Manifest& manifest, Format format);
+
 /// Writes into `folder`, which is created if missing: NAME_MATERIAL.sl1, .nanodlp or .zip for each material; `vats`
 /// instead replaces `folder` itself by the vat folders (only if it is empty or an earlier export). Returns the files
 /// written. Equal jobs give equal bytes. Errors: the job's images, more than 26 materials (vats), the disk,

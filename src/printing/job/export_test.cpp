@@ -300,6 +300,10 @@ TEST_CASE("layers of different heights are exported only to formats that allow t
     CHECK(refused.error().message ==
           "layer 1 is 100 um thick, layer 0 50 um: this format knows layers of one thickness only");
     CHECK(export_job(archive, Format::vats, folder / "b").has_value());
+    CHECK(height_note(archive.manifest(), Format::vats) ==
+          "the layers are 50 to 100 um thick, which a folder of vats does not say; manifest.json of the job does");
+    CHECK(height_note(archive.manifest(), Format::zip).find("a .zip does not say") != std::string::npos);
+    CHECK(height_note(make(folder / "even.zip").manifest(), Format::zip).empty());
 }
 
 TEST_CASE("an export that is cancelled leaves no partial file, and an earlier export as it was") {

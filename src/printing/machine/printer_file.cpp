@@ -150,6 +150,13 @@ Vat read_vat(Reader& r, const Printer& printer) {
     return v;
 }
 
+/// Keys that were not asked for, because they are missing, are known nevertheless.
+void know(Reader& r, std::initializer_list<const char*> keys) {
+    for (const char* key : keys) {
+        if (!r.has(key)) (void)r.number(key, 0.0);
+    }
+}
+
 void read_outline_offsets(Reader& r, Resin& resin) {
     constexpr int most_um = 10000;
     if (r.has("xy_compensation")) resin.xy_compensation_um = length_um(r, "xy_compensation", -most_um);
@@ -178,10 +185,14 @@ Resin read_resin(const std::string& name, Reader r) {
         r.problem("critical_share", "must be above 0, at most 1");
     if (r.has("penetration_depth") != r.has("critical_dose")) {
         r.problem("penetration_depth", "and critical_dose go together: they are the working curve");
+        (void)r.quantity("penetration_depth", Dimension::length, 0);
+        (void)r.quantity("critical_dose", Dimension::dose, 0);
     } else if (r.has("penetration_depth")) {
         resin.penetration_um = positive(r, "penetration_depth", Dimension::length, 1e6);
         resin.critical_J_m2 = positive(r, "critical_dose", Dimension::dose, 1);
     }
+    know(r, {"bottom_layers", "transition_layers", "xy_compensation", "bleed_compensation", "elephant_foot",
+             "elephant_foot_layers", "penetration_depth", "critical_dose"});
     r.finish();
     return resin;
 }

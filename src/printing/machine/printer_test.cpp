@@ -74,6 +74,16 @@ TEST_CASE("XY compensation and elephant foot belong to a resin") {
                 "resin.semi-flex.xy_compensation: must be -10 mm to 10 mm"));
 }
 
+TEST_CASE("a half working curve is one message, and an unknown key of a resin lists all that are known") {
+    const std::string depth = "penetration_depth = \"60 um\"";
+    const std::string half = message_with(depth, "");
+    CHECK(holds(half, "and critical_dose go together"));
+    CHECK_FALSE(holds(half, "unknown key"));
+    const std::string unknown = message_with(depth, depth + "\nviscosity_of_it = 3");
+    for (const char* key : {"xy_compensation", "bleed_compensation", "transition_layers", "elephant_foot"})
+        CHECK(holds(unknown, key));
+}
+
 TEST_CASE("an invalid printer file gives a line with file, key and remedy") {
     CHECK(holds(message_with("letter = \"Y\"", "letter = \"Z\""), "has the letter of the platform axis"));
     CHECK(holds(message_with("letter = \"Y\"", "letter = \"yy\""), "p.toml:36: axis.tower.letter"));

@@ -51,8 +51,10 @@ Result<slice::SupportSettings> support_settings(const Order& order) {
 Result<Vec3> shift_of(const Order& order) {
     if (order.at.empty()) return Vec3{};
     constexpr double um = 1000, most_mm = 1000;
-    if (order.at.size() != 2 || !(std::fabs(order.at[0]) <= most_mm && std::fabs(order.at[1]) <= most_mm))
-        return input_error("--at: two numbers in mm are needed, from the middle of the platform");
+    if (order.at.size() != 2) return input_error("--at: two numbers in mm are needed, from the middle of the platform");
+    if (!(std::fabs(order.at[0]) <= most_mm && std::fabs(order.at[1]) <= most_mm))
+        return input_error("--at {:g} {:g}: must be -{:g} to {:g} mm from the middle of the platform", order.at[0],
+                           order.at[1], most_mm, most_mm);
     return Vec3{um * order.at[0], um * order.at[1], 0};
 }
 
@@ -154,6 +156,9 @@ Status set_heights(const Order& order, const Drawing& drawing, slice::Settings& 
     if (order.least_layer.empty()) return {};
     const Result<int> least_um = layer_height_um("--least-layer", order.least_layer);
     if (!least_um) return tl::unexpected(least_um.error());
+    if (*least_um > slicing.layer_um)
+        return input_error("--least-layer {}: must be 1 um to the layer height, {} um", order.least_layer,
+                           slicing.layer_um);
     auto tops = slice::adaptive_tops(drawing.bodies, {*least_um, slicing.layer_um});
     if (!tops) return input_error("--least-layer: {}", tops.error().message);
     slicing.tops_um = std::move(*tops);

@@ -95,6 +95,10 @@ TEST_CASE("a part, its copies and its supports must stand on the platform, not o
     CHECK(message([](Order&) {}).empty());
     CHECK(message([](Order& o) { o.at = {5, -1}; }).empty());
     CHECK(message([](Order& o) {
+              o.at = {1e9, 10};
+          }) == "--at 1e+09 10: must be -1000 to 1000 mm from the middle of the platform");
+    CHECK(message([](Order& o) { o.at = {5}; }).find("two numbers in mm are needed") != std::string::npos);
+    CHECK(message([](Order& o) {
               o.at = {0, -1.5};
           }) ==
           "body 'left' (soft): lies 0.500 mm beyond the platform at -y, which reaches from -3.000 to 3.000 mm there; "
@@ -180,7 +184,9 @@ TEST_CASE("--least-layer gives layers of different heights, and --hollow a cavit
     REQUIRE(!a.settings.slicing.tops_um.empty());
     CHECK(a.settings.slicing.tops_um.back() >= 3000);
     CHECK(refused([](Order& o) { o.least_layer = "10.5 um"; }).find("--least-layer 10.5 um: a whole number") == 0);
-    CHECK(refused([](Order& o) { o.least_layer = "60 um"; }).find("--least-layer: layers of 60 to 50 um") == 0);
+    CHECK(refused([](Order& o) {
+              o.least_layer = "60 um";
+          }).find("--least-layer 60 um: must be 1 um to the layer height, 50 um") == 0);
     const Arranged hollow = done([](Order& o) {
         o.hollow = "0.5 mm";
         o.drain = "0.6 mm";
@@ -204,7 +210,7 @@ TEST_CASE("--scale and --at scale and move the part") {
     CHECK(aside.high == Vec3{7000, 500, 3000});
     CHECK(refused([](Order& o) { o.scale = 0; }) == "--scale: a scale of 0: must be 0.01 to 100");
     CHECK(refused([](Order& o) { o.at = {3}; }).find("--at: two numbers in mm") == 0);
-    CHECK(refused([](Order& o) { o.at = {3, 1e300}; }).find("--at: two numbers in mm") == 0);
+    CHECK(refused([](Order& o) { o.at = {3, 1e300}; }).find("--at 3 1e+300: must be -1000 to 1000 mm") == 0);
 }
 
 namespace {

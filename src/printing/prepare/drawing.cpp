@@ -151,8 +151,10 @@ Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress) {
             drawing.colour_of_material[name] = colour;
         drawing.warnings.insert(drawing.warnings.end(), body.notes.begin(), body.notes.end());
         drawing.bodies.push_back({name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
+        drawing.bodies.back().chord_um = body.chord_m * 1e6;
         if (spec.blend) drawing.bodies.back().blend = blend_of(robot, *spec.blend);
     }
+    drawing.notes = robot::overlap_notes(robot, progress);
     for (const robot::MaterialSpec& material : robot.materials) {
         add_resin(drawing, material.name, material.resin);
         if (material.exposure_s > 0 || material.bottom_exposure_s > 0)

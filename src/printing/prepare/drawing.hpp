@@ -24,6 +24,7 @@ struct Drawing {
                                                                             ///< not given
     std::map<std::string, std::string> colour_of_material{};                ///< "#rrggbb", of those that have one
     std::vector<std::string> warnings;
+    std::vector<std::string> notes{};  ///< overlaps of drawn bodies
 };
 
 /// One robot file (.toml), with `assignments` as given by --set; or any number of

@@ -25,6 +25,8 @@ struct Prepared {
     std::vector<slice::ThinSpot> thin;
     std::vector<Thumbnail::Spot> seen;       ///< for the thumbnail
     std::map<int, std::int64_t> drawn_sums;  ///< sum of pixel values, by drawn material
+    std::vector<std::int64_t> dark_sums;     ///< parallel to sliced.images: what the projector's mask takes away
+    bool lit = false;                        ///< whether any pixel is, behind the mask
 };
 
 /// The source of layers, with an image per drawn material. `layer` is called from any thread; layers in [0, count).
@@ -50,14 +52,17 @@ Result<Prepared> prepare_layer(const LayerSource& source, const JobSettings& set
     auto sliced = source.layer(k);
     if (!sliced) return tl::unexpected(sliced.error());
     if (Status status = check_light(*sliced, settings, k); !status) return tl::unexpected(status.error());
-    Prepared prepared{std::move(*sliced), {}, {}, {}, {}, {}};
+    Prepared prepared{std::move(*sliced), {}, {}, {}, {}, {}, {}};
     for (const slice::MaterialImage& m : prepared.sliced.images) prepared.drawn_sums[m.material] = m.value_sum;
     put_together(prepared.sliced, source.printed_as);
     prepared.shape = slice::shape_of(prepared.sliced, settings.slicing.raster.width_px);
     prepared.thin = thin_spots(prepared.sliced, k, settings.least_feature_um, settings.slicing.raster);
     prepared.seen = thumbnail.row(prepared.sliced);
     for (slice::MaterialImage& m : prepared.sliced.images) {
-        prepared.images.push_back(encode(settings.light.none() ? m.image : corrected(m.image, settings.light)));
+        prepared.dark_sums.push_back(darkened_sum(m.image, settings.light));
+        const slice::RunImage shown = settings.light.none() ? std::move(m.image) : corrected(m.image, settings.light);
+        prepared.lit = prepared.lit || !shown.blank();
+        prepared.images.push_back(encode(shown));
         m.image = {};
     }
     return prepared;
@@ -255,6 +260,38 @@ void note_light(const slice::LightCorrection& light, Manifest& manifest) {
                     what));
 }
 
+/// Adds up what a black mask of the projector leaves dark: the images' areas and volumes are those before the mask.
+class MaskedLight {
+public:
+    explicit MaskedLight(const JobSettings& settings)
+        : heights_(settings.slicing.layers()), pixel_mm2_(std::pow(settings.slicing.raster.pixel_um / 1000, 2)) {}
+
+    void add(int k, const Prepared& prepared) {
+        lit_ = lit_ || prepared.lit;
+        for (std::size_t i = 0; i < prepared.dark_sums.size(); ++i) {
+            if (prepared.dark_sums[i] == 0) continue;
+            dark_mm3_[prepared.sliced.images[i].material] +=
+                static_cast<double>(prepared.dark_sums[i]) / 255 * pixel_mm2_ * heights_.thickness_um(k) / 1000;
+        }
+    }
+
+    Status note(Manifest& manifest) const {
+        if (!lit_ && !dark_mm3_.empty())
+            return input_error("nothing is printed: the projector's mask is black under the whole part");
+        for (const auto& [material, mm3] : dark_mm3_)
+            manifest.warnings.push_back(
+                fmt::format("material \"{}\": {:.4g} mm^3 get no light: the projector's mask is black there",
+                            manifest.materials[static_cast<std::size_t>(material)].name, mm3));
+        return {};
+    }
+
+private:
+    slice::Layers heights_;
+    double pixel_mm2_;
+    bool lit_ = false;
+    std::map<int, double> dark_mm3_;  ///< by material of the job
+};
+
 Manifest empty_manifest(const JobSettings& settings, std::vector<Material> materials) {
     const slice::Settings& slicing = settings.slicing;
     const slice::Raster& raster = slicing.raster;
@@ -362,18 +399,21 @@ Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSetti
     slice::Tally tally(*slicer);
     slice::Inspector inspector(settings.slicing.layers());
     std::vector<slice::ThinSpot> thin;
+    MaskedLight masked(settings);
     const LayerSource source{slicer->layer_count(),
                              [&](int k) -> Result<slice::SlicedLayer> { return slicer->layer(k); },
                              std::move(printed.printed_as)};
     const Status made = make_layers(source, settings, job.manifest, writer, progress, [&](int k, Prepared& prepared) {
         tally.add(k, prepared.sliced);
         inspector.add(std::move(prepared.shape));
+        masked.add(k, prepared);
         thin.insert(thin.end(), prepared.thin.begin(), prepared.thin.end());
     });
     if (!made) return tl::unexpected(made.error());
     job.summary = tally.summary();
     measure(bodies, *slicer, job.summary, job.manifest.materials);
     job.manifest.warnings = job.summary.warnings;
+    if (auto status = masked.note(job.manifest); !status) return tl::unexpected(status.error());
     if (auto status = keep_findings(inspector.finish(), joined(thin), source, settings, job.manifest, writer); !status)
         return tl::unexpected(status.error());
     return job;
@@ -401,12 +441,14 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
     MadeJob job{empty_manifest(settings, std::move(printed.materials)), {}};
     slice::Inspector inspector(settings.slicing.layers());
     std::vector<slice::ThinSpot> thin;
+    MaskedLight masked(settings);
     const double pixel_um = settings.slicing.raster.pixel_um;
     const slice::Layers heights = settings.slicing.layers();
     const auto voxel_mm3 = [&](int k) { return pixel_um * pixel_um * heights.thickness_um(k) / 1e9; };
     std::vector<double> lost_mm3(stacks.size(), 0.0), lit_mm3(stacks.size(), 0.0);
     const Status made = make_layers(source, settings, job.manifest, writer, progress, [&](int k, Prepared& prepared) {
         inspector.add(std::move(prepared.shape));
+        masked.add(k, prepared);
         thin.insert(thin.end(), prepared.thin.begin(), prepared.thin.end());
         for (std::size_t i = 0; i < stacks.size(); ++i) lost_mm3[i] += prepared.sliced.lost_px[i] * voxel_mm3(k);
         for (const auto& [drawn, sum] : prepared.drawn_sums)
@@ -414,6 +456,7 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
     });
     if (!made) return tl::unexpected(made.error());
     note_light(settings.light, job.manifest);
+    if (auto status = masked.note(job.manifest); !status) return tl::unexpected(status.error());
     for (std::size_t i = 0; i < stacks.size(); ++i) {
         add_drawn(stacks[i].material, lit_mm3[i], 0, job.manifest.materials);
         if (lost_mm3[i] > voxel_mm3(source.count))  // more than a pixel of a layer

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/core/files.hpp"
@@ -151,4 +152,37 @@ TEST_CASE("exposures of layers, layer heights, bonds and findings are written to
     CHECK(m.findings[0].area_mm2 == near(0.25, {.relative = 1e-12}));
     CHECK(archive->has_file(m.findings[0].picture));
     CHECK(verify_images(*archive, false, "job.zip").has_value());
+}
+
+TEST_CASE("what a black mask of the projector leaves dark is told for each material; a wholly dark job is an error") {
+    const pliant::test::Folder folder("job");
+    JobSettings settings = halves_settings();
+    settings.light.mask = slice::Image{64, 48, std::vector<std::uint8_t>(std::size_t{64} * 48, 255)};
+    std::vector<std::uint8_t>& mask = settings.light.mask->pixels;
+    const auto made = [&] {
+        auto writer = Writer::create(folder / "job.zip");
+        REQUIRE(writer.has_value());
+        Progress progress;
+        return slice_to_job(halves, settings, *writer, progress);
+    };
+    const auto told = [&] {
+        const auto job = made();
+        REQUIRE_MESSAGE(job.has_value(), (job ? "" : job.error().message));
+        std::vector<std::string> lines;
+        for (const std::string& line : job->manifest.warnings) {
+            if (line.find("mask") != std::string::npos) lines.push_back(line);
+        }
+        return lines;
+    };
+    CHECK(told().empty());
+    // Half of every layer, which is symmetric about the images' middle row. The column of the interface goes to
+    // "soft/one" where "soft one" is beside it, in ten layers; in the other ten it is covered by half, as grey as 128:
+    // half of 1 x 2 x 0.5 + (0.9 + 0.1 x 128 / 255) x 2 x 0.5 mm^3.
+    std::fill(mask.begin() + std::ptrdiff_t{64} * 24, mask.end(), std::uint8_t{0});
+    const std::vector<std::string> half = told();
+    REQUIRE(half.size() == 2);
+    CHECK(half[0] == "material \"soft one\": 0.6 mm^3 get no light: the projector's mask is black there");
+    CHECK(half[1] == "material \"soft/one\": 0.9751 mm^3 get no light: the projector's mask is black there");
+    std::fill(mask.begin(), mask.end(), std::uint8_t{0});
+    CHECK(made().error().message == "nothing is printed: the projector's mask is black under the whole part");
 }

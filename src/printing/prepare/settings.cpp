@@ -353,6 +353,22 @@ Status check_names(const Drawing& drawing) {
     return {};
 }
 
+/// Exposures of a robot file; those of printer file and options are checked where they are read.
+Status check_limits(const Drawing& drawing, const std::vector<job::Material>& materials,
+                    const machine::Printer& printer) {
+    for (const job::Material& m : materials) {
+        const auto printed = [&](const slice::Body& body) {
+            return body.material == m.name || (body.blend && body.blend->second == m.name);
+        };
+        if (!drawing.exposure_of_material.contains(m.name) || std::ranges::none_of(drawing.bodies, printed)) continue;
+        const double most_s = std::max(m.exposure_s, m.bottom_exposure_s);
+        if (most_s > printer.limits.exposure_s)
+            return input_error("material \"{}\": exposure of {:g} s, the limit of {} is {:g} s", m.name, most_s,
+                               printer.name, printer.limits.exposure_s);
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<job::JobSettings> job_settings(const Order& order, const machine::Printer& printer,
@@ -389,6 +405,8 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
         if (Status status = set_exposure(text, printer, settings, given, drawing.warnings); !status)
             return tl::unexpected(status.error());
     }
+    if (Status status = check_limits(drawing, settings.materials, printer); !status)
+        return tl::unexpected(status.error());
     settings.slicing.compensation = compensations(drawing, printer);
     if (!drawing.stacks.empty() && !settings.slicing.compensation.empty()) {
         settings.slicing.compensation.clear();

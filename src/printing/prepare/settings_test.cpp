@@ -10,6 +10,7 @@
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
 #include "printing/job/png.hpp"
+#include "printing/prepare/slice_job.hpp"
 #include "printing/prepare/test_order.hpp"
 
 using namespace pliant;
@@ -336,4 +337,30 @@ TEST_CASE("--no-anti-alias and --threshold set the slicing rules") {
     });
     CHECK(!s.slicing.rules.anti_alias);
     CHECK(s.slicing.rules.threshold == 0.3);
+}
+
+TEST_CASE("a job is named .zip, and is neither an input nor the printer file") {
+    const pliant::test::Folder folder("job_name");
+    const std::string stack = (folder / "stack.zip").string(), printer = (folder / "p.zip").string();
+    REQUIRE(write_file(stack, "x"));
+    REQUIRE(write_file(printer, "x"));
+    CHECK(check_job_name(folder / "r.zip", {"soft=" + stack}, printer));
+    CHECK(check_job_name("r.toml", {"r.toml"}, printer).error().message == "r.toml: a job ends in .zip, as in r.zip");
+    CHECK(check_job_name(stack, {"soft=" + stack}, printer).error().message ==
+          stack + ": is an input, which the job would replace; give it another name");
+    CHECK(check_job_name(printer, {"soft=" + stack}, printer).error().message ==
+          printer + ": is the printer file, which the job would replace; give it another name");
+}
+
+TEST_CASE("an exposure of the robot file over the printer's limit names the material, or the material of the body") {
+    Drawing drawing = two_blocks();
+    drawing.exposure_of_material["soft"] = {61, 0};
+    machine::Printer limited = printer();
+    limited.name = "tower";
+    limited.limits.exposure_s = 60;
+    const Result<job::JobSettings> refused = job_settings(Order{}, limited, {}, drawing);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().message == "material \"soft\": exposure of 61 s, the limit of tower is 60 s");
+    drawing.exposure_of_material["soft"] = {60, 0};
+    CHECK(job_settings(Order{}, limited, {}, drawing));
 }

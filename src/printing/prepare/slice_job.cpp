@@ -49,12 +49,29 @@ Status check_spans(const job::JobSettings& settings, job::Manifest& manifest) {
 
 }  // namespace
 
+Status check_job_name(const std::filesystem::path& job, const std::vector<std::string>& inputs,
+                      const std::filesystem::path& printer) {
+    if (job.extension() != ".zip")
+        return input_error("{}: a job ends in .zip, as in {}", job.string(),
+                           std::filesystem::path(job).replace_extension(".zip").string());
+    std::error_code none;  // of files that do not exist
+    for (const std::string& input : inputs) {
+        for (const std::string& file : {input, input.substr(input.find('=') + 1)}) {
+            if (std::filesystem::equivalent(job, file, none))
+                return input_error("{}: is an input, which the job would replace; give it another name", job.string());
+        }
+    }
+    if (std::filesystem::equivalent(job, printer, none))
+        return input_error("{}: is the printer file, which the job would replace; give it another name", job.string());
+    return {};
+}
+
 Result<SlicedJob> slice_job(const Order& order, const PrinterFile& printer, Drawing drawing,
                             const std::filesystem::path& file, Progress& progress, job::LayerWatch watch) {
     Result<job::JobSettings> settings = job_settings(order, printer.printer, printer.mask, drawing);
     if (!settings) return tl::unexpected(settings.error());
     settings->watch = std::move(watch);
-    std::vector<std::string> notes;
+    std::vector<std::string> notes = drawing.notes;
     if (Status s = arrange(order, *settings, drawing, notes, progress); !s) return tl::unexpected(s.error());
     Result<job::Writer> writer = job::Writer::create(file);
     if (!writer) return tl::unexpected(writer.error());

@@ -17,10 +17,15 @@ struct PrinterFile {
     std::optional<job::Image> mask{};  ///< of its projector
 };
 
+/// Errors: the name of a job that does not end in .zip, or that is one of the inputs ("MATERIAL=FILE" as in an order)
+/// or the printer file, which it would replace.
+[[nodiscard]] Status check_job_name(const std::filesystem::path& job, const std::vector<std::string>& inputs,
+                                    const std::filesystem::path& printer);
+
 struct SlicedJob {
     job::Manifest manifest;
     plan::Plan plan;
-    std::vector<std::string> notes;  ///< remarks on what was added: supports, cavities
+    std::vector<std::string> notes;  ///< remarks: overlaps of drawn bodies; what was added, supports, cavities
 };
 
 /// Writes `file` atomically. `watch` is called for each layer as it is made. Errors: in the order, from the slicer, the

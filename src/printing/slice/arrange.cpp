@@ -37,6 +37,7 @@ Status scale(std::vector<Body>& bodies, double factor) {
         return input_error("a scale of {:.6g}: must be {} to {}", factor, least, most);
     for (Body& body : bodies) {
         for (Vec3& p : body.surface_um.points) p *= factor;
+        body.chord_um *= factor;
         if (body.blend) {
             body.blend->from_um *= factor;
             body.blend->to_um *= factor;

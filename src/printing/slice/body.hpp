@@ -38,6 +38,8 @@ struct Body {
         slices{};  ///< from the bottom up; if present, they define the body instead of the surface
     std::optional<Blend> blend{};
     bool filler = false;  ///< yields to the part without a warning (put it first)
+    /// Later bodies are cut out of it, but chords of common curved faces deviate by up to this; 0: they are not.
+    double chord_um = 0;
 };
 
 /// The projector's image on the platform. x runs to the right and row 0 is at the greatest y, unless mirrored. The part

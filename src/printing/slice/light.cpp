@@ -36,4 +36,17 @@ RunImage corrected(const RunImage& image, const LightCorrection& correction) {
     return result;
 }
 
+std::int64_t darkened_sum(const RunImage& image, const LightCorrection& correction) {
+    if (!correction.mask) return 0;
+    std::int64_t sum = 0;
+    for (int row = image.first_row(); row < image.end_row(); ++row) {
+        for (const Run& run : image.row(row)) {
+            for (int column = run.begin; column < run.end; ++column) {
+                if (correction.mask->at(row, column) == 0) sum += run.value;
+            }
+        }
+    }
+    return sum;
+}
+
 }  // namespace pliant::slice

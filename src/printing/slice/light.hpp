@@ -24,4 +24,8 @@ struct LightCorrection {
 /// mask has the image's size.
 [[nodiscard]] RunImage corrected(const RunImage& image, const LightCorrection& correction);
 
+/// The sum of the image's values where the mask is black: what gets no light at all. 0 without a mask. Precondition: as
+/// above.
+[[nodiscard]] std::int64_t darkened_sum(const RunImage& image, const LightCorrection& correction);
+
 }  // namespace pliant::slice

@@ -28,3 +28,13 @@ TEST_CASE("the mask scales every lit pixel") {
     correction.grey = grey_values(std::array<double, 2>{0, 0.5});
     CHECK(int{corrected(image, correction).at(1, 0)} == 100);
 }
+
+TEST_CASE("what a black mask takes away is added up, and nothing else") {
+    RunImage image(4, 2);
+    image.append(0, 1, 3, 255);
+    image.append(1, 0, 3, 200);
+    LightCorrection correction;
+    CHECK(darkened_sum(image, correction) == 0);
+    correction.mask = Image{4, 2, {0, 0, 1, 0, 255, 128, 0, 0}};
+    CHECK(darkened_sum(image, correction) == 255 + 200);
+}

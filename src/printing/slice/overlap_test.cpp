@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -63,6 +64,26 @@ TEST_CASE("the last body keeps the overlap; holes and touching borders are no ov
     CHECK(areas[1].others == near(1 + 1, {.relative = 1e-12}));
     CHECK(areas[2].others == near(1, {.relative = 1e-12}));
     CHECK(areas[3].own == 0);
+}
+
+TEST_CASE("what the chords of a common curved face leave of an overlap that was cut out is no warning") {
+    const auto warnings = [](double chord_um, double deep_um) {
+        std::vector<Body> bodies{{"soft", box({-1000, -1000, 0}, {1000, 1000, 1000}), "block"},
+                                 {"firm", box({1000 - deep_um, -1000, 0}, {2000, 1000, 1000}), "peg"}};
+        bodies[0].chord_um = chord_um;
+        pliant::Progress progress;
+        const auto summary = slice_bodies(
+            bodies, {{64, 48, 100}, 50, {}}, [](int, int, const RunImage&) { return pliant::Status{}; }, progress);
+        REQUIRE(summary.has_value());
+        CHECK(summary->lost_mm3[0] == near(deep_um / 1000 * 2, {.relative = 1e-9}));
+        return std::ranges::count_if(summary->warnings, [](const std::string& line) {
+            return line.find("overlap with later bodies") != std::string::npos;
+        });
+    };
+    CHECK(warnings(0, 5) == 1);
+    CHECK(warnings(10, 5) == 0);
+    // More than 20 um over the 16 mm^2 of the block's surface is no residue of chords of 10 um.
+    CHECK(warnings(10, 200) == 1);
 }
 
 TEST_CASE("an overlap in partly filled pixels counts fully") {

@@ -117,6 +117,8 @@ Status Slicer::add_body(const Body& body, const std::string& label) {
         measures_.push_back({volume_mm3(repaired->surface), slice::area_mm2(repaired->surface)});
         shapes_.emplace_back(Sectioner(std::move(repaired->surface), layers_));
     }
+    // The chords of both bodies deviate from their common face, which is at most all of the surface.
+    residues_mm3_.push_back(2 * body.chord_um / 1000 * measures_.back().area_mm2);
     if (!box) return tl::unexpected(box.error());
     if (body.blend) {
         if (auto status = check(*body.blend, label); !status) return status;
@@ -374,7 +376,7 @@ Summary Tally::summary() const {
         summary.doubled_mm3.push_back(doubled_mm3_[b]);
         const double all = first_mm3_[b] + second_mm3_[b];
         summary.second_share.push_back(all > 0 ? second_mm3_[b] / all : 0);
-        if (lost_mm3 < voxel_mm3 || slicer_.fillers()[b]) continue;
+        if (lost_mm3 < std::max(voxel_mm3, slicer_.residues_mm3()[b]) || slicer_.fillers()[b]) continue;
         summary.overlap_mm3 += lost_mm3;
         summary.warnings.push_back(
             fmt::format("{}: {:.4g} mm^3 overlap with later bodies of other materials, which keep them",

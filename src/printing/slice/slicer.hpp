@@ -72,6 +72,8 @@ public:
     /// Per body.
     [[nodiscard]] const std::vector<Measures>& measures() const { return measures_; }
     [[nodiscard]] const std::vector<bool>& fillers() const { return fillers_; }
+    /// Of each body: overlap with later ones up to this comes from the chords of common faces.
+    [[nodiscard]] const std::vector<double>& residues_mm3() const { return residues_mm3_; }
 
     [[nodiscard]] const Layers& layers() const { return layers_; }
 
@@ -112,6 +114,7 @@ private:
     std::vector<int> zone_of_, material_of_;  ///< per body
     std::vector<Measures> measures_;          ///< per body
     std::vector<bool> fillers_;               ///< per body
+    std::vector<double> residues_mm3_;        ///< per body
     std::vector<std::string> materials_, labels_, warnings_;
     int layer_count_ = 0;
 };

@@ -109,7 +109,13 @@ void judge_material(MaterialReport& m, bool exact_images, Verdict& verdict) {
                                              m.name, m.wanted_mm3, m.asked_mm3));
     const double off = m.model_mm3 > 0 ? std::abs(m.cured_mm3 - m.model_mm3) : 0;
     m.passed = off <= m.tolerance_mm3 && m.foreign_mm3 == 0 && m.missing_mm3 == 0;
-    if (off > m.tolerance_mm3)
+    // A thin part's tolerance can exceed its volume.
+    const bool nothing = m.model_mm3 > 0 && m.cured_mm3 == 0;
+    m.passed = m.passed && !nothing;
+    if (nothing)
+        verdict.add(Kind::volume,
+                    fmt::format("{}: nothing is printed, the model has {:.6g} mm^3", m.name, m.model_mm3));
+    else if (off > m.tolerance_mm3)
         verdict.add(Kind::volume, fmt::format("{}: {:.3f} mm^3 cured, the model has {:.3f}, tolerance {:.3f}", m.name,
                                               m.cured_mm3, m.model_mm3, m.tolerance_mm3));
     if (m.foreign_mm3 > 0)

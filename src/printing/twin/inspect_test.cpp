@@ -182,6 +182,32 @@ TEST_CASE("images whose volume differs from the model's fail") {
     CHECK(inspect(twin, job, half_image)->passed);
 }
 
+TEST_CASE("a material of which nothing is cured fails, however large its tolerance") {
+    job::Manifest job = half_job();
+    job.materials.push_back({"skin", "rigid-flex", 0.02, 100, 2.5, 2.5});
+    const auto printer = small_tower();
+    Twin twin(printer);
+    print(twin, {0.05, 0.1});
+    const Report r = inspect(twin, job, half_image).value();
+    CHECK(r.materials[0].passed);
+    CHECK(r.materials[1].tolerance_mm3 > 0.02);
+    CHECK_FALSE(r.materials[1].passed);
+    CHECK(names(r) == "volume");
+    CHECK(r.reasons.at(0) == "skin: nothing is printed, the model has 0.02 mm^3");
+}
+
+TEST_CASE("after empty layers the job asks for its own layers, not for the gap") {
+    job::Manifest job = half_job();
+    job.layers = {{50, 50, {{0, "a", 4}}}, {100, 50, {}}, {150, 50, {}}, {200, 50, {{0, "b", 4}}}};
+    const auto printer = small_tower();
+    Twin twin(printer);
+    print(twin, {0.05, 0.2});  // 2.5 s do not cure 150 um
+    const MaterialReport m = inspect(twin, job, half_image).value().materials[0];
+    CHECK(m.wanted_mm3 == near(0.4, {.relative = 1e-12}));
+    CHECK(m.cured_mm3 == near(0.2, {.relative = 1e-12}));
+    CHECK(m.missing_mm3 == near(0.2, {.relative = 1e-12}));
+}
+
 TEST_CASE("material cured in another resin than its own counts as foreign") {
     const auto printer = small_tower();
     Twin twin(printer);

@@ -83,9 +83,11 @@ private:
         Result<std::vector<AskedImage>> asked = asked_of(index);
         if (!asked) return tl::unexpected(asked.error());
         const LayerDifference found = difference(*asked, shown, slack_s_);
-        const double voxel_mm3 = pixel_mm2_ * (cured != nullptr ? cured->thickness_um : thickness_um) / 1000;
-        add_volumes(layer, found, voxel_mm3);
-        add_interfaces(layer, *asked, voxel_mm3);
+        // After empty layers the gap is thicker than what the job asks for.
+        const double asked_voxel_mm3 = pixel_mm2_ * layer.thickness_um / 1000;
+        const double cured_voxel_mm3 = cured != nullptr ? pixel_mm2_ * cured->thickness_um / 1000 : 0;
+        add_volumes(layer, found, asked_voxel_mm3, cured_voxel_mm3);
+        add_interfaces(layer, *asked, asked_voxel_mm3);
         add_pixels(found);
         note_difference(static_cast<int>(index), found);
         judge_areas(static_cast<int>(index), found);
@@ -134,16 +136,20 @@ private:
         }
     }
 
-    void add_volumes(const job::Layer& layer, const LayerDifference& found, double voxel_mm3) {
+    /// What the job wants is as thick as its layer, what has cured as thick as the gap was.
+    void add_volumes(const job::Layer& layer, const LayerDifference& found, double asked_voxel_mm3,
+                     double cured_voxel_mm3) {
+        const auto volume_mm3 = [](long long light, double voxel_mm3) {
+            return static_cast<double>(light) / 255 * voxel_mm3;
+        };
         for (std::size_t k = 0; k < layer.images.size(); ++k) {
             const LayerDifference::OfImage& image = found.images[k];
             MaterialReport& m = report_.materials[static_cast<std::size_t>(layer.images[k].material)];
-            const auto volume_mm3 = [&](long long light) { return static_cast<double>(light) / 255 * voxel_mm3; };
             m.asked_mm3 += layer.images[k].area_mm2 * layer.thickness_um / 1000;
-            m.wanted_mm3 += volume_mm3(image.light);
-            m.cured_mm3 += volume_mm3(image.light - image.foreign - image.missing);
-            m.foreign_mm3 += volume_mm3(image.foreign);
-            m.missing_mm3 += volume_mm3(image.missing);
+            m.wanted_mm3 += volume_mm3(image.light, asked_voxel_mm3);
+            m.cured_mm3 += volume_mm3(image.light - image.foreign - image.missing, cured_voxel_mm3);
+            m.foreign_mm3 += volume_mm3(image.foreign, cured_voxel_mm3);
+            m.missing_mm3 += volume_mm3(image.missing, asked_voxel_mm3);
         }
     }
 

@@ -79,12 +79,31 @@ std::vector<mesh::Solid> cut_from(const Robot& robot, std::size_t body, std::vec
     return air;
 }
 
+/// What later bodies take from a drawn one is cut out exactly: all of them are drawn, too, or there is none.
+bool loses_to_drawn_only(const Robot& robot, std::size_t body) {
+    return std::all_of(robot.bodies.begin() + static_cast<std::ptrdiff_t>(body), robot.bodies.end(),
+                       [](const BodySpec& b) { return std::holds_alternative<mesh::Solid>(b.geometry); });
+}
+
 /// A drawn body without the air that is cut out of it.
 mesh::Solid without_air(const mesh::Solid& body, const std::vector<mesh::Solid>& air) {
     if (air.empty()) return body;
     mesh::CombinedSolid cut{mesh::CombinedSolid::Operation::subtract, {body}};
     cut.parts.insert(cut.parts.end(), air.begin(), air.end());
     return std::make_shared<const mesh::SolidNode>(mesh::SolidNode{std::move(cut)});
+}
+
+/// The common volume of two drawn bodies, and the smaller one's own.
+struct DrawnOverlap {
+    double volume = 0, smaller = 0;
+};
+
+/// 0 where it cannot be measured: what cannot be built is an error of the bodies themselves.
+DrawnOverlap overlap_of(const mesh::Solid& one, const mesh::Solid& other) {
+    const mesh::CombinedSolid both{mesh::CombinedSolid::Operation::intersect, {one, other}};
+    const mesh::Solid common = std::make_shared<const mesh::SolidNode>(mesh::SolidNode{both});
+    return {mesh::solid_volume(common).value_or(0),
+            std::min(mesh::solid_volume(one).value_or(0), mesh::solid_volume(other).value_or(0))};
 }
 
 using Shape = std::variant<mesh::Solid, mesh::TriMesh>;
@@ -333,10 +352,29 @@ Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& pro
         }
         if (!surface && progress.cancelled()) return cancelled();
         if (!surface) return tl::unexpected(at(place(robot, body.line, "body", body.name), surface.error()));
-        surfaces.push_back(
-            {body.name, body.material, mesh::scaled(std::move(*surface), robot.unit_m), std::move(notes)});
+        surfaces.push_back({body.name, body.material, mesh::scaled(std::move(*surface), robot.unit_m), std::move(notes),
+                            loses_to_drawn_only(robot, b) ? tolerance * robot.unit_m : 0});
     }
     return surfaces;
+}
+
+std::vector<std::string> overlap_notes(const Robot& robot, const Progress& progress) {
+    std::vector<std::string> notes;
+    const std::vector<mesh::Solid> air = drawn_air(robot);
+    for (std::size_t a = 0; a < robot.bodies.size(); ++a) {
+        const auto* own = std::get_if<mesh::Solid>(&robot.bodies[a].geometry);
+        for (std::size_t b = a + 1; own != nullptr && b < robot.bodies.size() && !progress.cancelled(); ++b) {
+            const auto* later = std::get_if<mesh::Solid>(&robot.bodies[b].geometry);
+            if (later == nullptr || !boxes_overlap(mesh::bounds(*own), mesh::bounds(*later))) continue;
+            const DrawnOverlap both = overlap_of(without_air(*own, air), without_air(*later, air));
+            if (both.volume <= 1e-9 * both.smaller) continue;
+            notes.push_back(
+                fmt::format("\"{0}\" and \"{1}\" overlap in a volume of {2:.6g} (in the file's unit, cubed), which "
+                            "belongs to \"{1}\", the later one",
+                            robot.bodies[a].name, robot.bodies[b].name, both.volume));
+        }
+    }
+    return notes;
 }
 
 }  // namespace pliant::robot

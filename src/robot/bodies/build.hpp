@@ -23,8 +23,14 @@ struct BodySurface {
     int material = 0;  ///< index into Robot::materials
     mesh::TriMesh surface_m;
     std::vector<std::string> notes{};  ///< defects found or repaired in its file
+    /// Only drawn bodies, which are cut out of it, can share space with it; chords deviate by this from common curved
+    /// faces. 0: a shared space is one of the bodies as given.
+    double chord_m = 0;
 };
 /// One for every body, in order, without the air of chambers and gaps. Errors name the body and its line.
 [[nodiscard]] Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& progress);
+
+/// Notes on drawn bodies that overlap, in the words of build_mesh().
+[[nodiscard]] std::vector<std::string> overlap_notes(const Robot& robot, const Progress& progress);
 
 }  // namespace pliant::robot

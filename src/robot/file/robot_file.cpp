@@ -71,6 +71,7 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
         root.problem("",
                      "nothing is fixed; add [[fixed]] with a box that holds one end of the robot, an [[obstacle]] to "
                      "stand on, or program.time_step for a motion in time");
+    if (!root.has("parameters")) (void)root.number("parameters", 0.0);  // resolved already, but known
     root.finish();
     if (Status status = problems.status(); !status) return tl::unexpected(status.error());
     return robot;

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <gmsh.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -331,4 +332,30 @@ TEST_CASE("an STL body with jittered corners and an inverted cavity is meshed; i
     REQUIRE(printed);
     CHECK((*printed)[0].notes.size() == 2);
     CHECK(1e9 * mesh::signed_volume((*printed)[0].surface_m) == near(3680, {.relative = 1e-5}));
+}
+
+TEST_CASE("drawn bodies that overlap are told to who prints them in the words of the mesh") {
+    const std::string block = head + body("block", "geometry = { box = [[0, 0, 0], [12, 12, 4]] }");
+    const auto peg = [](double from) {
+        return body(
+            "peg",
+            fmt::format("geometry = {{ cylinder = {{ from = [6, 6, {}], to = [6, 6, 8], radius = 3 }} }}", from));
+    };
+    const Result<Robot> robot = parse_robot(block + peg(0), "peg.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    const std::vector<std::string> notes = overlap_notes(*robot, silent);
+    REQUIRE(notes.size() == 1);  // 9 pi x 4 mm^3
+    CHECK(notes[0] ==
+          "\"block\" and \"peg\" overlap in a volume of 113.097 (in the file's unit, cubed), which belongs to \"peg\", "
+          "the later one");
+    const Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    CHECK(std::ranges::count(mesh->notes, notes[0]) == 1);
+    const auto surfaces = body_surfaces(*robot, silent);
+    REQUIRE(surfaces);
+    CHECK((*surfaces)[0].chord_m == near(10e-6, {.relative = 1e-12}));
+    const Result<Robot> touching = parse_robot(block + peg(4), "peg.toml");
+    REQUIRE(touching);
+    CHECK(overlap_notes(*touching, silent).empty());
 }
