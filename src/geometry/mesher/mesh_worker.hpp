@@ -17,7 +17,8 @@ struct MesherLimits {
     double seconds = 3600;
     double gigabytes = 0;  ///< of memory; 0: all of the computer's
 };
-[[nodiscard]] MesherLimits mesher_limits();
+/// Errors: one of them is no positive number.
+[[nodiscard]] Result<MesherLimits> mesher_limits();
 
 /// Where pliant-mesh is: the path in PLIANT_MESH, else beside the running program or the library that contains this
 /// code, else where it was built, else where it is installed beside a program on PATH.
