@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "presentation/studio/access.hpp"
+#include "presentation/studio/crowd.hpp"
 #include "presentation/studio/examples.hpp"
 #include "presentation/studio/frame_reader.hpp"
 #include "presentation/studio/hang_up.hpp"
@@ -133,6 +134,7 @@ struct Server::State {
     std::filesystem::path help;  ///< empty: no help pages
     mg_context* context = nullptr;
     std::atomic<int> pages = 0;  ///< that watch
+    Crowd crowd{};
 
     [[nodiscard]] Access access(mg_connection* wire, const std::string& query_token, bool websocket) const {
         std::string_view bearer = header(wire, "Authorization");
@@ -333,6 +335,16 @@ Status Server::listen(State& state, const ServerSettings& settings) {
                              nullptr};
     // clang-format on
     mg_callbacks callbacks{};
+    // From the end of a request's head to the end of its answer, or of the connection of a page that watches.
+    callbacks.begin_request = [](mg_connection* wire) {
+        const mg_request_info& info = *mg_get_request_info(wire);
+        static_cast<State*>(info.user_data)->crowd.begin({info.remote_addr, info.remote_port});
+        return 0;
+    };
+    callbacks.end_request = [](const mg_connection* wire, int) {
+        const mg_request_info& info = *mg_get_request_info(wire);
+        static_cast<State*>(info.user_data)->crowd.end({info.remote_addr, info.remote_port});
+    };
     callbacks.log_message = [](const mg_connection*, const char*) { return 1; };  // the library never prints
     state.context = mg_start(&callbacks, &state, options);
     mg_server_port listening[4];
@@ -340,6 +352,7 @@ Status Server::listen(State& state, const ServerSettings& settings) {
     if (count < 1)
         return failure("{}: cannot listen there; the port is taken, or the address is not this machine's", ports);
     state.rules.port = listening[0].port;
+    state.crowd.watch(state.rules.port);
     return {};
 }
 
