@@ -53,6 +53,8 @@ private:
 /// One line for each problem; a text without problems is one line.
 std::string error_text(const Error& error) {
     if (error.problems.empty()) return one_line(error.message);
+    // Whoever passed it on may have added to the message.
+    if (error_of(error.cause, error.problems).message != error.message) return visible_lines(error.message);
     std::string text;
     for (const Diagnostic& problem : error.problems) text += (text.empty() ? "" : "\n") + one_line(shown(problem));
     return text;

@@ -18,6 +18,7 @@ using namespace std::chrono_literals;
 Result<std::string> read_file(const fs::path& path, std::uintmax_t limit_bytes) {
     std::error_code code;
     const fs::file_status status = fs::status(path, code);
+    if (path.empty()) return input_error("the name of a file is empty");
     if (!fs::exists(status)) return input_error_at(path.string(), 0, "no such file");
     if (fs::is_directory(status)) return input_error_at(path.string(), 0, "is a folder, a file is needed");
     if (!fs::is_regular_file(status)) return input_error_at(path.string(), 0, "is not a regular file");

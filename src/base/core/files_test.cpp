@@ -24,6 +24,7 @@ TEST_CASE("a file is written whole and read back") {
     CHECK(read_file(file, 3).error().message.find("more than") != std::string::npos);
     CHECK(read_file(scratch.path()).error().message.find("folder") != std::string::npos);
     CHECK(read_file(scratch / "none").error().message.find("no such file") != std::string::npos);
+    CHECK(read_file("").error().message == "the name of a file is empty");
     CHECK_FALSE(write_file(scratch / "no" / "folder", bytes));
 }
 

@@ -18,7 +18,7 @@ namespace {
 constexpr std::chrono::milliseconds between_looks{100};
 
 /// Either end of a connected TCP socket.
-std::optional<Caller> end_of(int file, decltype(&getpeername) which) {
+std::optional<Caller> end_of_socket(int file, decltype(&getpeername) which) {
     sockaddr_storage address{};
     socklen_t length = sizeof address;
     if (which(file, reinterpret_cast<sockaddr*>(&address), &length) != 0) return std::nullopt;
@@ -42,9 +42,9 @@ std::map<Caller, int> callers(int port) {
         const std::string name = files->path().filename().string();
         int file = -1;
         std::from_chars(name.data(), name.data() + name.size(), file);
-        const std::optional<Caller> own = end_of(file, getsockname);
+        const std::optional<Caller> own = end_of_socket(file, getsockname);
         if (!own || own->second != port) continue;
-        if (std::optional<Caller> caller = end_of(file, getpeername)) found.emplace(std::move(*caller), file);
+        if (std::optional<Caller> caller = end_of_socket(file, getpeername)) found.emplace(std::move(*caller), file);
     }
     return found;
 }
