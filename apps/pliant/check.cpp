@@ -20,6 +20,7 @@
 #include "geometry/open/describe_file.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
+#include "printed.hpp"
 #include "printing/job/job.hpp"
 #include "printing/machine/board_report.hpp"
 #include "printing/machine/printer.hpp"
@@ -134,10 +135,9 @@ Result<std::string> check_firmware(const std::string& where, const Result<std::s
                                    const machine::Printer& printer) {
     if (!answers) return tl::unexpected(answers.error());
     const machine::BoardReport board = machine::parse_board_report(*answers);
-    std::string problems;
-    for (const std::string& problem : machine::check_board(board, printer))
-        problems += fmt::format("{}{}: {}", problems.empty() ? "" : "\n", where, problem);
-    if (!problems.empty()) return failure("{}", problems);
+    std::vector<Diagnostic> problems;
+    for (const std::string& problem : machine::check_board(board, printer)) problems.push_back({where, 0, "", problem});
+    if (!problems.empty()) return tl::unexpected(error_of(Cause::failed, std::move(problems)));
     return fmt::format("firmware \"{}\" fits {}", board.name, printer.name);
 }
 
@@ -210,9 +210,9 @@ void add_check(CLI::App& app, int& status) {
             if (options->output.json)
                 results.push_back(result_json(file, text));
             else if (text && !options->output.quiet)
-                fmt::print("{}: {}\n", file, *text);
+                fmt::print("{}: {}\n", one_line(file), *text);
         }
-        if (options->output.json) fmt::print("{}\n", nlohmann::json{{"files", results}}.dump(1));
+        if (options->output.json) print_json(nlohmann::json{{"files", results}});
     });
 }
 

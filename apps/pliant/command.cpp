@@ -10,6 +10,7 @@
 
 #include "base/core/files.hpp"
 #include "interrupt.hpp"
+#include "printed.hpp"
 #include "progress_text.hpp"
 
 namespace pliant::app {
@@ -49,11 +50,19 @@ private:
     Clock::time_point start_, stage_start_, last_;
 };
 
-void tell_error(const std::string& message, bool json) {
-    fmt::print(stderr, "{}\n", message);
-    if (json)
-        fmt::print("{}\n",
-                   nlohmann::json{{"error", message}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+/// One line for each problem; a text without problems is one line.
+std::string error_text(const Error& error) {
+    if (error.problems.empty()) return one_line(error.message);
+    // Whoever passed it on may have added to the message.
+    if (error_of(error.cause, error.problems).message != error.message) return visible_lines(error.message);
+    std::string text;
+    for (const Diagnostic& problem : error.problems) text += (text.empty() ? "" : "\n") + one_line(shown(problem));
+    return text;
+}
+
+void tell_error(const std::string& message, const std::string& text, bool json) {
+    fmt::print(stderr, "{}\n", text);
+    if (json) print_json(nlohmann::json{{"error", message}}, -1);
 }
 
 }  // namespace
@@ -64,12 +73,12 @@ void add_output_options(CLI::App& command, Output& output, bool with_json) {
 }
 
 int report(const Error& error, bool json) {
-    tell_error(error.message, json);
+    tell_error(error.message, error_text(error), json);
     return error.cause == Cause::input ? exit_bad_input : exit_failed;
 }
 
 int report(const Failure& failure, bool json) {
-    tell_error(failure.what(), json);
+    tell_error(failure.what(), visible_lines(failure.what()), json);
     return failure.kind() == Failure::Kind::input ? exit_bad_input : exit_failed;
 }
 

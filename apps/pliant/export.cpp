@@ -11,6 +11,7 @@
 #include "command.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
+#include "printed.hpp"
 
 namespace pliant::app {
 namespace {
@@ -38,7 +39,7 @@ void tell_files(const ExportOptions& options, const std::vector<std::filesystem:
         nlohmann::json root{{"files", nlohmann::json::array()}};
         for (const auto& path : written) root["files"].push_back(path.string());
         if (!notes.empty()) root["notes"] = notes;
-        fmt::print("{}\n", root.dump(1));
+        print_json(root);
     } else if (!options.output.quiet) {
         for (const auto& path : written) fmt::print("{}\n", path.string());
         for (const std::string& note : notes) fmt::print("  note: {}\n", note);

@@ -10,6 +10,7 @@
 #include "base/core/files.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
+#include "printed.hpp"
 #include "printing/machine/marlin_files.hpp"
 
 namespace pliant::app {
@@ -67,12 +68,11 @@ Status write_marlin(const FirmwareOptions& options, const machine::Printer& prin
     });
     if (!status) return status;
     if (options.output.json) {
-        fmt::print("{}\n", nlohmann::json{{"folder", options.write},
-                                          {"release", machine::name_of(printer.controller.firmware)},
-                                          {"settings", settings->size()},
-                                          {"changed", files->changed},
-                                          {"pins_added", files->added}}
-                               .dump(1));
+        print_json(nlohmann::json{{"folder", options.write},
+                                  {"release", machine::name_of(printer.controller.firmware)},
+                                  {"settings", settings->size()},
+                                  {"changed", files->changed},
+                                  {"pins_added", files->added}});
         return {};
     }
     if (options.output.quiet) return {};
@@ -90,10 +90,8 @@ Status print_settings(const machine::Printer& printer, const std::vector<machine
     nlohmann::json list = nlohmann::json::array();
     for (const machine::FirmwareSetting& s : settings)
         list.push_back({{"name", s.name}, {"value", s.value}, {"reason", s.reason}});
-    fmt::print("{}\n", nlohmann::json{{"printer", printer.name},
-                                      {"release", machine::name_of(printer.controller.firmware)},
-                                      {"settings", list}}
-                           .dump(1));
+    print_json(nlohmann::json{
+        {"printer", printer.name}, {"release", machine::name_of(printer.controller.firmware)}, {"settings", list}});
     return {};
 }
 

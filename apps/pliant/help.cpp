@@ -8,6 +8,7 @@
 
 #include "base/core/text.hpp"
 #include "command.hpp"
+#include "printed.hpp"
 
 namespace pliant::app {
 namespace {
@@ -52,7 +53,7 @@ Status help(const CLI::App& app, const std::vector<std::string>& words, bool as_
         full += " " + word;
     }
     if (as_json) {
-        fmt::print("{}\n", help_json(*command, full).dump(1));
+        print_json(help_json(*command, full));
         return {};
     }
     // Not command->help(), which prints the help of the running command.

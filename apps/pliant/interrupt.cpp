@@ -22,6 +22,7 @@ std::atomic<std::int64_t> first_ms = 0;  // 0: there was none
 std::atomic<bool> again = false, key_again = false;
 std::atomic<pid_t> owner = 0;
 std::atomic<bool> on_terminal = false;
+std::atomic<bool> in_json = false;
 static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<OnSignal>::is_always_lock_free);
 
 std::int64_t monotonic_ms() {
@@ -34,6 +35,8 @@ std::int64_t monotonic_ms() {
 [[noreturn]] void leave() {
     const std::string_view line = on_terminal ? "\r\033[Kcancelled\n" : "cancelled\n";  // erases a progress bar
     (void)!::write(STDERR_FILENO, line.data(), line.size());
+    constexpr std::string_view json = "{\"error\":\"cancelled\"}\n";  // as report() prints it
+    if (in_json) (void)!::write(STDOUT_FILENO, json.data(), json.size());
     ::_exit(1);
 }
 
@@ -71,6 +74,10 @@ void on_signal(OnSignal what) {
     for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, what == OnSignal::end ? SIG_DFL : handle);
     if (!is_ignored(SIGHUP)) std::signal(SIGHUP, what == OnSignal::end ? SIG_DFL : handle);
     if (what == OnSignal::leave && interrupted()) leave();
+}
+
+void tell_cancelled_in_json() {
+    in_json = true;
 }
 
 Status write_file_and_leave(const std::filesystem::path& path, std::string_view bytes) {

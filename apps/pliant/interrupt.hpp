@@ -20,6 +20,9 @@ enum class OnSignal {
 /// Applies from now on; a signal received earlier still counts. Main thread only.
 void on_signal(OnSignal what);
 
+/// From now on a signal that ends the program also prints {"error": "cancelled"} to standard output.
+void tell_cancelled_in_json();
+
 /// Writes a file of a command that `leave`s: a signal has its effect once the file is whole.
 [[nodiscard]] Status write_file_and_leave(const std::filesystem::path& path, std::string_view bytes);
 

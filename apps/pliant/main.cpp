@@ -20,6 +20,8 @@
 #include "../usage.hpp"
 #include "base/core/text.hpp"
 #include "command.hpp"
+#include "interrupt.hpp"
+#include "printed.hpp"
 #include "program.hpp"
 #include "study_rows.hpp"
 
@@ -47,7 +49,8 @@ int refuse(const CLI::App& app, const std::string& word) {
         names.push_back(command->get_name());
     const bool option = word.starts_with('-');
     const std::string nearest = option ? nearest_option(word, {"help", "version"}) : meant(word, names);
-    fmt::print(stderr, "pliant: there is no {} \"{}\"; {}\n", option ? "option" : "command", word,
+    fmt::print(stderr, "pliant: there is no {} \"{}\"; {}\n", option ? "option" : "command",
+               pliant::app::one_line(word),
                nearest.empty() ? "pliant --help lists them" : "did you mean \"" + nearest + "\"?");
     return pliant::app::exit_bad_input;
 }
@@ -116,7 +119,7 @@ int pliant::app::run_program(const std::vector<std::string>& words) {
         const CLI::App& command = *given_command(app);
         if (const std::string text = &command == &app ? "" : unknown_option(command);
             error.get_exit_code() != 0 && !text.empty()) {
-            fmt::print(stderr, "{}\n", text);
+            fmt::print(stderr, "{}\n", one_line(text));
             return exit_bad_input;
         }
         if (app.get_subcommands().empty() && !app.remaining().empty()) return refuse(app, app.remaining().front());
@@ -153,6 +156,7 @@ int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
     pliant::app::secure_standard_streams();
     const std::vector<std::string> words(argv + 1, argv + argc);
     if (!words.empty() && words.front() == pliant::app::study_rows_word) return pliant::app::serve_study_rows(words);
+    if (std::find(words.begin(), words.end(), "--json") != words.end()) pliant::app::tell_cancelled_in_json();
     try {
         return flushed(pliant::app::run_program(words));
     } catch (const std::system_error& error) {  // of fmt::print, when standard output cannot be written

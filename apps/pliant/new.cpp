@@ -14,6 +14,7 @@
 #include "command.hpp"
 #include "inputs.hpp"
 #include "presentation/studio/examples.hpp"
+#include "printed.hpp"
 
 namespace pliant::app {
 namespace {
@@ -56,9 +57,8 @@ void print_list(const char* heading, std::span<const studio::BuiltInFile> files)
 
 Status list_built_in(const NewOptions& options) {
     if (options.output.json) {
-        fmt::print("{}\n", nlohmann::json{{"robots", list_json(studio::example_robots())},
-                                          {"printers", list_json(studio::example_printers())}}
-                               .dump(1));
+        print_json(nlohmann::json{{"robots", list_json(studio::example_robots())},
+                                  {"printers", list_json(studio::example_printers())}});
         return {};
     }
     print_list("robots: pliant new TEMPLATE -o FILE.toml", studio::example_robots());
@@ -100,7 +100,7 @@ Status make(const NewOptions& options) {
     const std::string next = of_robots ? fmt::format("pliant studio {0}   or   pliant simulate {0} -o out", file)
                                        : fmt::format("pliant slice ROBOT.toml --printer {} -o JOB.zip", file);
     if (options.output.json)
-        fmt::print("{}\n", nlohmann::json{{"file", file}, {"template", name}, {"name", title_of(text)}}.dump(1));
+        print_json(nlohmann::json{{"file", file}, {"template", name}, {"name", title_of(text)}});
     else if (!options.output.quiet)
         fmt::print("{}: {}\nnext: {}\n", file, title_of(text), next);
     return {};

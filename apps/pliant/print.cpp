@@ -14,6 +14,7 @@
 #include "presentation/print_report/print_report.hpp"
 #include "print_live.hpp"
 #include "print_virtual.hpp"
+#include "printed.hpp"
 #include "printing/twin/finding.hpp"
 #include "printing/wire/serial.hpp"
 
@@ -57,7 +58,7 @@ int list_ports(const Output& output) {
         nlohmann::json ports = nlohmann::json::array();
         for (const host::SerialPort& port : host::serial_ports())
             ports.push_back({{"device", port.device}, {"name", port.name}});
-        fmt::print("{}\n", nlohmann::json{{"ports", ports}}.dump(1));
+        print_json(nlohmann::json{{"ports", ports}});
         return exit_done;
     }
     for (const host::SerialPort& port : host::serial_ports()) fmt::print("{}  {}\n", port.device, port.name);

@@ -12,6 +12,7 @@
 #include "base/core/files.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
+#include "printed.hpp"
 #include "printing/host/projector_patterns.hpp"
 #include "printing/job/png.hpp"
 #include "printing/machine/printer.hpp"
@@ -69,7 +70,7 @@ Status list_displays(const Output& output) {
                             {"width_px", d.width_px},
                             {"height_px", d.height_px},
                             {"refresh_hz", d.refresh_hz}});
-        fmt::print("{}\n", nlohmann::json{{"displays", list}}.dump(1));
+        print_json(nlohmann::json{{"displays", list}});
         return {};
     }
     for (const host::PanelInfo& d : *displays) {
@@ -86,7 +87,7 @@ Status release(const ProjectOptions& options) {
     const Result<bool> released = host::release_display(*display);
     if (!released) return tl::unexpected(released.error());
     if (options.output.json && options.pattern.empty() && options.image.empty())
-        fmt::print("{}\n", nlohmann::json{{"released", *released}}.dump(1));
+        print_json(nlohmann::json{{"released", *released}});
     else if (!options.output.quiet && !options.output.json)
         fmt::print("{}\n", *released ? "released" : "it was not held");
     return {};
@@ -99,11 +100,10 @@ Status calibrate_size(const ProjectOptions& options, const Setting& setting) {
     const auto size = host::pixel_size(p.width_px, p.height_px, options.measured_mm[0], options.measured_mm[1]);
     if (!size) return tl::unexpected(size.error());
     if (options.output.json) {
-        fmt::print("{}\n", nlohmann::json{{"x_um", size->x_um},
-                                          {"y_um", size->y_um},
-                                          {"pixel_um", size->pixel_um},
-                                          {"off_percent", size->off_percent}}
-                               .dump(1));
+        print_json(nlohmann::json{{"x_um", size->x_um},
+                                  {"y_um", size->y_um},
+                                  {"pixel_um", size->pixel_um},
+                                  {"off_percent", size->off_percent}});
         return {};
     }
     fmt::print("x {:.3f} um, y {:.3f} um per pixel: they differ by {:.2f} %\n", size->x_um, size->y_um,
@@ -130,7 +130,7 @@ Status make_mask(const ProjectOptions& options, const Setting& setting) {
     const host::LightMask mask = host::light_mask(*table, p.width_px, p.height_px, options.gamma);
     if (Status status = write_file(options.save, job::encode_png(mask.mask)); !status) return status;
     if (options.output.json) {
-        fmt::print("{}\n", nlohmann::json{{"mask", options.save}, {"least_share", mask.least}}.dump(1));
+        print_json(nlohmann::json{{"mask", options.save}, {"least_share", mask.least}});
         return {};
     }
     fmt::print("{}: {} x {} px; every pixel gets {:.1f} % of the light at the brightest point\n", options.save,
@@ -188,10 +188,8 @@ Status light(const ProjectOptions& options, Setting setting) {
     }
     const auto& measured = projector->last_light();
     if (options.output.json && measured)
-        fmt::print("{}\n", nlohmann::json{{"on_s", measured->on_s},
-                                          {"frames", measured->frames},
-                                          {"longest_frame_s", measured->longest_frame_s}}
-                               .dump(1));
+        print_json(nlohmann::json{
+            {"on_s", measured->on_s}, {"frames", measured->frames}, {"longest_frame_s", measured->longest_frame_s}});
     else if (!options.output.quiet && measured)
         fmt::print("on for {:.4f} s, {} frames, the longest {:.1f} ms\n", measured->on_s, measured->frames,
                    1000 * measured->longest_frame_s);

@@ -14,6 +14,7 @@
 #include "inputs.hpp"
 #include "output_option.hpp"
 #include "pliant/reduced.hpp"
+#include "printed.hpp"
 #include "watched.hpp"
 
 namespace pliant::app {
@@ -103,7 +104,7 @@ void print_reduction_json(const ReduceOptions& options, const ReducedModel& redu
                     {"inputs", std::move(inputs)},
                     {"notes", reduced.notes()},
                     {"checks", std::move(rows)}};
-    fmt::print("{}\n", json.dump(2));
+    print_json(json, 2);
 }
 
 Result<int> reduce(const ReduceOptions& options) {

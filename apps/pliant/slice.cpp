@@ -13,6 +13,7 @@
 #include "interrupt.hpp"
 #include "overcure.hpp"
 #include "presentation/print_report/job_picture.hpp"
+#include "printed.hpp"
 #include "printing/job/image_volumes.hpp"
 #include "printing/job/png.hpp"
 #include "printing/operate/job_file.hpp"
@@ -92,7 +93,7 @@ void print_job_json(const SliceOptions& options, const job::Manifest& manifest, 
                                  {"notes", notes},
                                  {"warnings", manifest.warnings},
                                  {"plan", nlohmann::json::parse(plan::plan_json(plan))}};
-    fmt::print("{}\n", json.dump(1));
+    print_json(json);
 }
 
 Status draw_picture(const SliceOptions& options) {

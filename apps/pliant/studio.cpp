@@ -19,6 +19,7 @@
 #include "presentation/studio/access.hpp"
 #include "presentation/studio/server.hpp"
 #include "presentation/studio/token_file.hpp"
+#include "printed.hpp"
 
 namespace pliant::app {
 namespace {
@@ -62,7 +63,7 @@ std::string host_of(const std::string& address) {
 /// it.
 void tell(const StudioOptions& options, const std::string& address) {
     if (options.output.json) {
-        fmt::print("{}\n", nlohmann::json{{"address", address}}.dump());
+        print_json(nlohmann::json{{"address", address}}, -1);
     } else if (options.output.quiet) {
         fmt::print("{}\n", address);
     } else {

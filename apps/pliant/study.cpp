@@ -28,6 +28,7 @@
 #include "loop/study/study_file.hpp"
 #include "output_option.hpp"
 #include "presentation/study_plots/response_plots.hpp"
+#include "printed.hpp"
 #include "program.hpp"
 #include "study_rows.hpp"
 
@@ -211,10 +212,9 @@ tl::unexpected<Error> stopped(const study::Plan& plan, const fs::path& folder, c
 /// For unknown schedulers: prints what they have to run.
 int tell_plan(const StudyOptions& options, const study::Plan& plan, const fs::path& folder) {
     if (options.output.json)
-        fmt::print(
-            "{}\n",
-            nlohmann::json{{"folder", folder.string()}, {"rows", plan.rows.size()}, {"chunks", plan.chunk_count()}}
-                .dump());
+        print_json(
+            nlohmann::json{{"folder", folder.string()}, {"rows", plan.rows.size()}, {"chunks", plan.chunk_count()}},
+            -1);
     else if (!options.output.quiet)
         fmt::print("{} in {}, each of them a task: pliant study {} --chunk N, N from 0 to {}\n",
                    counted(plan.rows.size(), "row"), counted(plan.chunk_count(), "chunk"), folder.string(),

@@ -14,6 +14,7 @@
 #include "command.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
+#include "printed.hpp"
 #include "printing/job/png.hpp"
 #include "printing/machine/printer.hpp"
 #include "printing/operate/clock_file.hpp"
@@ -112,7 +113,7 @@ void print_end_json(twin::Twin& twin) {
                                  {"resets", log.resets},           {"layers", twin.cured().layers().size()},
                                  {"interlocks", log.violations},   {"faults", log.mishaps},
                                  {"light", twin.cured().faults()}, {"missed_faults", twin.missed_faults()}};
-    fmt::print("{}\n", json.dump(1));
+    print_json(json);
 }
 
 Status run_twin(const TwinOptions& options) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "printed.hpp"
 
 namespace pliant::app {
 namespace {
@@ -36,7 +37,7 @@ Status tell_version(const Output& output) {
     if (output.json) {
         nlohmann::ordered_json json = {{"pliant", PLIANT_VERSION}, {"compiler", PLIANT_COMPILER}};
         for (const auto& [name, version] : used) json["libraries"][name] = version;
-        fmt::print("{}\n", json.dump(1));
+        print_json(json);
     } else if (output.quiet) {
         fmt::print("{}\n", PLIANT_VERSION);
     } else {

@@ -167,10 +167,16 @@ export function restValue(kind: string): number {
   return kind.endsWith('ratio') ? 1 : 0;
 }
 
+/// The nearest time of the program, which may have become shorter.
+export function inProgram(time: number): number {
+  return Math.min(Math.max(time, 0), scene.peek()?.head.program.duration ?? time);
+}
+
 export function driveAll() {
-  if (following.value) return sendInput({ type: 'follow', time: wantedTime.value });
+  const time = inProgram(wantedTime.value);
+  if (following.value) return sendInput({ type: 'follow', time });
   const actuators = Object.entries(wanted.value).map(([name, w]) => ({ name, kind: w.kind, value: w.value }));
-  sendInput({ type: 'drive', time: wantedTime.value, actuators });
+  sendInput({ type: 'drive', time, actuators });
 }
 
 /// Returns to rest and to the program; pending inputs will not be answered.
@@ -220,7 +226,11 @@ function receiveText(text: string) {
   }
   if (event.type === 'job' && event.revision === 0) job.value = null;
   else if (event.type === 'job') loadJob().catch((e: Error) => say(e.message));
-  if (event.type === 'error') say(String(event.error));
+  if (event.type === 'error') {
+    sentAt.delete(Number(event.tag)); // a refused input is not answered by a frame
+    unanswered.value = sentAt.size > 0;
+    say(String(event.error));
+  }
   if (event.type === 'news') say(String(event.text));
   for (const listener of listeners) listener(event);
 }

@@ -17,6 +17,7 @@ export interface Actuator {
   kind: string;
   target: number;
   rest: number;
+  elements?: boolean; // made of elements of the mesh
 }
 
 /// Element order: linear, quadratic, or linear during interaction and quadratic as soon as the input rests.

@@ -154,11 +154,19 @@ private:
     mu::Parser parser_;
 };
 
+/// UTF-16 and UTF-32, as some editors save them: by their mark, or by the zeros of plain letters.
+bool is_wide_text(std::string_view text) {
+    return text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") ||
+           text.substr(0, 4).find('\0') != std::string_view::npos;
+}
+
 }  // namespace
 
 Result<Document> parse(std::string_view text, const std::filesystem::path& file) {
     if (text.size() > max_text_bytes)
         return input_error("{}: larger than 16 MB, which is not a robot or printer file", file.string());
+    if (is_wide_text(text))
+        return input_error("{}: is not UTF-8 text but looks like UTF-16 or UTF-32; save it as UTF-8", file.string());
     if (nested_too_deep(text)) return input_error("{}: keys or brackets are nested too deep", file.string());
     try {
         const toml::table table = toml::parse(text, file.string());

@@ -251,3 +251,13 @@ TEST_CASE("an error carries file, line and key as data, and shows them in its me
     CHECK(broken.error().problems.front().file == "broken.toml");
     CHECK(broken.error().problems.front().line == 2);
 }
+
+TEST_CASE("a file that is not UTF-8 but UTF-16 or UTF-32 is told from one that is damaged") {
+    using namespace std::string_literals;
+    for (const std::string& text : {"\xff\xfe"s + "a\0=\0"s, "\xfe\xff\0a"s, "a\0=\0"s, "\0\0\xfe\xff"s}) {
+        const auto document = config::parse(text, "x.toml");
+        REQUIRE_FALSE(document);
+        CHECK(document.error().message ==
+              "x.toml: is not UTF-8 text but looks like UTF-16 or UTF-32; save it as UTF-8");
+    }
+}

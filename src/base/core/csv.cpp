@@ -12,6 +12,7 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t most_bytes = std::size_t{64} << 20;
+constexpr double largest_number = 1e30;  // nothing measured comes near it, and its squares are numbers
 
 /// Takes one cell and its separator: in quotes a separator is an ordinary character, and "" is a quote (RFC 4180).
 std::string take_cell(std::string_view& line, char separator, bool& more) {
@@ -72,7 +73,10 @@ Result<double> CsvTable::number(const CsvRow& row, std::size_t column, std::stri
     if (first != last && *first == '+') ++first;
     double value = 0;
     const auto [end, code] = std::from_chars(first, last, value);
-    if (code == std::errc() && end == last && std::isfinite(value)) return value;
+    if (code == std::errc() && end == last && std::isfinite(value)) {
+        if (std::fabs(value) <= largest_number) return value;
+        return input_error_at(file, row.line, "{} \"{}\" is too large", what, text->substr(0, 40));
+    }
     if (text->find(',') != std::string_view::npos)
         return input_error_at(file, row.line, "{} \"{}\" has a comma; write numbers with a decimal point", what,
                               text->substr(0, 40));

@@ -33,6 +33,7 @@ Result<std::string> read_file(const fs::path& path, std::uintmax_t limit_bytes) 
     if (path.empty()) return no_name();
     std::error_code code;
     const fs::file_status status = fs::status(path, code);
+    if (path.empty()) return input_error("the name of a file is empty");
     if (!fs::exists(status)) return input_error_at(path.string(), 0, "no such file");
     if (fs::is_directory(status)) return input_error_at(path.string(), 0, "is a folder, a file is needed");
     if (!fs::is_regular_file(status)) return input_error_at(path.string(), 0, "is not a regular file");
@@ -50,14 +51,38 @@ Result<std::string> read_file(const fs::path& path, std::uintmax_t limit_bytes) 
 
 namespace {
 
-/// A device or a pipe; or a name in /dev, /dev/fd or /proc, which is a way to an open file (/dev/stdout). What lies
-/// deeper in /dev, as in /dev/shm, is a file as any other.
-bool is_special(const fs::path& path, fs::file_type type) {
-    if (type != fs::file_type::not_found && type != fs::file_type::regular && type != fs::file_type::directory)
-        return true;
+/// A name in /dev, /dev/fd or /proc, which is a way to an open file (/dev/stdout). What lies deeper in /dev, as in
+/// /dev/shm, is a file as any other.
+bool is_way_to_open_file(const fs::path& path) {
     std::error_code code;
     const fs::path absolute = fs::absolute(path, code).lexically_normal(), folder = absolute.parent_path();
     return folder == "/dev" || folder == "/dev/fd" || absolute.string().starts_with("/proc/");
+}
+
+/// Follows the links of `path` by hand: what /dev/stdout leads to may have no name of its own.
+bool leads_to_open_file(fs::path path) {
+    constexpr int most_links = 40;  // as the system's own limit
+    std::error_code code;
+    for (int k = 0; k < most_links; ++k) {
+        if (is_way_to_open_file(path)) return true;
+        if (!fs::is_symlink(fs::symlink_status(path, code))) return false;
+        path = path.parent_path() / fs::read_symlink(path, code);
+    }
+    return false;
+}
+
+/// A device, a pipe, a socket or a way to an open file: what must not be replaced.
+bool is_special(const fs::path& path, fs::file_type type) {
+    if (type != fs::file_type::not_found && type != fs::file_type::regular && type != fs::file_type::directory)
+        return true;
+    return is_way_to_open_file(path);
+}
+
+/// What is special and can be written to. A pipe or socket with a name of its own cannot: opening it would wait until
+/// somebody reads, perhaps for ever.
+bool is_written_directly(const fs::path& path, fs::file_type type) {
+    if (type == fs::file_type::directory || !is_special(path, type)) return false;
+    return type == fs::file_type::character || type == fs::file_type::block || leads_to_open_file(path);
 }
 
 /// `shown`: name for the error.
@@ -85,6 +110,16 @@ Result<fs::path> replaceable_file(const fs::path& path) {
 namespace {
 
 constexpr const char* aside_ending = ".partial";
+
+/// An error for a path that begins at the current folder, if that has been deleted.
+Status check_current_folder(const fs::path& path) {
+    std::error_code code;
+    if (path.is_absolute()) return {};
+    if (fs::current_path(code).empty() || code)
+        return input_error("{}: the current folder no longer exists; change to another, or name a path from /",
+                           path.string());
+    return {};
+}
 
 /// An error if a file or folder `made` in this folder cannot be: it is no folder, is read-only, or the name is too
 /// long.
@@ -114,6 +149,11 @@ bool is_there(const FileHandle& open, const fs::path& path) {
            one.st_dev == other.st_dev;
 }
 
+bool is_regular(const FileHandle& open) {
+    struct stat what {};
+    return ::fstat(open.number(), &what) == 0 && S_ISREG(what.st_mode);
+}
+
 FileHandle opened(const fs::path& path, AsideKind kind) {
     constexpr mode_t usual = 0666;
     if (kind == AsideKind::file) return FileHandle(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, usual));
@@ -132,7 +172,8 @@ Status check_file_place(const fs::path& path) {
     if (path.empty()) return no_name();
     std::error_code code;
     const fs::file_type type = fs::status(path, code).type();
-    if (type != fs::file_type::directory && is_special(path, type)) return {};
+    if (is_written_directly(path, type)) return {};
+    if (Status current = check_current_folder(path); !current) return current;
     const Result<fs::path> target = replaceable_file(path);
     if (!target) return tl::unexpected(target.error());
     const fs::path place = absolute_place(*target);
@@ -144,6 +185,7 @@ Status check_file_place(const fs::path& path) {
 Status check_folder_place(const fs::path& path, std::string_view marker) {
     if (path.empty()) return input_error("the name of a folder is empty");
     std::error_code code;
+    if (Status current = check_current_folder(path); !current) return current;
     const fs::path place = absolute_place(path);
     if (fs::exists(place, code) && !fs::is_directory(place, code))
         return input_error_at(path.string(), 0, "is a file, a folder is needed");
@@ -151,6 +193,9 @@ Status check_folder_place(const fs::path& path, std::string_view marker) {
         return input_error_at(path.string(), 0, "holds other files (no {}); name an empty or new folder", marker);
     fs::path made = place;
     while (made.has_relative_path() && !fs::exists(made.parent_path(), code)) made = made.parent_path();
+    if (fs::is_symlink(fs::symlink_status(made, code)) && !fs::exists(made, code))
+        return input_error("{}: {} is a link to {}, which does not exist; remove the link, or make that folder",
+                           path.string(), made.string(), fs::read_symlink(made, code).string());
     if (Status last = place == made ? Status{} : check_parent(made.parent_path(), place); !last) return last;
     return check_parent(made.parent_path(), made);
 }
@@ -168,6 +213,8 @@ Result<FileHandle> open_aside(const fs::path& aside, AsideKind kind, const fs::p
         if (kind == AsideKind::folder) fs::create_directories(aside, code);
         if (code) return refuse(code.message().c_str());
         FileHandle open = opened(aside, kind);
+        if (open.is_open() && kind == AsideKind::file && !is_regular(open))
+            return refuse((aside.filename().string() + " is in the way, which is not a regular file").c_str());
         // A folder may have been renamed just now, by the program that had it.
         if (!open.is_open() && (kind == AsideKind::file || errno != ENOENT)) return refuse(std::strerror(errno));
         const bool is_free = open.is_open() && ::flock(open.number(), LOCK_EX | LOCK_NB) == 0;
@@ -184,7 +231,7 @@ Result<FileHandle> open_aside(const fs::path& aside, AsideKind kind, const fs::p
 Status write_file(const fs::path& path, std::string_view bytes) {
     if (path.empty()) return no_name();
     std::error_code code;
-    if (is_special(path, fs::status(path, code).type())) return write_through(path, bytes, path);
+    if (is_written_directly(path, fs::status(path, code).type())) return write_through(path, bytes, path);
     const Result<fs::path> target = replaceable_file(path);
     if (!target) return tl::unexpected(target.error());
     const fs::path aside = aside_of(*target);

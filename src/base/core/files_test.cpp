@@ -24,6 +24,7 @@ TEST_CASE("a file is written whole and read back") {
     CHECK(read_file(file, 3).error().message.find("more than") != std::string::npos);
     CHECK(read_file(scratch.path()).error().message.find("folder") != std::string::npos);
     CHECK(read_file(scratch / "none").error().message.find("no such file") != std::string::npos);
+    CHECK(read_file("").error().message == "the name of a file is empty");
     CHECK_FALSE(write_file(scratch / "no" / "folder", bytes));
 }
 
@@ -71,7 +72,27 @@ TEST_CASE("it is told before the work where nothing can be written") {
     CHECK(holds(check_folder_place(scratch / "file" / "new", "summary.json").error().message, "is a file"));
     CHECK(holds(check_folder_place(scratch / "mine", "summary.json").error().message, "holds other files"));
     CHECK(check_folder_place(scratch / "mine", "notes"));
+    fs::create_symlink("nowhere", scratch / "dangling");
+    for (const fs::path& to : {scratch / "dangling", scratch / "dangling" / "deeper"})
+        CHECK(holds(check_folder_place(to, "notes").error().message, "is a link to nowhere, which does not exist"));
+    fs::create_symlink("mine", scratch / "link");
+    CHECK(check_folder_place(scratch / "link", "notes"));
     CHECK(holds(check_folder_place(scratch / "a" / std::string(300, 'x'), "notes").error().message, "too long"));
+}
+
+TEST_CASE("a current folder that was deleted is named") {
+    const test::Folder scratch("files");
+    const fs::path before = fs::current_path();
+    fs::create_directory(scratch / "gone");
+    fs::current_path(scratch / "gone");
+    fs::remove(scratch / "gone");
+    const Status file = check_file_place("x.txt"), folder = check_folder_place("x", "notes");
+    const Status written = write_file("x.txt", "1"), elsewhere = check_file_place(scratch / "x.txt");
+    fs::current_path(before);
+    CHECK(holds(file.error().message, "x.txt: the current folder no longer exists"));
+    CHECK(holds(folder.error().message, "x: the current folder no longer exists"));
+    CHECK_FALSE(written);
+    CHECK(elsewhere);
 }
 
 TEST_CASE("a symbolic link keeps pointing to the file that is written; devices and pipes are not replaced") {
@@ -87,14 +108,29 @@ TEST_CASE("a symbolic link keeps pointing to the file that is written; devices a
     const fs::path pipe = scratch / "pipe";
     REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
     CHECK(holds(replaceable_file(pipe).error().message, "is not a regular file"));
-    const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
-    REQUIRE(reader >= 0);
-    CHECK(write_file(pipe, "said"));
-    char heard[8] = {};
-    CHECK(::read(reader, heard, sizeof heard) == 4);
-    ::close(reader);
-    CHECK(std::string(heard) == "said");
+    // Nobody reads: opening it would wait for ever.
+    CHECK(holds(write_file(pipe, "said").error().message, "is not a regular file"));
+    CHECK(holds(check_file_place(pipe).error().message, "is not a regular file"));
+    fs::create_symlink("pipe", scratch / "to_pipe");
+    CHECK(holds(check_file_place(scratch / "to_pipe").error().message, "is not a regular file"));
+    CHECK(holds(write_file(scratch / "to_pipe", "said").error().message, "is not a regular file"));
     CHECK(fs::is_fifo(pipe));
+    REQUIRE(::mkfifo((scratch / "left.txt.partial").c_str(), 0600) == 0);
+    CHECK(holds(write_file(scratch / "left.txt", "said").error().message, "left.txt.partial is in the way"));
+
+    int ends[2] = {-1, -1};  // a pipe that is open, as /dev/stdout may be
+    REQUIRE(::pipe(ends) == 0);
+    const std::string open_pipe = "/dev/fd/" + std::to_string(ends[1]);
+    fs::create_symlink(open_pipe, scratch / "to_open_pipe");
+    CHECK(check_file_place(open_pipe));
+    CHECK(write_file(open_pipe, "said"));
+    CHECK(check_file_place(scratch / "to_open_pipe"));
+    CHECK(write_file(scratch / "to_open_pipe", "more"));
+    char heard[16] = {};
+    CHECK(::read(ends[0], heard, sizeof heard) == 8);
+    ::close(ends[0]);
+    ::close(ends[1]);
+    CHECK(std::string(heard) == "saidmore");
 
     CHECK(holds(replaceable_file("/dev/null").error().message, "is not a regular file"));
     CHECK(holds(replaceable_file(scratch.path()).error().message, "is a folder"));

@@ -4,13 +4,17 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -28,12 +32,18 @@ using Clock = std::chrono::steady_clock;
 constexpr int look_every_ms = 50;  // interval of checks for cancellation
 constexpr double start_s = 60;     // allows for loading Open CASCADE from a slow disk
 
-double environment_number(const char* name, double otherwise) {
+constexpr double longest_s = 1e9, most_gigabytes = 1e9;  // more is as good as no limit
+constexpr const char* seconds_name = "PLIANT_MESH_SECONDS";
+constexpr const char* gigabytes_name = "PLIANT_MESH_GIGABYTES";
+
+/// At most `most`. Error: the variable is no positive number.
+Result<double> environment_number(const char* name, double otherwise, double most) {
     const char* const text = std::getenv(name);
     if (text == nullptr) return otherwise;
     double value = 0;
     const auto read = std::from_chars(text, text + std::strlen(text), value);
-    return read.ec == std::errc{} && *read.ptr == '\0' && value > 0 ? value : otherwise;
+    if (read.ec == std::errc{} && *read.ptr == '\0' && std::isfinite(value) && value > 0) return std::min(value, most);
+    return input_error("{} is \"{}\"; it must be a number over 0", name, text);
 }
 
 /// A process of pliant-mesh, idle or working on a request.
@@ -137,34 +147,50 @@ RememberedAnswers& remembered_answers() {
     return answers;
 }
 
+constexpr const char* other_program =
+    "pliant-mesh is of another version than this program, or what PLIANT_MESH names is another program; install both "
+    "together";
+
+/// How much of a message, and how long, is waited for.
+struct Patience {
+    Clock::time_point until;
+    std::string late;  ///< the error after that
+    std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
+};
+
+Clock::time_point in_seconds(double s) {
+    return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+}
+
 /// Waits for the next message, and checks for cancellation and timeout meanwhile.
-Result<Message> next_message(Worker& worker, Clock::time_point until, const MesherLimits& limits,
-                             const std::string& crash, const Progress& progress) {
+Result<Message> next_message(Worker& worker, const Patience& patience, const std::string& crash,
+                             const Progress& progress) {
     Message message;
     for (;;) {
         if (progress.cancelled()) return cancelled();
-        const Received received = worker.pipe().receive(message, look_every_ms);
+        const Received received = worker.pipe().receive(message, look_every_ms, patience.most_bytes);
+        if (received == Received::too_large) return failure("{}", other_program);
         if (received == Received::message) return message;
         if (received == Received::closed) return failure("{} ({})", crash, end_text(worker.process().let_end()));
-        if (Clock::now() > until)
-            return failure(
-                "meshing took longer than {:g} s and was ended; take a larger mesh size, or more time "
-                "(PLIANT_MESH_SECONDS)",
-                limits.seconds);
+        if (Clock::now() > patience.until) return failure("{}", patience.late);
     }
 }
 
+std::string why_not_started() {
+    const char* const gigabytes = std::getenv(gigabytes_name);
+    if (gigabytes == nullptr) return "pliant-mesh does not start; run it by hand with --version to see why";
+    return fmt::format("pliant-mesh does not start; {} is {}, and it needs about 0.3 to start", gigabytes_name,
+                       gigabytes);
+}
+
 /// A new process identifies itself first.
-Status greet(Worker& worker) {
-    Progress silent;
-    const MesherLimits limits{start_s, 0};
-    const auto until =
-        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(start_s));
-    const Result<Message> hello = next_message(
-        worker, until, limits, "pliant-mesh does not start; run it by hand with --version to see why", silent);
+Status greet(Worker& worker, const Progress& progress) {
+    constexpr std::uint64_t most_bytes = 1000;
+    const Patience patience{in_seconds(start_s), fmt::format("pliant-mesh did not start within {} s", start_s),
+                            most_bytes};
+    const Result<Message> hello = next_message(worker, patience, why_not_started(), progress);
     if (!hello) return tl::unexpected(hello.error());
-    if (hello->kind != MessageKind::greeting || hello->bytes != mesher_greeting)
-        return failure("pliant-mesh is of another version than this program; install both together");
+    if (hello->kind != MessageKind::greeting || hello->bytes != mesher_greeting) return failure("{}", other_program);
     return {};
 }
 
@@ -244,12 +270,13 @@ std::filesystem::path mesher_on(std::string_view search_path) {
     return {};
 }
 
-MesherLimits mesher_limits() {
-    MesherLimits limits;
-    limits.seconds = environment_number("PLIANT_MESH_SECONDS", limits.seconds);
+Result<MesherLimits> mesher_limits() {
+    const Result<double> seconds = environment_number(seconds_name, MesherLimits{}.seconds, longest_s);
+    if (!seconds) return tl::unexpected(seconds.error());
     const double all = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
-    limits.gigabytes = environment_number("PLIANT_MESH_GIGABYTES", all / 1e9);
-    return limits;
+    const Result<double> gigabytes = environment_number(gigabytes_name, all / 1e9, most_gigabytes);
+    if (!gigabytes) return tl::unexpected(gigabytes.error());
+    return MesherLimits{*seconds, *gigabytes};
 }
 
 Result<std::filesystem::path> mesher_program() {
@@ -273,19 +300,23 @@ Result<std::filesystem::path> mesher_program() {
 Result<std::string> ask_mesher(MessageKind kind, const std::string& request, const std::string& crash,
                                Progress& progress) {
     if (auto known = remembered_answers().find(kind, request)) return std::move(*known);
-    const MesherLimits limits = mesher_limits();
+    const Result<MesherLimits> found = mesher_limits();
+    if (!found) return tl::unexpected(found.error());
+    const MesherLimits limits = *found;
     std::unique_ptr<Worker> worker = idle_workers().take();
     if (worker == nullptr || !worker->pipe().send(kind, request)) {  // an idle process may have been killed
         Result<std::unique_ptr<Worker>> fresh = start_worker(limits);
         if (!fresh) return tl::unexpected(fresh.error());
         worker = std::move(*fresh);
-        if (Status status = greet(*worker); !status) return tl::unexpected(status.error());
+        if (Status status = greet(*worker, progress); !status) return tl::unexpected(status.error());
         (void)worker->pipe().send(kind, request);  // if it dies now, the next message will tell
     }
-    const auto until =
-        Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.seconds));
+    const Patience patience{
+        in_seconds(limits.seconds),
+        fmt::format("meshing took longer than {:g} s and was ended; take a larger mesh size, or more time ({})",
+                    limits.seconds, seconds_name)};
     for (;;) {
-        Result<Message> message = next_message(*worker, until, limits, crash, progress);
+        Result<Message> message = next_message(*worker, patience, crash, progress);
         if (!message) return tl::unexpected(message.error());
         if (message->kind == MessageKind::progress) {
             pass_on(message->bytes, progress);

@@ -19,7 +19,8 @@ struct MesherLimits {
     double seconds = 3600;
     double gigabytes = 0;  ///< of memory; 0: all of the computer's
 };
-[[nodiscard]] MesherLimits mesher_limits();
+/// Errors: one of them is no positive number.
+[[nodiscard]] Result<MesherLimits> mesher_limits();
 
 /// Where pliant-mesh is: the path in PLIANT_MESH, else mesher_from() the folders of the library that contains this code
 /// and of the running program, else mesher_on() PATH. No path of where it was built is known.

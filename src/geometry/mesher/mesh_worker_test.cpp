@@ -134,6 +134,52 @@ TEST_CASE("time and memory limits are reported") {
 #endif
 }
 
+TEST_CASE("limits that are no positive numbers are refused, and huge ones are as good as none") {
+    kill_all();
+    Progress silent;
+    for (const char* name : {"PLIANT_MESH_SECONDS", "PLIANT_MESH_GIGABYTES"}) {
+        for (const char* wrong : {"abc", "-1", "0", "nan", "inf", "", "1 h"}) {
+            const Variable set(name, wrong);
+            const Result<TetMesh> mesh = mesh_cube(5, silent);
+            REQUIRE_FALSE(mesh);
+            CHECK(mesh.error().cause == Cause::input);
+            CHECK(mesh.error().message == std::string(name) + " is \"" + wrong + "\"; it must be a number over 0");
+        }
+        const Variable huge(name, "1e300");
+        const Result<TetMesh> mesh = mesh_cube(5, silent);
+        CHECK_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+        kill_all();
+    }
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    const Variable little("PLIANT_MESH_GIGABYTES", "0.0001");
+    const Result<TetMesh> mesh = mesh_cube(5, silent);
+    REQUIRE_FALSE(mesh);
+    CHECK(mesh.error().message.find("pliant-mesh does not start; PLIANT_MESH_GIGABYTES is 0.0001") == 0);
+#endif
+}
+
+TEST_CASE("a program that talks without end, or says nothing, is not taken for the mesher") {
+    kill_all();
+    const pliant::test::Folder folder("talker");
+    const std::filesystem::path talker = folder / "talker";
+    REQUIRE(write_file(talker, "#!/bin/sh\nexec yes >&0\n"));  // its input leads back to who started it
+    std::filesystem::permissions(talker, std::filesystem::perms::owner_all);
+    const auto begin = std::chrono::steady_clock::now();
+    {
+        Progress silent;
+        const Variable other("PLIANT_MESH", talker.c_str());
+        const Result<TetMesh> mesh = mesh_cube(5, silent);
+        REQUIRE_FALSE(mesh);
+        CHECK(mesh.error().message.find("what PLIANT_MESH names is another program") != std::string::npos);
+    }
+    CancelledAfter300ms impatient;
+    const Variable other("PLIANT_MESH", "/usr/bin/yes");
+    const Result<TetMesh> mesh = mesh_cube(5, impatient);
+    REQUIRE_FALSE(mesh);
+    CHECK(mesh.error().cause == Cause::cancelled);
+    CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(10));
+}
+
 TEST_CASE("a missing or invalid mesher is reported by name") {
     kill_all();
     Progress silent;

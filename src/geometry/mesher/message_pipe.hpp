@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -30,7 +32,7 @@ struct Message {
 };
 
 /// The outcome of receive().
-enum class Received { message, closed, waiting };
+enum class Received { message, closed, waiting, too_large };
 
 /// One end of a connected socket pair, closed by the destructor. Movable.
 class MessagePipe {
@@ -40,11 +42,15 @@ public:
     [[nodiscard]] int file() const { return file_.number(); }
     /// False if the other end is closed.
     [[nodiscard]] bool send(MessageKind kind, std::string_view bytes) const;
-    /// Waits this long at most; forever if negative. A partly received message is kept for the next call; memory
-    /// follows the bytes received, not the length announced.
-    [[nodiscard]] Received receive(Message& message, int wait_ms);
+    /// Waits this long at most, also while bytes come; forever if negative. A partly received message is kept for the
+    /// next call; memory follows the bytes received, not the length announced. `too_large`: a message of over
+    /// `most_bytes` is announced.
+    [[nodiscard]] Received receive(Message& message, int wait_ms,
+                                   std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max());
 
 private:
+    /// Of the message that comes; empty: not known yet.
+    [[nodiscard]] std::optional<std::uint64_t> announced_size() const;
     [[nodiscard]] bool take_message(Message& message);
 
     FileHandle file_;

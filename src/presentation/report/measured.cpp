@@ -47,6 +47,9 @@ Result<std::vector<Columns>> read_header(const CsvTable& table, const std::vecto
                                       name, known_names(markers));
             auto of = std::find_if(found.begin(), found.end(), [&](const Columns& f) { return f.marker == marker; });
             if (of == found.end()) of = found.insert(found.end(), Columns{marker, {}});
+            if (of->at[axis])
+                return input_error("{}: there are two columns \"{}\"", table.place(table.header_line),
+                                   table.columns[c]);
             of->at[axis] = c;
         }
     }
@@ -54,6 +57,14 @@ Result<std::vector<Columns>> read_header(const CsvTable& table, const std::vecto
         return input_error_at(table.file, table.header_line,
                               "no column is named as in \"tip_x_mm\"; markers of the robot: {}", known_names(markers));
     return found;
+}
+
+Status check_rows(const CsvTable& table) {
+    for (const CsvRow& row : table.rows)
+        if (row.cells.size() > table.columns.size())
+            return input_error("{}: {} columns, the first line names {}", table.place(row.line), row.cells.size(),
+                               table.columns.size());
+    return {};
 }
 
 /// The point in a row; empty if one of its cells is.
@@ -65,7 +76,7 @@ Result<std::optional<Vec3>> read_point(const CsvTable& table, const CsvRow& row,
         const auto cell = table.cell(row, *columns.at[axis]);
         if (!cell) return tl::unexpected(cell.error());
         if (cell->empty()) return std::nullopt;
-        const auto value_mm = table.number(row, *columns.at[axis], marker.name);
+        const auto value_mm = table.number(row, *columns.at[axis], table.columns[*columns.at[axis]]);
         if (!value_mm) return tl::unexpected(value_mm.error());
         point[axis] = 1e-3 * *value_mm;
     }
@@ -92,6 +103,7 @@ Result<std::vector<MeasuredPath>> parse_measured(std::string_view text, const st
     if (!table) return tl::unexpected(table.error());
     const auto columns = read_header(*table, rest.markers);
     if (!columns) return tl::unexpected(columns.error());
+    if (Status rows = check_rows(*table); !rows) return tl::unexpected(rows.error());
     std::vector<MeasuredPath> paths;
     for (const Columns& of : *columns) {
         const sim::MarkerState& marker = rest.markers[of.marker];

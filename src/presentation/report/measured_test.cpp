@@ -90,7 +90,11 @@ TEST_CASE("errors in a measured file name file and line") {
     check_problem("x,y\n1,2\n",
                   "m.csv:1: no column is named as in \"tip_x_mm\"; markers of the robot: \"tip\" and \"middle\"");
     check_problem("top_x_mm\n1\n", "m.csv:1: \"top\" is not a marker of the robot; it has \"tip\" and \"middle\"");
-    check_problem("tip_x_mm\n1\nabc\n", "m.csv:3: tip \"abc\" is not a number");
+    check_problem("tip_x_mm\n1\nabc\n", "m.csv:3: tip_x_mm \"abc\" is not a number");
+    check_problem("tip_x_mm\nnan\n", "m.csv:2: tip_x_mm \"nan\" is not a number");
+    check_problem("tip_x_mm\n1e308\n", "m.csv:2: tip_x_mm \"1e308\" is too large");
+    check_problem("tip_x_mm,tip_x_mm\n1,2\n", "m.csv:1: there are two columns \"tip_x_mm\"");
+    check_problem("tip_x_mm\n1\n1,2\n", "m.csv:3: 2 columns, the first line names 1");
     check_problem("tip_x_mm,tip_y_mm\n1\n", "m.csv:2: 1 columns");
     check_problem("tip_x_mm,middle_x_mm\n1,\n", "m.csv: middle has no point");
 }

@@ -127,6 +127,7 @@ Json actuators_json(const sim::Model& model) {
         actuators.push_back(cable_json(d.cables[c], cable_length_m(model, c)));
     for (const sim::Chamber& chamber : d.chambers)
         actuators.push_back(chamber_json(chamber, wall_volume(chamber.wall, model.mesh().points)));
+    for (const sim::Growth& growth : d.growths) actuators[static_cast<std::size_t>(growth.actuator)]["elements"] = true;
     return actuators;
 }
 

@@ -2,19 +2,13 @@
 
 #include <algorithm>
 
+#include "presentation/studio/actuator_drive.hpp"
 #include "presentation/studio/millimetres.hpp"
 
 namespace pliant::studio {
 namespace {
 
 constexpr double patch_share = 0.04;  // of the robot's size: radius of the pulled patch
-
-/// The thesis' elements support lengths and volumes only.
-bool is_by_elements(const sim::Model& model, std::size_t actuator) {
-    return std::ranges::any_of(model.description().growths, [&](const sim::Growth& growth) {
-        return growth.actuator == static_cast<int>(actuator);
-    });
-}
 
 }  // namespace
 
@@ -45,7 +39,7 @@ void LiveRobot::drive(double time, const std::vector<ActuatorValue>& actuators) 
     driven_.clear();
     target_.time = std::min(time, robot_->program.duration);
     for (const ActuatorValue& value : actuators) {
-        const std::optional<ActuatorDrive> wanted = drive_of(value);
+        const Result<ActuatorDrive> wanted = drive_of(*model_, live_.rest_measures(), value);
         if (!wanted) continue;
         target_.drives[wanted->actuator] = wanted->drive;
         driven_.push_back(value);
@@ -99,42 +93,7 @@ sim::LiveProgress LiveRobot::advance(const Progress& progress) {
 }
 
 bool LiveRobot::can_be(const ActuatorValue& value) const {
-    return drive_of(value).has_value();
-}
-
-std::optional<LiveRobot::ActuatorDrive> LiveRobot::drive_of(const ActuatorValue& value) const {
-    const sim::Description& d = model_->description();
-    const auto named = [&](const auto& actuator) { return actuator.name == value.name; };
-    if (const auto cable = std::ranges::find_if(d.cables, named); cable != d.cables.end())
-        return cable_drive(static_cast<std::size_t>(cable - d.cables.begin()), value);
-    if (const auto chamber = std::ranges::find_if(d.chambers, named); chamber != d.chambers.end())
-        return chamber_drive(static_cast<std::size_t>(chamber - d.chambers.begin()), value);
-    return std::nullopt;
-}
-
-std::optional<LiveRobot::ActuatorDrive> LiveRobot::cable_drive(std::size_t cable, const ActuatorValue& value) const {
-    using Kind = sim::Drive::Kind;
-    const double rest = live_.rest_measures()[cable], v = value.value;
-    const auto drive = [&](Kind kind, double target) { return ActuatorDrive{cable, {kind, target}}; };
-    if (value.kind == "length_ratio" && v > 0) return drive(Kind::measure, v * rest);
-    if (value.kind == "shortening_mm" && v / mm_per_m < rest) return drive(Kind::measure, rest - v / mm_per_m);
-    if (value.kind == "tension_N" && !is_by_elements(*model_, cable)) return drive(Kind::multiplier, std::max(v, 0.0));
-    return std::nullopt;
-}
-
-std::optional<LiveRobot::ActuatorDrive> LiveRobot::chamber_drive(std::size_t chamber,
-                                                                 const ActuatorValue& value) const {
-    using Kind = sim::Drive::Kind;
-    const sim::Description& d = model_->description();
-    const std::size_t a = d.cables.size() + chamber;
-    const double rest = live_.rest_measures()[a], v = value.value;
-    const bool by_elements = is_by_elements(*model_, a);
-    const auto drive = [&](Kind kind, double target) { return ActuatorDrive{a, {kind, target}}; };
-    if (value.kind == "volume_ratio" && v > 0) return drive(Kind::measure, v * rest);
-    if (value.kind == "volume_change_mm3" && rest + 1e-9 * v > 0) return drive(Kind::measure, rest + 1e-9 * v);
-    if (value.kind == "pressure_kPa" && !by_elements) return drive(Kind::multiplier, 0 - 1e3 * v);
-    if (value.kind == "gas_ratio" && v > 0 && !by_elements) return drive(Kind::gas, v * d.ambient_pressure_Pa * rest);
-    return std::nullopt;
+    return drive_of(*model_, live_.rest_measures(), value).has_value();
 }
 
 }  // namespace pliant::studio

@@ -56,15 +56,6 @@ public:
     [[nodiscard]] int pulled_vertex() const { return pulled_vertex_; }
 
 private:
-    struct ActuatorDrive {
-        std::size_t actuator = 0;
-        sim::Drive drive;
-    };
-    /// Empty for an impossible value.
-    [[nodiscard]] std::optional<ActuatorDrive> drive_of(const ActuatorValue& value) const;
-    [[nodiscard]] std::optional<ActuatorDrive> cable_drive(std::size_t cable, const ActuatorValue& value) const;
-    [[nodiscard]] std::optional<ActuatorDrive> chamber_drive(std::size_t chamber, const ActuatorValue& value) const;
-
     const robot::Robot* robot_;
     const sim::Model* model_;
     double size_m_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -21,8 +22,22 @@ Message read_hello(Keys& keys) {
     return hello;
 }
 
+/// Empty if there is none.
+std::optional<double> read_time(Keys& keys) {
+    const double time = keys.number("time", std::numeric_limits<double>::quiet_NaN());
+    if (std::isnan(time)) return std::nullopt;
+    if (time < 0) keys.wrong("time", "a number of at least 0");
+    return time;
+}
+
+Message read_follow(Keys& keys) {
+    const double tag = keys.number("tag", 0), time = keys.number("time");
+    if (time < 0) keys.wrong("time", "a number of at least 0");
+    return Follow{tag, time};
+}
+
 Message read_drive(Keys& keys) {
-    DriveMessage drive{keys.number("tag", 0), keys.number("time", -1), {}};
+    DriveMessage drive{keys.number("tag", 0), read_time(keys), {}};
     for (const Json& entry : keys.list("actuators")) {
         if (!entry.is_object()) {
             keys.wrong("actuators", "a list of objects");
@@ -71,7 +86,7 @@ Message read_steer(Keys& keys) {
 Message read(const std::string& type, Keys& keys) {
     if (type == "hello") return read_hello(keys);
     if (type == "drive") return read_drive(keys);
-    if (type == "follow") return Follow{keys.number("tag", 0), keys.number("time")};
+    if (type == "follow") return read_follow(keys);
     if (type == "play") return Play{keys.boolean("on")};
     if (type == "rest") return Rest{};
     if (type == "pull") return read_pull(keys);

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -33,8 +34,8 @@ struct ActuatorValue {
     double value = 0;
 };
 struct DriveMessage {
-    double tag = 0;    ///< of the input; returned with the frame that shows it
-    double time = -1;  ///< program time, for loads and supports; -1: unchanged
+    double tag = 0;              ///< of the input; returned with the frame that shows it
+    std::optional<double> time;  ///< program time, for loads and supports; empty: unchanged
     std::vector<ActuatorValue> actuators;
 };
 struct Follow {
@@ -67,7 +68,8 @@ struct Ping {};
 using Message = std::variant<Hello, DriveMessage, Follow, Play, Rest, PullMessage, LeadMessage, Release, FieldsMessage,
                              Steer, Ping>;
 
-/// Errors name the key. Numbers are finite and within +-1e9, lists at most 256 long, names at most 200 bytes.
+/// Errors name the key. Times are at least 0. Numbers are finite and within +-1e9, lists at most 256 long, names at
+/// most 200 bytes.
 [[nodiscard]] Result<Message> parse_message(std::string_view text);
 
 }  // namespace pliant::studio

@@ -17,6 +17,7 @@ TEST_CASE("every kind of message is read") {
     REQUIRE(d.actuators.size() == 1);
     CHECK(d.actuators[0].name == "flexor");
     CHECK(d.actuators[0].value == 0.8);
+    CHECK_FALSE(std::get<DriveMessage>(*parse_message(R"({"type":"drive","actuators":[]})")).time);
     const auto pull = parse_message(R"({"type":"pull","vertex":12,"to":[1,2.5,-3]})");
     REQUIRE(pull);
     CHECK(std::get<PullMessage>(*pull).vertex == 12);
@@ -42,6 +43,8 @@ TEST_CASE("every other message is refused, and the key is named") {
         {R"({"type":"hello","page":"abcdefgh<script>"})", "page"},
         {R"({"type":"follow","time":1e10})", "time"},
         {R"({"type":"follow","time":"1"})", "time"},
+        {R"({"type":"follow","time":-0.1})", "time"},
+        {R"({"type":"drive","time":-1,"actuators":[]})", "time"},
         {R"({"type":"drive","actuators":[{"name":"a","kind":"b"}]})", "actuators"},
         {R"({"type":"drive","actuators":[7]})", "actuators"},
         {R"({"type":"drive"})", "actuators"},

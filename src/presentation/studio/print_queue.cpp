@@ -89,7 +89,8 @@ Status PrintQueue::replace(std::vector<std::string> jobs) {
 }
 
 Status PrintQueue::write(const std::vector<std::string>& jobs) const {
-    return write_file(folder_.path() / file_name, Json{{"jobs", jobs}}.dump(1) + "\n");
+    return write_file(folder_.path() / file_name,
+                      Json{{"jobs", jobs}}.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void PrintQueue::begun(const std::string& job) {

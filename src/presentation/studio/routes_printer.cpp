@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
+#include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
 #include "presentation/studio/job_json.hpp"
 #include "presentation/studio/json_toml.hpp"
@@ -122,7 +123,7 @@ Response measured(Studio& studio, const Request& request) {
                        {"y_um", size->y_um},
                        {"off_percent", size->off_percent}});
     }
-    return json_response(answer.dump());
+    return json_response(dumped(answer));
 }
 
 }  // namespace

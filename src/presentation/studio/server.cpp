@@ -8,12 +8,15 @@
 #include <atomic>
 #include <chrono>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <stop_token>
 #include <thread>
 
 #include "presentation/studio/access.hpp"
+#include "presentation/studio/crowd.hpp"
 #include "presentation/studio/examples.hpp"
+#include "presentation/studio/frame_reader.hpp"
 #include "presentation/studio/hang_up.hpp"
 #include "presentation/studio/help_pages.hpp"
 
@@ -131,6 +134,7 @@ struct Server::State {
     std::filesystem::path help;  ///< empty: no help pages
     mg_context* context = nullptr;
     std::atomic<int> pages = 0;  ///< that watch
+    Crowd crowd{};
 
     [[nodiscard]] Access access(mg_connection* wire, const std::string& query_token, bool websocket) const {
         std::string_view bearer = header(wire, "Authorization");
@@ -210,15 +214,18 @@ namespace {
 /// State of one WebSocket: its connection in the hub and the thread that writes.
 struct Socket {
     std::shared_ptr<Connection> connection;
-    std::thread writer;
+    FrameReader reader{};
+    std::atomic<CloseCode> code = CloseCode::going_away;  ///< told when it closes
+    std::thread writer{};
 };
 
-void write_all(mg_connection* wire, const std::shared_ptr<Connection>& connection) {
-    while (const auto out = connection->next()) {
+void write_all(mg_connection* wire, const Socket& socket) {
+    while (const auto out = socket.connection->next()) {
         const int opcode = out->binary ? MG_WEBSOCKET_OPCODE_BINARY : MG_WEBSOCKET_OPCODE_TEXT;
         if (mg_websocket_write(wire, opcode, out->bytes->data(), out->bytes->size()) <= 0) return;
     }
-    mg_websocket_write(wire, MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE, "\x03\xe9", 2);  // 1001, going away
+    const std::string code = close_payload(socket.code);
+    mg_websocket_write(wire, MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE, code.data(), code.size());
 }
 
 /// The library looks up to two seconds later whether it should stop, wherever it waits for a connection or a request.
@@ -254,24 +261,32 @@ struct Server::LivePath {
     static int admit(const mg_connection* wire, void* data) {
         auto query = read_query(mg_get_request_info(wire)->query_string);
         const auto* state = static_cast<State*>(data);
+        if (std::any_of(query.begin(), query.end(), [](const auto& one) { return one.first != "token"; })) return 1;
         if (state->pages >= most_pages) return 1;
         return state->access(const_cast<mg_connection*>(wire), query["token"], true) == Access::granted ? 0 : 1;
     }
     static void open(mg_connection* wire, void* data) {
         auto* state = static_cast<State*>(data);
         ++state->pages;
-        auto* socket = new Socket{state->studio.join(), {}};
-        socket->writer = std::thread(write_all, wire, socket->connection);
+        auto* socket = new Socket{state->studio.join()};
+        socket->writer = std::thread(write_all, wire, std::cref(*socket));
         mg_set_user_connection_data(wire, socket);
     }
     static int receive(mg_connection* wire, int bits, char* text, std::size_t length, void* data) {
-        const auto* socket = static_cast<Socket*>(mg_get_user_connection_data(wire));
-        const int opcode = bits & 0xf;
-        if (opcode == MG_WEBSOCKET_OPCODE_CONNECTION_CLOSE) return 0;
-        if (opcode == MG_WEBSOCKET_OPCODE_PING || opcode == MG_WEBSOCKET_OPCODE_PONG) return 1;
-        const bool whole = (bits & 0x80) != 0;  // messages are short: fragmented ones are not accepted
-        if (opcode != MG_WEBSOCKET_OPCODE_TEXT || !whole || length > longest_message) return 0;
-        static_cast<State*>(data)->studio.receive(socket->connection, {text, length});
+        auto* socket = static_cast<Socket*>(mg_get_user_connection_data(wire));
+        const FrameDeed deed = socket->reader.take(bits, {text, length});
+        switch (deed.kind) {
+            case FrameDeed::Kind::nothing:
+                break;
+            case FrameDeed::Kind::text:
+                static_cast<State*>(data)->studio.receive(socket->connection, deed.bytes);
+                break;
+            case FrameDeed::Kind::pong:
+                return mg_websocket_write(wire, MG_WEBSOCKET_OPCODE_PONG, deed.bytes.data(), deed.bytes.size()) > 0;
+            case FrameDeed::Kind::close:
+                socket->code = deed.code;
+                return 0;
+        }
         return 1;
     }
     static void close(const mg_connection* wire, void* data) {
@@ -293,7 +308,8 @@ Result<std::unique_ptr<Server>> Server::start(Studio& studio, const ServerSettin
         std::unique_ptr<State>(new State{studio, {0, settings.token}, find_help_pages(settings.program_folder)})));
     State* state = server->state_.get();
     if (Status status = listen(*state, settings); !status) return tl::unexpected(status.error());
-    mg_set_websocket_handler(state->context, "/live", LivePath::admit, LivePath::open, LivePath::receive,
+    // Without the sign for its end, the pattern takes /livex too.
+    mg_set_websocket_handler(state->context, "/live$", LivePath::admit, LivePath::open, LivePath::receive,
                              LivePath::close, state);
     mg_set_request_handler(
         state->context, "/", [](mg_connection* wire, void* data) { return static_cast<State*>(data)->handle(wire); },
@@ -319,6 +335,16 @@ Status Server::listen(State& state, const ServerSettings& settings) {
                              nullptr};
     // clang-format on
     mg_callbacks callbacks{};
+    // From the end of a request's head to the end of its answer, or of the connection of a page that watches.
+    callbacks.begin_request = [](mg_connection* wire) {
+        const mg_request_info& info = *mg_get_request_info(wire);
+        static_cast<State*>(info.user_data)->crowd.begin({info.remote_addr, info.remote_port});
+        return 0;
+    };
+    callbacks.end_request = [](const mg_connection* wire, int) {
+        const mg_request_info& info = *mg_get_request_info(wire);
+        static_cast<State*>(info.user_data)->crowd.end({info.remote_addr, info.remote_port});
+    };
     callbacks.log_message = [](const mg_connection*, const char*) { return 1; };  // the library never prints
     state.context = mg_start(&callbacks, &state, options);
     mg_server_port listening[4];
@@ -326,6 +352,7 @@ Status Server::listen(State& state, const ServerSettings& settings) {
     if (count < 1)
         return failure("{}: cannot listen there; the port is taken, or the address is not this machine's", ports);
     state.rules.port = listening[0].port;
+    state.crowd.watch(state.rules.port);
     return {};
 }
 

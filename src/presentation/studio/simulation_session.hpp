@@ -76,6 +76,9 @@ public:
     /// Builds this robot; a build in progress is cancelled. There are no events of the old robot once the new one is
     /// built. If its actuators differ from the old ones it starts from rest in any case.
     void open(RobotText source, After after = After::from_rest);
+    /// An input that has no meaning for this robot: unknown actuators, kinds and markers, values and times out of
+    /// range. While a robot is being built nothing is known of it, and what it cannot do has no effect.
+    [[nodiscard]] Status check(const Message& message) const;
     void drive(const DriveMessage& message);
     void follow(const Follow& message);
     void play(bool on);
@@ -168,6 +171,7 @@ private:
     std::atomic<bool> stopping_ = false;
     bool built_once_ = false;
     std::shared_ptr<const Built> built_;
+    std::vector<double> rest_measures_;  ///< of the actuators of `built_`
     std::shared_ptr<const std::string> scene_, frame_;
     std::vector<std::pair<std::string, std::string>> news_;
     sim::Trajectory history_;

@@ -35,7 +35,7 @@ struct Bench {
         session.open({"bar.toml", text, accuracy});
     }
     void drive(double tag, const std::string& name, const std::string& kind, double value) {
-        session.drive({tag, -1, {{name, kind, value}}});
+        session.drive({tag, std::nullopt, {{name, kind, value}}});
     }
     /// The frame that shows input `tag` at equilibrium.
     Json arrived(double tag) {
@@ -210,7 +210,7 @@ TEST_CASE("after dragging on, the final answer agrees with quadratic tets, also 
     };
     both([](SimulationSession& s) { REQUIRE(s.wait_until_built()); });
     for (int i = 1; i <= 30; ++i)
-        both([&](SimulationSession& s) { s.drive({1.0 * i, -1, {{"flexor", "shortening_mm", 0.01 * i}}}); });
+        both([&](SimulationSession& s) { s.drive({1.0 * i, std::nullopt, {{"flexor", "shortening_mm", 0.01 * i}}}); });
     same(30);
     both([](SimulationSession& s) { s.pull({31, 3, {4.5, 2, 2.5}}); });
     same(31, 0.02);  // a spring settles to within a share of its force

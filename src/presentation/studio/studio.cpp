@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
+#include <variant>
 
 #include "base/core/files.hpp"
 #include "presentation/studio/dumped.hpp"
@@ -47,6 +49,16 @@ Status check_kind(const std::string& text, const std::filesystem::path& file) {
     if (!machine::parse_printer(text, file)) return {};
     return input_error("{} is a printer file: choose it under Prepare, when the robot is sliced",
                        file.filename().string());
+}
+
+/// Of an input that a frame would answer.
+std::optional<double> tag_of(const Message& message) {
+    return std::visit(
+        [](const auto& kind) -> std::optional<double> {
+            if constexpr (requires { kind.tag; }) return kind.tag;
+            return std::nullopt;
+        },
+        message);
 }
 
 }  // namespace
@@ -349,8 +361,9 @@ void Studio::steer(const Message& message, SimulationSession& simulation, bool b
 }
 
 void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_view text) {
-    const auto refuse = [&](const std::string& why) {
-        const nlohmann::json json = {{"type", "error"}, {"error", why}};
+    const auto refuse = [&](const std::string& why, std::optional<double> tag = {}) {
+        nlohmann::json json = {{"type", "error"}, {"error", why}};
+        if (tag) json["tag"] = *tag;
         connection->send_text(std::make_shared<const std::string>(dumped(json)));
     };
     const Result<Message> message = parse_message(text);
@@ -360,9 +373,11 @@ void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_
         return greet(connection);
     }
     if (const auto* fields = std::get_if<FieldsMessage>(&*message)) {
-        std::set<std::string> names;
         for (const std::string& name : fields->names)
-            if (view::is_field(name)) names.insert(name);
+            if (!view::is_field(name))
+                return refuse(fmt::format(
+                    "message: names: there is no field \"{}\"; there are J, von_mises, stretch and energy", name));
+        std::set<std::string> names(fields->names.begin(), fields->names.end());
         hub_.want_fields(connection, std::move(names));
         if (const auto second = beside()) second->show_again();
         return simulation_->show_again();
@@ -375,7 +390,10 @@ void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_
         hub_.ping();
         return connection->send_text(std::make_shared<const std::string>(R"({"type":"pong"})"));
     }
-    if (connection->page.empty() || !hub_.may_steer(connection->page)) return refuse("another page has control");
+    if (connection->page.empty() || !hub_.may_steer(connection->page))
+        return refuse("another page has control", tag_of(*message));
+    if (const Status possible = simulation_->check(*message); !possible)
+        return refuse(possible.error().message, tag_of(*message));
     steer(*message, *simulation_, false);
     if (const auto second = beside()) steer(*message, *second, true);
 }

@@ -12,6 +12,7 @@
 
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
+#include "base/core/test_text.hpp"
 #include "presentation/studio/make_session.hpp"
 #include "presentation/studio/test_sessions.hpp"
 #include "presentation/studio/test_surface.hpp"
@@ -20,6 +21,7 @@ using namespace pliant;
 using namespace pliant::studio;
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
+using pliant::test::holds;
 
 namespace {
 
@@ -88,6 +90,17 @@ Json arrived(Studio& studio, const std::shared_ptr<Connection>& connection, doub
         const Json head = head_of(*out->bytes);
         if (head["tag"] == tag && head["arrived"] == true) return head;
         (void)studio;
+    }
+}
+
+/// The next refusal.
+Json next_error(const std::shared_ptr<Connection>& connection) {
+    for (;;) {
+        const auto out = connection->next();
+        REQUIRE(out);
+        if (out->binary) continue;
+        Json event = Json::parse(*out->bytes);
+        if (event["type"] == "error") return event;
     }
 }
 
@@ -211,10 +224,54 @@ TEST_CASE("a changed robot goes to the state that was wanted before; another rob
     const Json fresh = arrived_anew(4, 0);
     CHECK(fresh["cables"][0]["length_mm"].get<double>() == near(40, {.relative = 1e-12}));
     CHECK(fresh["wanted"]["time"] == 0);
-    // Impossible values do not move the robot, and are not reported to any page.
-    studio.receive(page,
-                   R"({"type":"drive","tag":3,"actuators":[{"name":"flexor","kind":"length_ratio","value":-3}]})");
-    CHECK(arrived(studio, page, 3)["wanted"]["actuators"].empty());
+}
+
+TEST_CASE("what the robot cannot do is answered by the reason, and never by a frame") {
+    const Project project;
+    const auto owner = built(project);
+    Studio& studio = *owner;
+    const auto page = joined(studio, "first_page");
+    const auto drive = [](const std::string& name, const std::string& kind, double value) {
+        return Json{{"name", name}, {"kind", kind}, {"value", value}};
+    };
+    const auto driven = [](const Json& actuators) { return Json{{"type", "drive"}, {"actuators", actuators}}; };
+    const Json good = drive("flexor", "shortening_mm", 1);
+    double tag = 100;
+    for (auto [message, why] : {
+             std::pair(driven(Json::array({drive("nobody", "shortening_mm", 1)})),
+                       R"(message: actuators: there is no actuator "nobody"; the robot has "flexor")"),
+             {driven(Json::array({good, drive("flexor", "volume_ratio", 1)})),
+              "message: actuators: \"flexor\" has no volume_ratio; it is driven by length_ratio, shortening_mm and "
+              "tension_N"},
+             {driven(Json::array({drive("flexor", "length_ratio", -3)})),
+              "message: actuators: \"flexor\": length_ratio is -3; it must be over 0"},
+             {driven(Json::array({drive("flexor", "shortening_mm", 40)})),
+              "message: actuators: \"flexor\": shortening_mm is 40; it must be under 40, the length at rest"},
+             {driven(Json::array({drive("flexor", "tension_N", -1)})),
+              "message: actuators: \"flexor\": tension_N is -1; it must be at least 0: a cable cannot push"},
+             {driven(Json::array({good, good})), "message: actuators: \"flexor\" is named twice"},
+             {Json{{"type", "drive"}, {"time", 1.5}, {"actuators", Json::array({good})}},
+              "message: time is 1.5; the program goes from 0 to 1"},
+             {Json{{"type", "follow"}, {"time", 2}}, "message: time is 2; the program goes from 0 to 1"},
+             {Json{{"type", "lead"}, {"marker", "nose"}, {"to", {0, 0, 0}}},
+              R"(message: marker: there is no marker "nose"; the robot has "tip")"},
+         }) {
+        message["tag"] = ++tag;
+        studio.receive(page, message.dump());
+        const Json answer = next_error(page);
+        CHECK(answer["error"] == why);
+        CHECK(answer["tag"] == tag);
+    }
+    studio.receive(page, R"({"type":"pull","tag":1,"vertex":1000000,"to":[0,0,0]})");
+    CHECK(holds(next_error(page)["error"].get<std::string>(), "message: vertex is 1000000; the robot has "));
+    studio.receive(page, R"({"type":"fields","names":["J","K"]})");
+    CHECK(next_error(page)["error"] ==
+          "message: names: there is no field \"K\"; there are J, von_mises, stretch and energy");
+    // None of it reached the robot.
+    studio.receive(page, Json{{"type", "drive"}, {"tag", 200}, {"actuators", Json::array()}}.dump());
+    const Json still = arrived(studio, page, 200);
+    CHECK(still["wanted"]["actuators"].empty());
+    CHECK(still["cables"][0]["length_mm"].get<double>() == near(40, {.relative = 1e-9}));
 }
 
 TEST_CASE("air elements are driven by volume and have no pressure") {
@@ -230,7 +287,10 @@ TEST_CASE("air elements are driven by volume and have no pressure") {
     CHECK(blown["chambers"][0]["ratio"].get<double>() == near(1.15, {.relative = 1e-5}));
     CHECK(blown["chambers"][0]["pressure_kPa"].get<double>() > 1);
     studio.receive(page, R"({"type":"drive","tag":2,"actuators":[{"name":"air","kind":"pressure_kPa","value":50}]})");
-    const Json still = arrived(studio, page, 2);
+    CHECK(next_error(page)["error"] ==
+          "message: actuators: \"air\" has no pressure_kPa; it is driven by volume_ratio and volume_change_mm3");
+    studio.receive(page, R"({"type":"drive","tag":3,"actuators":[]})");
+    const Json still = arrived(studio, page, 3);
     CHECK(still["chambers"][0]["ratio"].get<double>() == near(1.15, {.relative = 1e-5}));
     CHECK(still["wanted"]["actuators"] == Json{{{"name", "air"}, {"kind", "volume_ratio"}, {"value", 1.15}}});
 }

@@ -91,7 +91,7 @@ std::string library_json(const std::vector<LibraryMaterial>& materials) {
                         {"source", m.source},
                         {"derivation", m.derivation}});
     }
-    return list.dump(2);
+    return list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace pliant::robot

@@ -95,7 +95,7 @@ std::string elongation_json(const std::vector<ElongationRow>& rows) {
     json["half_width_95"] = ratio.half_width;
     json["shape_parameter_thesis"] = material::shape_parameter_of_thesis(above_one(ratio.value));
     json["shape_parameter_small_strain"] = material::shape_parameter_small_strain(above_one(ratio.value));
-    return json.dump(2);
+    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace pliant::calibrate

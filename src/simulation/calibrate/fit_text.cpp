@@ -85,7 +85,7 @@ std::string fit_json(const Fit& fit, const TensileTest& test) {
     json["stretch"] = test.stretch;
     json["stress_Pa"] = test.stress_Pa;
     json["fitted_stress_Pa"] = fit.stress_Pa;
-    return json.dump(2);
+    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace pliant::calibrate

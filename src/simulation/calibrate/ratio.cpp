@@ -190,7 +190,7 @@ std::string ratio_json(const RatioResult& result, const RatioOptions& options) {
     }
     json["curve"] = nullptr;
     if (result.curve) json["curve"] = *result.curve;
-    return json.dump(2);
+    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace pliant::calibrate

@@ -85,7 +85,7 @@ std::string identification_json(const Identification& result) {
     json["converged"] = result.converged;
     json["assignments"] = assignments(result);
     json["warnings"] = result.warnings;
-    return json.dump(2);
+    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 std::string comparison_csv(const Identification& result) {

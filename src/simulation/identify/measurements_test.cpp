@@ -85,6 +85,7 @@ TEST_CASE("errors in measurements name file and line") {
     check_problem("time,tip_x_mm\n3,59\n", "m.csv:2: time 3 is outside the program, which goes from 0 to 2");
     check_problem("step,tip_x_mm\n-1,59\n", "m.csv:2: step -1 is outside the program, which goes from 0 to 4");
     check_problem("time,tip_x_mm\n1,5 9\n", "m.csv:2: tip_x_mm \"5 9\" is not a number");
+    check_problem("time,tip_x_mm\n1,-1e308\n", "m.csv:2: tip_x_mm \"-1e308\" is too large");
     check_problem("time,tip_x_mm\n1,nan\n", "m.csv:2: tip_x_mm \"nan\" is not a number");
     check_problem("time,tip_x_mm\n1\n", "m.csv:2: 1 columns, but the first line names more");
     check_problem("time,tip_x_mm\n1,2,3\n", "m.csv:2: 3 columns, the first line names 2");

@@ -21,6 +21,9 @@ const kindsOf = {
   chamber: ['volume_ratio', 'volume_change_mm3', 'pressure_kPa', 'gas_ratio'],
 };
 
+/// Not of actuators made of elements, which are driven by lengths and volumes only.
+const byForce = ['tension_N', 'pressure_kPa', 'gas_ratio'];
+
 /// Of the state that is shown: the present one, or one that is replayed.
 const shownHead = () => (shownFrame.value ?? frame.value)?.head;
 
@@ -32,7 +35,7 @@ export function reading(actuator: Actuator, kind: string): number {
   if (actuator.type === 'cable') {
     const c = head.cables[all.indexOf(actuator)];
     if (!c) return NaN;
-    if (kind === 'tension_N') return c.tension_N;
+    if (kind === 'tension_N') return Math.max(c.tension_N, 0); // no slider makes a cable push
     return kind === 'length_ratio' ? c.ratio : c.length_mm / c.ratio - c.length_mm;
   }
   const c = head.chambers[all.indexOf(actuator) - head.cables.length];
@@ -49,7 +52,7 @@ function range(actuator: Actuator, kind: string, value: number): [number, number
     Math.max(least, Number.isFinite(target) ? factor * Math.abs(target) : 0, 1.25 * Math.abs(value));
   switch (kind) {
     case 'length_ratio':
-      return [Math.min(0.5, Number.isFinite(target) ? target - 0.1 : 1, value), Math.max(1, target > 1 ? 2 * target - 1 : 1, value)];
+      return [Math.max(0.01, Math.min(0.5, Number.isFinite(target) ? target - 0.1 : 1, value)), Math.max(1, target > 1 ? 2 * target - 1 : 1, value)];
     case 'shortening_mm':
       return [Math.min(0, target < 0 ? 2 * target : 0, value), Math.max(0.5 * actuator.rest, value)];
     case 'tension_N':
@@ -165,7 +168,7 @@ function Control({ actuator }: { actuator: Actuator }) {
             drive(actuator.name, next, Number.isFinite(at) ? at : 1);
           }}
         >
-          {kindsOf[actuator.type].map((k) => (
+          {kindsOf[actuator.type].filter((k) => !actuator.elements || !byForce.includes(k)).map((k) => (
             <option value={k} key={k}>
               {kinds[k].label}
             </option>

@@ -1,5 +1,5 @@
 // A link that restores robot, view and state.
-import { documentState, driveAll, following, post, scene, say, sendInput, wanted, wantedTime, type Wanted } from '../store';
+import { documentState, driveAll, following, inProgram, post, scene, say, sendInput, wanted, wantedTime, type Wanted } from '../store';
 import { theView } from './the_view';
 import * as look from './view_state';
 
@@ -62,9 +62,9 @@ export async function restoreLink() {
   view.pose = kept.pose;
   look.field.value = kept.field;
   [look.sectionAxis.value, look.sectionAt.value] = kept.section;
-  wantedTime.value = kept.time;
+  wantedTime.value = inProgram(kept.time);
   following.value = kept.following;
-  if (kept.following) return sendInput({ type: 'follow', time: kept.time });
+  if (kept.following) return sendInput({ type: 'follow', time: wantedTime.value });
   wanted.value = Object.fromEntries(head.actuators.map((a) => [a.name, kept.wanted[a.name] ?? wanted.peek()[a.name]]));
   driveAll();
 }

@@ -5,6 +5,7 @@ import { Icon } from '../icons';
 import {
   following,
   frame,
+  inProgram,
   mayDrive,
   online,
   restValue,
@@ -26,8 +27,8 @@ import * as look from './view_state';
 export function follow(time: number) {
   following.value = true;
   look.shownFrame.value = null;
-  wantedTime.value = time;
-  sendInput({ type: 'follow', time });
+  wantedTime.value = inProgram(time);
+  sendInput({ type: 'follow', time: wantedTime.value });
 }
 
 function toRest() {
