@@ -93,17 +93,17 @@ mesh::Solid without_air(const mesh::Solid& body, const std::vector<mesh::Solid>&
     return std::make_shared<const mesh::SolidNode>(mesh::SolidNode{std::move(cut)});
 }
 
-/// The common volume of two drawn bodies, and the smaller one's own.
-struct DrawnOverlap {
-    double volume = 0, smaller = 0;
-};
-
-/// 0 where it cannot be measured: what cannot be built is an error of the bodies themselves.
-DrawnOverlap overlap_of(const mesh::Solid& one, const mesh::Solid& other) {
+/// The common volume of two drawn bodies; 0 where it cannot be measured: what cannot be built is an error of the bodies
+/// themselves.
+double overlap_of(const mesh::Solid& one, const mesh::Solid& other) {
     const mesh::CombinedSolid both{mesh::CombinedSolid::Operation::intersect, {one, other}};
-    const mesh::Solid common = std::make_shared<const mesh::SolidNode>(mesh::SolidNode{both});
-    return {mesh::solid_volume(common).value_or(0),
-            std::min(mesh::solid_volume(one).value_or(0), mesh::solid_volume(other).value_or(0))};
+    return mesh::solid_volume(std::make_shared<const mesh::SolidNode>(mesh::SolidNode{both})).value_or(0);
+}
+
+/// Less of it is a rounding error of bodies that touch.
+double least_overlap(const mesh::Solid& one, const mesh::Solid& other) {
+    const auto volume = [](const Box3& box) { return box.size().x * box.size().y * box.size().z; };
+    return 1e-9 * std::min(volume(mesh::bounds(one)), volume(mesh::bounds(other)));
 }
 
 using Shape = std::variant<mesh::Solid, mesh::TriMesh>;
@@ -366,12 +366,12 @@ std::vector<std::string> overlap_notes(const Robot& robot, const Progress& progr
         for (std::size_t b = a + 1; own != nullptr && b < robot.bodies.size() && !progress.cancelled(); ++b) {
             const auto* later = std::get_if<mesh::Solid>(&robot.bodies[b].geometry);
             if (later == nullptr || !boxes_overlap(mesh::bounds(*own), mesh::bounds(*later))) continue;
-            const DrawnOverlap both = overlap_of(without_air(*own, air), without_air(*later, air));
-            if (both.volume <= 1e-9 * both.smaller) continue;
+            const double volume = overlap_of(without_air(*own, air), without_air(*later, air));
+            if (volume <= least_overlap(*own, *later)) continue;
             notes.push_back(
                 fmt::format("\"{0}\" and \"{1}\" overlap in a volume of {2:.6g} (in the file's unit, cubed), which "
                             "belongs to \"{1}\", the later one",
-                            robot.bodies[a].name, robot.bodies[b].name, both.volume));
+                            robot.bodies[a].name, robot.bodies[b].name, volume));
         }
     }
     return notes;
