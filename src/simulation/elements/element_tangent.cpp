@@ -7,6 +7,7 @@
 #include "base/linalg/vectors.hpp"
 #include "simulation/elements/blend_kernels.hpp"
 #include "simulation/elements/elements.hpp"
+#include "simulation/material/point.hpp"
 #include "simulation/material/response.hpp"
 #include "simulation/material/rest_moduli.hpp"
 
@@ -91,18 +92,20 @@ void Elements::strain_one_by_one(std::size_t batch, std::span<const double> x, c
     for (std::size_t lane = 0; lane < lanes; ++lane) {
         const std::size_t tet = tet_[batch * lanes + lane];
         for (int q = 0; tet != no_tet && q < points_per_tet_; ++q) {
-            const Matrix3 F = deformation_gradient(tet, q, x), stretch = F * F.transpose();
+            const Matrix3 F = deformation_gradient(tet, q, x), cofactor = material::cofactor(F);
+            const Matrix3 stretch = F * F.transpose();
             const double volume = point_volume(tet, q), lame = volume * moduli.lame_Pa,
                          shear = volume * moduli.shear_Pa;
-            std::array<Vector3, 10> rest, now;
+            std::array<Vector3, 10> rest, now, normal;
             for (std::size_t a = 0; a < width(); ++a) {
                 rest[a] = linalg::vector(shape_gradient(tet, q, static_cast<int>(a)));
                 now[a] = F * rest[a];
+                normal[a] = cofactor * rest[a];
             }
             double* block = blocks + lane;
             for (std::size_t b = 0; b < width(); ++b) {
                 for (std::size_t a = 0; a <= b; ++a, block += 9 * lanes) {
-                    const Matrix3 K = lame * now[a] * now[b].transpose() + shear * now[b] * now[a].transpose() +
+                    const Matrix3 K = lame * normal[a] * normal[b].transpose() + shear * now[b] * now[a].transpose() +
                                       shear * rest[a].dot(rest[b]) * stretch;
                     for (std::size_t k = 0; k < 9; ++k) block[k * lanes] += K.data()[k];
                 }

@@ -45,9 +45,10 @@ public:
     /// integration point contributes the nearest positive semi-definite matrix instead. Precondition: min_J > 0.
     void add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values, bool project) const;
 
-    /// Adds Hooke's law with rest_moduli() for the Green-Lagrange strain that a motion u causes at `x`: w . K u = sum
-    /// of volume times (lame tr(a) tr(e) + 2 shear a:e), e = sym(F^T grad u), a = sym(F^T grad w). It resists changes
-    /// of shape, and no rotation of the body as it is at `x`. Positive semi-definite.
+    /// Adds Hooke's law with rest_moduli() for the changes of volume and Green-Lagrange strain that a motion u causes
+    /// at `x`: w . K u = sum of volume times (lame (cof F : grad w) (cof F : grad u) + 2 shear a:e), e = sym(F^T grad
+    /// u), a = sym(F^T grad w). It resists changes of shape, and no rotation of the body as it is at `x`. Positive
+    /// semi-definite.
     void add_strain_stiffness(std::span<const double> x, const BlockSums& sums, std::span<double> values) const;
 
     /// Adds the skew part of the tangent, which add_tangent leaves out and only laws without an energy have, to a

@@ -8,6 +8,7 @@
 #include "base/linalg/vectors.hpp"
 #include "simulation/linearisation/element_derivatives.hpp"
 #include "simulation/material/law_parameters.hpp"
+#include "simulation/material/point.hpp"
 #include "simulation/material/rest_moduli.hpp"
 
 namespace pliant::sim {
@@ -27,39 +28,44 @@ Matrix3 symmetric(const Matrix3& A) {
     return 0.5 * (A + A.transpose());
 }
 
-/// Stress of Hooke's law.
-Matrix3 hooke(const RestModuli& moduli, const Matrix3& strain) {
-    return moduli.lame_Pa * strain.trace() * Matrix3::Identity() + 2 * moduli.shear_Pa * strain;
-}
-
-/// The stress of a velocity gradient A: P = F hooke(sym F^T A), linear in A and symmetric.
+/// The stress of a velocity gradient A: P = lame (cof F : A) cof F + 2 shear F sym(F^T A), linear in A and symmetric.
 class StrainRateLaw {
 public:
-    StrainRateLaw(const RestModuli& moduli, const Matrix3& F) : moduli_(moduli), F_(F) {}
+    StrainRateLaw(const RestModuli& moduli, const Matrix3& F)
+        : moduli_(moduli), F_(F), cofactor_(material::cofactor(F)) {}
 
-    [[nodiscard]] Matrix3 stress(const Matrix3& A) const { return F_ * hooke(moduli_, strain(A)); }
+    [[nodiscard]] Matrix3 stress(const Matrix3& A) const { return stress(moduli_, A); }
     /// With other moduli.
     [[nodiscard]] Matrix3 stress(const RestModuli& moduli, const Matrix3& A) const {
-        return F_ * hooke(moduli, strain(A));
+        return moduli.lame_Pa * dilation(A) * cofactor_ + 2 * moduli.shear_Pa * F_ * strain(A);
     }
     /// a . P for the stress P of A with other moduli.
     [[nodiscard]] double product(const RestModuli& moduli, const Matrix3& a, const Matrix3& A) const {
-        return strain(a).cwiseProduct(hooke(moduli, strain(A))).sum();
+        return moduli.lame_Pa * dilation(a) * dilation(A) +
+               2 * moduli.shear_Pa * strain(a).cwiseProduct(strain(A)).sum();
     }
     /// Change of the stress of A with F.
     [[nodiscard]] Matrix3 rate(const Matrix3& dF, const Matrix3& A) const {
-        return dF * hooke(moduli_, strain(A)) + F_ * hooke(moduli_, symmetric(dF.transpose() * A));
+        const Matrix3 change = cofactor_rate(dF);
+        return moduli_.lame_Pa * (change.cwiseProduct(A).sum() * cofactor_ + dilation(A) * change) +
+               2 * moduli_.shear_Pa * (dF * strain(A) + F_ * symmetric(dF.transpose() * A));
     }
     /// Gradient by F of a . P for the stress P of A.
     [[nodiscard]] Matrix3 slope(const Matrix3& a, const Matrix3& A) const {
-        return a * hooke(moduli_, strain(A)) + A * hooke(moduli_, strain(a));
+        return moduli_.lame_Pa * (dilation(A) * cofactor_rate(a) + dilation(a) * cofactor_rate(A)) +
+               2 * moduli_.shear_Pa * (a * strain(A) + A * strain(a));
     }
 
 private:
     [[nodiscard]] Matrix3 strain(const Matrix3& A) const { return symmetric(F_.transpose() * A); }
+    [[nodiscard]] double dilation(const Matrix3& A) const { return cofactor_.cwiseProduct(A).sum(); }
+    /// The cofactor is a quadratic function of F; as a bilinear form in two directions its change is symmetric.
+    [[nodiscard]] Matrix3 cofactor_rate(const Matrix3& dF) const {
+        return material::cofactor(F_ + dF) - cofactor_ - material::cofactor(dF);
+    }
 
     RestModuli moduli_;
-    Matrix3 F_;
+    Matrix3 F_, cofactor_;
 };
 
 /// Of each law: its moduli, and how they change with each of its constants.

@@ -242,6 +242,36 @@ TEST_CASE("a motor follows its angle over several turns") {
     }
 }
 
+TEST_CASE("damping by stiffness does not brake what turns as a whole") {
+    const double spin = 20;
+    const auto end = [&](int side) {
+        return fmt::format(
+            "[[plate]]\nname = \"p{0}\"\nplane = {{ point = [{1}, 0, 0], normal = [1, 0, 0] }}\n[[object]]\n"
+            "name = \"o{0}\"\ngeometry = {{ box = [[{2}, -5, -5], [{3}, 5, 5]] }}\nmass = \"20 g\"\n"
+            "velocity = [0, {4}, 0]\nangular_velocity = [0, 0, {5}]\n[[joint]]\nname = \"j{0}\"\n"
+            "kind = \"glue\"\nbetween = [\"p{0}\", \"o{0}\"]\npoint = [{1}, 0, 0]\n",
+            side + 1, 20 * side, side > 0 ? 21 : -31, side > 0 ? 31 : -21, 0.026 * spin * side, spin);
+    };
+    const std::string dumbbell =
+        "name = \"dumbbell\"\nlength_unit = \"mm\"\n[material.m]\nyoungs_modulus = \"1 MPa\"\npoisson_ratio = 0.45\n"
+        "density = \"1 kg/m^3\"\n[[body]]\nname = \"bar\"\nmaterial = \"m\"\n"
+        "geometry = { box = [[-20, -5, -5], [20, 5, 5]] }\n[mesh]\nsize = \"10 mm\"\norder = 1\n" +
+        end(-1) + end(1);
+    for (const char* integrator : {"bdf2", "energy-conserving"}) {
+        CAPTURE(integrator);
+        const JointedRun r = run_jointed(fmt::format(
+            "{}[program]\nduration = \"0.2 s\"\ntime_step = \"5 ms\"\nstiffness_damping = 0.002\nintegrator = \"{}\"\n",
+            dumbbell, integrator));
+        const auto& steps = r.result.steps;
+        const auto angle = [](const sim::Step& step) {
+            const Vec3 along = step.objects[1].position_m - step.objects[0].position_m;
+            return std::atan2(along.y, along.x);
+        };
+        const double turned = std::remainder(angle(steps.back()) - angle(steps[steps.size() - 2]), 2 * pi);
+        CHECK(turned / 0.005 == near(spin, {.relative = 0.06}));  // BDF2 loses 5 % without damping, too
+    }
+}
+
 TEST_CASE("a motor turns a bar that nothing resists, and past half a turn it is as stable as before") {
     for (const char* gravity : {"", "gravity = [0, 0, -9.81]\n"}) {
         CAPTURE(gravity);
