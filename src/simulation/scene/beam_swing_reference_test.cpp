@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/core/near.hpp"
@@ -57,8 +58,40 @@ double lowest_mm(const std::vector<Point>& points) {
     return std::ranges::max_element(points, {}, &Point::sunk_mm)->sunk_mm;
 }
 
+/// Amplitudes of all half swings in that time: half of what lies between two turning points, with the time between
+/// them.
+std::vector<std::pair<double, double>> amplitudes(const std::vector<Point>& points, double from_s, double to_s) {
+    std::vector<Point> turns;
+    for (std::size_t k = 1; k + 1 < points.size(); ++k) {
+        const Point& here = points[k];
+        if (here.time_s < from_s || here.time_s > to_s) continue;
+        if ((here.sunk_mm - points[k - 1].sunk_mm) * (points[k + 1].sunk_mm - here.sunk_mm) <= 0) turns.push_back(here);
+    }
+    std::vector<std::pair<double, double>> all;
+    for (std::size_t k = 1; k < turns.size(); ++k)
+        all.emplace_back((turns[k - 1].time_s + turns[k].time_s) / 2,
+                         std::fabs(turns[k].sunk_mm - turns[k - 1].sunk_mm) / 2);
+    return all;
+}
+
+/// The rate at which they decay: the slope of a straight line through their logarithms.
+double decay_per_s(const std::vector<std::pair<double, double>>& amplitudes) {
+    REQUIRE(amplitudes.size() >= 3);
+    double time = 0, log = 0, times = 0, product = 0;
+    for (const auto& [t, a] : amplitudes) {
+        time += t / static_cast<double>(amplitudes.size());
+        log += std::log(a) / static_cast<double>(amplitudes.size());
+    }
+    for (const auto& [t, a] : amplitudes) {
+        times += (t - time) * (t - time);
+        product += (t - time) * (std::log(a) - log);
+    }
+    return -product / times;
+}
+
 /// Both swing about the same rest, and as fast, within 5 %: the modulus of silicone in motion is a few percent larger
-/// than at rest. The first swing goes at most 12 % lower, because the hand took some 0.03 s to let go.
+/// than at rest. Both swings die away as measured with one pair of dampings. The first one goes lower than the real
+/// one, which a hand let go in some 0.05 to 0.1 s, but not beyond twice the sag.
 void check_swing(const std::string& at_rest, const std::string& in_swing, const std::string& run, double seconds) {
     const std::vector<Point> still = simulated(at_rest), ours = simulated(in_swing), theirs = measured(run);
     double rest_mm = 0;
@@ -67,12 +100,16 @@ void check_swing(const std::string& at_rest, const std::string& in_swing, const 
     const double our_rest_mm = still.back().sunk_mm;
     const double ours_Hz = frequency_Hz(passes(ours, our_rest_mm, 0.05, seconds));
     const double theirs_Hz = frequency_Hz(passes(theirs, rest_mm, 0.05, seconds));
+    const double our_decay = decay_per_s(amplitudes(ours, 0.05, seconds));
+    const double their_decay = decay_per_s(amplitudes(theirs, 0.05, seconds));
+    MESSAGE(run, ": decays by ", our_decay, " a second, measured ", their_decay);
     MESSAGE(run, ": at rest ", our_rest_mm, " mm, measured ", rest_mm, "; ", ours_Hz, " Hz, measured ", theirs_Hz,
             "; lowest ", lowest_mm(ours), " mm, measured ", lowest_mm(theirs));
     CHECK(our_rest_mm == near(rest_mm, {.relative = 0.05}));
     CHECK(ours_Hz == near(theirs_Hz, {.relative = 0.05}));
     CHECK(lowest_mm(ours) > lowest_mm(theirs));
-    CHECK(lowest_mm(ours) == near(lowest_mm(theirs), {.relative = 0.12}));
+    CHECK(lowest_mm(ours) < 2 * our_rest_mm);
+    CHECK(our_decay == near(their_decay, {.relative = 0.05}));
 }
 
 }  // namespace

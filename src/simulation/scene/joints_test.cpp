@@ -262,13 +262,16 @@ TEST_CASE("damping by stiffness does not brake what turns as a whole") {
         const JointedRun r = run_jointed(fmt::format(
             "{}[program]\nduration = \"0.2 s\"\ntime_step = \"5 ms\"\nstiffness_damping = 0.002\nintegrator = \"{}\"\n",
             dumbbell, integrator));
-        const auto& steps = r.result.steps;
-        const auto angle = [](const sim::Step& step) {
-            const Vec3 along = step.objects[1].position_m - step.objects[0].position_m;
+        const auto angle = [&](std::size_t k) {
+            const std::vector<sim::ObjectState>& objects = r.result.steps[k].objects;
+            const Vec3 along = objects[1].position_m - objects[0].position_m;
             return std::atan2(along.y, along.x);
         };
-        const double turned = std::remainder(angle(steps.back()) - angle(steps[steps.size() - 2]), 2 * pi);
-        CHECK(turned / 0.005 == near(spin, {.relative = 0.06}));  // BDF2 loses 5 % without damping, too
+        const auto spin_at = [&](std::size_t k) { return std::remainder(angle(k) - angle(k - 1), 2 * pi) / 0.005; };
+        // The first step is implicit Euler's, which loses a tenth.
+        CHECK(spin_at(4) == near(spin, {.relative = 0.12}));
+        CHECK(spin_at(40) == near(spin_at(4), {.relative = 0.005}));
+        if (std::string(integrator) == "energy-conserving") CHECK(spin_at(40) == near(spin, {.relative = 0.01}));
     }
 }
 
