@@ -57,6 +57,7 @@ void add_inverse_result(py::module_& module) {
         .def_property_readonly("waypoints_wanted", &InverseResult::waypoints_wanted)
         .def_property_readonly("waypoint_count", &InverseResult::waypoint_count)
         .def("waypoint", [](const InverseResult& result, std::size_t k) { return waypoint_tuple(result.waypoint(k)); })
+        .def("inputs_at", [](const InverseResult& result, std::size_t k) { return tuple_of(result.inputs_at(k)); })
         .def("text", &InverseResult::text)
         .def("json", &InverseResult::json)
         .def("write", [](const InverseResult& result, const std::filesystem::path& folder, py::object progress) {
@@ -72,6 +73,7 @@ void add_workspace(py::module_& module) {
         .def("inputs", [](const Workspace& space) { return steered_list(space.inputs()); })
         .def_property_readonly("sample_count", &Workspace::sample_count)
         .def("sample", [](const Workspace& space, std::size_t k) { return sample_tuple(space.sample(k)); })
+        .def("inputs_at", [](const Workspace& space, std::size_t k) { return tuple_of(space.inputs_at(k)); })
         .def("sheets",
              [](const Workspace& space, std::size_t marker) {
                  Surface sheets = space.sheets(marker);

@@ -14,9 +14,19 @@ from . import _check, _pliant
 from ._check import Array, IntArray, PathLike, Progress
 from ._pliant import StepResult
 from ._values import NotPickled, Value, value_tuple
+from .controls import Inputs
 from .errors import InputError
 from .model import Model
 from .results import Observation, observation
+
+
+def _place(index: int, count: int, what: str) -> int:
+    """The place that an index, which may count from the end, means."""
+    wanted = _check.integer(index, "index")
+    wanted += count if wanted < 0 else 0
+    if not 0 <= wanted < count:
+        raise IndexError(f"there is no {what} {index}; there are {count}")
+    return wanted
 
 
 class SteeredInput(NamedTuple):
@@ -142,16 +152,18 @@ class InverseResult(NotPickled):
     def __getitem__(self, index: Union[int, slice]) -> Union[Waypoint, list[Waypoint]]:
         if isinstance(index, slice):
             return [self[k] for k in range(len(self))[index]]
-        wanted = _check.integer(index, "index")
-        wanted += len(self) if wanted < 0 else 0
-        if not 0 <= wanted < len(self):
-            raise IndexError(f"there is no waypoint {index}; there are {len(self)}")
+        wanted = _place(index, len(self), "waypoint")
         reached, time, goals, inputs, limits, result, seen, positions, solutions, wall_s = self._result.waypoint(wanted)
         named = dict(zip((i.name for i in self.inputs), inputs))
         listed = [GoalResult(*g) for g in goals]
         return Waypoint(
             reached, time, listed, named, limits, result, observation(seen), positions, solutions, wall_s
         )
+
+    def inputs_at(self, index: int) -> Inputs:
+        """All inputs of the robot at a waypoint, for :meth:`Model.step`: the values that were found, and for everything
+        that is not steered those of the program at its time."""
+        return self.model._inputs_of(self._result.inputs_at(_place(index, len(self), "waypoint")))
 
     def __iter__(self) -> Iterator[Waypoint]:
         return (self[k] for k in range(len(self)))
@@ -224,6 +236,11 @@ class Workspace(NotPickled):
             if sample[2]:
                 full[k] = sample[part]
         return full
+
+    def inputs_at(self, index: int) -> Inputs:
+        """All inputs of the robot at a sample, for :meth:`Model.step`: its values, and for everything that is not varied
+        those at the end of the robot's program."""
+        return self.model._inputs_of(self._space.inputs_at(_place(index, len(self), "sample")))
 
     def sheets(self, marker: str) -> tuple[Array, IntArray]:
         """(points, 3) m and (triangles, 3): the surfaces on which two inputs vary and all others are at an end of their

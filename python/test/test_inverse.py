@@ -34,6 +34,10 @@ def test_a_goal_is_reached_as_on_the_command_line(model, tmp_path):
     assert goal.reached and goal.unit == "m" and goal.error < 1e-5 and goal.got[0][2] == pytest.approx(0.008, abs=1e-5)
     state = model.solve({"flexor": {"shortening": waypoint.inputs["flexor"]}})
     assert state.markers()[0] == pytest.approx(waypoint.observed.markers["tip"], abs=1e-5)
+    assert result.inputs_at(0) == result.inputs_at(-1)
+    assert model.solve(result.inputs_at(0)).markers() == pytest.approx(state.markers(), abs=1e-9)
+    with pytest.raises(IndexError, match="there is no waypoint 1; there are 1"):
+        result.inputs_at(1)
     assert waypoint.positions.shape == (model.node_count, 3) and waypoint.result.arrived
     assert "reach" in result.text or "reached" in result.text
 
@@ -72,6 +76,7 @@ def test_a_workspace_is_sampled(model, tmp_path):
     k = int(np.argmax(np.where(reached, space.values[:, 0], -1)))
     state = model.solve({"flexor": {"shortening": space.values[k, 0]}})
     assert space.markers[k, 0] == pytest.approx(state.markers()[0], abs=2e-6)
+    assert model.solve(space.inputs_at(k)).markers()[0] == pytest.approx(space.markers[k, 0], abs=2e-6)
     assert space.sheets("tip")[0].shape[1] == 3
     with pytest.raises(pliant.InputError, match="there is no marker 'top'; there are tip"):
         space.sheets("top")
