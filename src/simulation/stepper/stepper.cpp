@@ -464,9 +464,9 @@ StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Sche
     std::optional<Prediction> expected;
     if (target.expected != nullptr) expected = start_from(system_, robot, *target.expected, controls);
     Prediction start = expected ? *std::move(expected) : predict(system_, laplacian_, robot, controls, along, progress);
-    // What nothing holds would go on as it moved before, since the tether is too weak to be noticed.
+    // What was pushed and is not held would go on as it moved before, since the tether is too weak to be noticed.
     const bool as_found = start.reason.empty() && start.evaluation.error() <= options_.tolerance;
-    if (tether_dt_s_ > 0 && along && !expected && as_found)
+    if (tether_dt_s_ > 0 && along && !expected && as_found && model_.contact(controls.met) != nullptr)
         start = predict(system_, laplacian_, robot, controls, {}, progress);
     if (!start.reason.empty()) {
         StepOutcome outcome;
