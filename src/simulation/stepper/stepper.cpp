@@ -465,8 +465,12 @@ StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Sche
     if (target.expected != nullptr) expected = start_from(system_, robot, *target.expected, controls);
     Prediction start = expected ? *std::move(expected) : predict(system_, laplacian_, robot, controls, along, progress);
     // What was pushed and is not held would go on as it moved before, since the tether is too weak to be noticed.
-    const bool as_found = start.reason.empty() && start.evaluation.error() <= options_.tolerance;
-    if (tether_dt_s_ > 0 && along && !expected && as_found && model_.contact(controls.met) != nullptr)
+    constexpr double noticeable = 1e-6;
+    const auto goes_on = [&] {
+        return start.reason.empty() && start.evaluation.error() <= options_.tolerance &&
+               (start.state.x - robot.x()).lpNorm<Eigen::Infinity>() > noticeable * robot.x().lpNorm<Eigen::Infinity>();
+    };
+    if (tether_dt_s_ > 0 && along && !expected && model_.contact(controls.met) != nullptr && goes_on())
         start = predict(system_, laplacian_, robot, controls, {}, progress);
     if (!start.reason.empty()) {
         StepOutcome outcome;
