@@ -465,7 +465,7 @@ StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Sche
     if (target.expected != nullptr) expected = start_from(system_, robot, *target.expected, controls);
     Prediction start = expected ? *std::move(expected) : predict(system_, laplacian_, robot, controls, along, progress);
     // What was pushed and is not held would go on as it moved before, since the tether is too weak to be noticed.
-    constexpr double noticeable = 1e-6;
+    constexpr double noticeable = 1e-4;  // share of the largest coordinate
     const auto goes_on = [&] {
         return start.reason.empty() && start.evaluation.error() <= options_.tolerance &&
                (start.state.x - robot.x()).lpNorm<Eigen::Infinity>() > noticeable * robot.x().lpNorm<Eigen::Infinity>();
