@@ -12,6 +12,9 @@ namespace {
 
 using Kind = sim::Drive::Kind;
 
+/// A length or volume is none if it is less than this share of that at rest.
+constexpr double rounding = 1e-9;
+
 /// The thesis' elements support lengths and volumes only.
 bool is_by_elements(const sim::Model& model, std::size_t actuator) {
     return std::ranges::any_of(model.description().growths, [&](const sim::Growth& growth) {
@@ -34,7 +37,7 @@ Result<ActuatorDrive> cable_drive(const sim::Model& model, std::size_t cable, do
     if (value.kind == "length_ratio")
         return v > 0 ? Result<ActuatorDrive>(drive(Kind::measure, v * rest)) : out_of_range(value, "over 0");
     if (value.kind == "shortening_mm") {
-        if (!(v / mm_per_m < rest))
+        if (!(v / mm_per_m < (1 - rounding) * rest))
             return out_of_range(value, fmt::format("under {:g}, the length at rest", mm_per_m * rest));
         return drive(Kind::measure, rest - v / mm_per_m);
     }
@@ -54,7 +57,8 @@ Result<ActuatorDrive> chamber_drive(const sim::Model& model, std::size_t actuato
         return v > 0 ? Result<ActuatorDrive>(drive(Kind::measure, v * rest)) : out_of_range(value, "over 0");
     if (value.kind == "volume_change_mm3") {
         constexpr double m3 = 1e-9;  // of a mm3
-        if (!(rest + m3 * v > 0)) return out_of_range(value, fmt::format("over {:g}, the chamber empty", -rest / m3));
+        if (!(rest + m3 * v > rounding * rest))
+            return out_of_range(value, fmt::format("over {:g}, the chamber empty", -rest / m3));
         return drive(Kind::measure, rest + m3 * v);
     }
     const bool has_gas = !by_elements;
