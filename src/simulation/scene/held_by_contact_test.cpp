@@ -106,6 +106,35 @@ TEST_CASE("several robots in one scene stand separately, and one that stands on 
     CHECK(last.smallest_distance_m > -0.1e-3);  // the ground is inset by less than the contact distance
 }
 
+TEST_CASE("a block that is pushed without friction stays with what pushes it, also in fine steps") {
+    for (const int steps : {48, 96}) {
+        CAPTURE(steps);
+        const sim::Trajectory t = run_text(fmt::format(R"(
+name = "pushed"
+length_unit = "mm"
+material.rubber = {{ youngs_modulus = "0.1 MPa", poisson_ratio = 0.3, density = "1000 kg/m^3" }}
+body = [{{ name = "block", material = "rubber", geometry = {{ box = [[0, 0, 0], [20, 20, 10]] }} }}]
+marker = [{{ name = "middle", point = [10, 10, 5] }}]
+mesh = {{ size = "10 mm", order = 1 }}
+contact.distance = "0.1 mm"
+[[obstacle]]
+name = "floor"
+plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}
+[[obstacle]]
+name = "pusher"
+geometry = {{ box = [[-11, -5, 2], [-1, 25, 8]] }}
+move = [6, 0, 0]
+[program]
+gravity = [0, 0, -9.81]
+steps = {}
+)",
+                                                       steps));
+        REQUIRE(t.converged);
+        CHECK(t.steps.back().markers[0].position_m.x == near(15.0e-3, {.absolute = 0.05e-3}));
+        for (const std::string& w : t.warnings) CHECK_MESSAGE(w.find("jumps") == std::string::npos, w);
+    }
+}
+
 TEST_CASE("motions not held by contact, friction and gravity are named in one line; none if all are held") {
     const auto open = [&](double friction, const std::string& more = "") {
         return warning(run_text(on_ground(cube_at("cube", 0, 0) + more, friction, still)), open_places);
