@@ -16,6 +16,7 @@
 #include "geometry/meshing/tet_improver.hpp"
 #include "geometry/repair/surface_shells.hpp"
 #include "geometry/repair/surface_slivers.hpp"
+#include "geometry/shapes/overlap_note.hpp"
 
 namespace pliant::mesh::kernel {
 namespace {
@@ -31,10 +32,7 @@ std::vector<std::string> overlaps(std::span<const NamedSolid> solids, const std:
             if (!boxes_meet(bounds(solids[i].solid), bounds(solids[j].solid))) continue;
             const double overlap = common_volume(volumes[i], volumes[j]);
             if (overlap <= 1e-9 * std::min(volume_of(volumes[i]), volume_of(volumes[j]))) continue;
-            notes.push_back(
-                fmt::format("\"{0}\" and \"{1}\" overlap in a volume of {2:.6g} (in the file's unit, cubed), which "
-                            "belongs to \"{1}\", the later one",
-                            solids[i].name, solids[j].name, overlap));
+            notes.push_back(overlap_note(solids[i].name, solids[j].name, overlap));
         }
     }
     return notes;

@@ -20,6 +20,8 @@ using test::bar;
 
 namespace {
 
+const char* const sagging = "program = { duration = \"1 s\", time_step = \"10 ms\", gravity = [0, 0, -9.81] }\n";
+
 Inputs pulled(const State& state, double shortening_m) {
     Inputs inputs = state.inputs();
     inputs.cables[0].value -= shortening_m;
@@ -291,7 +293,7 @@ TEST_CASE("in dynamics a released bar swings, and a step back in time is refused
 }
 
 TEST_CASE("a step in time that is as short as rounding changes nothing, and drives cannot jump in it") {
-    const Model model(bar("program = { duration = \"1 s\", time_step = \"10 ms\", gravity = [0, 0, -9.81] }\n"));
+    const Model model(bar(sagging));
     Stepper stepper(model);
     State state = stepper.rest();
     Inputs inputs = state.inputs();
@@ -326,7 +328,7 @@ TEST_CASE("a step in time that is as short as rounding changes nothing, and driv
 }
 
 TEST_CASE("a step tells the share of its time steps that is done") {
-    const Model model(bar("program = { duration = \"1 s\", time_step = \"10 ms\", gravity = [0, 0, -9.81] }\n"));
+    const Model model(bar(sagging));
     Stepper stepper(model);
     State state = stepper.rest();
     Inputs inputs = state.inputs();

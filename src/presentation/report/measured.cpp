@@ -48,8 +48,7 @@ Result<std::vector<Columns>> read_header(const CsvTable& table, const std::vecto
             auto of = std::find_if(found.begin(), found.end(), [&](const Columns& f) { return f.marker == marker; });
             if (of == found.end()) of = found.insert(found.end(), Columns{marker, {}});
             if (of->at[axis])
-                return input_error("{}: there are two columns \"{}\"", table.place(table.header_line),
-                                   table.columns[c]);
+                return input_error_at(table.file, table.header_line, "there are two columns \"{}\"", table.columns[c]);
             of->at[axis] = c;
         }
     }
@@ -62,8 +61,8 @@ Result<std::vector<Columns>> read_header(const CsvTable& table, const std::vecto
 Status check_rows(const CsvTable& table) {
     for (const CsvRow& row : table.rows)
         if (row.cells.size() > table.columns.size())
-            return input_error("{}: {} columns, the first line names {}", table.place(row.line), row.cells.size(),
-                               table.columns.size());
+            return input_error_at(table.file, row.line, "{} columns, the first line names {}", row.cells.size(),
+                                  table.columns.size());
     return {};
 }
 

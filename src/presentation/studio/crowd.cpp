@@ -6,23 +6,22 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <filesystem>
 #include <functional>
 #include <optional>
-#include <system_error>
 #include <vector>
+
+#include "presentation/studio/own_sockets.hpp"
 
 namespace pliant::studio {
 namespace {
 
 constexpr std::chrono::milliseconds between_looks{100};
 
-/// Either end of a connected TCP socket.
-std::optional<Caller> end_of_socket(int file, decltype(&getpeername) which) {
+/// The other end of a connected TCP socket.
+std::optional<Caller> caller_of(int file) {
     sockaddr_storage address{};
     socklen_t length = sizeof address;
-    if (which(file, reinterpret_cast<sockaddr*>(&address), &length) != 0) return std::nullopt;
-    if (address.ss_family != AF_INET && address.ss_family != AF_INET6) return std::nullopt;
+    if (getpeername(file, reinterpret_cast<sockaddr*>(&address), &length) != 0) return std::nullopt;
     std::array<char, NI_MAXHOST> host{};
     std::array<char, NI_MAXSERV> port{};
     if (getnameinfo(reinterpret_cast<const sockaddr*>(&address), length, host.data(), host.size(), port.data(),
@@ -36,15 +35,8 @@ std::optional<Caller> end_of_socket(int file, decltype(&getpeername) which) {
 
 std::map<Caller, int> callers(int port) {
     std::map<Caller, int> found;
-    std::error_code error;
-    std::filesystem::directory_iterator files("/proc/self/fd", error);
-    for (; !error && files != std::filesystem::directory_iterator(); files.increment(error)) {
-        const std::string name = files->path().filename().string();
-        int file = -1;
-        std::from_chars(name.data(), name.data() + name.size(), file);
-        const std::optional<Caller> own = end_of_socket(file, getsockname);
-        if (!own || own->second != port) continue;
-        if (std::optional<Caller> caller = end_of_socket(file, getpeername)) found.emplace(std::move(*caller), file);
+    for (const int file : sockets_at(port)) {
+        if (std::optional<Caller> caller = caller_of(file)) found.emplace(std::move(*caller), file);
     }
     return found;
 }

@@ -9,6 +9,7 @@
 #include "geometry/files/tet_file.hpp"
 #include "geometry/mesher/mesher.hpp"
 #include "geometry/shapes/flat_faces.hpp"
+#include "geometry/shapes/overlap_note.hpp"
 #include "robot/bodies/body_surface.hpp"
 #include "robot/bodies/crossed_notches.hpp"
 #include "robot/description/regions.hpp"
@@ -368,10 +369,7 @@ std::vector<std::string> overlap_notes(const Robot& robot, const Progress& progr
             if (later == nullptr || !boxes_overlap(mesh::bounds(*own), mesh::bounds(*later))) continue;
             const double volume = overlap_of(without_air(*own, air), without_air(*later, air));
             if (volume <= least_overlap(*own, *later)) continue;
-            notes.push_back(
-                fmt::format("\"{0}\" and \"{1}\" overlap in a volume of {2:.6g} (in the file's unit, cubed), which "
-                            "belongs to \"{1}\", the later one",
-                            robot.bodies[a].name, robot.bodies[b].name, volume));
+            notes.push_back(mesh::overlap_note(robot.bodies[a].name, robot.bodies[b].name, volume));
         }
     }
     return notes;
