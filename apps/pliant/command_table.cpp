@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "base/core/json.hpp"
 #include "presentation/studio/examples.hpp"
 #include "robot/file/material_library.hpp"
 
@@ -105,7 +106,7 @@ CommandEntry command_table(const CLI::App& program) {
 }
 
 std::string table_json(const CommandEntry& table) {
-    return table_entry(table).dump(1);
+    return json_text(table_entry(table), 1);
 }
 
 }  // namespace pliant::app

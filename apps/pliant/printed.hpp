@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/core/json.hpp"
+
 namespace pliant::app {
 
 /// On one line: control characters, as a file's name or a table's cell may hold, are written as \x1b, \n and the like,
@@ -14,12 +16,6 @@ namespace pliant::app {
 [[nodiscard]] std::string one_line(std::string_view text);
 /// The same for a text of several lines, which stay.
 [[nodiscard]] std::string visible_lines(std::string_view text);
-
-/// `indent`: -1 for one line. Bytes that are not UTF-8, as in the name of a file, are replaced.
-template <class Json>
-[[nodiscard]] std::string json_text(const Json& json, int indent = 1) {
-    return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
 
 template <class Json>
 void print_json(const Json& json, int indent = 1) {

@@ -8,6 +8,7 @@
 
 #include "base/core/counted.hpp"
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
@@ -92,7 +93,7 @@ void print_job_json(const SliceOptions& options, const job::Manifest& manifest, 
                                  {"materials", materials},
                                  {"notes", notes},
                                  {"warnings", manifest.warnings},
-                                 {"plan", nlohmann::json::parse(plan::plan_json(plan))}};
+                                 {"plan", parse_json(plan::plan_json(plan))}};
     print_json(json);
 }
 

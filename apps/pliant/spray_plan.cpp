@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "interrupt.hpp"
 #include "presentation/print_report/wash_picture.hpp"
 #include "printing/twin/runs.hpp"
@@ -76,7 +77,7 @@ Result<std::optional<SprayResult>> look_at_spray(const SprayOrder& order, const 
 std::string with_spray(const std::string& plan_json, const std::optional<SprayResult>& spray) {
     if (!spray) return plan_json;
     const auto rounded = [](double value) { return std::round(value * 1e6) / 1e6; };
-    auto json = nlohmann::ordered_json::parse(plan_json);
+    auto json = parse_ordered_json(plan_json);
     json["spray"] = {{"removed", rounded(spray->removed)},
                      {"unseen", rounded(spray->unseen)},
                      {"seconds", rounded(spray->seconds)},
@@ -86,7 +87,7 @@ std::string with_spray(const std::string& plan_json, const std::optional<SprayRe
         json["spray"]["solution_ml"] = rounded(*spray->now_ml);
         json["spray"]["solution_ml_before"] = rounded(*spray->before_ml);
     }
-    return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    return json_text(json, 1) + "\n";
 }
 
 std::string spray_text(const std::optional<SprayResult>& spray) {

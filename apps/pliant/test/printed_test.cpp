@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
+#include <string>
 
 using namespace pliant::app;
 
@@ -16,11 +16,6 @@ TEST_CASE("an error is one line, and no control character reaches the terminal")
                    "1m") == "a\\u009b1m");  // a control sequence of one character
     CHECK(one_line("\xff\xc2") == "\xff\xc2");
     CHECK(visible_lines("one\ntwo\x1b") == "one\ntwo\\x1b");
-}
-
-TEST_CASE("names that are not UTF-8 are printed as JSON all the same") {
-    CHECK(json_text(nlohmann::json{{"file", "a\xff.toml"}}, -1) == "{\"file\":\"a\xef\xbf\xbd.toml\"}");
-    CHECK(json_text(nlohmann::ordered_json{{"b", 1}, {"a", 2}}) == "{\n \"b\": 1,\n \"a\": 2\n}");
 }
 
 TEST_CASE("work that is cancelled by a signal prints JSON too") {

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "geometry/mesh/mesh_report.hpp"
 
 namespace pliant::mesh {
@@ -30,7 +31,7 @@ std::string report_json(const MeshReport& report) {
     for (const RegionReport& region : report.regions)
         out["regions"].push_back({{"name", region.name}, {"tets", region.tets}, {"volume", region.volume}});
     out["notes"] = report.notes;
-    return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    return json_text(out, 2);
 }
 
 }  // namespace pliant::mesh

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 #include "base/zip/zip_file.hpp"
 #include "loop/study/npy.hpp"
 #include "loop/study/values.hpp"
@@ -225,7 +226,7 @@ std::string summary_json(const Plan& plan, const Collected& rows, const std::vec
                                  {"results", results},
                                  {"failures", failures},
                                  {"accounts", account_json(rows, account)}};
-    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    return json_text(json, 2) + "\n";
 }
 
 Status write_outcome(const Plan& plan, const fs::path& folder, const Collected& rows,

@@ -4,6 +4,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
+
 namespace pliant::study {
 namespace {
 
@@ -127,12 +129,12 @@ std::string plan_json(const Plan& plan) {
                                  {"row_limit_s", plan.row_limit_s},
                                  {"rows_per_chunk", plan.rows_per_chunk},
                                  {"slurm", slurm_json(plan.slurm)}};
-    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    return json_text(json) + "\n";
 }
 
 Result<Plan> parse_plan(std::string_view text, const std::string& file) {
     try {
-        Plan plan = plan_of(nlohmann::json::parse(text));
+        Plan plan = plan_of(parse_json(text));
         if (!fits_together(plan)) return input_error("{}: its rows and keys do not fit together", file);
         return plan;
     } catch (const nlohmann::json::exception&) {

@@ -12,6 +12,7 @@
 
 #include "base/core/digest.hpp"
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 
 namespace pliant::study {
 namespace {
@@ -30,7 +31,7 @@ std::string with_checksum(const std::string& text) {
 }
 
 std::string line_of(const nlohmann::json& json) {
-    return with_checksum(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    return with_checksum(json_text(json));
 }
 
 /// The text after the checksum, if that is correct.
@@ -81,7 +82,7 @@ public:
 
 private:
     bool understood(std::string_view text) try {
-        const auto json = nlohmann::json::parse(text);
+        const auto json = parse_json(text);
         if (json.contains("task")) {
             found_.tasks.push_back(task_of(json));
             return true;

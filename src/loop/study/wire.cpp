@@ -8,6 +8,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
+
 namespace pliant::study {
 namespace {
 
@@ -16,7 +18,7 @@ constexpr std::uint32_t longest = 64U << 20;
 }  // namespace
 
 bool send_message(int file, const nlohmann::json& message) {
-    const std::string text = message.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    const std::string text = json_text(message);
     const auto size = static_cast<std::uint32_t>(text.size());
     std::string bytes(sizeof size, '\0');
     std::memcpy(bytes.data(), &size, sizeof size);
@@ -47,7 +49,7 @@ std::optional<nlohmann::json> Inbox::take() {
     std::memcpy(&size, come_.data(), sizeof size);
     failed_ = size > longest;
     if (failed_ || come_.size() < sizeof size + size) return std::nullopt;
-    auto message = nlohmann::json::parse(come_.substr(sizeof size, size), nullptr, false);
+    auto message = parse_json(come_.substr(sizeof size, size));
     come_.erase(0, sizeof size + size);
     failed_ = message.is_discarded();
     if (failed_) return std::nullopt;

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/file_handle.hpp"
+#include "base/core/json.hpp"
 #include "base/core/stopwatch.hpp"
 #include "loop/study/failure.hpp"
 #include "loop/study/json_path.hpp"
@@ -42,7 +43,7 @@ public:
     explicit Reading(const std::vector<JsonPath>& paths) : paths_(paths), values(nlohmann::json::array()) {}
 
     void read(const std::string& output) {
-        json = nlohmann::json::parse(output, nullptr, false);
+        json = parse_json(output);
         readable = !json.is_discarded();
         for (const JsonPath& path : paths_) {
             const Result<double> number = readable ? path.number_in(json) : Result<double>(0.0);

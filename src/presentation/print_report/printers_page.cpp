@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/base64.hpp"
+#include "base/core/json.hpp"
 #include "presentation/draw/plot.hpp"
 #include "presentation/report/html.hpp"
 #include "printing/machine/cleaning_data.hpp"
@@ -287,7 +288,7 @@ std::string printers_json(const std::vector<Printer>& printers) {
                         {"packing", rounded(f.packing)},
                         {"store_mm", rounded(f.store_mm)}});
     }
-    return list.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(list, 1) + "\n";
 }
 
 std::string printers_text(const std::vector<Printer>& printers) {

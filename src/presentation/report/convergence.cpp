@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "presentation/draw/plot.hpp"
 #include "presentation/report/tables.hpp"
 
@@ -82,7 +83,7 @@ std::string comparison_json(std::span<const SolverRow> rows) {
                        {"difference_mm", row.difference_mm},
                        {"message", row.message}});
     }
-    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(out, 2) + "\n";
 }
 
 std::string comparison_csv(std::span<const SolverRow> rows) {
@@ -141,7 +142,7 @@ std::string iterations_json(const sim::Trajectory& result) {
         }
         out["rows"].push_back(Json::array({i, index, records[i].residual}));
     }
-    return out.dump();
+    return json_text(out);
 }
 
 }  // namespace pliant::report

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "presentation/draw/tube.hpp"
 
 namespace pliant::report {
@@ -224,7 +225,7 @@ void append_u32(std::string& out, std::size_t value) {
 }
 
 std::string glb(const Json& document, std::string binary) {
-    std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string text = json_text(document);
     text.append((4 - text.size() % 4) % 4, ' ');
     binary.append((4 - binary.size() % 4) % 4, '\0');
     std::string out = "glTF";

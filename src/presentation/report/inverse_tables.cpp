@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "base/core/json.hpp"
 #include "presentation/report/tables.hpp"
 #include "presentation/report/units.hpp"
 #include "simulation/model/model.hpp"
@@ -180,7 +181,7 @@ std::string inverse_json(const InverseReport& r, int indent) {
                 {"message", r.result.message},   {"notes", r.result.notes}};
     out["waypoints"] = Json::array();
     for (std::size_t k = 0; k < r.result.waypoints.size(); ++k) out["waypoints"].push_back(waypoint_json(r, k));
-    return out.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(out, indent) + "\n";
 }
 
 std::string waypoints_csv(const InverseReport& r) {

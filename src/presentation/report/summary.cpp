@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "base/core/json.hpp"
 #include "presentation/report/units.hpp"
 
 namespace pliant::report {
@@ -111,7 +112,7 @@ std::string summary_json(const Simulation& s, int indent) {
     }
     out["timing"] = timing_json(s);
     out["peak_memory_MB"] = s.peak_memory_MB;
-    return out.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(out, indent) + "\n";
 }
 
 }  // namespace pliant::report

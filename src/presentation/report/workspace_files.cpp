@@ -7,6 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "base/core/vec3.hpp"
 #include "presentation/report/inverse_tables.hpp"
 #include "presentation/report/tables.hpp"
@@ -133,7 +134,7 @@ std::string workspace_json(const WorkspaceReport& r, int indent) {
         const Vec3 low = mm_per_m * boxes[m].low, high = mm_per_m * boxes[m].high;
         out["markers"][markers[m].name] = {{"low_mm", {low.x, low.y, low.z}}, {"high_mm", {high.x, high.y, high.z}}};
     }
-    return out.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(out, indent) + "\n";
 }
 
 mesh::TriMesh workspace_surface(const Workspace& workspace, std::size_t marker) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "base/core/share.hpp"
 #include "presentation/scene/actuator_kind.hpp"
 #include "simulation/run/describe.hpp"
@@ -246,7 +247,7 @@ std::string Scene::head() const {
                        {"nodes", model_.node_count()},
                        {"tets", model_.mesh().tet_count()},
                        {"order", model_.mesh().order}};
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return json_text(json);
 }
 
 std::string Scene::packet(const std::string& extra) const {
@@ -335,7 +336,7 @@ std::string Scene::obstacle_offsets(double time, std::span<const Vec3> positions
         const Vec3 to = mm * origin.points_at(0).front();
         offsets.push_back({to.x, to.y, to.z, q[1], q[2], q[3], q[0]});
     }
-    return offsets.dump();
+    return json_text(offsets);
 }
 
 }  // namespace pliant::view

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "base/core/json.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/print_session.hpp"
 #include "printing/job/manifest.hpp"
@@ -94,15 +95,15 @@ std::string job_json(const OpenJob& open, bool saved) {
                  {"key", open.key},
                  {"file", open.file.filename().string()},
                  {"saved", saved},
-                 {"manifest", Json::parse(job::to_json(manifest))},
+                 {"manifest", parse_json(job::to_json(manifest))},
                  {"colours", open.origin.colours},
                  {"issues", issues_json(manifest)},
-                 {"projector", Json::parse(projector_json(p.projector))},
+                 {"projector", parse_json(projector_json(p.projector))},
                  {"platform", {{"width_mm", p.platform.width_um / 1e3}, {"depth_mm", p.platform.depth_um / 1e3}}},
-                 {"source", open.origin.source.empty() ? Json(nullptr) : Json::parse(open.origin.source)},
+                 {"source", open.origin.source.empty() ? Json(nullptr) : parse_json(open.origin.source)},
                  {"printer", p.name}};
     if (plan) {
-        json["plan"] = Json::parse(plan::plan_json(*plan));
+        json["plan"] = parse_json(plan::plan_json(*plan));
         json["swap"] = swap_json(*plan, p);
     } else {
         json["plan_error"] = plan.error().message;

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "printing/job/manifest.hpp"
 
@@ -50,7 +51,7 @@ std::string JobUnderWay::json() const {
     if (kept_.empty()) return "null";
     job::Manifest manifest = head_;
     for (const auto& [number, kept] : kept_) manifest.layers.push_back(kept.layer);
-    Json listed = Json::parse(job::to_json(manifest));
+    Json listed = parse_json(job::to_json(manifest));
     std::size_t i = 0;
     for (const auto& [number, kept] : kept_) listed["layers"][i++]["number"] = number;
     return dumped({{"layers", layers_}, {"count", count_}, {"colours", colours_}, {"manifest", std::move(listed)}});

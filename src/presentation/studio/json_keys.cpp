@@ -1,5 +1,7 @@
 #include "presentation/studio/json_keys.hpp"
 
+#include "base/core/json.hpp"
+
 namespace pliant::studio {
 namespace {
 
@@ -26,13 +28,13 @@ bool nested_too_deep(std::string_view text) {
 }  // namespace
 
 bool is_object(std::string_view text) {
-    return !nested_too_deep(text) && nlohmann::json::parse(text, nullptr, false).is_object();
+    return !nested_too_deep(text) && parse_json(text).is_object();
 }
 
 Result<nlohmann::json> parse_object(const char* what, std::string_view text, std::size_t longest) {
     if (text.size() > longest) return input_error("{}: over {} bytes", what, longest);
     if (nested_too_deep(text)) return input_error("{}: nested too deep", what);
-    nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+    nlohmann::json json = parse_json(text);
     if (!json.is_object()) return input_error("{}: a JSON object is needed", what);
     return json;
 }

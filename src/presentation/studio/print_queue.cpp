@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "printing/job/job.hpp"
 #include "printing/operate/job_file.hpp"
@@ -18,7 +19,7 @@ using Json = nlohmann::json;
 std::optional<double> planned_s(const job::Archive& archive) {
     const Result<std::string> text = archive.file("plan.json");
     if (!text) return std::nullopt;
-    const Json plan = Json::parse(*text, nullptr, false);
+    const Json plan = parse_json(*text);
     if (!plan.is_object() || !plan.contains("seconds") || !plan["seconds"].is_object()) return std::nullopt;
     const Json total = plan["seconds"].value("total", Json());
     if (!total.is_number()) return std::nullopt;
@@ -55,7 +56,7 @@ void PrintQueue::read() {
     constexpr std::uintmax_t largest = 1 << 20;
     const Result<std::string> text = read_file(folder_.path() / file_name, largest);
     if (!text) return;
-    const Json json = Json::parse(*text, nullptr, false);
+    const Json json = parse_json(*text);
     if (!json.is_object() || !json.contains("jobs") || !json["jobs"].is_array()) return;
     for (const Json& name : json["jobs"]) {
         if (name.is_string() && jobs_.size() < most_jobs) jobs_.push_back(name.get<std::string>());
@@ -89,8 +90,7 @@ Status PrintQueue::replace(std::vector<std::string> jobs) {
 }
 
 Status PrintQueue::write(const std::vector<std::string>& jobs) const {
-    return write_file(folder_.path() / file_name,
-                      Json{{"jobs", jobs}}.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    return write_file(folder_.path() / file_name, json_text(Json{{"jobs", jobs}}, 1) + "\n");
 }
 
 void PrintQueue::begun(const std::string& job) {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "presentation/studio/access.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/growing_part.hpp"
@@ -103,7 +104,7 @@ bool is_over(const std::filesystem::path& path) {
 
 /// The command of a request to the host's control, "" if it has none.
 std::string command_of(std::string_view body) {
-    const Json json = Json::parse(body, nullptr, false);
+    const Json json = parse_json(body);
     return json.is_object() && json.contains("command") && json["command"].is_string()
                ? json["command"].get<std::string>()
                : "";
@@ -222,7 +223,7 @@ std::string PrintSession::verdict() const {
     const auto block = machine ? finished_block(*machine) : nullptr;
     if (!block) return "null";
     return dumped(
-        {{"passed", block->report.passed}, {"reasons", Json::parse(twin::report_json(block->report))["reasons"]}});
+        {{"passed", block->report.passed}, {"reasons", parse_json(twin::report_json(block->report))["reasons"]}});
 }
 
 /// Null: the print is not complete, or on a real machine.
@@ -474,7 +475,7 @@ std::string PrintSession::describe() const {
                              {"colour", m < machine->order.colours.size() ? machine->order.colours[m] : ""}});
     }
     long last = 0;
-    const Json history = Json::parse(host::history_message(machine->control, last));
+    const Json history = parse_json(host::history_message(machine->control, last));
     return dumped({{"machine", printer_json(machine->ready.printer)},
                    {"twin", machine->twin != nullptr},
                    {"device", machine->device},

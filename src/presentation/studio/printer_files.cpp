@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 #include "base/core/toml_edit.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
@@ -154,7 +155,7 @@ std::string printer_setup_json(const std::string& name, const machine::Printer& 
                     {{"width_mm", mm(p.platform.width_um)},
                      {"depth_mm", mm(p.platform.depth_um)},
                      {"height_mm", mm(p.platform.build_height_um)}}},
-                   {"projector", Json::parse(projector_json(p.projector))}});
+                   {"projector", parse_json(projector_json(p.projector))}});
 }
 
 std::string built_in_printers_json() {

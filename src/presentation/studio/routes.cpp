@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "base/core/json.hpp"
 #include "presentation/studio/studio.hpp"
 
 namespace pliant::studio {
@@ -82,7 +83,7 @@ std::string open_api(const std::vector<Route>& routes, const std::string& versio
           {"version", version},
           {"description", "Frames and live input go over the WebSocket at /live: docs/reference/studio.md"}}},
         {"paths", paths}};
-    return json.dump(1);
+    return json_text(json, 1);
 }
 
 }  // namespace pliant::studio

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "base/core/toml_edit.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/json_toml.hpp"
@@ -17,7 +18,7 @@ namespace {
 using Json = nlohmann::json;
 
 Response set_values(Studio& studio, const Request& request) {
-    const Json json = Json::parse(request.body, nullptr, false);
+    const Json json = parse_json(request.body);
     if (!json.is_object() || !json.contains("changes") || !json["changes"].is_array() || json["changes"].empty() ||
         json["changes"].size() > most_changes)
         return error_response(422, "changes: a list of 1 to 256 is needed, each with key and value");
@@ -33,7 +34,7 @@ Response set_values(Studio& studio, const Request& request) {
 }
 
 Response add_entry(Studio& studio, const Request& request) {
-    const auto json = nlohmann::ordered_json::parse(request.body, nullptr, false);
+    const auto json = parse_ordered_json(request.body);
     if (!json.is_object() || !json.contains("list") || !json["list"].is_string() || !json.contains("entry") ||
         !json["entry"].is_object() || json["entry"].empty())
         return error_response(422, "list and entry are needed: its keys and their values");

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
 #include "presentation/studio/job_json.hpp"
@@ -114,7 +115,7 @@ Response download(Studio& studio, const Request&) {
 }
 
 Response save(Studio& studio, const Request& request) {
-    const Json json = Json::parse(request.body, nullptr, false);
+    const Json json = parse_json(request.body);
     const std::string name =
         json.is_object() && json.contains("name") && json["name"].is_string() ? json["name"].get<std::string>() : "";
     const Result<std::filesystem::path> path = studio.folder().resolve(name);
@@ -169,7 +170,7 @@ Result<SliceOrder> read_order(Studio& studio, const Request& request) {
             return input_error("robot: names a file outside of the project folder");
     }
     order->inputs = {d.file.filename().string()};
-    std::string source = *own ? "" : dumped({{"robot", job::sha256_hex(d.text)}, {"order", Json::parse(request.body)}});
+    std::string source = *own ? "" : dumped({{"robot", job::sha256_hex(d.text)}, {"order", parse_json(request.body)}});
     return SliceOrder{d.text, d.file, std::move(*printer), std::move(*order), std::move(source)};
 }
 

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "presentation/print_report/print_report.hpp"
 #include "presentation/studio/journal_names.hpp"
 #include "presentation/studio/journal_view.hpp"
@@ -14,7 +15,7 @@ namespace {
 using Json = nlohmann::json;
 
 double speed_of(const Request& request) {
-    const Json json = Json::parse(request.body, nullptr, false);
+    const Json json = parse_json(request.body);
     return json.is_object() && json.contains("speed") && json["speed"].is_number() ? json["speed"].get<double>() : 1;
 }
 
@@ -35,7 +36,7 @@ Response take_port(Studio& studio, const Request& request) {
     if (!job) return error_response(404, no_job_text);
     if (!studio.folder().holds(job->file))
         return error_response(409, "save the job into the folder first: the print journal is stored next to it");
-    const Json json = Json::parse(request.body, nullptr, false);
+    const Json json = parse_json(request.body);
     const auto text = [&](const char* key) {
         return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
     };
@@ -97,7 +98,7 @@ Response report_page(Studio& studio, const Request& request) {
 }
 
 Response set_door(Studio& studio, const Request& request) {
-    const Json json = Json::parse(request.body, nullptr, false);
+    const Json json = parse_json(request.body);
     if (!json.is_object() || !json.contains("open") || !json["open"].is_boolean())
         return error_response(422, "{\"open\": true or false} is needed");
     return done(studio.print().set_door(json["open"].get<bool>()));
@@ -133,7 +134,7 @@ Response printed_image(Studio& studio, const Request& request) {
 
 /// Removes a started print from the queue.
 void leave_queue(Studio& studio, const std::string& body) {
-    const Json json = Json::parse(body, nullptr, false);
+    const Json json = parse_json(body);
     if (!json.is_object() || json.value("command", Json()) != "start") return;
     const std::filesystem::path job = studio.print().files().job;
     if (studio.folder().holds(job))
@@ -141,7 +142,7 @@ void leave_queue(Studio& studio, const std::string& body) {
 }
 
 Response set_queue(Studio& studio, const Request& request) {
-    const Json json = Json::parse(request.body, nullptr, false);
+    const Json json = parse_json(request.body);
     const auto is_text = [](const Json& name) { return name.is_string(); };
     if (!json.is_object() || !json.contains("jobs") || !json["jobs"].is_array() ||
         !std::all_of(json["jobs"].begin(), json["jobs"].end(), is_text))

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
 #include "presentation/studio/job_json.hpp"
@@ -44,12 +45,12 @@ Response text(Studio& studio, const Request& request) {
 }
 
 Response make(Studio& studio, const Request& request) {
-    const Json json = Json::parse(request.body, nullptr, false);
+    const Json json = parse_json(request.body);
     return done(new_printer(studio.folder(), text_at(json, "from"), text_at(json, "name")));
 }
 
 Response change(Studio& studio, const Request& request) {
-    const Json json = Json::parse(request.body, nullptr, false);
+    const Json json = parse_json(request.body);
     if (!json.is_object() || !json.contains("changes") || !json["changes"].is_array() || json["changes"].empty() ||
         json["changes"].size() > most_changes)
         return error_response(422, "changes: a list of 1 to 256 is needed, each with key and value");
@@ -64,7 +65,7 @@ Response change(Studio& studio, const Request& request) {
 
 /// Queries the board at a port. Nothing moves: only questions are asked. Refused while a machine is connected.
 Response probe(Studio& studio, const Request& request) {
-    const Json json = Json::parse(request.body, nullptr, false);
+    const Json json = parse_json(request.body);
     const auto file = read_printer(studio.folder(), text_at(json, "name"));
     if (!file) return error_response(file.error());
     if (!studio.print().files().job.empty()) return error_response(409, "a machine is connected: disconnect it first");
@@ -77,7 +78,7 @@ Response probe(Studio& studio, const Request& request) {
 }
 
 Response show_pattern(Studio& studio, const Request& request) {
-    const Json json = Json::parse(request.body, nullptr, false);
+    const Json json = parse_json(request.body);
     const auto file = read_printer(studio.folder(), text_at(json, "name"));
     if (!file) return error_response(file.error());
     ProjectorSession::Order order{text_at(json, "projector"), text_at(json, "pattern"),
@@ -104,7 +105,7 @@ Response test_pattern(Studio& studio, const Request& request) {
 
 /// Converts distances measured on the pattern "border" to the pixel size.
 Response measured(Studio& studio, const Request& request) {
-    const Json json = Json::parse(request.body, nullptr, false);
+    const Json json = parse_json(request.body);
     const auto file = read_printer(studio.folder(), text_at(json, "name"));
     if (!file) return error_response(file.error());
     const machine::Projector& p = file->printer.projector;

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
 #include "presentation/studio/studio.hpp"
@@ -13,7 +14,7 @@ using Json = nlohmann::json;
 
 /// The text under `key` in the JSON body; "" if missing.
 std::string body_text(const Request& request, const char* key) {
-    const Json json = Json::parse(request.body, nullptr, false);
+    const Json json = parse_json(request.body);
     if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return "";
     return json[key].get<std::string>();
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/core/json.hpp"
 #include "presentation/report/identified.hpp"
 #include "presentation/report/inverse_tables.hpp"
 #include "presentation/report/workspace_files.hpp"
@@ -29,7 +30,7 @@ Result<SearchResult> found_inputs(const Built& built, const sim::InverseTask& ta
     sim::Stepper stepper(built.model, stepping);
     const sim::inverse::InverseResult found = sim::inverse::follow(stepper, task, {}, progress);
     if (found.cancelled) return tl::unexpected(cancelled());
-    Json json = Json::parse(report::inverse_json({built.robot.name, built.model, task, found}));
+    Json json = parse_json(report::inverse_json({built.robot.name, built.model, task, found}));
     return SearchResult{dumped({{"kind", "goal"}, {"revision", built.revision}, {"found", std::move(json)}})};
 }
 
@@ -60,7 +61,7 @@ Result<SearchResult> identified(const Built& built, const IdentifyOrder& order, 
     const auto found =
         sim::identify::identify(source_of(built.source, std::move(*mesh)), *unknowns, *measurements, progress);
     if (!found) return tl::unexpected(found.error());
-    Json json = Json::parse(sim::identify::identification_json(*found));
+    Json json = parse_json(sim::identify::identification_json(*found));
     for (const sim::identify::Found& one : found->found) {
         const auto text = [&](double value) { return one.unknown.shown(value); };
         json["shown"].push_back({{"start", text(one.unknown.value)},
@@ -111,7 +112,7 @@ Result<SearchResult> workspace_found(const Built& built, const sim::InverseTask&
     if (!found) return tl::unexpected(found.error());
     if (found->cancelled) return tl::unexpected(cancelled());
     const report::WorkspaceReport report{built.robot.name, built.model, task, *found};
-    const Json summary = Json::parse(report::workspace_json(report));
+    const Json summary = parse_json(report::workspace_json(report));
     if (summary["found"] == 0) return failure("no equilibrium was found within these ranges");
     Json reach = Json::array();
     for (std::size_t m = 0; m < built.model.description().markers.size(); ++m) reach.push_back(reach_of(report, m));
@@ -167,7 +168,7 @@ Status SearchSession::sweep(std::shared_ptr<const Built> built, SweepOrder order
         const Result<Sweep> found = run_sweep(built->source, order, progress);
         if (!found) return Result<SearchResult>(tl::unexpected(found.error()));
         return Result<SearchResult>(SearchResult{dumped(
-            {{"kind", "sweep"}, {"revision", built->revision}, {"found", Json::parse(sweep_json(order, *found))}})});
+            {{"kind", "sweep"}, {"revision", built->revision}, {"found", parse_json(sweep_json(order, *found))}})});
     });
 }
 
@@ -176,7 +177,7 @@ Status SearchSession::run_motion(std::shared_ptr<const Built> built) {
         auto motion = Motion::run(built, progress);
         if (!motion) return Result<SearchResult>(tl::unexpected(motion.error()));
         SearchResult result{
-            dumped({{"kind", "motion"}, {"revision", built->revision}, {"found", Json::parse((*motion)->json())}})};
+            dumped({{"kind", "motion"}, {"revision", built->revision}, {"found", parse_json((*motion)->json())}})};
         result.motion = std::move(*motion);
         return Result<SearchResult>(std::move(result));
     });

@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/core/json.hpp"
 #include "presentation/studio/actuator_drive.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/millimetres.hpp"
@@ -627,7 +628,7 @@ std::string SimulationSession::frame_head(const sim::Step& step, const About& ab
         const Vec3 force = about.pull_force_N;
         json["pull"] = {{"vertex", about.pulled_vertex}, {"force_N", Json::array({force.x, force.y, force.z})}};
     }
-    if (hand_->led()) json["lead"] = Json::parse(hand_->led()->json());
+    if (hand_->led()) json["lead"] = parse_json(hand_->led()->json());
     std::string text = dumped(json);
     text.insert(text.size() - 1, fmt::format(R"(,"wanted":{},"obstacles":{})", wanted_json(),
                                              built_->scene.obstacle_offsets(step.time, step.positions)));

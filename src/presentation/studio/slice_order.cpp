@@ -4,6 +4,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
+
 namespace pliant::studio {
 namespace {
 
@@ -131,7 +133,7 @@ Status take(const std::string& key, const Json& value, Order& order) {
 }  // namespace
 
 Result<Order> read_slice_order(std::string_view text) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = parse_json(text);
     if (!json.is_object()) return input_error("a JSON object is needed");
     Order order;
     for (const auto& [key, value] : json.items()) {
@@ -141,14 +143,14 @@ Result<Order> read_slice_order(std::string_view text) {
 }
 
 Result<std::optional<std::string>> robot_text_of(std::string_view text) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = parse_json(text);
     if (!json.is_object() || !json.contains("robot")) return std::nullopt;
     if (!json["robot"].is_string()) return input_error("robot: the text of a robot file is needed");
     return json["robot"].get<std::string>();
 }
 
 Result<std::string> printer_name_of(std::string_view text) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = parse_json(text);
     if (!json.is_object()) return input_error("a JSON object is needed");
     if (!json.contains("printer")) return std::string("tower");
     if (!json["printer"].is_string()) return input_error("--printer: the name of a printer is needed");

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
+
 namespace pliant::host {
 namespace {
 
@@ -97,17 +99,17 @@ std::string message(const Control& control, std::string_view kind, long& last_ev
                           {"machine", machine_json(s)},
                           {"events", list}};
     // Names and messages may contain any bytes.
-    return json{{std::string(kind), content}}.dump(-1, ' ', false, json::error_handler_t::replace);
+    return json_text(json{{std::string(kind), content}});
 }
 
 // Requests.
 
 ApiAnswer with(const json& content) {
-    return {200, content.dump(-1, ' ', false, json::error_handler_t::replace)};
+    return {200, json_text(content)};
 }
 
 ApiAnswer refusal(int status, std::string_view why) {
-    return {status, json{{"error", why}}.dump(-1, ' ', false, json::error_handler_t::replace)};
+    return {status, json_text(json{{"error", why}})};
 }
 
 /// Bad input is a bad request; what the present state forbids is a conflict.
@@ -293,7 +295,7 @@ constexpr std::array<Route, 13> routes = {{{"GET", "/api/job", get_job},
 }  // namespace
 
 ApiAnswer handle_api(Control& control, std::string_view method, std::string_view path, std::string_view body) {
-    json parsed = body.empty() ? json::object() : json::parse(body, nullptr, false);
+    json parsed = body.empty() ? json::object() : parse_json(body);
     bool path_known = false;
     for (const Route& route : routes) {
         if (route.path != path) continue;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
+
 namespace pliant::job {
 namespace {
 
@@ -19,7 +21,7 @@ std::string one_line(std::string text) {
 }
 
 std::string json_text(const Ordered& value) {
-    return value.dump(1, ' ', false, Ordered::error_handler_t::replace) + "\n";
+    return json_text(value, 1) + "\n";
 }
 
 /// A line of info.json.

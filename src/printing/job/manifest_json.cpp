@@ -2,6 +2,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "printing/job/manifest.hpp"
 
 namespace pliant::job {
@@ -187,7 +188,7 @@ Result<Json> parse(std::string_view text, std::string_view where) {
         return depth <= max_depth;
     };
     try {
-        Json root = Json::parse(text, shallow);
+        Json root = parse_json(text, shallow);
         if (too_deep) return input_error("{}: nested deeper than {} levels", where, max_depth);
         return root;
     } catch (const Json::exception& e) {
@@ -259,7 +260,7 @@ std::string to_json(const Manifest& m) {
     }
     Ordered& layers = root["layers"] = Ordered::array();
     for (const Layer& layer : m.layers) layers.push_back(layer_json(layer));
-    return root.dump(1, ' ', false, Ordered::error_handler_t::replace) + "\n";
+    return json_text(root, 1) + "\n";
 }
 
 Result<Manifest> manifest_from_json(std::string_view text, std::string_view where) {

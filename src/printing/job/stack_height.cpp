@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "base/core/json.hpp"
+
 namespace pliant::job {
 namespace {
 
@@ -51,11 +53,11 @@ Values xml_values(std::string_view text, std::string_view key) {
 
 /// The member of a JSON object; none if the text is not JSON.
 Values json_values(std::string_view text, std::string_view key) {
-    const auto json = nlohmann::json::parse(text, nullptr, false);
+    const auto json = parse_json(text);
     if (!json.is_object()) return {};
     const auto found = json.find(key);
     if (found == json.end()) return {};
-    return {std::string(trimmed(found->dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)))};
+    return {std::string(trimmed(json_text(found)))};
 }
 
 struct Source {

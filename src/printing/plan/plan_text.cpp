@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/counted.hpp"
+#include "base/core/json.hpp"
 #include "printing/plan/plan.hpp"
 
 namespace pliant::plan {
@@ -153,7 +154,7 @@ std::string plan_json(const Plan& plan) {
                        {"vats", std::move(vats)},
                        {"order", order_json(plan)},
                        {"warnings", plan.warnings}};
-    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(json, 1) + "\n";
 }
 
 std::vector<std::string> vat_lines(const Plan& plan) {

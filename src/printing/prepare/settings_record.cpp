@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
+
 namespace pliant::job {
 namespace {
 
@@ -86,7 +88,7 @@ std::string settings_json(const JobSettings& settings, const Request& request) {
     for (const slice::Bond& b : slicing.bonds)
         root["overlap"].push_back({{"materials", {b.first, b.second}}, {"depth_px", b.depth_px}, {"layers", b.layers}});
     for (const auto& [key, value] : request.supports) root["supports"][key] = value;
-    return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(root, 1) + "\n";
 }
 
 }  // namespace pliant::job

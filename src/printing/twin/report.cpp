@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/counted.hpp"
+#include "base/core/json.hpp"
 #include "printing/twin/inspect.hpp"
 
 namespace pliant::twin {
@@ -138,7 +139,7 @@ std::string report_json(const Report& r) {
                        {"bad_lines", r.log.bad_lines},
                        {"resets", r.log.resets},
                        {"clock_s", rounded(r.clock_s)}};
-    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(json, 1) + "\n";
 }
 
 std::string report_text(const Report& r) {

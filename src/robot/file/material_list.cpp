@@ -1,6 +1,7 @@
 // Listings of the library: text and JSON.
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "robot/file/material_library.hpp"
 
 namespace pliant::robot {
@@ -91,7 +92,7 @@ std::string library_json(const std::vector<LibraryMaterial>& materials) {
                         {"source", m.source},
                         {"derivation", m.derivation}});
     }
-    return list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    return json_text(list, 2);
 }
 
 }  // namespace pliant::robot

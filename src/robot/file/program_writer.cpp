@@ -9,13 +9,14 @@
 #include <system_error>
 
 #include "base/core/error.hpp"
+#include "base/core/json.hpp"
 
 namespace pliant::robot {
 namespace {
 
 /// TOML's basic strings have the syntax of JSON strings.
 std::string quoted(const std::string& text) {
-    return nlohmann::json(text).dump();
+    return json_text(nlohmann::json(text));
 }
 
 /// Something that a key may drive: its value over the robot's own program, and its format.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "robot/description/law.hpp"
 #include "simulation/calibrate/elongation.hpp"
 #include "simulation/calibrate/fit.hpp"
@@ -95,7 +96,7 @@ std::string elongation_json(const std::vector<ElongationRow>& rows) {
     json["half_width_95"] = ratio.half_width;
     json["shape_parameter_thesis"] = material::shape_parameter_of_thesis(above_one(ratio.value));
     json["shape_parameter_small_strain"] = material::shape_parameter_small_strain(above_one(ratio.value));
-    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    return json_text(json, 2);
 }
 
 }  // namespace pliant::calibrate

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "simulation/calibrate/fit.hpp"
 
 namespace pliant::calibrate {
@@ -85,7 +86,7 @@ std::string fit_json(const Fit& fit, const TensileTest& test) {
     json["stretch"] = test.stretch;
     json["stress_Pa"] = test.stress_Pa;
     json["fitted_stress_Pa"] = fit.stress_Pa;
-    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    return json_text(json, 2);
 }
 
 }  // namespace pliant::calibrate

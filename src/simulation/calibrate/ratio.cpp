@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "base/linalg/dense.hpp"
 #include "simulation/peers/reference_problems.hpp"
 #include "simulation/run/simulate.hpp"
@@ -190,7 +191,7 @@ std::string ratio_json(const RatioResult& result, const RatioOptions& options) {
     }
     json["curve"] = nullptr;
     if (result.curve) json["curve"] = *result.curve;
-    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    return json_text(json, 2);
 }
 
 }  // namespace pliant::calibrate

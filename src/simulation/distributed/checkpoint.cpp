@@ -11,6 +11,7 @@
 
 #include "base/core/digest.hpp"
 #include "base/core/files.hpp"
+#include "base/core/json.hpp"
 #include "simulation/distributed/h5_file.hpp"
 #include "simulation/run/step_record.hpp"
 
@@ -156,7 +157,7 @@ Status Checkpoint::keep(const RunState& run) const {
     };
     write("x", run.now.state.x);
     for (std::size_t k = 0; k < run.past.size(); ++k) write(fmt::format("x_before_{}", k), run.past[k].state.x);
-    const std::string text = json.dump(), steps = bytes_of(run.so_far);
+    const std::string text = json_text(json), steps = bytes_of(run.so_far);
     out->write_bytes("run", text);
     out->write_bytes("steps", steps);
     out->write_bytes("digest", digest_of(text, steps));
@@ -178,7 +179,7 @@ Result<RunState> Checkpoint::read(const Program& program) const {
     if (!text) return tl::unexpected(text.error());
     const Result<std::string> steps = in->read_bytes("steps");
     if (!steps) return tl::unexpected(steps.error());
-    const Json json = Json::parse(*text, nullptr, false);
+    const Json json = parse_json(*text);
     const Json checksums = json.is_object() ? json.value("checksums", Json()) : Json();
     RunState run;
     Status status = take(json, *steps, origin_, program, system_.actuator_count(), run);

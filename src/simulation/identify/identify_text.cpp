@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/core/json.hpp"
 #include "simulation/identify/identify.hpp"
 
 namespace pliant::sim::identify {
@@ -85,7 +86,7 @@ std::string identification_json(const Identification& result) {
     json["converged"] = result.converged;
     json["assignments"] = assignments(result);
     json["warnings"] = result.warnings;
-    return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    return json_text(json, 2);
 }
 
 std::string comparison_csv(const Identification& result) {
