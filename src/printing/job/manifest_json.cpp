@@ -188,7 +188,7 @@ Result<Json> parse(std::string_view text, std::string_view where) {
         return depth <= max_depth;
     };
     try {
-        Json root = parse_json(text, shallow);
+        Json root = Json::parse(text, shallow);
         if (too_deep) return input_error("{}: nested deeper than {} levels", where, max_depth);
         return root;
     } catch (const Json::exception& e) {

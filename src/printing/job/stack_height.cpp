@@ -57,7 +57,7 @@ Values json_values(std::string_view text, std::string_view key) {
     if (!json.is_object()) return {};
     const auto found = json.find(key);
     if (found == json.end()) return {};
-    return {std::string(trimmed(json_text(found)))};
+    return {std::string(trimmed(json_text(*found)))};
 }
 
 struct Source {
