@@ -20,10 +20,6 @@ std::string one_line(std::string text) {
     return text;
 }
 
-std::string json_text(const Ordered& value) {
-    return json_text(value, 1) + "\n";
-}
-
 /// A line of info.json.
 Ordered layer_info(const ImageAreas& areas, double pixel_mm2) {
     return {{"TotalSolidArea", areas.total_px * pixel_mm2},
@@ -202,11 +198,11 @@ std::vector<NamedText> nanodlp_texts(const StackFacts& s, const std::vector<Imag
     const Ordered slicer{{"PWidth", m.width_px},   {"PHeight", m.height_px},  {"XPixelSize", pixel_mm},
                          {"YPixelSize", pixel_mm}, {"Thickness", s.layer_um}, {"ImageMirror", 0},
                          {"LayerCount", count},    {"MultiMaterial", false}};
-    return {{"meta.json", json_text(meta)},
-            {"plate.json", json_text(plate)},
-            {"profile.json", json_text(profile)},
-            {"slicer.json", json_text(slicer)},
-            {"info.json", json_text(info)}};
+    return {{"meta.json", json_text(meta, 1) + "\n"},
+            {"plate.json", json_text(plate, 1) + "\n"},
+            {"profile.json", json_text(profile, 1) + "\n"},
+            {"slicer.json", json_text(slicer, 1) + "\n"},
+            {"info.json", json_text(info, 1) + "\n"}};
 }
 
 }  // namespace pliant::job
