@@ -67,13 +67,13 @@ double StackFacts::volume_mm3() const {
 }
 
 double StackFacts::first_light_s() const {
-    return manifest.bottom_layers > 0 ? of().bottom_exposure_s : of().exposure_s;
+    return bottom_layers(manifest, of()) > 0 ? of().bottom_exposure_s : of().exposure_s;
 }
 
 int StackFacts::fading_layers() const {
     const double low = std::min(of().exposure_s, of().bottom_exposure_s);
     const double high = std::max(of().exposure_s, of().bottom_exposure_s);
-    const auto bottom = static_cast<std::size_t>(std::max(0, manifest.bottom_layers));
+    const auto bottom = static_cast<std::size_t>(std::max(0, bottom_layers(manifest, of())));
     std::size_t end = bottom;
     for (std::size_t k = bottom; k < light_s.size(); ++k) {
         if (area_mm2[k] == 0) continue;  // dark: no information
@@ -89,7 +89,7 @@ StackFacts facts_of(const Manifest& manifest, int material, const std::string& i
         manifest, material, image_prefix, std::vector<double>(count, 0.0), 0, std::vector<double>(count, 0.0)};
     if (count > 0) facts.layer_um = manifest.layers.front().thickness_um;
     for (std::size_t k = 0; k < count; ++k) {
-        const bool bottom = static_cast<int>(k) < manifest.bottom_layers;
+        const bool bottom = static_cast<int>(k) < bottom_layers(manifest, facts.of());
         facts.light_s[k] = bottom ? facts.of().bottom_exposure_s : facts.of().exposure_s;
         for (std::size_t i = 0; i < manifest.layers[k].images.size(); ++i) {
             if (manifest.layers[k].images[i].material != material) continue;
@@ -190,7 +190,7 @@ std::vector<NamedText> nanodlp_texts(const StackFacts& s, const std::vector<Imag
                           {"CureTime", material.exposure_s},
                           {"SupportCureTime", s.first_light_s()},
                           {"SupportDepth", s.layer_um},
-                          {"SupportLayerNumber", m.bottom_layers},
+                          {"SupportLayerNumber", bottom_layers(m, material)},
                           {"TransitionalLayer", s.fading_layers()},
                           {"WaitBeforePrint", 0},
                           {"WaitAfterPrint", 0},

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,13 +36,14 @@ struct Material {
     std::string resin;  ///< the resin a printer's vat holds
     double model_volume_mm3 =
         0;  ///< of the bodies as drawn, without overlaps assigned to others, for comparison after the print
-    double model_area_mm2 = 0;          ///< of their surface: one pixel layer around it is the possible rasterisation
-                                        ///< error
-    double exposure_s = 0;              ///< of a normal layer
-    double bottom_exposure_s = 0;       ///< of the first `bottom_layers`
-    std::vector<MaterialPart> parts{};  ///< two or more drawn materials with the same resin and exposure; empty: a
-                                        ///< single one
-    std::string colour{};               ///< "#rrggbb", in which it is shown; "": none was chosen
+    double model_area_mm2 = 0;           ///< of their surface: one pixel layer around it is the possible rasterisation
+                                         ///< error
+    double exposure_s = 0;               ///< of a normal layer
+    double bottom_exposure_s = 0;        ///< of the first layers: bottom_layers()
+    std::vector<MaterialPart> parts{};   ///< two or more drawn materials with the same resin and exposure; empty: a
+                                         ///< single one
+    std::string colour{};                ///< "#rrggbb", in which it is shown; "": none was chosen
+    std::optional<int> bottom_layers{};  ///< of this material; nothing: as many as the manifest says
 };
 
 /// One image that is not blank.
@@ -75,8 +77,8 @@ struct Manifest {
     std::string name;
     std::string pliant_version;
     int width_px = 0, height_px = 0;
-    double pixel_um = 0;  ///< edge length of a (square) pixel on the platform
-    int bottom_layers = 0;
+    double pixel_um = 0;    ///< edge length of a (square) pixel on the platform
+    int bottom_layers = 0;  ///< layers with the bottom exposure, of materials that have no number of their own
     std::vector<Material> materials;
     std::vector<Layer> layers;
     std::vector<std::string> warnings;  ///< repairs and remarks of the slicer
@@ -87,12 +89,17 @@ struct Manifest {
     std::map<std::string, std::string> sha256{};
 };
 
+/// How many layers from the platform up have the bottom exposure of a material.
+[[nodiscard]] inline int bottom_layers(const Manifest& manifest, const Material& material) {
+    return material.bottom_layers.value_or(manifest.bottom_layers);
+}
+
 /// Exposure of image `index` of a layer.
 [[nodiscard]] inline double exposure_s(const Manifest& manifest, std::size_t layer, std::size_t index) {
     const LayerImage& image = manifest.layers[layer].images[index];
     if (image.exposure_s > 0) return image.exposure_s;
     const Material& m = manifest.materials[static_cast<std::size_t>(image.material)];
-    return static_cast<int>(layer) < manifest.bottom_layers ? m.bottom_exposure_s : m.exposure_s;
+    return static_cast<int>(layer) < bottom_layers(manifest, m) ? m.bottom_exposure_s : m.exposure_s;
 }
 
 /// Checks the consistency of a manifest. Errors: sizes and numbers out of range, a material without a name or named

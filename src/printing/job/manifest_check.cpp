@@ -40,6 +40,8 @@ Status check_material(const Material& m, std::size_t i, std::string_view where) 
     for (const auto& [key, value] : amounts) {
         if (!is_amount(value)) return input_error("{}: materials[{}].{}: {} must be 0 or more", where, i, key, value);
     }
+    if (m.bottom_layers.value_or(0) < 0)
+        return input_error("{}: materials[{}].bottom_layers: {} must be 0 or more", where, i, *m.bottom_layers);
     if (!m.colour.empty() && !is_colour(m.colour))
         return input_error("{}: materials[{}].colour: '{}' must be like #rrggbb", where, i, m.colour);
     for (std::size_t p = 0; p < m.parts.size(); ++p) {

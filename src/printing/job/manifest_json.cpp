@@ -101,6 +101,7 @@ Material read_material(const Json& object, const std::string& path, std::string&
                       f.number("exposure_s"),
                       f.number("bottom_exposure_s")};
     if (f.has("colour")) material.colour = f.text("colour");
+    if (f.has("bottom_layers")) material.bottom_layers = f.integer("bottom_layers");
     if (!f.has("parts")) return material;
     f.each("parts", [&](const Json& entry, const std::string& entry_path) {
         Fields part(entry, entry_path + ".", problem);
@@ -205,6 +206,7 @@ Ordered material_json(const Material& material) {
                   {"model_area_mm2", material.model_area_mm2},
                   {"exposure_s", material.exposure_s},
                   {"bottom_exposure_s", material.bottom_exposure_s}};
+    if (material.bottom_layers) entry["bottom_layers"] = *material.bottom_layers;
     if (!material.colour.empty()) entry["colour"] = material.colour;
     for (const MaterialPart& part : material.parts)
         entry["parts"].push_back({{"name", part.name},

@@ -72,6 +72,22 @@ TEST_CASE("a material's colour is read back as written, and only where there is 
     }
 }
 
+TEST_CASE("a material's own number of bottom layers counts for it alone; others have that of the job") {
+    Manifest m = example();
+    m.layers[1].images = {{0, "layers/00001_soft.png", 1.5}, {1, "layers/00001_rigid.png", 0.1}};
+    CHECK(to_json(m).find("bottom_layers") == to_json(m).rfind("bottom_layers"));
+    m.materials[1].bottom_layers = 1;
+    const auto back = manifest_from_json(to_json(m), "x");
+    REQUIRE(back.has_value());
+    CHECK(!back->materials[0].bottom_layers);
+    CHECK(back->materials[1].bottom_layers == 1);
+    CHECK(exposure_s(*back, 1, 0) == 30);
+    CHECK(exposure_s(*back, 0, 1) == 4);
+    CHECK(exposure_s(*back, 1, 1) == 3.5);
+    m.materials[1].bottom_layers = -1;
+    refuse(m, "materials[1].bottom_layers: -1 must be 0 or more");
+}
+
 TEST_CASE("an inconsistent manifest is refused") {
     Manifest m = example();
     m.width_px = 0;

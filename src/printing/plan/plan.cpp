@@ -34,7 +34,7 @@ Status check_materials(const job::Manifest& job) {
     for (const job::Material& m : job.materials) {
         const bool good = m.exposure_s > 0 && m.exposure_s <= job::longest_exposure_s &&
                           m.bottom_exposure_s <= job::longest_exposure_s &&
-                          (m.bottom_exposure_s > 0 || job.bottom_layers == 0);
+                          (m.bottom_exposure_s > 0 || job::bottom_layers(job, m) == 0);
         if (!good)
             return input_error("{}: material \"{}\" needs exposures above 0 s, up to {} s", job.name, m.name,
                                job::longest_exposure_s);
@@ -232,8 +232,8 @@ machine::Printer filled_printer(const Plan& plan, const job::Manifest& job, Prin
         // A typical resin: an exposure cures two layers, which is two depths of penetration.
         const int cure_depth_um = 2 * printer.layer_um;
         const double critical_J_m2 = machine::irradiance_W_m2(printer) * m.exposure_s * std::exp(-2);
-        printer.resins.push_back({use.resin, m.exposure_s, m.bottom_exposure_s, job.bottom_layers, cure_depth_um, 0.8,
-                                  cure_depth_um / 2.0, critical_J_m2});
+        printer.resins.push_back({use.resin, m.exposure_s, m.bottom_exposure_s, job::bottom_layers(job, m),
+                                  cure_depth_um, 0.8, cure_depth_um / 2.0, critical_J_m2});
     }
     return printer;
 }

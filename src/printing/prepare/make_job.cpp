@@ -123,7 +123,8 @@ double own_exposure_s(const JobSettings& settings, const Material& material, int
     const auto rule = settings.exposures.find(material.parts.empty() ? material.name : material.parts.front().name);
     if (rule == settings.exposures.end()) return 0;
     const double seconds = exposure_s(material, rule->second, k, thickness_um);
-    const double usual = k < settings.bottom_layers ? material.bottom_exposure_s : material.exposure_s;
+    const double usual =
+        k < material.bottom_layers.value_or(settings.bottom_layers) ? material.bottom_exposure_s : material.exposure_s;
     return seconds == usual ? 0 : seconds;
 }
 

@@ -25,14 +25,14 @@ using LayerWatch = std::function<void(const Manifest& so_far, int count, const s
 struct JobSettings {
     std::string name;
     std::string pliant_version;
-    int bottom_layers = 0;
+    int bottom_layers = 0;  ///< as in Manifest
     slice::Settings slicing;
     /// Resin and exposures of every material of a body; model_volume_mm3 and model_area_mm2 are filled in.
     std::vector<Material> materials;
     int copies = 1;                  ///< of the part: this many pieces need not touch each other
     slice::LightCorrection light{};  ///< applied to the stored images; areas and volumes are those before it
     double least_feature_um = 0;     ///< narrower features give a warning; 0: none
-    /// For materials whose layers are not all exposed as JobSettings::bottom_layers says.
+    /// For materials whose layers are not all exposed as their bottom layers say.
     std::map<std::string, ExposureRule> exposures{};
     bool any_vat = false;                ///< as in Manifest
     std::optional<PlatformEdge> edge{};  ///< light beyond it is an error; nothing: not known

@@ -48,6 +48,8 @@ TEST_CASE("two materials become a job with the right layers, areas and volumes")
     const Manifest& m = archive->manifest();
     CHECK(m.name == "halves");
     CHECK(m.bottom_layers == 2);
+    CHECK(exposure_s(m, 1, 0) == 9);
+    CHECK(exposure_s(m, 1, 1) == 12);
     REQUIRE(m.materials.size() == 2);
     CHECK(m.materials[0].resin == "flex");
     CHECK(m.materials[1].bottom_exposure_s == 12);
@@ -70,6 +72,23 @@ TEST_CASE("two materials become a job with the right layers, areas and volumes")
     CHECK(int{image.at(24, 22)} == 255);
     CHECK(int{image.at(24, 26)} == 255);
     CHECK(int{image.at(24, 27)} == 0);
+}
+
+TEST_CASE("a material with fewer bottom layers than another one is exposed as its own number says") {
+    const pliant::test::Folder folder("job");
+    auto writer = Writer::create(folder / "job.zip");
+    REQUIRE(writer.has_value());
+    JobSettings settings = halves_settings();
+    settings.materials[1].bottom_layers = 1;
+    settings.exposures["soft/one"] = {1, 1, 0, 50, {}};
+    Progress progress;
+    const auto made = slice_to_job(halves, settings, *writer, progress);
+    REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+    const double soft[] = {9, 9, 3, 3}, firm[] = {12, 8, 4, 4};
+    for (std::size_t k = 0; k < 4; ++k) {
+        CHECK(exposure_s(made->manifest, k, 0) == near(soft[k], {.relative = 1e-12}));
+        CHECK(exposure_s(made->manifest, k, 1) == near(firm[k], {.relative = 1e-12}));
+    }
 }
 
 TEST_CASE("slicing twice gives the same bytes of archive") {

@@ -22,9 +22,9 @@ bool bonded(const std::string& material, const JobSettings& settings) {
 
 bool lit_alike(const Material& a, const Material& b, const JobSettings& settings) {
     return !a.resin.empty() && a.resin == b.resin && a.exposure_s == b.exposure_s &&
-           a.bottom_exposure_s == b.bottom_exposure_s && same(settings.exposures, a.name, b.name) &&
-           same(settings.slicing.compensation, a.name, b.name) && !bonded(a.name, settings) &&
-           !bonded(b.name, settings);
+           a.bottom_exposure_s == b.bottom_exposure_s && a.bottom_layers == b.bottom_layers &&
+           same(settings.exposures, a.name, b.name) && same(settings.slicing.compensation, a.name, b.name) &&
+           !bonded(a.name, settings) && !bonded(b.name, settings);
 }
 
 /// "a+b", "a+b+c+4 more"; never the name of another material.

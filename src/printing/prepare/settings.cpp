@@ -19,7 +19,8 @@
 namespace pliant::prepare {
 namespace {
 
-/// A material with the printer file's settings for its resin; for an unknown resin, the longest exposures in the file.
+/// A material with the printer file's settings for its resin; for an unknown resin, the longest exposures in the file,
+/// and the most bottom layers.
 job::Material with_exposure(const std::string& name, const std::string& resin, const machine::Printer& printer,
                             std::vector<std::string>& warnings) {
     job::Material entry;
@@ -28,11 +29,13 @@ job::Material with_exposure(const std::string& name, const std::string& resin, c
     if (const machine::Resin* known = printer.find_resin(resin)) {
         entry.exposure_s = known->exposure_s;
         entry.bottom_exposure_s = known->bottom_exposure_s;
+        entry.bottom_layers = known->bottom_layers;
         return entry;
     }
     for (const machine::Resin& other : printer.resins) {
         entry.exposure_s = std::max(entry.exposure_s, other.exposure_s);
         entry.bottom_exposure_s = std::max(entry.bottom_exposure_s, other.bottom_exposure_s);
+        entry.bottom_layers = std::max(entry.bottom_layers.value_or(0), other.bottom_layers);
     }
     warnings.push_back(
         fmt::format("resin \"{}\" is not in the printer file: exposures of {} s and {} s (bottom layers) are assumed",
@@ -74,12 +77,12 @@ std::map<std::string, slice::Compensation> compensations(const Drawing& drawing,
 
 /// Exposure rules of the materials whose layers are not all exposed alike.
 std::map<std::string, job::ExposureRule> exposure_rules(const Drawing& drawing, const machine::Printer& printer,
-                                                        int bottom_layers, bool many_heights) {
+                                                        bool many_heights) {
     std::map<std::string, job::ExposureRule> rules;
     for (const auto& [material, name] : drawing.resin_of_material) {
         const machine::Resin* resin = printer.find_resin(name);
         if (resin == nullptr) continue;
-        job::ExposureRule rule{bottom_layers, resin->transition_layers, 0, printer.layer_um, {}};
+        job::ExposureRule rule{resin->bottom_layers, resin->transition_layers, 0, printer.layer_um, {}};
         if (many_heights) rule.penetration_um = machine::working_curve(printer, *resin).penetration_um;
         if (rule.transition_layers > 0 || rule.penetration_um > 0) rules[material] = rule;
     }
@@ -181,7 +184,7 @@ Status set_exposure(const std::string& text, const machine::Printer& printer, jo
     if (span) {
         span->seconds = *seconds;
         auto [rule, added] = settings.exposures.try_emplace(name);
-        if (added) rule->second.bottom_layers = settings.bottom_layers;
+        if (added) rule->second.bottom_layers = material->bottom_layers.value_or(settings.bottom_layers);
         rule->second.spans.push_back(*span);
         return {};
     }
@@ -213,10 +216,13 @@ Status check_resins(const Drawing& drawing, const std::vector<job::Material>& ma
     return plan::check_resins(used, printer);
 }
 
-int bottom_layers(const machine::Printer& printer) {
-    int layers = 0;
-    for (const machine::Resin& resin : printer.resins) layers = std::max(layers, resin.bottom_layers);
-    return layers;
+/// The most bottom layers of a material are those of the job; a material with fewer keeps its own number.
+void set_bottom_layers(job::JobSettings& settings) {
+    for (const job::Material& m : settings.materials)
+        settings.bottom_layers = std::max(settings.bottom_layers, m.bottom_layers.value_or(0));
+    for (job::Material& m : settings.materials) {
+        if (m.bottom_layers == settings.bottom_layers) m.bottom_layers.reset();
+    }
 }
 
 /// Adds the material of supports, in the resin of its name or of --resin, unless a body has it already.
@@ -380,7 +386,6 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
     settings.name = one_line(drawing.name);
     if (Status status = check_names(drawing); !status) return tl::unexpected(status.error());
     settings.pliant_version = order.version;
-    settings.bottom_layers = bottom_layers(printer);
     settings.slicing.raster = machine::raster_of(printer.projector);
     settings.edge = machine::platform_edge(printer);
     if (!printer.projector.grey.empty()) settings.light.grey = slice::grey_values(printer.projector.grey);
@@ -395,11 +400,12 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
     if (!tops_um) return tl::unexpected(tops_um.error());
     settings.slicing.tops_um = std::move(*tops_um);
     settings.materials = with_exposures(drawing, printer);
+    set_bottom_layers(settings);
     if (!order.any_vat) {
         if (Status status = check_resins(drawing, settings.materials, printer); !status)
             return tl::unexpected(status.error());
     }
-    settings.exposures = exposure_rules(drawing, printer, settings.bottom_layers, !order.least_layer.empty());
+    settings.exposures = exposure_rules(drawing, printer, !order.least_layer.empty());
     std::set<std::string> given;
     for (const std::string& text : order.exposures) {
         if (Status status = set_exposure(text, printer, settings, given, drawing.warnings); !status)

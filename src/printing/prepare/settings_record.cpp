@@ -34,7 +34,8 @@ Json material_json(const Material& material, const JobSettings& settings) {
     Json json{{"name", material.name},
               {"resin", material.resin},
               {"exposure_s", material.exposure_s},
-              {"bottom_exposure_s", material.bottom_exposure_s}};
+              {"bottom_exposure_s", material.bottom_exposure_s},
+              {"bottom_layers", material.bottom_layers.value_or(settings.bottom_layers)}};
     const auto known = slicing.compensation.find(material.name);
     const slice::Compensation c = known == slicing.compensation.end() ? slice::Compensation{} : known->second;
     json["xy_compensation_um"] = c.grow_um;
@@ -67,7 +68,6 @@ std::string settings_json(const JobSettings& settings, const Request& request) {
     for (const std::string& input : request.inputs) root["inputs"].push_back(without_folder(input));
     root["layer_um"] = slicing.layer_um;
     if (!slicing.tops_um.empty() && request.least_layer_um > 0) root["least_layer_um"] = request.least_layer_um;
-    root["bottom_layers"] = settings.bottom_layers;
     root["raster"] = raster_json(slicing.raster);
     root["anti_alias"] = slicing.rules.anti_alias;
     root["threshold"] = slicing.rules.threshold;

@@ -165,6 +165,36 @@ TEST_CASE("options that are not given take the printer's values") {
     CHECK(s.exposures.empty());
 }
 
+TEST_CASE("every resin's own bottom layers count, and those of resins that are not used do not") {
+    machine::Printer p = printer();
+    p.resins[1].transition_layers = 2;
+    machine::Resin unused;
+    unused.name = "unused";
+    unused.exposure_s = unused.bottom_exposure_s = 1;
+    unused.bottom_layers = 8;
+    p.resins.push_back(unused);
+    Drawing drawing = two_blocks();
+    auto s = job_settings({}, p, {}, drawing);
+    REQUIRE(s.has_value());
+    const auto layers = [&](std::size_t m) { return s->materials[m].bottom_layers.value_or(s->bottom_layers); };
+    CHECK(layers(0) == 3);
+    CHECK(layers(1) == 2);
+    CHECK(s->exposures.at("firm").bottom_layers == 2);
+    Order order;
+    order.exposures = {"soft:7=1 s"};
+    drawing = two_blocks();
+    s = job_settings(order, p, {}, drawing);
+    REQUIRE(s.has_value());
+    CHECK(s->exposures.at("soft").bottom_layers == 3);
+    drawing = two_blocks();
+    drawing.bodies.pop_back();
+    drawing.resin_of_material.pop_back();
+    drawing.resin_of_material[0].second = "firm";
+    s = job_settings({}, p, {}, drawing);
+    REQUIRE(s.has_value());
+    CHECK(layers(0) == 2);
+}
+
 TEST_CASE("--layer and --least-feature set their values") {
     CHECK(settings_of([](Order& o) { o.layer = "25 um"; }).slicing.layer_um == 25);
     CHECK(settings_of([](Order& o) { o.least_feature = "0.3 mm"; }).least_feature_um == near(300, {.relative = 1e-12}));
