@@ -36,6 +36,10 @@ private:
     std::vector<float> most_um_;
 };
 
+bool is_flat(double low_um, double high_um) {
+    return high_um - low_um < 1e-3;
+}
+
 void limit_by(const Body& body, const AdaptiveHeights& heights, Limits& limits) {
     for (const OutlineSlice& s : body.slices) limits.limit(s.bottom_um, s.top_um, s.top_um - s.bottom_um);
     if (!body.slices.empty()) return;
@@ -44,14 +48,41 @@ void limit_by(const Body& body, const AdaptiveHeights& heights, Limits& limits) 
                    &c = body.surface_um.points[t[2]];
         const Vec3 normal = cross(b - a, c - a);
         const double length = norm(normal), low = std::min({a.z, b.z, c.z}), high = std::max({a.z, b.z, c.z});
-        // Horizontal faces cause no steps.
-        if (!(length > 0) || high - low < 1e-3) continue;
+        // Horizontal faces cause no steps: a layer ends at them.
+        if (!(length > 0) || is_flat(low, high)) continue;
         limits.limit(low, high, heights.least_um * length / std::max(1e-9 * length, std::fabs(normal.z)));
     }
 }
 
-/// The last layer ends at the top of the part, unless that would make a layer thinner than the minimum.
-int to_the_top(int thickness_um, int rest_um, const AdaptiveHeights& heights) {
+void add_flats(const Body& body, std::vector<double>& flats_um) {
+    if (!body.slices.empty()) {
+        flats_um.push_back(body.slices.front().bottom_um);
+        flats_um.push_back(body.slices.back().top_um);
+        return;
+    }
+    const std::vector<Vec3>& points = body.surface_um.points;
+    for (const auto& t : body.surface_um.triangles) {
+        const auto [low, high] = std::minmax({points[t[0]].z, points[t[1]].z, points[t[2]].z});
+        if (is_flat(low, high)) flats_um.push_back(high);
+    }
+}
+
+/// Heights at which layers should end, ascending: those of horizontal faces, and the top of the part.
+std::vector<int> ends_of(std::span<const Body> bodies, double top_um) {
+    std::vector<double> flats_um;
+    for (const Body& body : bodies) add_flats(body, flats_um);
+    std::vector<int> ends;
+    for (const double z_um : flats_um) {
+        if (z_um >= 0.5 && z_um < top_um - 1) ends.push_back(static_cast<int>(std::lround(z_um)));
+    }
+    ends.push_back(static_cast<int>(std::ceil(top_um)));
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    return ends;
+}
+
+/// A layer ends at the next horizontal face, unless that would make a layer thinner than the minimum.
+int to_the_end(int thickness_um, int rest_um, const AdaptiveHeights& heights) {
     if (rest_um <= thickness_um) return std::max(rest_um, heights.least_um);
     if (rest_um - thickness_um >= heights.least_um) return thickness_um;
     return std::max(rest_um - heights.least_um, heights.least_um);
@@ -75,6 +106,7 @@ Result<std::vector<int>> adaptive_tops(std::span<const Body> bodies, const Adapt
                            heights.least_um);
     Limits limits(heights, top_um);
     for (const Body& body : bodies) limit_by(body, heights, limits);
+    const std::vector<int> ends = ends_of(bodies, top_um);
     const int step_um = heights.least_um % 5 == 0 && heights.most_um % 5 == 0 ? 5 : 1;
     std::vector<int> tops{};
     for (int z_um = 0; z_um < top_um;) {
@@ -82,8 +114,8 @@ Result<std::vector<int>> adaptive_tops(std::span<const Body> bodies, const Adapt
         // A thinner layer may end below the place that required it.
         while (thickness_um > heights.least_um && limits.least(z_um, z_um + thickness_um) < thickness_um)
             thickness_um -= step_um;
-        z_um +=
-            to_the_top(std::max(thickness_um, heights.least_um), static_cast<int>(std::ceil(top_um)) - z_um, heights);
+        const int end_um = *std::upper_bound(ends.begin(), ends.end(), z_um);  // at latest the top
+        z_um += to_the_end(std::max(thickness_um, heights.least_um), end_um - z_um, heights);
         tops.push_back(z_um);
     }
     if (tops.empty()) tops.push_back(heights.most_um);

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "base/core/near.hpp"
 #include "printing/slice/layers.hpp"
 #include "printing/slice/slicer.hpp"
@@ -52,6 +54,35 @@ TEST_CASE("upright walls get thick layers; slanted ones get layers as thin as th
     CHECK(tops.front() == 35);
     CHECK(tops.size() == 86);
     CHECK(!adaptive_tops(slanted, {100, 25}).has_value());
+}
+
+TEST_CASE("layers end at horizontal faces, also just above or below where a thick layer would end") {
+    const auto has = [](const std::vector<int>& tops, int z) {
+        return std::find(tops.begin(), tops.end(), z) != tops.end();
+    };
+    for (const int shoulder : {20, 150, 190, 199, 201, 219, 290, 333, 400, 777, 979}) {
+        CAPTURE(shoulder);
+        const std::vector<Body> step{{"soft", box({-1000, -1000, 0}, {0, 1000, shoulder * 1.0}), ""},
+                                     {"soft", box({0, -1000, 0}, {1000, 1000, 1000}), ""}};
+        const std::vector<int> tops = adaptive_tops(step, {20, 200}).value();
+        CHECK(has(tops, shoulder));
+        CHECK(tops.back() == 1000);
+        CHECK(tops.size() <= 7);
+        int below = 0;
+        for (const int top : tops) {
+            CHECK(top - below >= 20);
+            CHECK(top - below <= 200);
+            below = top;
+        }
+    }
+    // Too close to the platform, the top or each other: as near as layers of 20 um allow.
+    const std::vector<Body> close{{"soft", box({-1000, -1000, 0}, {0, 1000, 290}), ""},
+                                  {"soft", box({0, -1000, 7}, {500, 1000, 300}), ""},
+                                  {"soft", box({500, -1000, 0}, {1000, 1000, 310}), ""}};
+    const std::vector<int> tops = adaptive_tops(close, {20, 200}).value();
+    CHECK(tops.front() == 20);
+    CHECK(has(tops, 290));
+    CHECK(tops.back() == 310);
 }
 
 TEST_CASE("layers of different heights have the volume of the pyramid") {
