@@ -277,6 +277,13 @@ marker = [{ name = "tip", point = [60, 5, 5] }]
 }
 
 TEST_CASE("a state with objects continues from its bytes with the same bits, on any number of threads") {
+    std::string integrator;
+    SUBCASE("bdf2") {
+        integrator = "bdf2";
+    }
+    SUBCASE("energy-conserving") {
+        integrator = "energy-conserving";
+    }
     const std::string text = world(slope(0.5) + R"(
 [[object]]
 name = "block"
@@ -285,7 +292,7 @@ density = "1000 kg/m^3"
 velocity = [0.2, 0, 0]
 friction = 0.2
 )",
-                                   tilted(0.1, 0.1, 0.005));
+                                   tilted(0.1, 0.1, 0.005) + "integrator = \"" + integrator + "\"\n");
     const auto built = robot::testing::build(robot::parse_robot(text, "free.toml"));
     Progress silent;
     const auto steps = [&](sim::Stepper& stepper, sim::RobotState& robot, int from, int to) {

@@ -1,148 +1,17 @@
-#include "simulation/stepper/state_file.hpp"
-
 #include <algorithm>
 #include <utility>
 
-#include "base/core/digest.hpp"
 #include "simulation/contact/friction.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/stepper/cbor_numbers.hpp"
+#include "simulation/stepper/state_digest.hpp"
+#include "simulation/stepper/state_file.hpp"
 
 namespace pliant::sim {
 namespace {
 
 using cbor::Json;
-using cbor::packed;
 using cbor::Reader;
-
-constexpr const char* format_name = "pliant state";
-
-// --- written -------------------------------------------------------------------------------------------------------
-
-Json json_of(const State& state) {
-    return {{"x", packed(state.x)}, {"multiplier", packed(state.multiplier)}};
-}
-
-Json json_of(const std::vector<Drive>& drives) {
-    std::vector<int> kinds;
-    std::vector<double> values;
-    for (const Drive& drive : drives) {
-        kinds.push_back(static_cast<int>(drive.kind));
-        values.push_back(drive.value);
-    }
-    return {{"kind", packed(std::span<const int>(kinds))}, {"value", packed(std::span<const double>(values))}};
-}
-
-Json json_of(const Inputs& inputs) {
-    return {{"time", inputs.time},
-            {"drives", json_of(inputs.drives)},
-            {"force_N", packed(Eigen::VectorXd(inputs.force_N))}};
-}
-
-Json json_of(const History& history) {
-    Json json{{"x", packed(history.x)},
-              {"v", packed(history.v)},
-              {"x_before", packed(history.x_before)},
-              {"v_before", packed(history.v_before)},
-              {"dt_before", history.dt_before}};
-    if (history.touching > 0) json["touching"] = history.touching;
-    if (history.next_dt > 0) json["next_dt"] = history.next_dt;
-    return json;
-}
-
-Json json_of(const contact::Friction& friction) {
-    std::vector<int> whole;
-    std::vector<double> real;
-    for (const contact::FrozenPair& pair : friction.pairs()) {
-        whole.insert(whole.end(), pair.nodes.begin(), pair.nodes.end());
-        whole.insert(whole.end(), {pair.node_count, pair.first_count, pair.obstacle, pair.robot_first ? 1 : 0});
-        real.insert(real.end(), pair.weights.begin(), pair.weights.end());
-        for (const Vec3& t : pair.tangents) real.insert(real.end(), {t.x, t.y, t.z});
-        real.insert(real.end(), {pair.limit_N, pair.carried_m[0], pair.carried_m[1]});
-    }
-    return {{"pairs", packed(std::span<const int>(whole))},
-            {"numbers", packed(std::span<const double>(real))},
-            {"start", packed(friction.start())},
-            {"slip_m", friction.slip_m()}};
-}
-
-Json json_of(const Controls& controls) {
-    Json shares = Json::array();
-    for (const auto& list : controls.shares) shares.push_back(packed(std::span<const double>(list)));
-    Json json{{"time", controls.time},
-              {"external_N", packed(controls.external_N)},
-              {"support_share", packed(std::span<const double>(controls.support_share))},
-              {"drives", json_of(controls.drives)},
-              {"shares", std::move(shares)},
-              {"obstacles", packed(controls.obstacles)},
-              {"joint_wanted", packed(std::span<const double>(controls.joint_wanted))},
-              {"joint_start", packed(std::span<const double>(controls.joint_start))},
-              {"met", controls.met}};
-    if (!controls.torque_Nm.empty()) {
-        Eigen::VectorXd torques(3 * static_cast<Eigen::Index>(controls.torque_Nm.size()));
-        for (std::size_t k = 0; k < controls.torque_Nm.size(); ++k)
-            torques.segment<3>(3 * static_cast<Eigen::Index>(k)) = controls.torque_Nm[k];
-        json["torque_Nm"] = packed(torques);
-    }
-    if (controls.friction) json["friction"] = json_of(*controls.friction);
-    if (controls.inertia)
-        json["inertia"] = Json{{"start", json_of(controls.inertia->start())}, {"dt", controls.inertia->dt()}};
-    if (controls.inertia && controls.inertia->scheme() != Scheme::even)
-        json["inertia"]["scheme"] = static_cast<int>(controls.inertia->scheme());
-    return json;
-}
-
-Json json_of(const StepPair& pair) {
-    return {{"step", packed(pair.step)}, {"change", packed(pair.change)}, {"rho", pair.rho}, {"scale", pair.scale}};
-}
-
-Json json_of(const NewtonRates& r) {
-    return {{"share", r.share_},
-            {"cautious", r.cautious_},
-            {"share_wanted", r.share_wanted_},
-            {"usable", r.usable_},
-            {"hasty", r.hasty_},
-            {"reused", r.reused_},
-            {"left", r.left_},
-            {"left_at_first", r.left_at_first_},
-            {"left_by_last", r.left_by_last_},
-            {"left_by_new", r.left_by_new_},
-            {"uses", r.uses_},
-            {"age", r.age_},
-            {"tried_later", r.tried_later_},
-            {"two_levels", r.two_levels_}};
-}
-
-Json json_of(const TangentInverse::Memory& m) {
-    return {{"in_double", m.in_double}, {"untried", m.untried},   {"known_error", m.known_error},
-            {"trusted", m.trusted},     {"refusals", m.refusals}, {"usual_gain", m.usual_gain}};
-}
-
-Json json_of(const SolverMemory::Tangent& tangent) {
-    return {{"state", json_of(tangent.state)}, {"controls", json_of(tangent.controls)}};
-}
-
-Json json_of(const SolverMemory& memory) {
-    Json json{{"rates", json_of(memory.rates)},
-              {"inverse", json_of(memory.inverse)},
-              {"forgets_touching", memory.forgets_touching},
-              {"pairs", Json::array()}};
-    for (const auto& pair : memory.pairs) json["pairs"].push_back(json_of(*pair));
-    if (memory.learnt) json["learnt"] = json_of(*memory.learnt);
-    if (memory.followed) json["followed"] = packed(*memory.followed);
-    if (memory.tangent) json["tangent"] = json_of(*memory.tangent);
-    if (memory.base.tangent) {
-        json["base"] = {{"share", memory.base.share}};
-        if (memory.base.tangent != memory.tangent) json["base"]["tangent"] = json_of(*memory.base.tangent);
-    }
-    if (memory.touching) {
-        json["touching"] = Json::array();
-        for (const auto& clique : *memory.touching) json["touching"].push_back(packed(std::span<const int>(clique)));
-    }
-    return json;
-}
-
-// --- read ----------------------------------------------------------------------------------------------------------
 
 /// Sizes of the vectors of a model.
 struct Sizes {
@@ -177,7 +46,7 @@ public:
         robot.inputs = inputs(in.at("inputs"));
         if (in.has("before")) robot.before = inputs(in.at("before"));
         robot.drives = drives(in.at("drives"), sizes_.actuators);
-        robot.controls = controls(in.at("controls"));
+        robot.controls = controls(in.at("controls"), robot.now.state);
         for (const Json& past : list(in, "past")) {
             Reader one(past);
             robot.past.push_back({one.number("along"), std::make_shared<const State>(state(one.at("state")))});
@@ -287,7 +156,8 @@ private:
                pair.first_count < pair.node_count && pair.obstacle >= -1 && pair.obstacle < obstacles;
     }
 
-    Controls controls(const Json& json) {
+    /// The controls with which `at` was solved.
+    Controls controls(const Json& json, const State& at) {
         Reader in(json);
         Controls controls;
         controls.time = in.number("time");
@@ -321,8 +191,20 @@ private:
             take(inertia);
             if (status_ && in.status()) controls.inertia = stepper_.inertia(start, dt, static_cast<Scheme>(scheme));
         }
+        if (status_ && controls.of_means()) controls.object_stress = object_stress(in, controls, at);
         take(in);
         return controls;
+    }
+
+    /// Where it was not written, that at the end of the step, which it is up to the tolerance of the solver.
+    std::vector<linalg::Matrix3> object_stress(Reader& in, const Controls& controls, const State& at) {
+        if (!in.has("object_stress")) return stepper_.system().object_stress(controls.inertia->start().x, at.x);
+        constexpr Eigen::Index entries = 9;
+        const auto count = static_cast<Eigen::Index>(stepper_.model().objects().size());
+        const Eigen::VectorXd numbers = in.vector("object_stress", entries * count);
+        std::vector<linalg::Matrix3> stress;
+        for (Eigen::Index k = 0; k < count; ++k) stress.emplace_back(numbers.data() + entries * k);
+        return stress;
     }
 
     /// For each cable with friction one number per segment; for all others none.
@@ -388,7 +270,7 @@ private:
     std::shared_ptr<const SolverMemory::Tangent> tangent(const Json& json) {
         Reader in(json);
         State at = state(in.at("state"));
-        Controls there = controls(in.at("controls"));
+        Controls there = controls(in.at("controls"), at);
         take(in);
         return std::make_shared<const SolverMemory::Tangent>(SolverMemory::Tangent{std::move(at), std::move(there)});
     }
@@ -454,53 +336,7 @@ Status check_possible(const Stepper& stepper, const RobotState& robot) {
                                     "through each other"));
 }
 
-void add(Digest& digest, const std::string& name, const std::vector<Attachment>& points) {
-    digest.add(name.data(), name.size() + 1);  // with its end, so that names do not run together
-    for (const Attachment& point : points) {
-        digest.add(point.nodes.data(), point.nodes.size() * sizeof(point.nodes[0]));
-        digest.add(point.weights.data(), point.weights.size() * sizeof(point.weights[0]));
-    }
-}
-
-/// Identifies what is attached to the mesh, by names and places. Constants, targets and loads do not count: with others
-/// a state is where the next step begins.
-std::string parts_digest(const Description& d) {
-    Digest digest;
-    for (const Support& support : d.supports) {
-        add(digest, support.name, {});
-        digest.add(support.nodes.data(), support.nodes.size() * sizeof(support.nodes[0]));
-    }
-    for (const Cable& cable : d.cables) add(digest, cable.name, cable.points);
-    for (const Chamber& chamber : d.chambers) add(digest, chamber.name, chamber.wall.points);
-    for (const PressureLoad& pressure : d.pressures) add(digest, pressure.name, pressure.wall.points);
-    for (const Spring& spring : d.springs) add(digest, spring.name, spring.points);
-    for (const Joint& joint : d.joints) {
-        add(digest, joint.name, {joint.first.begin(), joint.first.end()});
-        add(digest, joint.name, {joint.second.begin(), joint.second.end()});
-    }
-    return digest.text();
-}
-
 }  // namespace
-
-std::string state_bytes(const Model& model, const RobotState& robot) {
-    Json json{{"format", format_name},
-              {"version", state_version},
-              {"mesh", mesh_digest(model.mesh())},
-              {"parts", parts_digest(model.description())},
-              {"along", robot.now.along},
-              {"state", json_of(robot.now.state)},
-              {"inputs", json_of(robot.inputs)},
-              {"drives", json_of(robot.drives)},
-              {"controls", json_of(robot.controls)},
-              {"past", Json::array()}};
-    for (const PastMoment& past : robot.past)
-        json["past"].push_back({{"along", past.along}, {"state", json_of(*past.state)}});
-    if (robot.before) json["before"] = json_of(*robot.before);
-    if (robot.history.x.size() > 0) json["history"] = json_of(robot.history);
-    if (robot.memory) json["memory"] = json_of(*robot.memory);
-    return cbor::sealed(json);
-}
 
 Result<RobotState> state_from_bytes(const Stepper& stepper, std::string_view bytes) {
     const Result<std::string_view> content = cbor::unsealed(bytes);
@@ -508,7 +344,7 @@ Result<RobotState> state_from_bytes(const Stepper& stepper, std::string_view byt
     const auto text = [&](const char* key) {
         return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
     };
-    if (text("format") != format_name) return input_error("not a state that Pliant has written, or damaged");
+    if (text("format") != state_format_name) return input_error("not a state that Pliant has written, or damaged");
     Reader head(json);
     const int version = head.integer("version", 0, 1 << 30);
     if (version != state_version)
@@ -524,19 +360,9 @@ Result<RobotState> state_from_bytes(const Stepper& stepper, std::string_view byt
     StateReader reader(stepper);
     RobotState robot = reader.robot(json);
     if (!reader.status()) return tl::unexpected(reader.status().error());
-    if (robot.controls.of_means())
-        robot.controls.object_stress = stepper.system().object_stress(robot.controls.inertia->start().x, robot.x());
     if (Status status = check_possible(stepper, robot); !status) return tl::unexpected(status.error());
     robot.evaluation = stepper.system().evaluate(robot.now.state, robot.controls);
     return robot;
-}
-
-std::string mesh_digest(const mesh::TetMesh& mesh) {
-    Digest digest;
-    digest.add(mesh.points.data(), mesh.points.size() * sizeof(mesh.points[0]));
-    digest.add(mesh.nodes.data(), mesh.nodes.size() * sizeof(mesh.nodes[0]));
-    digest.add(mesh.region.data(), mesh.region.size() * sizeof(mesh.region[0]));
-    return digest.text();
 }
 
 }  // namespace pliant::sim
