@@ -466,20 +466,6 @@ Result<JointMesh> mesh_centred(Centred centred, std::span<const std::string> nam
 
 }  // namespace
 
-std::string describe(const SurfaceDamage& damage) {
-    std::string text;
-    const auto add = [&](std::size_t count, std::string_view what) {
-        if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
-    };
-    add(damage.open_edges, "open edges");
-    add(damage.crowded_edges, "edges of more than two triangles");
-    add(damage.turned, "triangles turned");
-    add(damage.repeated, "repeated triangles");
-    add(damage.flat, "flat triangles");
-    add(damage.inside_out ? 1 : 0, "surface turned inside out");
-    return text;
-}
-
 Result<JointMesh> mesh_together(std::span<const TriMesh> surfaces, std::span<const std::string> names, double size,
                                 const SizeOfSurface& size_at, double angle_deg, Progress& progress) {
     return mesh_centred(centre(surfaces), names, size, size_at, angle_deg, progress);

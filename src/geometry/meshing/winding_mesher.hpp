@@ -43,7 +43,4 @@ struct JointMesh {
                                               double size, const SizeOfSurface& size_at, double angle_deg,
                                               Progress& progress);
 
-/// "3 open edges, 1 flat triangles"; empty if there is no damage.
-[[nodiscard]] std::string describe(const SurfaceDamage& damage);
-
 }  // namespace pliant::mesh

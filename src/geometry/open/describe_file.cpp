@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/core/counted.hpp"
 #include "geometry/files/tet_file.hpp"
@@ -12,55 +15,91 @@
 #include "geometry/mesher/step_file.hpp"
 #include "geometry/open/open_geometry.hpp"
 #include "geometry/repair/surface_crossings.hpp"
+#include "geometry/repair/surface_orientation.hpp"
 #include "geometry/repair/surface_seams.hpp"
 
 namespace pliant::mesh {
 namespace {
 
-/// Why its triangles enclose no volume that could be told; "" if they do.
-std::string no_volume(const TriMesh& surface) {
+/// What its triangles enclose, or why that is nothing that could be told.
+struct Enclosed {
+    std::optional<double> volume;
+    std::vector<std::string> notes;
+};
+
+bool encloses_nothing(const TriMesh& surface, double size) {
     constexpr double flat = 1e-9;
-    const std::vector<BorderEdge> border = border_edges(surface);
-    if (!border.empty()) {
-        const double missing = surface_area(border_caps(surface)), whole = surface_area(surface);
-        if (!(missing > flat * whole))
-            return fmt::format("triangles are listed twice: {} have no neighbour of their own; it has no volume",
-                               counted(border.size(), "edge"));
-        return fmt::format(
-            "the surface is open: {} without a neighbour, and an area of about {:.3g} is missing, of "
-            "{:.3g} in all; it has no volume",
-            counted(border.size(), "edge"), missing, whole);
-    }
+    return !(std::fabs(signed_volume(surface)) > flat * size * size * size);
+}
+
+std::string open_text(const JudgedSurface& judged, double missing) {
+    return fmt::format(
+        "the surface is open: {} without a neighbour, and an area of about {:.3g} is missing, of {:.3g} in all; it has "
+        "no volume",
+        counted(judged.damage.open_edges, "edge"), missing, surface_area(judged.sound));
+}
+
+/// Judged as the mesher does. A T-junction leaves open edges, but no hole: the volume is that of the drawing.
+Enclosed enclosed_by(const TriMesh& surface) {
+    constexpr double flat = 1e-9;
     const double size = bounds(surface).diagonal();
-    if (!(std::fabs(signed_volume(surface)) > flat * size * size * size))
-        return "the surface is flat: it encloses no volume";
-    return "";
+    const JudgedSurface judged = mesh::judged(surface);
+    Enclosed result;
+    if (encloses_nothing(surface, size) && encloses_nothing(judged.sound, size) && border_edges(surface).empty()) {
+        result.notes.emplace_back("the surface is flat: it encloses no volume");
+        return result;
+    }
+    const double missing = surface_area(border_caps(judged.sound));
+    const bool open = missing > flat * surface_area(judged.sound);
+    if (open) {
+        result.notes.push_back(open_text(judged, missing));
+        SurfaceDamage rest = judged.damage;
+        rest.open_edges = 0;
+        if (const std::string more = describe(rest); !more.empty())
+            result.notes.push_back(fmt::format("the surface is damaged ({})", more));
+        return result;
+    }
+    if (encloses_nothing(judged.sound, size)) {
+        result.notes.emplace_back("the surface encloses no volume");
+        return result;
+    }
+    result.volume = signed_volume(judged.sound);
+    if (const std::string damage = describe(judged.damage); !damage.empty())
+        result.notes.push_back(fmt::format(
+            "the surface is damaged ({}){}", damage,
+            judged.damage.open_edges > 0 ? ": no area is missing, but corners lie on edges of other triangles" : ""));
+    if (judged.damage.open_edges == 0 && cuts_itself(judged.sound))
+        result.notes.emplace_back(
+            "the surface cuts or touches itself: the volume counts what lies in two of its parts twice");
+    return result;
 }
 
 std::string surface_text(const SurfaceFile& surface) {
     const Vec3 size = bounds(surface.mesh).size();
-    const std::string none = no_volume(surface.mesh);
-    const std::string volume = none.empty() ? fmt::format("{:.6g}", signed_volume(surface.mesh)) : "unknown";
+    const Enclosed enclosed = enclosed_by(surface.mesh);
+    const std::string volume = enclosed.volume ? fmt::format("{:.6g}", *enclosed.volume) : "unknown";
     std::string text = fmt::format("surface, {}, {}, volume {}, {:.6g} x {:.6g} x {:.6g}",
                                    counted(surface.mesh.points.size(), "point"),
                                    counted(surface.mesh.triangles.size(), "triangle"), volume, size.x, size.y, size.z);
     for (const std::string& warning : surface.warnings) text += "\n  note: " + warning;
-    if (!none.empty())
-        text += "\n  note: " + none;
-    else if (cuts_itself(surface.mesh))
-        text += "\n  note: the surface cuts or touches itself: the volume counts what lies in two of its parts twice";
+    for (const std::string& note : enclosed.notes) text += "\n  note: " + note;
+    return text;
+}
+
+std::string body_text(const threemf::Body& body) {
+    const std::string name = fmt::format("\n  {} ({}): ", body.name, body.material);
+    if (!body.slices.empty()) return name + counted(body.slices.size(), "slice");
+    const Enclosed enclosed = enclosed_by(body.mesh_mm);
+    std::string text = name + counted(body.mesh_mm.triangles.size(), "triangle") + ", " +
+                       (enclosed.volume ? fmt::format("{:.6g} mm^3", *enclosed.volume) : "volume unknown");
+    for (const std::string& note : enclosed.notes) text += "\n    note: " + note;
     return text;
 }
 
 std::string plate_text(const threemf::ThreeMf& plate) {
     std::string text =
         fmt::format("3MF file: {} {}", plate.bodies.size(), plate.bodies.size() == 1 ? "body" : "bodies");
-    for (const threemf::Body& body : plate.bodies) {
-        text += body.slices.empty()
-                    ? fmt::format("\n  {} ({}): {} triangles, {:.6g} mm^3", body.name, body.material,
-                                  body.mesh_mm.triangles.size(), signed_volume(body.mesh_mm))
-                    : fmt::format("\n  {} ({}): {} slices", body.name, body.material, body.slices.size());
-    }
+    for (const threemf::Body& body : plate.bodies) text += body_text(body);
     for (const std::string& warning : plate.warnings) text += "\n  warning: " + warning;
     return text;
 }

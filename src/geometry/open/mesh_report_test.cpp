@@ -5,6 +5,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "base/core/files.hpp"
 #include "base/core/near.hpp"
@@ -120,6 +124,46 @@ TEST_CASE("a surface that is open or flat has no volume, and one that cuts itsel
     CHECK(has(flat, "note: the surface is flat: it encloses no volume"));
     CHECK(has(described(boxes_off({box, {{7, 5, 1}, {12, 12, 9}}})),
               "note: the surface cuts or touches itself: the volume counts what lies in two of its parts twice"));
+}
+
+namespace {
+
+/// A cube of edges 10 as OBJ: its faces, some left out, and others that are added. Corner 9 lies in the middle of the
+/// edge from corner 1 to corner 2.
+std::string cube_obj(std::size_t left_out, const std::string& added) {
+    constexpr std::array<std::string_view, 12> faces = {"1 2 4", "1 4 3", "5 7 8", "5 8 6", "1 5 6", "1 6 2",
+                                                        "3 4 8", "3 8 7", "1 3 7", "1 7 5", "2 6 8", "2 8 4"};
+    std::string text;
+    for (int k = 0; k < 8; ++k) text += fmt::format("v {} {} {}\n", k / 4 * 10, k / 2 % 2 * 10, k % 2 * 10);
+    text += "v 0 0 5\n";
+    for (std::size_t f = left_out; f < faces.size(); ++f) text += fmt::format("f {}\n", faces[f]);
+    return text + added;
+}
+
+std::string all_again() {
+    const std::string once = cube_obj(0, "");
+    return cube_obj(0, once.substr(once.find('f')));
+}
+
+}  // namespace
+
+TEST_CASE("damage that leaves the volume as it was drawn is named, and the volume told") {
+    CHECK(has(described(cube_obj(0, "")), "volume 1000,"));
+    CHECK_FALSE(has(described(cube_obj(0, "")), "note: "));
+    const std::vector<std::pair<std::string, std::string>> damaged = {
+        {all_again(), "is damaged (12 repeated triangles)"},
+        {cube_obj(0, "f 1 2 4\n"), "is damaged (1 repeated triangle)"},
+        {cube_obj(0, "f 1 9 2\n"), "is damaged (1 flat triangle)"},
+        {cube_obj(0, "f 1 1 2\n"), "is damaged (1 flat triangle)"},
+        {cube_obj(1, "f 1 9 4\nf 9 2 4\n"),
+         "is damaged (3 open edges): no area is missing, but corners lie on edges of other triangles"}};
+    for (const auto& [bytes, words] : damaged) {
+        CHECK_MESSAGE(has(described(bytes), words), described(bytes));
+        CHECK_MESSAGE(has(described(bytes), "volume 1000,"), described(bytes));
+    }
+    const std::string open = described(cube_obj(1, ""));
+    CHECK_MESSAGE(has(open, "volume unknown"), open);
+    CHECK_MESSAGE(has(open, "the surface is open: 3 edges"), open);
 }
 
 TEST_CASE("a report in another unit") {

@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "base/core/counted.hpp"
+#include "geometry/repair/surface_seams.hpp"
 #include "geometry/repair/surface_shells.hpp"
+#include "geometry/repair/surface_slivers.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -121,6 +126,34 @@ SurfaceDamage orient(TriMesh& surface) {
         for (auto& triangle : surface.triangles) std::swap(triangle[1], triangle[2]);
     }
     return damage;
+}
+
+std::string describe(const SurfaceDamage& damage) {
+    std::string text;
+    const auto add = [&](const std::string& what) { text += (text.empty() ? "" : ", ") + what; };
+    const auto add_count = [&](std::size_t count, std::string_view word, std::string_view rest = "") {
+        if (count > 0) add(counted(count, word) + std::string(rest));
+    };
+    add_count(damage.open_edges, "open edge");
+    add_count(damage.crowded_edges, "edge", " of more than two triangles");
+    add_count(damage.turned, "triangle", " turned");
+    add_count(damage.repeated, "repeated triangle");
+    add_count(damage.flat, "flat triangle");
+    if (damage.inside_out) add("surface turned inside out");
+    return text;
+}
+
+JudgedSurface judged(const TriMesh& surface) {
+    JudgedSurface result{surface, {}};
+    (void)close_seams(result.sound);
+    // Flipping the edge of a flat triangle can keep a surface closed, which leaving the triangle out would open.
+    TriMesh flipped = result.sound;
+    const SliverCount slivers = remove_slivers(flipped);
+    const bool closed = border_edges(flipped).empty();
+    if (closed) result.sound = std::move(flipped);
+    result.damage = orient(result.sound);
+    if (closed) result.damage.flat += slivers.removed;
+    return result;
 }
 
 void orient_solid(TriMesh& surface) {

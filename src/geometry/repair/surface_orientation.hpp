@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
 #include "geometry/mesh/tri_mesh.hpp"
 
@@ -19,6 +20,16 @@ struct SurfaceDamage {
 /// Removes repeated and flat triangles, orients each part connected by edges of two triangles like the majority (by
 /// area) of its triangles, and flips everything if the signed volume is negative.
 [[nodiscard]] SurfaceDamage orient(TriMesh& surface);
+
+/// "3 open edges, 1 flat triangle"; empty if there is no damage.
+[[nodiscard]] std::string describe(const SurfaceDamage& damage);
+
+/// A surface as the mesher takes it, and what was wrong with it.
+struct JudgedSurface {
+    TriMesh sound;  ///< without seams, flat and repeated triangles, oriented
+    SurfaceDamage damage;
+};
+[[nodiscard]] JudgedSurface judged(const TriMesh& surface);
 
 /// Orients the surface of one connected solid outwards: the largest shell is the outer one, the rest are cavities.
 /// Precondition: each edge has two triangles.
