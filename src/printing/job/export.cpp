@@ -150,12 +150,15 @@ Result<Format> format_from(const std::string& name) {
 
 std::vector<std::string> exposure_notes(const Manifest& manifest, Format format) {
     std::vector<std::string> notes;
-    if (format != Format::sl1) return notes;
+    if (format != Format::sl1 && format != Format::nanodlp) return notes;
+    const bool sl1 = format == Format::sl1;
     for (std::size_t m = 0; m < manifest.materials.size(); ++m) {
-        const int other = layers_of_other_light(facts_of(manifest, static_cast<int>(m), ""));
+        const StackFacts facts = facts_of(manifest, static_cast<int>(m), "");
+        const int other = layers_of_other_light(facts, sl1 ? sl1_lights_s(facts) : nanodlp_lights_s(facts));
         if (other == 0) continue;
-        notes.push_back(fmt::format("material \"{}\": {} of it should get other light than an .sl1 file can say",
-                                    manifest.materials[m].name, counted(static_cast<std::size_t>(other), "layer")));
+        notes.push_back(fmt::format("material \"{}\": {} of it should get other light than {} file can say",
+                                    manifest.materials[m].name, counted(static_cast<std::size_t>(other), "layer"),
+                                    sl1 ? "an .sl1" : "a .nanodlp"));
     }
     return notes;
 }

@@ -160,18 +160,27 @@ TEST_CASE("an .sl1 file can be read as PrusaSlicer and UVtools read it") {
     CHECK(number(config, "numFast") == 10);
 }
 
-TEST_CASE("transition layers are written to a job that has them, and only there") {
-    const pliant::test::Folder folder("export");
+namespace {
+
+/// A block of 8 layers of "soft" (3 s, bottom layers 9 s), exposed by `rule`.
+Archive exposed(const fs::path& path, const ExposureRule& rule) {
     JobSettings s = settings();
-    s.exposures["soft"] = {2, 3, 0, 50, {}};
-    const fs::path path = folder / "fade.zip";
+    s.bottom_layers = rule.bottom_layers;
+    s.exposures["soft"] = rule;
     auto writer = Writer::create(path);
     Progress progress;
     const auto made = slice_to_job(std::vector<slice::Body>{{"soft", box({-500, -500, 0}, {500, 500, 400}), ""}}, s,
                                    *writer, progress);
     REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
     REQUIRE(writer->finish(made->manifest).has_value());
-    const Archive archive = Archive::open(path).value();
+    return Archive::open(path).value();
+}
+
+}  // namespace
+
+TEST_CASE("transition layers are written to a job that has them, and only there") {
+    const pliant::test::Folder folder("export");
+    const Archive archive = exposed(folder / "fade.zip", {2, 3, 0, 50, {}});
     const auto sl1 = ZipReader::open(export_job(archive, Format::sl1, folder / "a").value().at(0));
     CHECK(number(ini(*sl1, "config.ini"), "numFade") == 3);
     CHECK(number(ini(*sl1, "prusaslicer.ini"), "faded_layers") == 3);
@@ -179,6 +188,35 @@ TEST_CASE("transition layers are written to a job that has them, and only there"
     CHECK(number(ini(*sl1, "config.ini"), "printTime") == near(18 + 18 + 9, {.relative = 1e-12}));
     const auto nano = ZipReader::open(export_job(archive, Format::nanodlp, folder / "b").value().at(0));
     CHECK(json(*nano, "profile.json")["TransitionalLayer"] == 3);
+    CHECK(exposure_notes(archive.manifest(), Format::nanodlp).empty());
+}
+
+TEST_CASE("a fade that is longer than the part, or begins without bottom layers, is written as it is") {
+    const pliant::test::Folder folder("export");
+    for (const int bottom : {2, 0}) {
+        CAPTURE(bottom);
+        const Archive archive = exposed(folder / "fade.zip", {bottom, 20, 0, 50, {}});
+        const auto nano = ZipReader::open(export_job(archive, Format::nanodlp, folder / "b").value().at(0));
+        const auto profile = json(*nano, "profile.json");
+        CHECK(profile["CureTime"] == 3);
+        CHECK(profile["SupportCureTime"] == 9);
+        CHECK(profile["SupportLayerNumber"] == bottom);
+        CHECK(profile["TransitionalLayer"] == 20);
+        CHECK(exposure_notes(archive.manifest(), Format::nanodlp).empty());
+    }
+}
+
+TEST_CASE("layers whose exposure a format cannot say are counted") {
+    const pliant::test::Folder folder("export");
+    const Archive archive = exposed(folder / "own.zip", {2, 0, 0, 50, {{4, 6, 5}}});
+    CHECK(exposure_notes(archive.manifest(), Format::nanodlp) ==
+          std::vector<std::string>{
+              "material \"soft\": 3 layers of it should get other light than a .nanodlp file can say"});
+    // The second bottom layer too: an .sl1 file has one first layer.
+    CHECK(
+        exposure_notes(archive.manifest(), Format::sl1) ==
+        std::vector<std::string>{"material \"soft\": 4 layers of it should get other light than an .sl1 file can say"});
+    CHECK(exposure_notes(archive.manifest(), Format::zip).empty());
 }
 
 TEST_CASE("a .nanodlp file can be read as NanoDLP and UVtools read it") {

@@ -71,16 +71,22 @@ double StackFacts::first_light_s() const {
 }
 
 int StackFacts::fading_layers() const {
-    const double low = std::min(of().exposure_s, of().bottom_exposure_s);
-    const double high = std::max(of().exposure_s, of().bottom_exposure_s);
+    constexpr double longest = 10000;
+    const double normal = of().exposure_s, first = of().bottom_exposure_s;
+    const double low = std::min(normal, first), high = std::max(normal, first);
     const auto bottom = static_cast<std::size_t>(std::max(0, bottom_layers(manifest, of())));
     std::size_t end = bottom;
-    for (std::size_t k = bottom; k < light_s.size(); ++k) {
+    bool ended = false;
+    for (std::size_t k = bottom; k < light_s.size() && !ended; ++k) {
         if (area_mm2[k] == 0) continue;  // dark: no information
-        if (light_s[k] <= low || light_s[k] >= high) break;
-        end = k + 1;
+        ended = light_s[k] <= low || light_s[k] >= high;
+        if (!ended) end = k + 1;
     }
-    return static_cast<int>(end - bottom);
+    if (ended || end == bottom) return static_cast<int>(end - bottom);
+    // The part ends before the fade does: its slope tells how long it would be.
+    const double fallen = (light_s[end - 1] - first) / (normal - first);
+    const double steps = static_cast<double>(end - bottom) / fallen;
+    return static_cast<int>(std::clamp(std::round(steps) - 1, static_cast<double>(end - bottom), longest));
 }
 
 StackFacts facts_of(const Manifest& manifest, int material, const std::string& image_prefix) {
@@ -100,16 +106,35 @@ StackFacts facts_of(const Manifest& manifest, int material, const std::string& i
     return facts;
 }
 
-int layers_of_other_light(const StackFacts& s) {
-    constexpr double rounding = 1e-3;
+std::vector<double> sl1_lights_s(const StackFacts& s) {
     const double normal = s.of().exposure_s, first = s.first_light_s();
     const int fading = s.fading_layers();
+    std::vector<double> lights_s;
+    for (std::size_t k = 0; k < s.light_s.size(); ++k) {
+        const double left = std::max(0.0, 1 - static_cast<double>(k) / (fading + 1));
+        lights_s.push_back(normal + left * (first - normal));
+    }
+    return lights_s;
+}
+
+std::vector<double> nanodlp_lights_s(const StackFacts& s) {
+    const double normal = s.of().exposure_s, bottom = s.of().bottom_exposure_s;
+    const int fading = s.fading_layers();
+    std::vector<double> lights_s;
+    for (std::size_t k = 0; k < s.light_s.size(); ++k) {
+        const double above = static_cast<double>(k) + 1 - std::max(0, s.manifest.bottom_layers);
+        const double left = std::clamp(1 - above / (fading + 1), 0.0, 1.0);
+        lights_s.push_back(normal + left * (bottom - normal));
+    }
+    return lights_s;
+}
+
+int layers_of_other_light(const StackFacts& s, const std::vector<double>& said_s) {
+    constexpr double rounding = 1e-3;
     int count = 0;
     for (std::size_t k = 0; k < s.light_s.size(); ++k) {
         if (s.area_mm2[k] == 0) continue;
-        const double left = std::max(0.0, 1 - static_cast<double>(k) / (fading + 1));
-        const double said = normal + left * (first - normal);
-        count += std::fabs(s.light_s[k] - said) > rounding * normal ? 1 : 0;
+        count += std::fabs(s.light_s[k] - said_s[k]) > rounding * s.of().exposure_s ? 1 : 0;
     }
     return count;
 }
@@ -188,7 +213,7 @@ std::vector<NamedText> nanodlp_texts(const StackFacts& s, const std::vector<Imag
                           {"Title", material.resin},
                           {"Depth", s.layer_um},
                           {"CureTime", material.exposure_s},
-                          {"SupportCureTime", s.first_light_s()},
+                          {"SupportCureTime", material.bottom_exposure_s},
                           {"SupportDepth", s.layer_um},
                           {"SupportLayerNumber", bottom_layers(m, material)},
                           {"TransitionalLayer", s.fading_layers()},

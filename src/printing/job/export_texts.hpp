@@ -23,18 +23,23 @@ struct StackFacts {
 
     [[nodiscard]] const Material& of() const { return manifest.materials[static_cast<std::size_t>(material)]; }
     [[nodiscard]] double volume_mm3() const;
-    /// Of the first layer, for which every format has its own exposure.
+    /// Of the first layer, for which an .sl1 file has its own exposure.
     [[nodiscard]] double first_light_s() const;
-    /// Layers above the bottom ones whose exposure is between that of the first layer and that of the rest.
+    /// Layers above the bottom ones whose exposure is between theirs and that of the rest. If the part ends before the
+    /// fade does, the number that it would have.
     [[nodiscard]] int fading_layers() const;
 };
 
 /// From the material's images and the job's layers.
 [[nodiscard]] StackFacts facts_of(const Manifest& manifest, int material, const std::string& image_prefix);
 
-/// Lit layers whose exposure is not what an .sl1 file says: that of the first layer, falling to that of all others over
-/// the fading layers.
-[[nodiscard]] int layers_of_other_light(const StackFacts& stack);
+/// Per layer, what an .sl1 file says: the exposure of the first layer, falling to that of all others over the fading
+/// layers that follow it.
+[[nodiscard]] std::vector<double> sl1_lights_s(const StackFacts& stack);
+/// What a .nanodlp file says: the exposure of the bottom layers, falling to that of all others over the fading layers.
+[[nodiscard]] std::vector<double> nanodlp_lights_s(const StackFacts& stack);
+/// Lit layers whose exposure is not what a file says.
+[[nodiscard]] int layers_of_other_light(const StackFacts& stack, const std::vector<double>& said_s);
 
 [[nodiscard]] std::vector<NamedText> sl1_texts(const StackFacts& stack);
 /// `areas`: per layer image.
