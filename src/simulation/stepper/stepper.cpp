@@ -10,7 +10,6 @@
 
 #include "simulation/elements/elements.hpp"
 #include "simulation/solver/friction_rounds.hpp"
-#include "simulation/stepper/impact.hpp"
 #include "simulation/stepper/prediction.hpp"
 
 namespace pliant::sim {
@@ -366,8 +365,7 @@ bool Stepper::chooses_scheme() const {
 int Stepper::touching_after(const RobotState& robot, const State& next, const Controls& controls) const {
     const Touching there = system_.touching(next, controls);
     if (there.none()) return 0;
-    const bool as_before = there.is_part_of(system_.touching(robot.now.state, robot.controls)) &&
-                           !is_impact(system_, there, robot.now.state, robot.controls, next, controls);
+    const bool as_before = there.is_part_of(system_.touching(robot.now.state, robot.controls));
     return as_before ? std::max(robot.history.touching, 1) + 1 : 1;
 }
 
