@@ -21,6 +21,8 @@
 namespace pliant::mesh {
 namespace {
 
+constexpr double flat = 1e-9;  // of the cube of its size, or of its area
+
 /// What its triangles enclose, or why that is nothing that could be told.
 struct Enclosed {
     std::optional<double> volume;
@@ -28,7 +30,6 @@ struct Enclosed {
 };
 
 bool encloses_nothing(const TriMesh& surface, double size) {
-    constexpr double flat = 1e-9;
     return !(std::fabs(signed_volume(surface)) > flat * size * size * size);
 }
 
@@ -41,7 +42,6 @@ std::string open_text(const JudgedSurface& judged, double missing) {
 
 /// Judged as the mesher does. A T-junction leaves open edges, but no hole: the volume is that of the drawing.
 Enclosed enclosed_by(const TriMesh& surface) {
-    constexpr double flat = 1e-9;
     const double size = bounds(surface).diagonal();
     const JudgedSurface judged = mesh::judged(surface);
     Enclosed result;

@@ -219,6 +219,15 @@ TEST_CASE("layers whose exposure a format cannot say are counted") {
     CHECK(exposure_notes(archive.manifest(), Format::zip).empty());
 }
 
+TEST_CASE("a material with fewer bottom layers than its job has no layer of other light") {
+    const pliant::test::Folder folder("export");
+    Manifest manifest = exposed(folder / "own.zip", {1, 0, 0, 50, {}}).manifest();
+    manifest.bottom_layers = 3;
+    manifest.materials[0].bottom_layers = 1;
+    CHECK(exposure_notes(manifest, Format::nanodlp).empty());
+    CHECK(exposure_notes(manifest, Format::sl1).empty());
+}
+
 TEST_CASE("a .nanodlp file can be read as NanoDLP and UVtools read it") {
     const pliant::test::Folder folder("export");
     const Archive archive = make(folder / "two.zip");

@@ -20,6 +20,10 @@ std::string one_line(std::string text) {
     return text;
 }
 
+std::string file_text(const Ordered& value) {
+    return json_text(value, 1) + "\n";
+}
+
 /// A line of info.json.
 Ordered layer_info(const ImageAreas& areas, double pixel_mm2) {
     return {{"TotalSolidArea", areas.total_px * pixel_mm2},
@@ -122,7 +126,7 @@ std::vector<double> nanodlp_lights_s(const StackFacts& s) {
     const int fading = s.fading_layers();
     std::vector<double> lights_s;
     for (std::size_t k = 0; k < s.light_s.size(); ++k) {
-        const double above = static_cast<double>(k) + 1 - std::max(0, s.manifest.bottom_layers);
+        const double above = static_cast<double>(k) + 1 - std::max(0, bottom_layers(s.manifest, s.of()));
         const double left = std::clamp(1 - above / (fading + 1), 0.0, 1.0);
         lights_s.push_back(normal + left * (bottom - normal));
     }
@@ -223,11 +227,11 @@ std::vector<NamedText> nanodlp_texts(const StackFacts& s, const std::vector<Imag
     const Ordered slicer{{"PWidth", m.width_px},   {"PHeight", m.height_px},  {"XPixelSize", pixel_mm},
                          {"YPixelSize", pixel_mm}, {"Thickness", s.layer_um}, {"ImageMirror", 0},
                          {"LayerCount", count},    {"MultiMaterial", false}};
-    return {{"meta.json", json_text(meta, 1) + "\n"},
-            {"plate.json", json_text(plate, 1) + "\n"},
-            {"profile.json", json_text(profile, 1) + "\n"},
-            {"slicer.json", json_text(slicer, 1) + "\n"},
-            {"info.json", json_text(info, 1) + "\n"}};
+    return {{"meta.json", file_text(meta)},
+            {"plate.json", file_text(plate)},
+            {"profile.json", file_text(profile)},
+            {"slicer.json", file_text(slicer)},
+            {"info.json", file_text(info)}};
 }
 
 }  // namespace pliant::job
