@@ -10,8 +10,8 @@ namespace pliant::job {
 PlatformEdge::PlatformEdge(const slice::Raster& raster, double width_um, double depth_um)
     : half_x_um_(width_um / 2),
       half_y_um_(depth_um / 2),
-      width_um_(raster.width_um()),
-      depth_um_(raster.height_um()),
+      width_um_(slice::image_extent(raster).x_um),
+      depth_um_(slice::image_extent(raster).y_um),
       pixel_um_(raster.pixel_um),
       limits_(half_x_um_ > 0 && half_y_um_ > 0 && (2 * half_x_um_ < width_um_ || 2 * half_y_um_ < depth_um_)),
       frame_(raster, 1) {

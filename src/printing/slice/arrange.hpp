@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "printing/slice/body.hpp"
+#include "printing/slice/raster_frame.hpp"
 
 namespace pliant::slice {
 
@@ -20,8 +21,11 @@ struct Room {
     double width_um = 0, depth_um = 0;
     const char* name = "an image";
 
-    Room(const Raster& raster) : width_um(raster.width_um()), depth_um(raster.height_um()) {}
+    Room(const Raster& raster) : Room(image_extent(raster)) {}
     Room(double width, double depth, const char* what) : width_um(width), depth_um(depth), name(what) {}
+
+private:
+    explicit Room(const ImageExtent& image) : width_um(image.x_um), depth_um(image.y_um) {}
 };
 
 /// Repeats the part `count` times in a grid of as few rows as the room's width allows, `spacing_um` apart; place the

@@ -35,6 +35,16 @@ TEST_CASE("scaling a part scales surfaces, slices and blends") {
     CHECK(scale(bodies, 101).error().message == "a scale of 101: must be 0.01 to 100");
 }
 
+TEST_CASE("copies stand in the room that a turned image covers") {
+    Raster raster{64, 48, 100};
+    raster.rotation_deg = 90;  // 4.8 x 6.4 mm
+    std::vector<Body> bodies{{"soft", box({0, 0, 0}, {4800, 1000, 100}), "a"}};
+    CHECK(repeat(bodies, 6, 0, raster).has_value());
+    bodies.resize(1);
+    CHECK(repeat(bodies, 7, 0, raster).error().message ==
+          "7 copies of 4.800 x 1.000 mm, 0.000 mm apart, do not fit an image of 4.800 x 6.400 mm: 6 do");
+}
+
 TEST_CASE("copies are arranged in rows; too many are refused with the number that fits") {
     const Raster raster{64, 48, 100};  // 6.4 x 4.8 mm
     std::vector<Body> bodies{{"soft", box({0, 0, 0}, {1800, 1000, 100}), "a"}};

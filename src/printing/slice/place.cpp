@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "printing/slice/raster_frame.hpp"
+
 namespace pliant::slice {
 
 Result<Box3> bounds_of_all(std::span<const Body> bodies) {
@@ -22,9 +24,10 @@ Result<std::vector<std::string>> place_on_platform(std::span<Body> bodies, const
     if (!box) return tl::unexpected(box.error());
     if (box->empty()) return input_error("there is no triangle to print");
     const Vec3 size = box->size();
-    if (size.x > raster.width_um() + 1 || size.y > raster.height_um() + 1)
+    const ImageExtent image = image_extent(raster);
+    if (size.x > image.x_um + 1 || size.y > image.y_um + 1)
         return input_error("the part measures {:.3f} x {:.3f} mm, the image only {:.3f} x {:.3f} mm", size.x / 1000,
-                           size.y / 1000, raster.width_um() / 1000, raster.height_um() / 1000);
+                           size.y / 1000, image.x_um / 1000, image.y_um / 1000);
     std::vector<std::string> warnings;
     const double far_um = std::fmax(norm(box->low), norm(box->high));
     // Mesh files commonly have 24-bit mantissas: warn if that is coarser than a tenth of a pixel.

@@ -33,4 +33,10 @@ RasterFrame::RasterFrame(const Raster& raster, double um_per_unit) {
     mirrored_ = raster.mirror_x != raster.mirror_y;
 }
 
+ImageExtent image_extent(const Raster& raster) {
+    const Turn turn = turn_by(raster.rotation_deg);
+    const double c = std::fabs(turn.cosine), s = std::fabs(turn.sine);
+    return {c * raster.width_um() + s * raster.height_um(), s * raster.width_um() + c * raster.height_um()};
+}
+
 }  // namespace pliant::slice

@@ -29,4 +29,11 @@ private:
     bool mirrored_;
 };
 
+/// How far the image extends along x and y of the platform; of an image that is turned by no quarter turn, its bounding
+/// box.
+struct ImageExtent {
+    double x_um = 0, y_um = 0;
+};
+[[nodiscard]] ImageExtent image_extent(const Raster& raster);
+
 }  // namespace pliant::slice

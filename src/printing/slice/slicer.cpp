@@ -62,12 +62,14 @@ Status check_place(const Body& body, const Box3& box, const Raster& raster, cons
     const double slack = rounding_um / raster.pixel_um;
     const Box3 image = image_box(body, RasterFrame(raster, 1));
     if (image.low.x < -slack || image.high.x > raster.width_px + slack || image.low.y < -slack ||
-        image.high.y > raster.height_px + slack)
+        image.high.y > raster.height_px + slack) {
+        const ImageExtent extent = image_extent(raster);
         return input_error(
             "{}: x {:.3f} to {:.3f} mm, y {:.3f} to {:.3f} mm lies outside the image, which reaches {:.3f} mm in x and "
             "{:.3f} mm in y to both sides of the centre",
-            label, box.low.x / 1000, box.high.x / 1000, box.low.y / 1000, box.high.y / 1000, raster.width_um() / 2000,
-            raster.height_um() / 2000);
+            label, box.low.x / 1000, box.high.x / 1000, box.low.y / 1000, box.high.y / 1000, extent.x_um / 2000,
+            extent.y_um / 2000);
+    }
     return {};
 }
 

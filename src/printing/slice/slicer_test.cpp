@@ -107,6 +107,21 @@ TEST_CASE("a rotated and shifted image shows the part rotated and shifted") {
           std::string::npos);
 }
 
+TEST_CASE("an image turned by a quarter covers the platform upright: parts fit as they are drawn") {
+    Settings settings{{64, 48, 100}, 50, {}};
+    for (const double degrees : {90.0, -90.0, 270.0}) {
+        settings.raster.rotation_deg = degrees;
+        std::vector<Body> upright{{"soft", box({-1000, -3200, 0}, {1000, 3200, 50}), ""}};
+        REQUIRE(place_on_platform(upright, settings.raster).has_value());
+        CHECK(value_sum(slice_all(upright, settings).shots.at(0).image) == 20 * 64 * 255);
+        std::vector<Body> lying{{"soft", box({-3200, -1000, 0}, {3200, 1000, 50}), ""}};
+        CHECK(place_on_platform(lying, settings.raster).error().message ==
+              "the part measures 6.400 x 2.000 mm, the image only 4.800 x 6.400 mm");
+        CHECK(refused(lying, settings).find("the image, which reaches 2.400 mm in x and 3.200 mm in y") !=
+              std::string::npos);
+    }
+}
+
 TEST_CASE("grey values are the exact coverage") {
     // 10.25 x 10.5 pixels: a corner pixel of 1/8.
     const Sliced s = slice_all({{"soft", box({0, 0, 0}, {1025, 1050, 50}), ""}});
