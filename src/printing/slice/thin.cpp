@@ -24,6 +24,90 @@ RunSet solid(const RunImage& image) {
     return RunSet::lit(bright);
 }
 
+constexpr int fine = 4;  // cells along the edge of a pixel
+
+/// Pixels [begin, end) of one value, which may be 0.
+struct Level {
+    int begin = 0, end = 0;
+    double value = 0;
+};
+
+/// The values between two rows, `share` of the way from the upper one to the lower, from the left to the right border.
+std::vector<Level> between(std::span<const Run> upper, std::span<const Run> lower, double share, int width) {
+    std::vector<Level> levels;
+    for (int at = -1; at <= width;) {
+        int end = width + 1;
+        double value = 0;
+        for (const auto& [runs, weight] : {std::pair{&upper, 1 - share}, std::pair{&lower, share}}) {
+            while (!runs->empty() && runs->front().end <= at) *runs = runs->subspan(1);
+            if (runs->empty()) continue;
+            const Run& run = runs->front();
+            end = std::min<int>(end, run.begin > at ? run.begin : run.end);
+            if (run.begin <= at) value += weight * run.value;
+        }
+        levels.push_back({at, end, value});
+        at = end;
+    }
+    return levels;
+}
+
+/// The cells of a row that have at least half light, interpolated between the centres of pixels.
+std::vector<PixelSpan> bright_cells(const std::vector<Level>& levels, int width) {
+    constexpr double half_light = 127.5;
+    std::vector<PixelSpan> spans;
+    const auto add = [&](int begin, int end, double value) {
+        begin = std::max(begin, 0);
+        end = std::min(end, fine * width);
+        if (value < half_light || begin >= end) return;
+        if (!spans.empty() && spans.back().end == begin)
+            spans.back().end = end;
+        else
+            spans.push_back({begin, end});
+    };
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        const Level& level = levels[i];
+        const int last_centre = fine * (level.end - 1) + fine / 2;
+        add(fine * level.begin + fine / 2, last_centre, level.value);
+        const double next = i + 1 < levels.size() ? levels[i + 1].value : 0;
+        for (int j = 0; j < fine; ++j)
+            add(last_centre + j, last_centre + j + 1, level.value + (next - level.value) * (j + 0.5) / fine);
+    }
+    return spans;
+}
+
+/// The image in cells of a quarter of a pixel. The grey of a pixel tells where in it the outline is: so slanted walls
+/// are as wide as they are drawn, not as their stairs of pixels.
+RunSet solid_cells(const RunImage& image) {
+    RunSet cells(fine * image.width_px(), fine * image.height_px());
+    for (int row = image.first_row() - 1; row < image.end_row(); ++row) {
+        for (int j = 0; j < fine; ++j) {
+            const int cell_row = fine * row + fine / 2 + j;
+            if (cell_row < 0 || cell_row >= cells.height_px()) continue;
+            const auto levels = between(image.row(row), image.row(row + 1), (j + 0.5) / fine, image.width_px());
+            cells.append_row(cell_row, bright_cells(levels, image.width_px()));
+        }
+    }
+    return cells;
+}
+
+/// Pixels whose centre is in one of the cells.
+RunSet pixels_of(const RunSet& cells, int width, int height) {
+    RunSet pixels(width, height);
+    for (int row = cells.first_row() / fine; row < height && row * fine < cells.end_row(); ++row) {
+        std::vector<PixelSpan> spans;
+        for (const PixelSpan& span : cells.row(fine * row + fine / 2)) {
+            const int begin = (span.begin + fine / 2 - 1) / fine, end = (span.end + fine / 2 - 1) / fine;
+            if (begin >= end) continue;
+            if (!spans.empty() && spans.back().end == begin)
+                spans.back().end = end;
+            else
+                spans.push_back({begin, end});
+        }
+        pixels.append_row(row, std::move(spans));
+    }
+    return pixels;
+}
+
 /// One for each connected piece of a layer.
 std::vector<ThinSpot> spots_of(const RunSet& thin, int layer, int material) {
     const PieceMap pieces = pieces_of(thin);
@@ -54,12 +138,12 @@ bool goes_on(const ThinSpot& below, const ThinSpot& above) {
 
 std::vector<ThinSpot> thin_spots(const ComposedLayer& layer, int k, double least_um, const Raster& raster) {
     std::vector<ThinSpot> spots;
-    // Shrinking by r removes walls of 2 r pixels but not those of 2 r + 1.
-    const int radius = static_cast<int>(std::ceil(least_um / raster.pixel_um - 1e-9)) / 2;
-    if (radius < 1) return spots;
+    // Shrinking by r removes walls of 2 r cells but not those of 2 r + 1, and of slanted ones those of 2 r - 2.
+    if (least_um <= raster.pixel_um * (1 + 1e-9)) return spots;
+    const int radius = (static_cast<int>(std::lround(fine * least_um / raster.pixel_um)) - 1) / 2;
     for (const MaterialImage& m : layer.images) {
-        const RunSet all = solid(m.image);
-        const RunSet thin = without(all, grown(shrunk(all, radius), 2 * radius));
+        const RunSet thick = grown(shrunk(solid_cells(m.image), radius), 2 * radius);
+        const RunSet thin = without(solid(m.image), pixels_of(thick, m.image.width_px(), m.image.height_px()));
         const std::vector<ThinSpot> own = spots_of(thin, k, m.material);
         spots.insert(spots.end(), own.begin(), own.end());
     }

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "printing/slice/slicer.hpp"
 #include "printing/slice/test_shapes.hpp"
 
@@ -34,6 +37,24 @@ TEST_CASE("a wall of 0.2 mm is thinner than 0.3 mm and not than 0.2 mm") {
         "at row 46, column 44");
     CHECK(thin_in({{"soft", box({-1000, -150, 0}, {1000, 150, 500}), ""}}, 250).empty());
     CHECK(thin_in(wall, 50).empty());
+}
+
+TEST_CASE("walls are measured alike at every angle: to a pixel") {
+    const auto found = [](double width_um, double degrees, double shift_um) {
+        const double a = degrees * std::numbers::pi / 180, x = 1500 * std::cos(a), y = 1500 * std::sin(a);
+        const double u = -width_um / 2 * std::sin(a), v = width_um / 2 * std::cos(a);
+        std::vector<Point2> wall{{-x - u, -y - v}, {x - u, y - v}, {x + u, y + v}, {u - x, v - y}};
+        for (Point2& corner : wall) corner.x += shift_um;
+        return !thin_in({{"soft", prism(wall, 0, 500), ""}}, 300).empty();
+    };
+    for (double degrees = 0; degrees < 180; degrees += 7.5) {
+        for (const double shift_um : {0.0, 13.0, 25.0}) {
+            CAPTURE(degrees);
+            CAPTURE(shift_um);
+            for (const double width_um : {100.0, 150.0, 200.0, 250.0}) CHECK(found(width_um, degrees, shift_um));
+            CHECK(!found(301, degrees, shift_um));
+        }
+    }
 }
 
 TEST_CASE("corners, discs and triangles are not thin; a fin on a block and the tip of a needle are") {
