@@ -64,7 +64,14 @@ slice::Room room_of(const job::JobSettings& settings) {
     return {settings.edge->width_um(), settings.edge->depth_um(), "the platform"};
 }
 
-/// Supports and rafts count too.
+/// How far a body's outlines are moved outwards.
+double growth_of(const job::JobSettings& settings, const std::string& material, double top_um) {
+    const auto own = settings.slicing.compensation.find(material);
+    if (own == settings.slicing.compensation.end()) return 0;
+    return slice::growth_um(own->second, settings.slicing.layers().middles_up_to(std::lround(top_um), 1));
+}
+
+/// Supports and rafts count too, and compensation.
 Status check_edge(const job::JobSettings& settings, const Drawing& drawing) {
     if (!settings.edge) return {};
     for (std::size_t i = 0; i < drawing.bodies.size(); ++i) {
@@ -72,7 +79,11 @@ Status check_edge(const job::JobSettings& settings, const Drawing& drawing) {
         const Result<Box3> box = bounds(drawing.bodies[i], label);
         if (!box) return tl::unexpected(box.error());
         if (box->empty()) continue;
-        if (Status status = job::check_on_platform(*settings.edge, *box, label); !status) return status;
+        const double grow = growth_of(settings, drawing.bodies[i].material, box->high.z);
+        const Vec3 around{grow, grow, 0};
+        const Status status = job::check_on_platform(*settings.edge, {box->low - around, box->high + around},
+                                                     slice::grown_label(label, grow));
+        if (!status) return status;
     }
     return {};
 }

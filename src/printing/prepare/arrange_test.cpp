@@ -200,6 +200,28 @@ TEST_CASE("--least-layer gives layers of different heights, and --hollow a cavit
     CHECK(refused([](Order& o) { o.hollow = "101 mm"; }).find("at most 100 mm") != std::string::npos);
 }
 
+TEST_CASE("what compensation moves over the edge of the platform is refused as if it were drawn there") {
+    const auto moved = [](int um, std::optional<job::PlatformEdge> edge) {
+        Drawing drawing = two_blocks();
+        machine::Printer p = printer();
+        for (machine::Resin& resin : p.resins) resin.xy_compensation_um = um;
+        auto settings = job_settings({}, p, {}, drawing);
+        REQUIRE(settings.has_value());
+        settings->edge = std::move(edge);
+        std::vector<std::string> notes;
+        Progress silent;
+        const Status status = arrange({}, *settings, drawing, notes, silent);
+        return status ? std::string() : status.error().message;
+    };
+    // The blocks are 8 x 4 mm.
+    const slice::Raster raster{200, 100, 100};
+    CHECK(moved(50, job::PlatformEdge(raster, 8100, 4100)).empty());
+    CHECK(moved(-500, job::PlatformEdge(raster, 8000, 4000)).empty());
+    CHECK(moved(70, job::PlatformEdge(raster, 8100, 4200)) ==
+          "body 'left' (soft), grown by its xy_compensation of 0.07 mm: lies 0.020 mm beyond the platform at -x, which "
+          "reaches from -4.050 to 4.050 mm there; move, turn or scale the part");
+}
+
 TEST_CASE("--scale and --at scale and move the part") {
     const Box3 larger = done([](Order& o) { o.scale = 1.5; }).box();
     CHECK(larger.size().x == near(12000, {.relative = 1e-12}));

@@ -135,6 +135,14 @@ double Compensation::offset_um(int layer) const {
     return grow_um - foot_um * (foot_layers - layer) / foot_layers;
 }
 
+double growth_um(const Compensation& compensation, int layers) {
+    return layers < 1 ? 0 : std::max(0.0, compensation.offset_um(layers - 1));
+}
+
+std::string grown_label(const std::string& label, double growth_um) {
+    return growth_um > 0 ? fmt::format("{}, grown by its xy_compensation of {:g} mm", label, growth_um / 1000) : label;
+}
+
 Status check(const Compensation& c, const std::string& where) {
     constexpr double most_um = 10000;
     if (!(std::fabs(c.grow_um) <= most_um))

@@ -21,6 +21,12 @@ struct Compensation {
     bool operator==(const Compensation&) const = default;
 };
 
+/// How far a body of this many layers grows outwards; 0 if it does not.
+[[nodiscard]] double growth_um(const Compensation& compensation, int layers);
+
+/// "body 1 (soft), grown by its xy_compensation of 0.5 mm"; the label alone where nothing grows.
+[[nodiscard]] std::string grown_label(const std::string& label, double growth_um);
+
 /// Errors: a value that is not finite or beyond 10 mm, or a foot that grows. The message starts with `where`.
 [[nodiscard]] Status check(const Compensation& compensation, const std::string& where);
 

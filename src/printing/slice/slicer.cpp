@@ -54,12 +54,18 @@ Box3 image_box(const Body& body, const RasterFrame& frame) {
     return box;
 }
 
-/// Bodies may exceed the raster's border by rounding errors only.
-Status check_place(const Body& body, const Box3& box, const Raster& raster, const std::string& label) {
+/// How far outlines of a material are moved outwards in this many layers.
+double growth_of(const std::string& material, const Settings& settings, int layers) {
+    const auto own = settings.compensation.find(material);
+    return own == settings.compensation.end() ? 0 : growth_um(own->second, layers);
+}
+
+/// Bodies may exceed the raster's border by rounding errors only, also where they are compensated.
+Status check_place(const Body& body, const Box3& box, const Raster& raster, double grow_um, const std::string& label) {
     constexpr double rounding_um = 1;
     if (box.low.z < -rounding_um)
         return input_error("{}: reaches {:.3f} mm below the platform", label, -box.low.z / 1000);
-    const double slack = rounding_um / raster.pixel_um;
+    const double slack = (rounding_um - grow_um) / raster.pixel_um;
     const Box3 image = image_box(body, RasterFrame(raster, 1));
     if (image.low.x < -slack || image.high.x > raster.width_px + slack || image.low.y < -slack ||
         image.high.y > raster.height_px + slack) {
@@ -67,8 +73,8 @@ Status check_place(const Body& body, const Box3& box, const Raster& raster, cons
         return input_error(
             "{}: x {:.3f} to {:.3f} mm, y {:.3f} to {:.3f} mm lies outside the image, which reaches {:.3f} mm in x and "
             "{:.3f} mm in y to both sides of the centre",
-            label, box.low.x / 1000, box.high.x / 1000, box.low.y / 1000, box.high.y / 1000, extent.x_um / 2000,
-            extent.y_um / 2000);
+            grown_label(label, grow_um), box.low.x / 1000, box.high.x / 1000, box.low.y / 1000, box.high.y / 1000,
+            extent.x_um / 2000, extent.y_um / 2000);
     }
     return {};
 }
@@ -125,7 +131,10 @@ Status Slicer::add_body(const Body& body, const std::string& label) {
     if (body.blend) {
         if (auto status = check(*body.blend, label); !status) return status;
     }
-    if (auto status = check_place(body, *box, settings_.raster, label); !status) return status;
+    const int layers = std::visit([](const auto& shape) { return shape.layer_count(); }, shapes_.back());
+    if (auto status = check_place(body, *box, settings_.raster, growth_of(body.material, settings_, layers), label);
+        !status)
+        return status;
     add_shape(body, box->size());
     return {};
 }

@@ -107,6 +107,18 @@ TEST_CASE("a rotated and shifted image shows the part rotated and shifted") {
           std::string::npos);
 }
 
+TEST_CASE("a part that compensation moves over the image's border is refused") {
+    const std::vector<Body> plate{{"soft", box({-3150, -2350, 0}, {3150, 2350, 200}), ""}};
+    Settings settings{{64, 48, 100}, 50, {}};
+    settings.compensation["soft"] = {50, 0, 0};
+    CHECK(Slicer::prepare(plate, settings).has_value());
+    settings.compensation["soft"] = {60, 0, 0};
+    CHECK(refused(plate, settings).find("body 1 (soft), grown by its xy_compensation of 0.06 mm: x -3.150 to 3.150") ==
+          0);
+    settings.compensation["soft"] = {60, 60, 4};  // the last layer is moved by 45 um
+    CHECK(Slicer::prepare(plate, settings).has_value());
+}
+
 TEST_CASE("an image turned by a quarter covers the platform upright: parts fit as they are drawn") {
     Settings settings{{64, 48, 100}, 50, {}};
     for (const double degrees : {90.0, -90.0, 270.0}) {

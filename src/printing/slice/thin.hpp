@@ -18,10 +18,10 @@ struct ThinSpot {
 };
 
 /// Pixels of at least half light outside all discs of diameter `least_um` that fit inside the material's image: walls
-/// narrower than that and tips sharper than about 60 degrees; one spot for each connected piece. At
-/// any angle, a wall that is narrower by a pixel is found, and one that is not narrower is not; without anti-aliasing
-/// it takes a pixel more. With r the disc's radius: the image minus the image shrunk by r and grown by 2 r, in quarters
-/// of a pixel. Cost: the runs times r; diameters of a pixel find nothing.
+/// narrower than that and tips sharper than about 60 degrees; one spot for each connected piece. At any angle, a wall
+/// that is narrower by a pixel is found, and one that is not narrower is not. With r the disc's radius: the image minus
+/// the image shrunk by r and grown by 2 r, in quarters of a pixel. Cost: the runs times r; diameters of a pixel find
+/// nothing.
 [[nodiscard]] std::vector<ThinSpot> thin_spots(const ComposedLayer& layer, int k, double least_um,
                                                const Raster& raster);
 
