@@ -144,11 +144,11 @@ void choose_order(Plan& plan, const std::vector<VatList>& layers, const Printer&
     plan.swap_lower_bound = fewest_swaps(layers);
 }
 
-/// How deep the k-th image of a layer cures: by the resin's own working curve, or as the printer file says.
+/// How deep the k-th image of a layer cures: by the resin's working curve, so that longer exposures count.
 double depth_of_image_um(const job::Manifest& job, std::size_t layer, std::size_t k, const Printer& printer,
                          const machine::Resin& resin) {
-    if (!(resin.penetration_um > 0)) return resin.cure_depth_um;
-    return machine::cure_depth_um(printer, resin, job::exposure_s(job, layer, k));
+    constexpr double rounding_um = 1e-6;
+    return machine::cure_depth_um(printer, resin, job::exposure_s(job, layer, k)) + rounding_um;
 }
 
 /// A blank layer below a printed one leaves a gap that curing must bridge.

@@ -117,6 +117,20 @@ TEST_CASE("warnings: a material that prints nothing, and a vat that holds too li
     CHECK(holds(plan.warnings[2], "1 layer would have to be cured deeper"));
 }
 
+TEST_CASE("layers that a longer exposure cures deep enough are not counted as too thick") {
+    machine::Printer printer = plan::test::tower();
+    machine::Resin& resin = printer.resins[0];
+    resin.penetration_um = resin.critical_J_m2 = 0;
+    resin.exposure_s = 2.5;
+    const auto last_warning = [&](int cure_depth_um) {
+        resin.cure_depth_um = cure_depth_um;
+        const Plan plan = planned(plan::test::make_job(repeated({0}, 10), {resin.name}), printer);
+        return plan.warnings.empty() ? std::string() : plan.warnings.back();
+    };
+    CHECK(holds(last_warning(40), "7 layers would have to be cured deeper"));  // three have the bottom exposure
+    CHECK(!holds(last_warning(50), "cured deeper"));
+}
+
 TEST_CASE("the G-code passes the interlocks, is absolute, and shows each image once, after M400") {
     const machine::Printer printer = plan::test::tower();
     const job::Manifest job =
