@@ -176,6 +176,19 @@ Status set_heights(const Order& order, const Drawing& drawing, slice::Settings& 
     return {};
 }
 
+/// A plate that does not reach the middle of the first layer would not be printed.
+Status check_raft(const Order& order, double raft_um, const slice::Layers& layers) {
+    if (raft_um <= 0 || 2 * raft_um >= layers.middle2_um(0)) return {};
+    return input_error("--raft {}: is less than half of the first layer and would not be printed: give at least {} um",
+                       order.raft, layers.top_um(0));
+}
+
+void note_wide_tips(const Order& order, double tip_um, double pixel_um, std::vector<std::string>& warnings) {
+    if (order.support_tip.empty() || tip_um >= 2 * pixel_um) return;
+    warnings.push_back(fmt::format("--support-tip {}: is less than two pixels; tips are {:g} mm wide",
+                                   order.support_tip, 2 * pixel_um / 1000));
+}
+
 Status hollow_part(const Order& order, job::JobSettings& settings, Drawing& drawing, std::vector<std::string>& notes,
                    Progress& progress) {
     if (order.hollow.empty()) {
@@ -223,6 +236,8 @@ Status arrange(const Order& order, job::JobSettings& settings, Drawing& drawing,
     if (Status status = set_heights(order, drawing, settings.slicing); !status) return status;
     if (Status status = hollow_part(order, settings, drawing, notes, progress); !status) return status;
     if (!supported) return {};
+    if (Status status = check_raft(order, wanted.raft_um, settings.slicing.layers()); !status) return status;
+    note_wide_tips(order, wanted.tip_um, settings.slicing.raster.pixel_um, drawing.warnings);
     auto supports = slice::make_supports(drawing.bodies, settings.slicing, wanted, progress);
     if (!supports) return tl::unexpected(supports.error());
     notes.push_back(fmt::format("supports: {}, {} of them on the part itself, {}, {:.1f} mm^3",

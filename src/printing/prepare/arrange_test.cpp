@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "base/core/near.hpp"
@@ -313,4 +314,27 @@ TEST_CASE("--support-paint without --support, or with an invalid table, is refus
         o.support_paint_file = "mine.csv";
     });
     CHECK(text == "mine.csv:1: there is no column \"x (mm)\"");
+}
+
+TEST_CASE("a raft that no layer would show is an error, tips below two pixels a warning") {
+    const auto with = [](const char* raft, const char* tip) {
+        return table_with([&](Order& o) {
+            o.raft = raft;
+            o.support_tip = tip;
+        });
+    };
+    const Status thin = with("0.024 mm", "").status;  // layers of 50 um
+    REQUIRE(!thin.has_value());
+    CHECK(thin.error().message ==
+          "--raft 0.024 mm: is less than half of the first layer and would not be printed: give at least 50 um");
+    CHECK(with("0.025 mm", "").status.has_value());
+    const auto warned = [](const Arranged& a) {
+        return std::ranges::count_if(a.drawing.warnings,
+                                     [](const std::string& w) { return w.find("--support-tip") == 0; });
+    };
+    CHECK(warned(with("", "0.2 mm")) == 0);
+    const Arranged fine = with("", "0.15 mm");
+    REQUIRE(warned(fine) == 1);
+    CHECK(std::ranges::count(fine.drawing.warnings,
+                             "--support-tip 0.15 mm: is less than two pixels; tips are 0.2 mm wide") == 1);
 }
