@@ -197,6 +197,17 @@ std::int64_t Reader::integer(std::string_view key, std::int64_t fallback) {
     return fallback;
 }
 
+int Reader::whole(std::string_view key, int low, int high) {
+    return find_required(key, "a whole number") != nullptr ? whole(key, low, high, low) : low;
+}
+
+int Reader::whole(std::string_view key, int low, int high, int fallback) {
+    const std::int64_t value = integer(key, fallback);
+    if (has(key) && (value < low || value > high))
+        problem(key, fmt::format("is {}, must be from {} to {}", value, low, high));
+    return static_cast<int>(std::max<std::int64_t>(low, std::min<std::int64_t>(value, high)));
+}
+
 bool Reader::boolean(std::string_view key, bool fallback) {
     const Value* value = find(key);
     if (value == nullptr) return fallback;

@@ -85,6 +85,9 @@ public:
     [[nodiscard]] double number(std::string_view key, double fallback);
     [[nodiscard]] std::int64_t integer(std::string_view key);
     [[nodiscard]] std::int64_t integer(std::string_view key, std::int64_t fallback);
+    /// A whole number from `low` to `high`; one outside is a problem, and the nearest of them is returned.
+    [[nodiscard]] int whole(std::string_view key, int low, int high);
+    [[nodiscard]] int whole(std::string_view key, int low, int high, int fallback);
     [[nodiscard]] bool boolean(std::string_view key, bool fallback);
     /// A text with a unit, converted to SI; a bare number is a problem, whose message names the units.
     [[nodiscard]] double quantity(std::string_view key, Dimension dimension);

@@ -130,6 +130,21 @@ TEST_CASE("two things that are wrong with a value that was read are both said") 
     CHECK(message(problems) == "test.toml:1: limits: the lower one stands first\ntest.toml:1: limits: must hold 0");
 }
 
+TEST_CASE("a whole number outside its range is a problem, also where it is too large for 32 bits") {
+    const Document document = document_of("lines = 4294967298\nlayers = -1\norder = 2\n");
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    CHECK(root.whole("lines", 1, 4) == 4);
+    CHECK(root.whole("layers", 0, 10, 3) == 0);
+    CHECK(root.whole("order", 1, 2, 1) == 2);
+    CHECK(root.whole("none", 1, 5, 4) == 4);
+    CHECK(root.whole("needed", 1, 5) == 1);
+    CHECK(message(problems) ==
+          "test.toml:1: \"needed\" is missing; it is a whole number\n"
+          "test.toml:1: lines: is 4294967298, must be from 1 to 4\n"
+          "test.toml:2: layers: is -1, must be from 0 to 10");
+}
+
 TEST_CASE("an unread key is an error that names the line and the nearest key") {
     const Document document = document_of("name = \"x\"\n\ngeometri = 3\n");
     Problems problems("test.toml");

@@ -54,9 +54,9 @@ void read_motion(Reader& r, AxisSpec& axis) {
 /// Steps per mm are computed from what can be counted on the machine.
 Drive read_drive(Reader& r, bool rotary) {
     Drive d;
-    if (r.has("motors")) d.motors = whole(r, "motors", 1, 2);
-    if (r.has("motor_steps")) d.motor_steps = whole(r, "motor_steps", 1, 10000);
-    if (r.has("microsteps")) d.microsteps = whole(r, "microsteps", 1, 256);
+    if (r.has("motors")) d.motors = r.whole("motors", 1, 2);
+    if (r.has("motor_steps")) d.motor_steps = r.whole("motor_steps", 1, 10000);
+    if (r.has("microsteps")) d.microsteps = r.whole("microsteps", 1, 256);
     d.gear = r.number("gear", 1);
     if (!(d.gear > 0 && d.gear <= 1e6))
         r.problem("gear", "must be above 0: turns of the motor for one behind the gear");
@@ -90,11 +90,9 @@ Controller read_controller(Reader r) {
         if (!release) r.problem("firmware", fmt::format("\"{}\" is not known; must be 2.1.1, 2.1.2 or 2.1.3", version));
         c.firmware = release.value_or(c.firmware);
     }
-    c.baud_rate = whole(r, "baud_rate", 9600, 1000000);
-    c.window_lines = static_cast<int>(r.integer("window_lines", c.window_lines));
-    c.window_bytes = static_cast<int>(r.integer("window_bytes", c.window_bytes));
-    if (c.window_lines < 1 || c.window_lines > 4) r.problem("window_lines", "must be from 1 to 4");
-    if (c.window_bytes < 96 || c.window_bytes > 4096) r.problem("window_bytes", "must be from 96 to 4096");
+    c.baud_rate = r.whole("baud_rate", 9600, 1000000);
+    c.window_lines = r.whole("window_lines", 1, 4, c.window_lines);
+    c.window_bytes = r.whole("window_bytes", 96, 4096, c.window_bytes);
     r.finish();
     return c;
 }
@@ -132,7 +130,7 @@ VatShape read_vat_shape(Reader r) {
 
 Vat read_vat(Reader& r, const Printer& printer) {
     Vat v;
-    v.slot = whole(r, "slot", 1, printer.slot_count());
+    v.slot = r.whole("slot", 1, printer.slot_count());
     v.resin = r.text("resin", "");
     v.fill_ml = not_negative(r, "fill", Dimension::volume, 1e6);
     if (v.fill_ml > printer.vat_shape.free_volume_ml) {
@@ -167,7 +165,7 @@ void read_outline_offsets(Reader& r, Resin& resin) {
     resin.elephant_foot_um = length_um(r, "elephant_foot");
     if (resin.elephant_foot_um > most_um) r.problem("elephant_foot", "must be at most 10 mm");
     resin.elephant_foot_layers =
-        r.has("elephant_foot_layers") ? whole(r, "elephant_foot_layers", 1, 10000) : std::max(1, resin.bottom_layers);
+        r.has("elephant_foot_layers") ? r.whole("elephant_foot_layers", 1, 10000) : std::max(1, resin.bottom_layers);
 }
 
 Resin read_resin(const std::string& name, Reader r) {
@@ -176,8 +174,8 @@ Resin read_resin(const std::string& name, Reader r) {
     resin.exposure_s = positive(r, "exposure", Dimension::time, 1);
     resin.bottom_exposure_s = r.quantity("bottom_exposure", Dimension::time, resin.exposure_s);
     if (resin.bottom_exposure_s < resin.exposure_s) r.problem("bottom_exposure", "is shorter than exposure");
-    resin.bottom_layers = r.has("bottom_layers") ? whole(r, "bottom_layers", 0, 10000) : 0;
-    resin.transition_layers = r.has("transition_layers") ? whole(r, "transition_layers", 0, 10000) : 0;
+    resin.bottom_layers = r.has("bottom_layers") ? r.whole("bottom_layers", 0, 10000) : 0;
+    resin.transition_layers = r.has("transition_layers") ? r.whole("transition_layers", 0, 10000) : 0;
     read_outline_offsets(r, resin);
     resin.cure_depth_um = length_um(r, "cure_depth", 1);
     resin.critical_share = r.number("critical_share", 0.8);
@@ -221,8 +219,8 @@ void read_alignment(Reader& r, Projector& p) {
 
 Projector read_projector(Reader r) {
     Projector p;
-    p.width_px = whole(r, "width", 1, 32768);
-    p.height_px = whole(r, "height", 1, 32768);
+    p.width_px = r.whole("width", 1, 32768);
+    p.height_px = r.whole("height", 1, 32768);
     constexpr double parts = 1e6;  // of a micrometre; the remainder is rounding of "100 um" to metres
     p.pixel_um = std::round(parts * positive(r, "pixel", Dimension::length, 1e6)) / parts;
     p.mirror_x = r.boolean("mirror_x", false);

@@ -24,7 +24,7 @@ Carriage read_carriage(Reader r) {
 
 Tower read_tower(Reader r) {
     Tower t;
-    t.slots = whole(r, "slots", 1, 1000);
+    t.slots = r.whole("slots", 1, 1000);
     t.first_slot_um = length_um(r, "first_slot", static_cast<int>(-longest_um));
     t.pitch_um = length_um(r, "pitch", 1);
     t.clearance_um = length_um(r, "clearance");
@@ -44,8 +44,8 @@ void read_fork(Reader r, Wall& w) {
 Wall read_wall(Reader r) {
     constexpr int any_um = static_cast<int>(-longest_um);
     Wall w;
-    w.rows = whole(r, "rows", 1, 100);
-    w.columns = whole(r, "columns", 1, 100);
+    w.rows = r.whole("rows", 1, 100);
+    w.columns = r.whole("columns", 1, 100);
     w.first_row_um = length_um(r, "first_row", any_um);
     w.row_pitch_um = length_um(r, "row_pitch", 1);
     w.first_column_um = length_um(r, "first_column", any_um);

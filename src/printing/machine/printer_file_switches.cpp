@@ -74,7 +74,7 @@ EmergencyLine read_emergency_line(Reader r) {
         if (signal_name(s) == signal) line.signal = s;
     }
     if (line.signal == Signal::controller) {
-        line.pin = whole(r, "pin", 0, last_pin);
+        line.pin = r.whole("pin", 0, last_pin);
     } else {
         line.device = r.text("device");
         if (r.has("device") && line.device.empty()) r.problem("device", "must name a serial port or a file");

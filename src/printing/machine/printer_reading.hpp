@@ -52,14 +52,6 @@ inline double wait_s(Reader& r, std::string_view key) {
     return value;
 }
 
-inline int whole(Reader& r, std::string_view key, int low, int high) {
-    const auto value = r.integer(key);
-    if (r.has(key) && (value < low || value > high)) {
-        r.problem(key, fmt::format("is {}, must be from {} to {}", value, low, high));
-    }
-    return static_cast<int>(std::clamp<std::int64_t>(value, low, high));
-}
-
 inline double speed(Reader& r, std::string_view key) {
     return positive(r, key, Dimension::speed, 1e3);
 }

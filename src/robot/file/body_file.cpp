@@ -85,9 +85,7 @@ void read_mesh(Reader& root, Context& context) {
     Reader reader = root.table("mesh", false);
     MeshSpec& mesh = context.robot.mesh;
     mesh.line = reader.line();
-    mesh.order = static_cast<int>(reader.integer("order", 2));
-    if (mesh.order != 1 && mesh.order != 2)
-        reader.problem("order", "is 1 (linear tets, fast preview) or 2 (quadratic tets)");
+    mesh.order = reader.whole("order", 1, 2, 2);  // linear tets, quadratic tets
     if (reader.has("file")) {
         const std::string file = reader.text("file");
         mesh.file = file == mesh_in_memory ? std::filesystem::path(file) : need_file(reader, "file", file, context);
@@ -98,9 +96,7 @@ void read_mesh(Reader& root, Context& context) {
     read_close_gaps(reader, context);
     read_point_reach(reader, context);
     if (reader.has("elements_through_wall")) {
-        mesh.elements_through_wall = static_cast<int>(reader.integer("elements_through_wall", 3));
-        if (*mesh.elements_through_wall < 0 || *mesh.elements_through_wall > 20)
-            reader.problem("elements_through_wall", "is a whole number from 0 to 20");
+        mesh.elements_through_wall = reader.whole("elements_through_wall", 0, 20, 3);
         if (mesh.file) reader.problem("elements_through_wall", "has no meaning together with a mesh file");
     }
     (void)reader.raw("elements_through_wall");
