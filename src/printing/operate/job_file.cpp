@@ -22,7 +22,7 @@ Result<std::optional<job::Image>> load_mask(const machine::Projector& projector,
     if (projector.mask.empty()) return std::nullopt;
     const std::filesystem::path path = printer_path.parent_path() / projector.mask;
     const Result<std::string> png = read_file(path);
-    if (!png) return tl::unexpected(png.error());
+    if (!png) return input_error("{}: projector.mask: {}", printer_path.string(), png.error().message);
     Result<job::Image> mask = job::decode_png(*png, {projector.width_px, projector.height_px}, path.string());
     if (!mask) return tl::unexpected(mask.error());
     if (std::ranges::all_of(mask->pixels, [](std::uint8_t light) { return light == 0; }))
