@@ -68,11 +68,17 @@ Result<Prepared> prepare_layer(const LayerSource& source, const JobSettings& set
     return prepared;
 }
 
+Result<Material> find_material(const std::vector<Material>& known, const std::string& name) {
+    const auto found = std::find_if(known.begin(), known.end(), [&](const Material& m) { return m.name == name; });
+    if (found == known.end()) return input_error("material \"{}\" has no resin and exposure", name);
+    return *found;
+}
+
 Result<std::vector<Material>> used_materials(const slice::Slicer& slicer, const std::vector<Material>& known) {
     std::vector<Material> used;
     for (const std::string& name : slicer.materials()) {
-        const auto found = std::find_if(known.begin(), known.end(), [&](const Material& m) { return m.name == name; });
-        if (found == known.end()) return input_error("material '{}' has no resin and exposure", name);
+        const Result<Material> found = find_material(known, name);
+        if (!found) return tl::unexpected(found.error());
         used.push_back(*found);
         used.back().model_volume_mm3 = used.back().model_area_mm2 = 0;
     }
@@ -425,10 +431,8 @@ Result<MadeJob> stacks_to_job(std::span<const MaterialStack> stacks, const JobSe
     std::vector<Material> materials;
     LayerSource source{0, {}, {}, false};
     for (const MaterialStack& s : stacks) {
-        const auto known = std::find_if(settings.materials.begin(), settings.materials.end(),
-                                        [&](const Material& m) { return m.name == s.material; });
-        if (known == settings.materials.end())
-            return input_error("material '{}' has no resin and exposure", s.material);
+        const Result<Material> known = find_material(settings.materials, s.material);
+        if (!known) return tl::unexpected(known.error());
         const slice::Raster& raster = settings.slicing.raster;
         if (s.stack.width_px() != raster.width_px || s.stack.height_px() != raster.height_px)
             return input_error("images of '{}' have {} x {} pixels, the projector {} x {}", s.material,

@@ -112,7 +112,7 @@ TEST_CASE("a material without settings, an invalid body and cancellation stop th
     JobSettings incomplete = halves_settings();
     incomplete.materials.resize(1);
     CHECK(slice_to_job(halves, incomplete, *writer, progress).error().message ==
-          "material 'soft/one' has no resin and exposure");
+          "material \"soft/one\" has no resin and exposure");
     CHECK(!slice_to_job({}, halves_settings(), *writer, progress).has_value());
     struct Cancel : Progress {
         [[nodiscard]] bool cancelled() const override { return true; }

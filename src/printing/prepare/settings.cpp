@@ -148,55 +148,76 @@ void note_far_exposure(const std::string& option, double seconds, double usual_s
     warnings.push_back(text);
 }
 
+/// What --exposure says of a material: the time of all its layers and perhaps of its bottom layers, or of some layers.
+struct ExposureChoice {
+    std::string material;
+    double seconds = 0;
+    std::optional<double> bottom_s;
+    std::optional<job::ExposureSpan> layers;
+};
+
+/// FIRST-LAST or one number, counted from 0; without its time.
+std::optional<job::ExposureSpan> read_layers(const std::string& text) {
+    const std::size_t dash = std::min(text.find('-'), text.size());
+    job::ExposureSpan span{plain_number(text.substr(0, dash)), 0, 0};
+    span.last = dash < text.size() ? plain_number(text.substr(dash + 1)) : span.first;
+    if (span.first < 0 || span.last < span.first) return std::nullopt;
+    return span;
+}
+
 /// MATERIAL=TIME, MATERIAL=TIME,BOTTOM or MATERIAL:FIRST-LAST=TIME.
-/// `given`: the materials that have had one already.
-Status set_exposure(const std::string& text, const machine::Printer& printer, job::JobSettings& settings,
-                    std::set<std::string>& given, std::vector<std::string>& warnings) {
+Result<ExposureChoice> read_exposure(const std::string& text, const std::vector<job::Material>& materials) {
     const std::size_t equals = text.rfind('=');
     if (equals == std::string::npos || equals == 0)
         return input_error("--exposure {}: write MATERIAL=TIME, MATERIAL=TIME,BOTTOM or MATERIAL:FIRST-LAST=TIME",
                            text);
-    std::string name = text.substr(0, equals);
+    ExposureChoice choice{text.substr(0, equals), 0, {}, {}};
     const std::string times = text.substr(equals + 1);
-    const std::size_t colon = name.rfind(':'), comma = std::min(times.find(','), times.size());
-    std::optional<job::ExposureSpan> span;
+    const std::size_t colon = choice.material.rfind(':'), comma = std::min(times.find(','), times.size());
     if (colon != std::string::npos) {
-        const std::string layers = name.substr(colon + 1);
-        const std::size_t dash = std::min(layers.find('-'), layers.size());
-        span = job::ExposureSpan{plain_number(layers.substr(0, dash)), 0, 0};
-        span->last = dash < layers.size() ? plain_number(layers.substr(dash + 1)) : span->first;
-        if (span->first < 0 || span->last < span->first || comma < times.size())
+        choice.layers = read_layers(choice.material.substr(colon + 1));
+        if (!choice.layers || comma < times.size())
             return input_error("--exposure {}: layers are FIRST-LAST, counted from 0, and have one time", text);
-        name.resize(colon);
+        choice.material.resize(colon);
     }
-    const auto material = std::find_if(settings.materials.begin(), settings.materials.end(),
-                                       [&](const job::Material& m) { return m.name == name; });
-    if (material == settings.materials.end())
-        return input_error("--exposure {}: there is no material \"{}\"", text, name);
+    if (std::ranges::find(materials, choice.material, &job::Material::name) == materials.end())
+        return input_error("--exposure {}: there is no material \"{}\"", text, choice.material);
     const Result<double> seconds = seconds_of(text, times.substr(0, comma));
     if (!seconds) return tl::unexpected(seconds.error());
-    const machine::Resin* resin = printer.find_resin(material->resin);
-    const auto note = [&](double given_s, double machine::Resin::*usual) {
-        if (resin == nullptr) return;
-        note_far_exposure(text, given_s, resin->*usual, printer, *resin, settings.slicing.layer_um, warnings);
-    };
-    note(*seconds, &machine::Resin::exposure_s);
-    if (span) {
-        span->seconds = *seconds;
-        auto [rule, added] = settings.exposures.try_emplace(name);
-        if (added) rule->second.bottom_layers = material->bottom_layers.value_or(settings.bottom_layers);
-        rule->second.spans.push_back(*span);
-        return {};
-    }
-    if (!given.insert(name).second)
-        return input_error("--exposure {}: the exposure of \"{}\" is given twice", text, name);
-    material->exposure_s = *seconds;
-    material->bottom_exposure_s = std::max(material->bottom_exposure_s, *seconds);
-    if (comma == times.size()) return {};
+    choice.seconds = *seconds;
+    if (comma == times.size()) return choice;
     const Result<double> bottom = seconds_of(text, times.substr(comma + 1));
     if (!bottom) return tl::unexpected(bottom.error());
-    note(*bottom, &machine::Resin::bottom_exposure_s);
-    material->bottom_exposure_s = *bottom;
+    choice.bottom_s = *bottom;
+    return choice;
+}
+
+void apply(const ExposureChoice& choice, job::Material& material, job::JobSettings& settings) {
+    if (choice.layers) {
+        auto [rule, added] = settings.exposures.try_emplace(material.name);
+        if (added) rule->second.bottom_layers = material.bottom_layers.value_or(settings.bottom_layers);
+        rule->second.spans.push_back({choice.layers->first, choice.layers->last, choice.seconds});
+        return;
+    }
+    material.exposure_s = choice.seconds;
+    material.bottom_exposure_s = choice.bottom_s.value_or(std::max(material.bottom_exposure_s, choice.seconds));
+}
+
+/// `given`: the materials that have had one already.
+Status set_exposure(const std::string& text, const machine::Printer& printer, job::JobSettings& settings,
+                    std::set<std::string>& given, std::vector<std::string>& warnings) {
+    const Result<ExposureChoice> choice = read_exposure(text, settings.materials);
+    if (!choice) return tl::unexpected(choice.error());
+    if (!choice->layers && !given.insert(choice->material).second)
+        return input_error("--exposure {}: the exposure of \"{}\" is given twice", text, choice->material);
+    job::Material& material = *std::ranges::find(settings.materials, choice->material, &job::Material::name);
+    apply(*choice, material, settings);
+    const machine::Resin* resin = printer.find_resin(material.resin);
+    if (resin == nullptr) return {};
+    const int layer_um = settings.slicing.layer_um;
+    note_far_exposure(text, choice->seconds, resin->exposure_s, printer, *resin, layer_um, warnings);
+    if (choice->bottom_s)
+        note_far_exposure(text, *choice->bottom_s, resin->bottom_exposure_s, printer, *resin, layer_um, warnings);
     return {};
 }
 
