@@ -152,7 +152,7 @@ std::string tiles(const Printed& p) {
                      fmt::format("first to last exposure; planned {}", plan::clock_text(planned_s)));
     out += html_tile(plan::clock_text(lit_s), "exposure time");
     out += html_tile(fmt::format("{:.2f} ml", resin_ml), "resin cured, as drawn");
-    out += html_tile(fmt::format("{}", p.plan.swaps), "swaps planned");
+    out += html_tile(fmt::format("{}", p.plan.swaps), p.plan.swaps == 1 ? "swap planned" : "swaps planned");
     out += html_tile(fmt::format("{}", p.story.faults), p.story.faults == 1 ? "fault" : "faults");
     if (p.extras.lines_sent >= 0)
         out += html_tile(fmt::format("{}", p.extras.lines_sent),

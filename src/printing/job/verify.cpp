@@ -66,7 +66,7 @@ Status verify_images(const Archive& archive, bool corrected, const std::string& 
             seen.push_back(slice::RunImage::from_image(*image));
             const double area = static_cast<double>(seen.back().value_sum()) / 255 * pixel_mm2;
             if (!corrected && std::fabs(area - entry.area_mm2) > 1e-6 * (area + pixel_mm2))
-                return input_error("{}: {}: its pixels hold {:.6g} mm^2, the manifest says {:.6g}", path, entry.file,
+                return input_error("{}: {}: its pixels hold {:.10g} mm^2, the manifest says {:.10g}", path, entry.file,
                                    area, entry.area_mm2);
             const Beyond beyond = edge != nullptr ? edge->beyond(seen.back()) : Beyond{};
             if (beyond.um > 0) return input_error("{}: {}: its light {}", path, entry.file, edge->text(beyond));

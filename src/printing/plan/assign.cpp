@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/core/counted.hpp"
 #include "base/core/text.hpp"
 
 namespace pliant::plan {
@@ -226,8 +227,8 @@ Result<Assignment> assign_vats(const job::Manifest& job, const Printer& printer)
     const std::vector<bool> printed = printed_materials(job);
     std::vector<Supply> supplies = needed_resins(job, printed);
     if (supplies.size() > printer.vats.size()) {
-        return input_error("{} needs {} resins, {} has {} vats", job.name, supplies.size(), printer.name,
-                           printer.vats.size());
+        return input_error("{} needs {}, {} has {}", job.name, counted(supplies.size(), "resin"), printer.name,
+                           counted(printer.vats.size(), "vat"));
     }
     Assignment assignment;
     for (std::size_t m = 0; m < printed.size(); ++m) {

@@ -398,7 +398,8 @@ Summary Tally::summary() const {
                                                settings.rules.close_gap_um, closed_gap_pixels_));
     if (first_filled_ > 0)
         summary.warnings.push_back(
-            fmt::format("layers 0 to {} are empty: nothing touches the platform", first_filled_ - 1));
+            fmt::format("{} empty: nothing touches the platform",
+                        first_filled_ == 1 ? "layer 0 is" : fmt::format("layers 0 to {} are", first_filled_ - 1)));
     if (empty_between_ > 0)
         summary.warnings.push_back(
             fmt::format("{} empty layers between printed ones, the first is layer {}: what is above will float",

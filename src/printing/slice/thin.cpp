@@ -33,7 +33,7 @@ struct Level {
 };
 
 /// The values between two rows, `share` of the way from the upper one to the lower, from the left to the right border.
-std::vector<Level> between(std::span<const Run> upper, std::span<const Run> lower, double share, int width) {
+std::vector<Level> levels_between(std::span<const Run> upper, std::span<const Run> lower, double share, int width) {
     std::vector<Level> levels;
     for (int at = -1; at <= width;) {
         int end = width + 1;
@@ -83,7 +83,7 @@ RunSet solid_cells(const RunImage& image) {
         for (int j = 0; j < fine; ++j) {
             const int cell_row = fine * row + fine / 2 + j;
             if (cell_row < 0 || cell_row >= cells.height_px()) continue;
-            const auto levels = between(image.row(row), image.row(row + 1), (j + 0.5) / fine, image.width_px());
+            const auto levels = levels_between(image.row(row), image.row(row + 1), (j + 0.5) / fine, image.width_px());
             cells.append_row(cell_row, bright_cells(levels, image.width_px()));
         }
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/core/counted.hpp"
 #include "printing/machine/image_room.hpp"
 #include "printing/twin/layer_inspection.hpp"
 
@@ -82,8 +83,9 @@ public:
         if (!accepted) report_.reasons.push_back(text);
         report_.findings.push_back({kind, std::move(text), accepted});
     }
-    void count(Finding::Kind kind, long n, std::string_view what) {
-        if (n > 0) add(kind, fmt::format("{} {}", n, what));
+    /// `word`: what is counted, in the singular.
+    void count(Finding::Kind kind, long n, std::string_view word, std::string_view what) {
+        if (n > 0) add(kind, fmt::format("{} {}", counted(static_cast<std::size_t>(n), word), what));
     }
 
     void count_faults(const Twin& twin) {
@@ -176,21 +178,22 @@ void judge_edge(Report& report, Twin& twin, const job::Manifest& job, Verdict& v
 void judge(Report& report, Twin& twin, Verdict& verdict) {
     using Kind = Finding::Kind;
     if (report.layers == 0) verdict.add(Kind::missing, "nothing is printed");
-    verdict.count(Kind::missing, report.missing_layers, "layers missing");
-    verdict.count(Kind::height, report.stray_layers, "layers at heights where the job has none");
-    verdict.count(Kind::height, report.wrong_thickness, "layers of the wrong thickness");
-    verdict.count(Kind::missing, report.missing_pixels, "pixels with less of a resin than asked for");
-    verdict.count(Kind::foreign, report.foreign_pixels, "pixels with another resin than asked for");
-    verdict.count(Kind::stray, report.stray_pixels, "pixels with more of a resin than asked for");
+    verdict.count(Kind::missing, report.missing_layers, "layer", "missing");
+    verdict.count(Kind::height, report.stray_layers, "layer", "at heights where the job has none");
+    verdict.count(Kind::height, report.wrong_thickness, "layer", "of the wrong thickness");
+    verdict.count(Kind::missing, report.missing_pixels, "pixel", "with less of a resin than asked for");
+    verdict.count(Kind::foreign, report.foreign_pixels, "pixel", "with another resin than asked for");
+    verdict.count(Kind::stray, report.stray_pixels, "pixel", "with more of a resin than asked for");
     if (report.wrong_dose_pixels > 0)
-        verdict.add(Kind::dose, fmt::format("{} pixels lit longer or shorter than the job says: {:.3g} to {:.3g} times",
-                                            report.wrong_dose_pixels, report.least_dose, report.most_dose));
-    verdict.count(Kind::image, report.wrong_images, "images that have not the area which the manifest states");
-    verdict.count(Kind::dose, report.pixels_lit_twice, "pixels lit twice on one layer");
-    verdict.count(Kind::dose, report.log.overlit_pixels, "pixels shown more light than a whole one needs (mask)");
-    verdict.count(Kind::contamination, report.contaminated_layers,
-                  "layers printed in a vat with more foreign resin than allowed");
-    verdict.count(Kind::cleaning, report.log.short_cleanings, "swaps with too little cleaning");
+        verdict.add(Kind::dose, fmt::format("{} lit longer or shorter than the job says: {:.3g} to {:.3g} times",
+                                            counted(static_cast<std::size_t>(report.wrong_dose_pixels), "pixel"),
+                                            report.least_dose, report.most_dose));
+    verdict.count(Kind::image, report.wrong_images, "image", "with another area than the manifest states");
+    verdict.count(Kind::dose, report.pixels_lit_twice, "pixel", "lit twice on one layer");
+    verdict.count(Kind::dose, report.log.overlit_pixels, "pixel", "shown more light than a whole one needs (mask)");
+    verdict.count(Kind::contamination, report.contaminated_layers, "layer",
+                  "printed in a vat with more foreign resin than allowed");
+    verdict.count(Kind::cleaning, report.log.short_cleanings, "swap", "with too little cleaning");
     for (const std::string& fault : twin.cured().faults()) verdict.add(Kind::light, fault);
     for (const std::string& violation : report.log.violations) verdict.add(Kind::interlock, "interlock: " + violation);
     verdict.count_faults(twin);
