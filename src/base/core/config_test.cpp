@@ -140,8 +140,8 @@ TEST_CASE("a whole number outside its range is a problem, also where it is too l
     CHECK(root.whole("none", 1, 5, 4) == 4);
     CHECK(root.whole("needed", 1, 5) == 1);
     CHECK(message(problems) ==
-          "test.toml:1: \"needed\" is missing; it is a whole number\n"
           "test.toml:1: lines: is 4294967298, must be from 1 to 4\n"
+          "test.toml:1: \"needed\" is missing; it is a whole number\n"
           "test.toml:2: layers: is -1, must be from 0 to 10");
 }
 
