@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "base/core/near.hpp"
 #include "printing/slice/inspect.hpp"
 #include "printing/slice/slicer.hpp"
 #include "printing/slice/test_shapes.hpp"
