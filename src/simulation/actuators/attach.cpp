@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "geometry/mesh/curved_point.hpp"
 
@@ -148,7 +149,24 @@ std::optional<AffinePatch> fitted_patch(std::vector<int> nodes, std::span<const 
     return patch;
 }
 
-Attacher::Attacher(const mesh::TetMesh& mesh) : mesh_(&mesh), locator_(mesh), tet_start_(mesh.points.size() + 1, 0) {
+const KeptPatches::Patch* KeptPatches::find(const Vec3& point, double radius, std::size_t tet_count,
+                                            const std::function<bool(const Patch&)>& fits) const {
+    constexpr double near = 0.01;  // of the reach: the copies differ by far less
+    const Patch* nearest = nullptr;
+    double distance = std::numeric_limits<double>::infinity();
+    for (const Patch& patch : patches_) {
+        const double off = norm(patch.point - point);
+        const bool alike =
+            patch.tet_count == tet_count && std::fabs(patch.radius - radius) <= near * std::max(patch.radius, radius);
+        if (!alike || off > near * patch.reach || off >= distance || !fits(patch)) continue;
+        nearest = &patch;
+        distance = off;
+    }
+    return nearest;
+}
+
+Attacher::Attacher(const mesh::TetMesh& mesh, KeptPatches* kept)
+    : mesh_(&mesh), locator_(mesh), tet_start_(mesh.points.size() + 1, 0), kept_(kept) {
     for (const int node : mesh.nodes) ++tet_start_[static_cast<std::size_t>(node) + 1];
     for (std::size_t i = 0; i < mesh.points.size(); ++i) tet_start_[i + 1] += tet_start_[i];
     tets_.resize(mesh.nodes.size());
@@ -210,7 +228,25 @@ std::vector<int> Attacher::connected_nodes_within(int tet, const Vec3& point, do
     return found;
 }
 
+bool Attacher::has(int node) const {
+    const auto n = static_cast<std::size_t>(node);
+    return n + 1 < tet_start_.size() && tet_start_[n] < tet_start_[n + 1];
+}
+
+std::optional<Attacher::Patch> Attacher::kept_patch(const Vec3& point, double radius) const {
+    if (kept_ == nullptr || !kept_->closed()) return std::nullopt;
+    const auto fits = [&](const KeptPatches::Patch& patch) {
+        return std::ranges::all_of(patch.nodes, [&](int node) { return has(node); });
+    };
+    const KeptPatches::Patch* found = kept_->find(point, radius, mesh_->tet_count(), fits);
+    if (found == nullptr) return std::nullopt;
+    const int f = found->farthest;
+    return Patch{found->nodes, f < 0 ? radius : reach_beyond * norm(mesh_->points[static_cast<std::size_t>(f)] - point),
+                 f};
+}
+
 Attacher::Patch Attacher::patch_at(int tet, const Vec3& point, double radius) const {
+    if (std::optional<Patch> kept = kept_patch(point, radius)) return *std::move(kept);
     Patch patch;
     patch.reach = radius;
     for (const int node : mesh_->tet(static_cast<std::size_t>(tet))) {
@@ -220,6 +256,8 @@ Attacher::Patch Attacher::patch_at(int tet, const Vec3& point, double radius) co
     }
     patch.nodes = connected_nodes_within(tet, point, patch.reach);
     thin_out(patch.nodes, mesh_->points, point);
+    if (kept_ != nullptr && !kept_->closed())
+        kept_->add({point, radius, mesh_->tet_count(), patch.nodes, patch.reach, patch.farthest});
     return patch;
 }
 

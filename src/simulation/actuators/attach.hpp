@@ -2,8 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/core/error.hpp"
@@ -43,10 +45,38 @@ struct SymmetryPlane {
     std::vector<bool> holds;  ///< (nodes)
 };
 
+/// The patches that the points of a robot were attached to, for a copy of it that is drawn slightly differently on the
+/// same tets. A point on a face lies in several tets, and rounding decides which of them counts: without this the
+/// copies choose differently, and their weights differ by a jump.
+class KeptPatches {
+public:
+    struct Patch {
+        Vec3 point;
+        double radius = 0;
+        std::size_t tet_count = 0;  ///< of the mesh it belongs to
+        std::vector<int> nodes{};
+        double reach = 0;
+        int farthest = -1;
+    };
+    /// From now on patches are found, and no longer added.
+    void close() { closed_ = true; }
+    [[nodiscard]] bool closed() const { return closed_; }
+    void add(Patch patch) { patches_.push_back(std::move(patch)); }
+    /// The nearest patch of a mesh with that many tets and about that radius for which `fits` is true; null if none is
+    /// near.
+    [[nodiscard]] const Patch* find(const Vec3& point, double radius, std::size_t tet_count,
+                                    const std::function<bool(const Patch&)>& fits) const;
+
+private:
+    std::vector<Patch> patches_;
+    bool closed_ = false;
+};
+
 /// Built once per mesh, which must outlive it. Lengths are in the mesh's unit.
 class Attacher {
 public:
-    explicit Attacher(const mesh::TetMesh& mesh);
+    /// `kept`: adds its patches or, closed, takes them from there; must outlive it.
+    explicit Attacher(const mesh::TetMesh& mesh, KeptPatches* kept = nullptr);
 
     /// Attaches a point to the tet that contains it. Errors: the point lies outside the mesh by more than `tolerance`;
     /// the message gives the distance. Within the tolerance the nearest tet carries the point by extrapolation beyond
@@ -96,6 +126,8 @@ private:
         [[nodiscard]] Eigen::VectorXd gathered(const Eigen::VectorXd& values) const;
     };
     [[nodiscard]] Patch patch_at(int tet, const Vec3& point, double radius) const;
+    [[nodiscard]] std::optional<Patch> kept_patch(const Vec3& point, double radius) const;
+    [[nodiscard]] bool has(int node) const;
     [[nodiscard]] Images images_of(const Patch& patch, const Vec3& point, std::span<const SymmetryPlane> planes) const;
     [[nodiscard]] bool mirrors(const SymmetryPlane& plane, const Patch& patch, const Vec3& point) const;
     [[nodiscard]] AttachmentSlope slope_in_tet(const mesh::TetLocator::Location& at) const;
@@ -106,6 +138,7 @@ private:
     mesh::TetLocator locator_;
     std::vector<int> tet_start_;  ///< (n + 1)
     std::vector<int> tets_;       ///< tets at each node
+    KeptPatches* kept_;
 };
 
 /// The wall formed by faces, whose nodes become its points. `index` (nodes of the mesh that the faces come from) gives

@@ -64,7 +64,7 @@ mesh::TetMesh body_alone(const ModelDraft& draft, std::size_t body) {
 
 std::optional<End> end_of_body(ModelDraft& draft, std::size_t body, const JointSpec& spec, const Vec3& point) {
     const mesh::TetMesh alone = body_alone(draft, body);
-    const sim::Attacher attacher(alone);
+    const sim::Attacher attacher(alone, draft.kept);
     const double radius = spec.radius > 0 ? draft.robot.unit_m * spec.radius : mean_edge(alone);
     Result<sim::AffinePatch> patch = attacher.patch(point, radius, std::max(draft.point_reach, radius));
     if (!patch) {

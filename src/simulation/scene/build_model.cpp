@@ -95,9 +95,10 @@ Status check_free_motion(const Robot& robot, sim::Description& description) {
 
 }  // namespace
 
-Result<sim::Description> build_description(const Robot& robot, mesh::TetMesh mesh) {
+Result<sim::Description> build_description(const Robot& robot, mesh::TetMesh mesh, sim::KeptPatches* kept) {
     ModelDraft draft(robot, std::move(mesh));
-    const sim::Attacher attacher(draft.bodies);
+    draft.kept = kept;
+    const sim::Attacher attacher(draft.bodies, kept);
     sim::Description& description = draft.description;
     description.gravity_m_s2 = robot.gravity_m_s2;
     description.gravity_share = robot.gravity_share;
@@ -136,8 +137,8 @@ Result<sim::Description> build_description(const Robot& robot, mesh::TetMesh mes
     return std::move(description);
 }
 
-Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh) {
-    Result<sim::Description> description = build_description(robot, std::move(mesh));
+Result<sim::Model> build_model(const Robot& robot, mesh::TetMesh mesh, sim::KeptPatches* kept) {
+    Result<sim::Description> description = build_description(robot, std::move(mesh), kept);
     if (!description) return tl::unexpected(description.error());
     Result<sim::Model> model = sim::Model::create(std::move(*description));
     if (!model) return tl::unexpected(Error{model.error().cause, robot.file.string() + ": " + model.error().message});

@@ -10,6 +10,7 @@
 #include "geometry/mesh/tet_mesh.hpp"
 #include "robot/description/regions.hpp"
 #include "robot/description/robot.hpp"
+#include "simulation/actuators/attach.hpp"
 #include "simulation/model/model.hpp"
 
 namespace pliant::robot {
@@ -61,6 +62,7 @@ struct ModelDraft {
     double box_margin = 0;           ///< for points expected in a box or sphere
     double point_reach = 0;          ///< how far outside the bodies a guide point or marker may lie
     std::vector<Diagnostic> problems;
+    sim::KeptPatches* kept = nullptr;  ///< what points are attached to
 
     struct Points {
         std::size_t all = 0, outside = 0;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "robot/bodies/shape_motion.hpp"
+#include "simulation/scene/build_description.hpp"
 #include "simulation/scene/build_model.hpp"
 
 namespace pliant::robot {
@@ -81,9 +82,12 @@ Result<NumberModels> number_models(const ReadRobot& read, const Robot& robot, co
     const double half = speed > 0 ? std::min(of_number * scale, of_size * size_of(mesh) / speed) : of_number * scale;
     const Result<Pair> pair = read_around(read, parameter, value, half);
     if (!pair) return refused(pair.error());
-    Result<sim::Model> more = build_model(pair->more, moved(mesh, *motion, 0.5 * pair->step));
+    sim::KeptPatches kept;
+    if (const auto here = build_description(robot, mesh, &kept); !here) return refused(here.error());
+    kept.close();
+    Result<sim::Model> more = build_model(pair->more, moved(mesh, *motion, 0.5 * pair->step), &kept);
     if (!more) return refused(more.error());
-    Result<sim::Model> less = build_model(pair->less, moved(mesh, *motion, -0.5 * pair->step));
+    Result<sim::Model> less = build_model(pair->less, moved(mesh, *motion, -0.5 * pair->step), &kept);
     if (!less) return refused(less.error());
     if (Status status = check_alike(*more, *less); !status) return refused(status.error());
     return NumberModels{std::move(*more), std::move(*less), pair->step, std::move(*motion)};

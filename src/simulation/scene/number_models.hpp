@@ -20,7 +20,8 @@ struct NumberModels {
 };
 
 /// `read`: reads the robot with these assignments in addition to its own; `mesh`: from build_mesh(robot, ...), m.
-/// Differences between the two, divided by `step`, are derivatives to about eight digits. Errors: those of
+/// Differences between the two, divided by `step`, are derivatives to about eight digits: their points are attached to
+/// the same nodes as those of `robot`. Errors: those of
 /// shape_motion(); the number changes which nodes a support holds, or what the robot consists of; those of the modified
 /// robots.
 [[nodiscard]] Result<NumberModels> number_models(

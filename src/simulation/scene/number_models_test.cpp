@@ -135,6 +135,83 @@ TEST_CASE("derivatives by a number of the drawing include everything that follow
     MESSAGE("largest error " << worst);
 }
 
+namespace {
+
+/// A bar whose cable and spring end in eyelets on faces of its tets.
+const char* const eyelet_text = R"(
+name = "bar"
+length_unit = "mm"
+parameters = { L = 60 }
+material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.4 }
+mesh = { order = 2, size = "4 mm", elements_through_wall = 0 }
+[[body]]
+name = "bar"
+material = "soft"
+geometry = { box = [[0, 0, 0], [8, 8, "= L"]] }
+[[fixed]]
+name = "base"
+plane = { point = [0, 0, 0], normal = [0, 0, 1] }
+[[cable]]
+name = "pull"
+points = [[1, 4, 0], [1, 4, "= L / 4"]]
+eyelet_radius = "2 mm"
+target = { tension = "0.5 N" }
+[[spring]]
+name = "back"
+points = [[4, 7, 0], [4, 7, "= L / 4"]]
+eyelet_radius = "2 mm"
+stiffness = "0.1 N/mm"
+free_length = "10 mm"
+[[marker]]
+name = "tip"
+point = [4, 4, "= L"]
+[program]
+steps = 2
+tolerance = 1e-10
+)";
+
+}  // namespace
+
+TEST_CASE("eyelets on faces of tets stay attached to the same nodes while a number changes") {
+    const auto read = [](const std::vector<std::string>& changes) {
+        return parse_robot(eyelet_text, "bar.toml", changes);
+    };
+    const Result<Robot> robot = read({});
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    const mesh::TetMesh mesh = build_mesh(*robot, silent).value();
+    sim::KeptPatches kept;
+    const auto model = build_model(*robot, mesh, &kept);
+    REQUIRE_MESSAGE(model, (model ? "" : model.error().message));
+    kept.close();
+    const auto around = number_models(read, *robot, mesh, "L", 60);
+    REQUIRE_MESSAGE(around, (around ? "" : around.error().message));
+    const sim::Equilibrium more(around->more), less(around->less);
+    for (const Vec3& direction : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+        const auto of = [&](const sim::Model& there, const Robot& with, std::vector<sim::NumberChange> numbers) {
+            sim::GradientOptions options{.by = {.inputs = false, .parameters = false}};
+            options.by.numbers = std::move(numbers);
+            auto found = sim::program_gradient(
+                there, with.program, sim::at_end({sim::Measure::Kind::marker, 0, direction}, 2), options, silent);
+            REQUIRE_MESSAGE(found, (found ? "" : found.error().message));
+            return *std::move(found);
+        };
+        const double by_number = of(*model, *robot, {{&more, &less, around->step}}).by.numbers[0];
+        // The same nodes carry the eyelets over steps that are large beside the tolerance of the states.
+        const auto at = [&](double change) {
+            mesh::TetMesh stretched = mesh;
+            for (Vec3& p : stretched.points) p.z *= 1 + change / 60;
+            const Result<Robot> longer = read({fmt::format("parameters.L={:.17g}", 60 + change)});
+            const auto there = build_model(*longer, std::move(stretched), &kept);
+            REQUIRE_MESSAGE(there, (there ? "" : there.error().message));
+            return of(*there, *longer, {}).value;
+        };
+        const double h = 0.02;
+        const double by = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);
+        CHECK(by_number == near(by, {.relative = 1e-5, .absolute = 1e-9}));
+    }
+}
+
 TEST_CASE("a number has no derivative if it changes which nodes are held, nor over friction or dynamics") {
     const std::string fixed = "box = [[0, 0, 0], [0, 10, \"= height\"]]";
     Case c(1);
