@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/core/text.hpp"
+#include "base/linalg/dense.hpp"
 #include "simulation/identify/confidence.hpp"
 #include "simulation/identify/least_squares.hpp"
 #include "simulation/identify/trial.hpp"
@@ -177,6 +178,37 @@ private:
         return value - unknown.low < unknown.high - value ? unknown.low : unknown.high;
     }
 
+    /// A number that may be 0 has an interval in itself, not in its coordinate, which bends within the interval.
+    [[nodiscard]] static double moved(const Unknown& unknown, double u, double by) {
+        const double value = unknown.value_at(u);
+        return unknown.scale == Scale::from_zero ? value + unknown.rate(value) * by : unknown.value_at(u + by);
+    }
+
+    /// For an unknown that may be 0, and is: how far up the data allow it. The linear problem without its bound has its
+    /// minimum below 0; what its interval keeps above 0 is the answer.
+    void find_above_zero(const LeastSquaresEnd& end, const std::vector<bool>& held, Identification& result) const {
+        std::vector<bool> released = held;
+        for (std::size_t k = 0; k < held.size(); ++k) released[k] = held[k] && !is_at_zero(result.found[k]);
+        if (released == held) return;
+        const Confidence known = confidence(end.jacobian, end.residuals, released, negligible, groups());
+        MatrixXd J = end.jacobian;
+        for (std::size_t k = 0; k < released.size(); ++k)
+            if (released[k]) J.col(static_cast<Index>(k)).setZero();
+        const VectorXd step = linalg::pseudo_inverse(J) * -end.residuals;
+        for (std::size_t k = 0; k < held.size(); ++k) {
+            const auto j = static_cast<Index>(k);
+            if (released[k] == held[k] || !std::isfinite(known.half_width[j])) continue;
+            const double high = moved(unknowns_[k], end.u[j], step[j] + known.half_width[j]);
+            if (!(high > 0)) continue;
+            result.found[k].low = 0;
+            result.found[k].high = std::min(high, unknowns_[k].high);
+        }
+    }
+
+    [[nodiscard]] static bool is_at_zero(const Found& found) {
+        return found.at_bound && found.unknown.scale == Scale::from_zero && found.value == 0;
+    }
+
     void find(const LeastSquaresEnd& end, const Confidence& known, const std::vector<bool>& held,
               Identification& result) const {
         for (std::size_t k = 0; k < unknowns_.size(); ++k) {
@@ -185,8 +217,8 @@ private:
             if (std::isfinite(known.half_width[j])) {
                 // The formula knows no bounds, between which the value is known to be.
                 const auto& [lowest, highest] = std::pair(unknowns_[k].low, unknowns_[k].high);
-                found.low = std::clamp(unknowns_[k].value_at(end.u[j] - known.half_width[j]), lowest, highest);
-                found.high = std::clamp(unknowns_[k].value_at(end.u[j] + known.half_width[j]), lowest, highest);
+                found.low = std::clamp(moved(unknowns_[k], end.u[j], -known.half_width[j]), lowest, highest);
+                found.high = std::clamp(moved(unknowns_[k], end.u[j], known.half_width[j]), lowest, highest);
             }
             result.found.push_back(std::move(found));
         }
@@ -220,6 +252,11 @@ private:
             if (!found.matters)
                 result.warnings.push_back(fmt::format(
                     "{}: nothing that was measured depends on it; its value means nothing", found.unknown.key));
+            else if (found.at_bound && found.high)
+                result.warnings.push_back(
+                    fmt::format("{}: is at its bound, {}; the data ask for a value beyond it, and within their noise "
+                                "allow up to {}",
+                                found.unknown.key, found.unknown.shown(found.value), found.unknown.shown(*found.high)));
             else if (found.at_bound)
                 result.warnings.push_back(fmt::format("{}: is at its bound, {}; the data ask for a value beyond it",
                                                       found.unknown.key, found.unknown.shown(found.value)));
@@ -255,6 +292,7 @@ private:
         result.correlation = known.correlation;
         result.channels = m_.channels;
         find(end, known, held, result);
+        find_above_zero(end, held, result);
         for (const MeasuredValue& value : m_.values) {
             const auto channel = static_cast<Index>(value.channel);
             const Index row = row_of(value.time);

@@ -17,14 +17,17 @@ std::string unit_or_ratio(const std::string& unit) {
 
 std::string interval(const Found& found) {
     if (!found.matters) return "(does not matter)";
+    if (found.at_bound && found.high)
+        return fmt::format("95 %: {} to {} (at its bound)", found.unknown.shown(*found.low),
+                           found.unknown.shown(*found.high));
     if (found.at_bound) return "(at its bound)";
     if (!found.low) return "(no interval)";
     return fmt::format("95 %: {} to {}", found.unknown.shown(*found.low), found.unknown.shown(*found.high));
 }
 
 std::string error_line(const char* of, const Errors& e) {
-    return fmt::format("{:<7} {:>5} values  rms error {:.4g} -> {:.4g} {}\n", of, e.values, e.before, e.after,
-                       unit_or_ratio(e.unit));
+    return fmt::format("{:<7} {:>5} values  rms error {:.4g} -> {:.4g}{}\n", of, e.values, e.before, e.after,
+                       e.unit.empty() ? "" : " " + e.unit);
 }
 
 nlohmann::ordered_json number_or_null(double value) {

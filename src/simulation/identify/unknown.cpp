@@ -21,6 +21,7 @@ namespace {
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 /// Default bounds of positive numbers: this factor around the initial value.
 constexpr double widest_factor = 1e6;
+constexpr double least_share = 1e-9;  // of the size: nearer to 0 no robot is asked for
 constexpr double least_poisson = -0.99, most_poisson = 0.4999;
 
 struct Unit {
@@ -51,6 +52,11 @@ public:
         const bool known = value > 0;
         add({std::move(key), std::move(unit), value, known ? value / widest_factor : 0,
              known ? std::min(most, value * widest_factor) : most, Scale::log, 1});
+    }
+    /// Zero or above: dampings and frictions.
+    void from_zero(std::string key, std::string unit, double value, double most = unbounded) {
+        add({std::move(key), std::move(unit), value, 0, value > 0 ? std::min(most, value * widest_factor) : most,
+             Scale::from_zero, value > 0 ? value : 1});
     }
     void any(std::string key, std::string unit, double value, double size) {
         add({std::move(key), std::move(unit), value, -unbounded, unbounded, Scale::linear, size});
@@ -100,7 +106,7 @@ void add_cable(const robot::CableSpec& cable, Collector& to) {
     const std::string owner = "cable." + cable.name + ".", target = owner + "target.";
     const robot::CableTarget& t = cable.target;
     const bool force = t.kind == Kind::tension_N;
-    if (!cable.gap_elements) to.positive(owner + "friction", "", cable.friction, 10);
+    if (!cable.gap_elements) to.from_zero(owner + "friction", "", cable.friction, 10);
     const bool paid_out = robot::is_paid_out(t);
     if (t.kind == Kind::length_ratio)
         to.positive(target + "length_ratio", "", t.value, paid_out ? robot::target_limits(t.kind, false).high : 1);
@@ -135,11 +141,11 @@ double drawn_length(const robot::SpringSpec& spring) {
 
 void add_contact(const robot::Robot& robot, Collector& to) {
     if (robot.contact) {
-        to.positive("contact.friction", "", robot.contact->friction, 10);
+        to.from_zero("contact.friction", "", robot.contact->friction, 10);
         if (robot.contact->stiffness_Pa) to.positive("contact.stiffness", "Pa", *robot.contact->stiffness_Pa);
     }
     for (const auto& obstacle : robot.obstacles)
-        to.positive("obstacle." + obstacle.name + ".friction", "", obstacle.friction, 10);
+        to.from_zero("obstacle." + obstacle.name + ".friction", "", obstacle.friction, 10);
 }
 
 void add_masses(const robot::Robot& robot, Collector& to) {
@@ -147,7 +153,7 @@ void add_masses(const robot::Robot& robot, Collector& to) {
         const std::string owner = "object." + object.name + ".";
         if (object.mass_kg > 0) to.positive(owner + "mass", "kg", object.mass_kg);
         if (object.density_kg_m3 > 0) to.positive(owner + "density", "kg/m^3", object.density_kg_m3);
-        to.positive(owner + "friction", "", object.friction, 10);
+        to.from_zero(owner + "friction", "", object.friction, 10);
     }
     for (const auto& mass : robot.masses) to.positive("mass." + mass.name + ".mass", "kg", mass.mass_kg);
 }
@@ -183,12 +189,19 @@ Status take_bounds(Unknown& unknown, std::string_view text) {
                            unknown.shown(*low), unknown.shown(*high));
     if (unknown.scale == Scale::log && !(*low >= 0))
         return input_error("{}: {} is not possible; it is above zero", unknown.key, unknown.shown(*low));
+    if (unknown.scale == Scale::from_zero && !(*low >= 0))
+        return input_error("{}: {} is not possible; it is zero or above", unknown.key, unknown.shown(*low));
     if (unknown.scale == Scale::poisson && !(*low > -1 && *high < 0.5))
         return input_error("{}: Poisson's ratio is above -1 and below 0.5", unknown.key);
     unknown.low = unknown.scale == Scale::log ? std::max(*low, *high / widest_factor) : *low;
     unknown.high = *high;
-    if (unknown.value >= *low && unknown.value <= *high && (unknown.scale != Scale::log || unknown.value > 0))
+    const bool needs_more = unknown.scale == Scale::log || unknown.scale == Scale::from_zero;
+    if (unknown.value >= *low && unknown.value <= *high && (!needs_more || unknown.value > 0)) return {};
+    if (unknown.scale == Scale::from_zero) unknown.size = *low > 0 ? std::sqrt(*low * *high) : 0.1 * *high;
+    if (unknown.scale == Scale::from_zero && *low > 0) {
+        unknown.value = unknown.size;
         return {};
+    }
     unknown.value = unknown.value_at(0.5 * (unknown.coordinate(unknown.low) + unknown.coordinate(unknown.high)));
     return {};
 }
@@ -197,16 +210,19 @@ Status take_bounds(Unknown& unknown, std::string_view text) {
 
 double Unknown::coordinate(double of_value) const {
     if (scale == Scale::linear) return of_value / size;
+    if (scale == Scale::from_zero) return std::asinh(of_value / size);
     return scale == Scale::log ? std::log(of_value) : -std::log1p(-2 * of_value);
 }
 
 double Unknown::value_at(double u) const {
     if (scale == Scale::linear) return size * u;
+    if (scale == Scale::from_zero) return size * std::max(std::sinh(u), least_share);
     return scale == Scale::log ? std::exp(u) : -0.5 * std::expm1(-u);
 }
 
 double Unknown::rate(double of_value) const {
     if (scale == Scale::linear) return size;
+    if (scale == Scale::from_zero) return std::hypot(size, of_value);
     return scale == Scale::log ? of_value : 0.5 - of_value;
 }
 
@@ -247,8 +263,8 @@ std::vector<Unknown> possible_unknowns(const robot::Robot& robot) {
     add_contact(robot, to);
     add_masses(robot, to);
     if (robot.program.dynamics) {
-        to.positive("program.mass_damping", "", robot.program.dynamics->damping.mass_per_s);
-        to.positive("program.stiffness_damping", "", robot.program.dynamics->damping.stiffness_s);
+        to.from_zero("program.mass_damping", "", robot.program.dynamics->damping.mass_per_s);
+        to.from_zero("program.stiffness_damping", "", robot.program.dynamics->damping.stiffness_s);
     }
     return std::move(to.all);
 }
@@ -269,7 +285,7 @@ Result<Unknown> find_unknown(const robot::Robot& robot, std::string_view text) {
         if (Status status = take_bounds(unknown, text.substr(text.find('=') + 1)); !status)
             return tl::unexpected(status.error());
     }
-    if (unknown.scale == Scale::log && !(unknown.value > 0))
+    if ((unknown.scale == Scale::log || unknown.scale == Scale::from_zero) && !(unknown.value > 0))
         return input_error(
             "{0}: is 0 in the robot file, where nothing tells how to change it; set another value there to begin "
             "with, or give a range, {0}=LOW..HIGH",

@@ -12,9 +12,10 @@ namespace pliant::sim::identify {
 
 /// The coordinate u in which the search steps, and the value as a function of it.
 enum class Scale {
-    linear,   ///< size * u: for offsets, loads
-    log,      ///< exp(u): for positive values
-    poisson,  ///< (1 - exp(-u)) / 2: Poisson's ratio; exp(u) is proportional to the bulk modulus at a given E
+    linear,     ///< size * u: for offsets, loads
+    log,        ///< exp(u): for positive values
+    from_zero,  ///< size * sinh(u): for values that may be 0; linear there, and logarithmic far above `size`
+    poisson,    ///< (1 - exp(-u)) / 2: Poisson's ratio; exp(u) is proportional to the bulk modulus at a given E
 };
 
 struct Unknown {
@@ -23,9 +24,11 @@ struct Unknown {
     double value = 0;  ///< initial value of the search, in that unit
     double low = 0, high = 0;
     Scale scale = Scale::log;
-    double size = 1;  ///< change of the value for a change of 1 in u, for Scale::linear, in that unit; otherwise 1
+    double size = 1;  ///< change of the value for a change of 1 in u, for Scale::linear, and for Scale::from_zero at 0,
+                      ///< in that unit; otherwise 1
 
     [[nodiscard]] double coordinate(double of_value) const;
+    /// For Scale::from_zero at least a billionth of the size: a robot with a friction of 0 has none, and no derivative.
     [[nodiscard]] double value_at(double u) const;
     /// d(value)/du at this value.
     [[nodiscard]] double rate(double of_value) const;

@@ -57,7 +57,7 @@ TEST_CASE("the free length of a spring begins at its path as drawn where the fil
 }
 
 TEST_CASE("coordinates of unknowns and their derivatives") {
-    for (const Scale scale : {Scale::linear, Scale::log, Scale::poisson}) {
+    for (const Scale scale : {Scale::linear, Scale::log, Scale::from_zero, Scale::poisson}) {
         const Unknown unknown{"k", "", 0.3, 0, 1, scale, 0.2};
         const double u = unknown.coordinate(0.3), h = 1e-5;
         CHECK(unknown.value_at(u) == near(0.3, {.relative = 1e-14}));
@@ -79,6 +79,24 @@ TEST_CASE("bounds are read, with units where the key has one") {
     CHECK(offset.low == near(-1e-3, {.relative = 1e-12}));
     const auto friction = *find_unknown(bar.robot(), "cable.flexor.friction=0.05..0.2");
     CHECK(friction.value == near(0.1, {.relative = 1e-12}));
+}
+
+TEST_CASE("a number that may be 0 is searched down to 0, in steps that do not shrink there") {
+    const Bar bar(many_parameters);
+    const auto damping = *find_unknown(bar.robot(), "program.mass_damping=0..10");
+    CHECK(damping.low == 0);
+    CHECK(damping.value == 2);
+    CHECK(damping.coordinate(0) == 0);
+    CHECK(damping.rate(0) == 2);
+    CHECK(damping.value_at(0) == near(0, {.absolute = 1e-8}));
+    CHECK(damping.value_at(0) > 0);
+    CHECK(find_unknown(bar.robot(), "cable.rope.friction")->low == 0);
+    const auto unset = *find_unknown(bar.robot(), "cable.flexor.friction=0..0.5");
+    CHECK(unset.low == 0);
+    CHECK(unset.value > 0.05);
+    CHECK(unset.value < 0.25);
+    CHECK(unknown_problem(bar, "program.mass_damping=-1..10") ==
+          "program.mass_damping: -1 is not possible; it is zero or above");
 }
 
 TEST_CASE("an invalid unknown is reported in one line") {
