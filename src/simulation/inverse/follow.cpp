@@ -61,16 +61,19 @@ private:
     std::optional<Found> first() {
         const Point rest{stepper_.rest(), seeker_.space().rest()};
         std::string why;
-        const auto begin = seeker_.move(rest, rest.inputs, task_.times[0], progress_, &why);
+        const Bounds all = seeker_.whole_range();
+        const auto begin = seeker_.move(rest, rest.inputs, task_.times[0], all, progress_, &why);
         std::optional<Found> best;
-        if (begin) best = seeker_.seek(*begin, rest, 0, seeker_.whole_range(), progress_);
+        if (begin) best = seeker_.seek(*begin, rest, 0, all, progress_);
         const double from_rest = best ? best->cost : 0;
         for (int n = 0; n < options_.starts && !(best && best->reached) && !progress_.cancelled(); ++n) {
             const auto start =
-                seeker_.move(rest, spread_point(n + 1, seeker_.space().size()), task_.times[0], progress_);
+                seeker_.move(rest, spread_point(n + 1, seeker_.space().size()), task_.times[0], all, progress_);
             if (!start) continue;
-            Found other = seeker_.seek(*start, rest, 0, seeker_.whole_range(), progress_);
-            constexpr double clearly = 0.98;
+            Found other = seeker_.seek(*start, rest, 0, all, progress_);
+            // Far goals are missed by much anyway, and nearer by a thousandth is nearer; less may be the solver's
+            // noise.
+            constexpr double clearly = 0.999;
             if (best && !other.reached && !(other.cost < clearly * best->cost)) continue;
             if (begin && (other.reached || other.cost < clearly * from_rest))
                 note_ = fmt::format(
@@ -94,13 +97,16 @@ private:
         const Bounds bounds = bounds_from(seeker_, now_, seconds);
         if (seconds > 0) {
             std::string why;
-            const auto moved = seeker_.move(now_, now_.inputs, task_.times[k], progress_, &why);
+            const auto moved = seeker_.move(now_, now_.inputs, task_.times[k], bounds, progress_, &why);
             if (!moved) {
                 if (progress_.cancelled()) return stop(k), std::nullopt;
                 result_.message = fmt::format("stopped at waypoint {} of {}: {}", k + 1, task_.waypoints(), why);
                 return std::nullopt;
             }
             begin = *moved;
+        } else {
+            // What the rate left slack before may be taken up now.
+            seeker_.space().take_up(begin.robot, begin.inputs, bounds.lower, bounds.upper);
         }
         return seeker_.seek(begin, now_, k, bounds, progress_);
     }

@@ -67,14 +67,15 @@ bool InputSpace::is_slack(const RobotState& robot, Eigen::Index i) const {
     return can_slacken(robot, i) && !(robot.now.state.multiplier[static_cast<Eigen::Index>(a)] > 0);
 }
 
-void InputSpace::take_up(RobotState& robot, Eigen::VectorXd& shares) const {
+void InputSpace::take_up(RobotState& robot, Eigen::VectorXd& shares, const Eigen::VectorXd& lower,
+                         const Eigen::VectorXd& upper) const {
     const Equilibrium& system = stepper_->system();
     for (Eigen::Index i = 0; i < size(); ++i) {
         if (!is_slack(robot, i)) continue;
         const std::size_t a = input(i).actuator;
         const double length = system.actuators()[a].measure(linalg::view(robot.x()));
         const double taut = (length - system.drive(a, input(i).low).value) / drive_factor(i);
-        shares[i] = std::clamp(taut, 0.0, 1.0);
+        shares[i] = std::clamp(taut, lower[i], upper[i]);
         const Drive drive = system.drive(a, value(i, shares[i]));
         robot.inputs.drives[a] = robot.drives[a] = drive;
     }

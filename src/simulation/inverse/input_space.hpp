@@ -35,9 +35,10 @@ public:
     [[nodiscard]] bool is_slack(const RobotState& robot, Eigen::Index i) const;
     /// True if a larger entry means a longer cable, or more air.
     [[nodiscard]] bool drives_longer(Eigen::Index i) const { return drive_factor(i) > 0; }
-    /// Takes up slack: the prescribed length of slack cables is set to their actual length, within their range. Nothing
-    /// else changes.
-    void take_up(RobotState& robot, Eigen::VectorXd& shares) const;
+    /// Takes up slack: the prescribed length of slack cables is set to their actual length, within these bounds of the
+    /// shares. Nothing else changes.
+    void take_up(RobotState& robot, Eigen::VectorXd& shares, const Eigen::VectorXd& lower,
+                 const Eigen::VectorXd& upper) const;
 
     /// Derivatives of the equations with respect to each entry.
     [[nodiscard]] std::vector<Derivative> derivatives(Linearisation& at) const;

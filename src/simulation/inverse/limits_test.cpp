@@ -148,7 +148,7 @@ TEST_CASE("for redundant cables a tension penalty gives the smallest tensions") 
     const Point rest{stepper.rest(), seeker.space().rest()};
     Eigen::VectorXd both(2);
     both << 0.5, 0.4;
-    const auto begin = seeker.move(rest, both, 1, silent);
+    const auto begin = seeker.move(rest, both, 1, seeker.whole_range(), silent);
     REQUIRE(begin);
     const Found found = seeker.seek(*begin, *begin, 0, seeker.whole_range(), silent);
     CHECK(found.reached);

@@ -39,7 +39,7 @@ Led MarkerDrag::lead(RobotState& robot, const Vec3& wanted_m, const Progress& pr
     if (!seeker_.space().drives(robot)) {
         // A slider may have driven it by another quantity, to which the gradients would refer.
         std::string why;
-        const auto taken = seeker_.move(start, start.inputs, robot.inputs.time, progress, &why);
+        const auto taken = seeker_.move(start, start.inputs, robot.inputs.time, seeker_.whole_range(), progress, &why);
         if (!taken) return {true, false, distance(robot, wanted_m), {{Limit::Kind::no_state, "", why}}};
         start = *taken;
     }

@@ -73,7 +73,7 @@ Bounds Seeker::whole_range() const {
             std::vector<bool>(count, false)};
 }
 
-std::optional<Point> Seeker::move(const Point& from, const Eigen::VectorXd& inputs, double time,
+std::optional<Point> Seeker::move(const Point& from, const Eigen::VectorXd& inputs, double time, const Bounds& bounds,
                                   const Progress& progress, std::string* why) {
     Point to{from.robot, inputs};
     ++work_.forward;
@@ -83,7 +83,7 @@ std::optional<Point> Seeker::move(const Point& from, const Eigen::VectorXd& inpu
         if (why != nullptr) *why = report.reason;
         return std::nullopt;
     }
-    space_.take_up(to.robot, to.inputs);
+    space_.take_up(to.robot, to.inputs, bounds.lower, bounds.upper);
     return to;
 }
 
@@ -225,7 +225,7 @@ Seeker::Trial Seeker::attempt(const Search& search, const Eigen::VectorXd& step,
         if (report.pieces == 0 || has_memory_) return trial;
         to.inputs = from.inputs + to.robot.now.along * (wanted - from.inputs);
     }
-    space_.take_up(to.robot, to.inputs);
+    space_.take_up(to.robot, to.inputs, search.bounds->lower, search.bounds->upper);
     trial.point = std::move(to);
     return trial;
 }
@@ -368,12 +368,27 @@ void Seeker::minimise(Search& search, const Progress& progress) {
     }
 }
 
-/// True if a slack cable could bring the goals nearer by pushing, as far as that is known.
-bool Seeker::would_push(const Search& search, std::size_t cable) {
-    if (!search.fresh || !sensitivity_) return true;
+Seeker::Help Seeker::help_of(const Search& search, std::size_t cable) {
+    if (!search.fresh || !sensitivity_) return Help::pushes;
     const Eigen::VectorXd by_tension = sensitivity_->rows_by_tension(cable);
     const Eigen::VectorXd shares = search.residuals.cwiseProduct(by_tension);
-    return !(shares.sum() < cancels * shares.lpNorm<1>());
+    const double least = cancels * shares.lpNorm<1>();
+    if (shares.sum() < -least) return Help::pulls;
+    return shares.sum() < least ? Help::none : Help::pushes;
+}
+
+/// A slack cable may be too long to pull, even at the short end of its bounds.
+std::optional<Limit> Seeker::limit_of_slack(const Search& search, Eigen::Index i) {
+    constexpr double rounding = 1e-9;
+    const std::string& name = space_.input(i).name;
+    const Help help = help_of(search, space_.input(i).actuator);
+    if (help == Help::pushes) return Limit{Limit::Kind::slack, name, ""};
+    const bool longer = space_.drives_longer(i);
+    const double at = search.now.inputs[i];
+    const bool shortest = longer ? at < search.bounds->lower[i] + rounding : at > search.bounds->upper[i] - rounding;
+    if (help == Help::none || !shortest) return std::nullopt;
+    const bool by_rate = (longer ? search.bounds->rate_lower : search.bounds->rate_upper)[static_cast<std::size_t>(i)];
+    return Limit{by_rate ? Limit::Kind::rate : longer ? Limit::Kind::lower : Limit::Kind::upper, name, ""};
 }
 
 /// (goals) of (inputs): what each goal alone asks of the inputs, the gradient of its part of the cost. Empty if it is
@@ -426,7 +441,7 @@ std::vector<Limit> Seeker::limits(const Search& search) {
         const bool wants_longer = (downhill > 0) == space_.drives_longer(i);
         const bool slack = space_.is_slack(search.now.robot, i);
         if (slack && (!pulls_[k] || wants_longer)) {
-            if (would_push(search, space_.input(i).actuator)) limits.push_back({Limit::Kind::slack, name, ""});
+            if (std::optional<Limit> limit = limit_of_slack(search, i)) limits.push_back(*std::move(limit));
             continue;
         }
         if (!(std::fabs(downhill) > least) || is_cancelled(i)) continue;

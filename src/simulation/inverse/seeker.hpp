@@ -72,9 +72,9 @@ public:
     [[nodiscard]] Work work() const;
 
     /// Solves for the equilibrium at these inputs and program time, ramping linearly from the current one. Empty: there
-    /// is no equilibrium along the ramp, or it was cancelled; `why` says so.
+    /// is no equilibrium along the ramp, or it was cancelled; `why` says so. Slack is taken up within the bounds.
     [[nodiscard]] std::optional<Point> move(const Point& from, const Eigen::VectorXd& inputs, double time,
-                                            const Progress& progress, std::string* why = nullptr);
+                                            const Bounds& bounds, const Progress& progress, std::string* why = nullptr);
     [[nodiscard]] Bounds whole_range() const;
 
     /// Searches from `start`, which is at the waypoint's time. `before`: the previous waypoint, or rest; changes of
@@ -99,7 +99,10 @@ private:
     [[nodiscard]] bool is_at(const Point& point, const Eigen::VectorXd& inputs) const;
     [[nodiscard]] bool judge(Search& search, const BoundedStep& step, Trial trial);
     [[nodiscard]] std::vector<Limit> limits(const Search& search);
-    [[nodiscard]] bool would_push(const Search& search, std::size_t cable);
+    /// What a tension of a slack cable would do, as far as that is known.
+    enum class Help { pulls, pushes, none };
+    [[nodiscard]] Help help_of(const Search& search, std::size_t cable);
+    [[nodiscard]] std::optional<Limit> limit_of_slack(const Search& search, Eigen::Index i);
     [[nodiscard]] std::vector<Eigen::VectorXd> gradients_of_goals(const Search& search);
     [[nodiscard]] std::string contradicting_goals(const std::vector<Eigen::VectorXd>& gradients) const;
     [[nodiscard]] double cost_of(const Search& search, const Point& point, Eigen::VectorXd& residuals) const;
