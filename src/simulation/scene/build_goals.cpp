@@ -31,6 +31,27 @@ sim::Goal tied(const Robot& robot, const sim::Model& model, const GoalSpec& spec
     return goal;
 }
 
+/// Farther away rounding hides which inputs come nearer.
+constexpr double farthest = 1e6;  // times the robot's size
+
+Status check_near(const Robot& robot, const sim::Model& model, const sim::Goal& goal) {
+    if (goal.kind != GoalSpec::Kind::position && goal.kind != GoalSpec::Kind::plane) return {};
+    Box3 box;
+    for (const Vec3& p : model.mesh().points) box.add(p);
+    for (const std::vector<Vec3>& at : goal.wanted) {
+        const std::size_t points = goal.kind == GoalSpec::Kind::plane ? 1 : at.size();
+        for (std::size_t k = 0; k < points; ++k) {
+            if (norm(at[k] - 0.5 * (box.low + box.high)) <= farthest * box.diagonal()) continue;
+            return input_error(
+                "{}: goal \"{}\": its point [{:.4g}, {:.4g}, {:.4g}] is over a million times as far away as the robot "
+                "is "
+                "large; a point in the same direction, but nearer, asks for the same",
+                robot.file.string(), goal.name, at[k].x / robot.unit_m, at[k].y / robot.unit_m, at[k].z / robot.unit_m);
+        }
+    }
+    return {};
+}
+
 sim::Steered steered(std::size_t actuator, const std::string& name, const SteeringSpec& spec, bool ratio) {
     return {actuator, name, spec.low, spec.high, ratio ? 1.0 : 0.0, spec.rate, spec.effort_price, spec.change_price};
 }
@@ -73,6 +94,7 @@ Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model
     std::size_t waypoints = 1;
     for (const GoalSpec& goal : robot.goals) {
         task.goals.push_back(tied(robot, model, goal));
+        if (Status near = check_near(robot, model, task.goals.back()); !near) return tl::unexpected(near.error());
         waypoints = std::max(waypoints, goal.wanted.size());
         if (!goal.times.empty()) task.times = goal.times;
     }
