@@ -6,6 +6,7 @@
 #include <limits>
 #include <unsupported/Eigen/NonLinearOptimization>
 
+#include "base/core/text.hpp"
 #include "base/linalg/dense.hpp"
 #include "simulation/material/response.hpp"
 
@@ -191,13 +192,64 @@ std::size_t useful_rows(const TensileTest& test) {
         std::count_if(test.stretch.begin(), test.stretch.end(), [](double l) { return std::fabs(l - 1) > 1e-9; }));
 }
 
+/// The terms of Ogden's law, from 1, whose exponents nearly equal that of another term: only the sum of their mu
+/// counts.
+std::vector<int> alike_terms(const material::Law& law) {
+    constexpr double alike = 0.05;
+    std::vector<int> terms;
+    const auto* ogden = std::get_if<material::Ogden>(&law);
+    for (int a = 0; ogden != nullptr && a < ogden->terms; ++a) {
+        for (int b = 0; b < ogden->terms; ++b) {
+            if (a == b || std::fabs(ogden->alpha[a] - ogden->alpha[b]) > alike * std::fabs(ogden->alpha[a])) continue;
+            terms.push_back(a + 1);
+            break;
+        }
+    }
+    return terms;
+}
+
+/// The constants of which the data determine no more than a combination. `unit`: derivatives of the stress with respect
+/// to each, of length 1.
+std::vector<bool> undetermined(const MatrixXd& unit, const material::Law& law) {
+    constexpr double rank_tolerance = 1e-6, takes_part = 0.1;
+    std::vector<bool> open(static_cast<std::size_t>(unit.cols()), false);
+    const linalg::Svd svd = linalg::svd(unit, linalg::SvdParts::square_right);
+    for (Index k = 0; k < unit.cols(); ++k) {
+        if (k < svd.sigma.size() && svd.sigma[k] > rank_tolerance * svd.sigma[0]) continue;
+        for (Index j = 0; j < unit.cols(); ++j)
+            if (std::fabs(svd.V(j, k)) > takes_part) open[static_cast<std::size_t>(j)] = true;
+    }
+    for (const int term : alike_terms(law)) {
+        const auto first = static_cast<std::size_t>(2 * (term - 1));
+        open[first] = open[first + 1] = true;
+    }
+    return open;
+}
+
+void warn_of_undetermined(Fit& fit) {
+    std::vector<std::string> names;
+    for (const int term : alike_terms(fit.law)) names.push_back(std::to_string(term));
+    if (!names.empty()) {
+        fit.warnings.push_back(
+            fmt::format("the data cannot tell terms {} apart: their exponents are nearly equal, and only the sum of "
+                        "their mu counts; use fewer terms",
+                        join_names(names)));
+        return;
+    }
+    if (std::ranges::any_of(fit.constants, [](const Constant& c) { return !std::isfinite(c.half_width); }))
+        fit.warnings.emplace_back(
+            "the data cannot tell some constants apart: a change of one looks like a change of the others; use a law "
+            "with fewer constants, or measure over a wider range of stretches");
+}
+
 void add_warnings(const TensileTest& test, Fit& fit) {
+    warn_of_undetermined(fit);
     const auto [low, high] = std::minmax_element(test.stretch.begin(), test.stretch.end());
     if (!(material::moduli(fit.law).shear_Pa > 0))
         fit.warnings.emplace_back("the initial shear modulus is not above zero: no simulation can use this law");
     for (std::string& text : unstable_ranges(fit.law, *low, *high)) fit.warnings.push_back(std::move(text));
     for (const Constant& c : fit.constants) {
-        if (c.half_width > std::fabs(c.value))
+        if (std::isfinite(c.half_width) && c.half_width > std::fabs(c.value))
             fit.warnings.push_back(fmt::format("{} cannot be told from zero with these data", c.name));
     }
 }
@@ -251,9 +303,11 @@ Result<Fit> fit(const TensileTest& test, const FitOptions& options) {
     const VectorXd length = solution.J.colwise().norm();
     const MatrixXd unit = solution.J * length.cwiseInverse().asDiagonal();
     const MatrixXd C = linalg::pseudo_inverse(unit.transpose() * unit);
+    const std::vector<bool> open = undetermined(unit, result.law);
     for (std::size_t i = 0; i < names.size(); ++i) {
         const auto k = static_cast<Index>(i);
-        const double half = student_t_95(freedom) * s * std::sqrt(std::max(0.0, C(k, k))) / length[k];
+        const double half = open[i] ? std::numeric_limits<double>::infinity()
+                                    : student_t_95(freedom) * s * std::sqrt(std::max(0.0, C(k, k))) / length[k];
         result.constants.push_back({names[i], solution.x[k], half, names[i] != "alpha"});
     }
     add_warnings(test, result);

@@ -26,7 +26,7 @@ struct FitOptions {
 struct Constant {
     std::string name;   ///< as in the robot file: "c10", "mu", "alpha"; of neo-hookean: "youngs_modulus"
     double value;       ///< Pa; alpha: 1
-    double half_width;  ///< of the 95 % confidence interval
+    double half_width;  ///< of the 95 % confidence interval; infinite if the data do not determine the constant
     bool is_pressure = true;
 };
 

@@ -3,6 +3,7 @@
 #include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/core/json.hpp"
 #include "simulation/calibrate/fit.hpp"
@@ -37,6 +38,14 @@ std::string join(const std::vector<std::string>& list) {
     return text;
 }
 
+/// Young's modulus of the material with its Poisson's ratio, whose shear modulus is the fitted one, a third of that of
+/// the incompressible fit; empty for laws with other constants.
+std::optional<double> modulus_of_material(const Fit& fit) {
+    const auto modulus = std::ranges::find(fit.constants, "youngs_modulus", &Constant::name);
+    if (modulus == fit.constants.end()) return std::nullopt;
+    return modulus->value * 2 * (1 + material::poisson_ratio(material::moduli(fit.law))) / 3;
+}
+
 }  // namespace
 
 std::string material_toml(const Fit& fit, const std::string& name) {
@@ -49,8 +58,8 @@ std::string material_toml(const Fit& fit, const std::string& name) {
             mu.push_back("\"" + pressure(c.value) + "\"");
         else if (c.name == "alpha")
             alpha.push_back(fmt::format("{:.6g}", c.value));
-        else if (c.name == "youngs_modulus")  // such that the shear modulus is the fitted one, a third of E
-            text += fmt::format("{} = \"{}\"\n", c.name, pressure(c.value * 2 * (1 + nu) / 3));
+        else if (c.name == "youngs_modulus")
+            text += fmt::format("{} = \"{}\"\n", c.name, pressure(*modulus_of_material(fit)));
         else
             text += fmt::format("{} = \"{}\"\n", c.name, pressure(c.value));
     }
@@ -62,10 +71,17 @@ std::string fit_text(const Fit& fit) {
     std::string text = fmt::format("{}, {} rows: R^2 {:.5f}, rms error {}\n", material::name(fit.law),
                                    fit.stress_Pa.size(), fit.r_squared, pressure(fit.rms_error_Pa));
     for (const Constant& c : fit.constants) {
-        text += c.is_pressure
-                    ? fmt::format("  {:<15} {:>13}  +- {} (95 %)\n", c.name, pressure(c.value), pressure(c.half_width))
-                    : fmt::format("  {:<15} {:>13.5g}  +- {:.3g} (95 %)\n", c.name, c.value, c.half_width);
+        const std::string value = c.is_pressure ? pressure(c.value) : fmt::format("{:.5g}", c.value);
+        const std::string half = c.is_pressure ? pressure(c.half_width) : fmt::format("{:.3g}", c.half_width);
+        text += fmt::format("  {:<15} {:>13}  {}\n", c.name, value,
+                            std::isfinite(c.half_width) ? "+- " + half + " (95 %)" : "(no interval)");
     }
+    if (const auto modulus = modulus_of_material(fit))
+        text += fmt::format(
+            "  youngs_modulus is that of the incompressible fit, 3 mu; the material below has 2 mu (1 + "
+            "poisson_ratio), "
+            "{}\n",
+            pressure(*modulus));
     for (const std::string& warning : fit.warnings) text += "  warning: " + warning + "\n";
     return text;
 }
@@ -75,11 +91,14 @@ std::string fit_json(const Fit& fit, const TensileTest& test) {
     json["law"] = material::name(fit.law);
     json["constants"] = nlohmann::ordered_json::array();
     for (const Constant& c : fit.constants) {
-        json["constants"].push_back({{"name", c.name},
-                                     {"unit", c.is_pressure ? "Pa" : "1"},
-                                     {"value", c.value},
-                                     {"confidence_95", {c.value - c.half_width, c.value + c.half_width}}});
+        nlohmann::ordered_json one = {
+            {"name", c.name}, {"unit", c.is_pressure ? "Pa" : "1"}, {"value", c.value}, {"confidence_95", nullptr}};
+        if (std::isfinite(c.half_width)) one["confidence_95"] = {c.value - c.half_width, c.value + c.half_width};
+        json["constants"].push_back(std::move(one));
     }
+    if (const auto modulus = modulus_of_material(fit))
+        json["material"] = {{"youngs_modulus_Pa", *modulus},
+                            {"poisson_ratio", material::poisson_ratio(material::moduli(fit.law))}};
     json["r_squared"] = fit.r_squared;
     json["rms_error_Pa"] = fit.rms_error_Pa;
     json["warnings"] = fit.warnings;
