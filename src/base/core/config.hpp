@@ -32,7 +32,7 @@ using Table = std::vector<Entry>;  ///< in the order of the file
 
 struct Value {
     std::variant<bool, std::int64_t, double, std::string, Array, Table> data = Table{};
-    int line = 0;  ///< 1-based; 0 for values that `--set` brought in
+    int line = 0;  ///< 1-based; of values that `--set` brought in, that of the value they replace, or 0
 };
 
 struct Document {

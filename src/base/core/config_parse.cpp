@@ -160,6 +160,16 @@ bool is_wide_text(std::string_view text) {
            text.substr(0, 4).find('\0') != std::string_view::npos;
 }
 
+/// Of a value and of all within it.
+void set_lines(Value& value, int line) {
+    value.line = line;
+    if (auto* array = std::get_if<Array>(&value.data)) {
+        for (Value& one : *array) set_lines(one, line);
+    } else if (auto* table = std::get_if<Table>(&value.data)) {
+        for (auto& [name, one] : *table) set_lines(one, line);
+    }
+}
+
 }  // namespace
 
 Result<Document> parse(std::string_view text, const std::filesystem::path& file) {
@@ -225,7 +235,7 @@ Status set(Document& document, std::string_view assignment) {
         node = child;
         begin = end + 1;
     }
-    value.line = node->line;
+    set_lines(value, node->line);
     *node = std::move(value);
     return {};
 }

@@ -54,6 +54,12 @@ bool is_passed_over(std::string_view line) {
     return first == std::string_view::npos || line[first] == '#';
 }
 
+/// True with values that no column names, as from decimal commas. Spreadsheets leave empty cells behind the last one.
+bool surplus(const CsvRow& row, std::size_t columns) {
+    return std::any_of(row.cells.begin() + static_cast<std::ptrdiff_t>(std::min(columns, row.cells.size())),
+                       row.cells.end(), [](const std::string& cell) { return !cell.empty(); });
+}
+
 }  // namespace
 
 std::string CsvTable::place(int line) const {
@@ -70,7 +76,7 @@ Result<double> CsvTable::number(const CsvRow& row, std::size_t column, std::stri
     if (!text) return tl::unexpected(text.error());
     const char* first = text->data();
     const char* last = first + text->size();
-    if (first != last && *first == '+') ++first;
+    if (last - first > 1 && *first == '+' && first[1] != '-') ++first;
     double value = 0;
     const auto [end, code] = std::from_chars(first, last, value);
     if (code == std::errc() && end == last && std::isfinite(value)) {
@@ -105,6 +111,11 @@ Result<CsvTable> parse_csv(std::string_view text, const std::string& file, std::
     }
     if (table.columns.empty()) return input_error("{}: is empty; the first line names the columns: {}", file, example);
     if (table.rows.empty()) return input_error("{}: has no rows below the names of the columns", file);
+    for (const CsvRow& row : table.rows) {
+        if (surplus(row, table.columns.size()))
+            return input_error_at(file, row.line, "{} columns, the first line names {}", row.cells.size(),
+                                  table.columns.size());
+    }
     return table;
 }
 

@@ -37,8 +37,10 @@ TEST_CASE("errors in a table name file and line") {
     CHECK(error_of("") == "a.csv: is empty; the first line names the columns: x,y");
     CHECK(error_of("x,y\n# none\n") == "a.csv: has no rows below the names of the columns");
     CHECK(error_of("x,y\n1,2\n3\n") == "a.csv:3: 1 columns, but the first line names more");
+    CHECK(error_of("x,y\n1,2\n3,5,4\n") == "a.csv:3: 3 columns, the first line names 2");
+    CHECK(error_of("x,y\n1,2,,\n").empty());  // as spreadsheets leave them
     CHECK(error_of("x;y\n1;2,5\n") == "a.csv:2: y \"2,5\" has a comma; write numbers with a decimal point");
-    for (const char* bad : {"abc", "nan", "inf", "1e999", "", "1 2", "0x10"})
+    for (const char* bad : {"abc", "nan", "inf", "1e999", "", "1 2", "0x10", "+-5", "++5", "+"})
         CHECK(error_of(std::string("x,y\n1,") + bad + "\n") ==
               std::string("a.csv:2: y \"") + bad + "\" is not a number");
 }

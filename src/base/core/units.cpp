@@ -125,7 +125,7 @@ Result<double> parse_quantity(std::string_view text, Dimension dimension) {
     const std::string_view trimmed = trim(text);
     const char* first = trimmed.data();
     const char* last = first + trimmed.size();
-    if (first != last && *first == '+') ++first;
+    if (last - first > 1 && *first == '+' && first[1] != '-') ++first;
     double value = 0;
     const auto [end, code] = std::from_chars(first, last, value);
     if (code != std::errc() || !std::isfinite(value)) {
