@@ -2,6 +2,7 @@
 #include <muParser.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 

@@ -203,6 +203,18 @@ TEST_CASE("--set changes any value, and an unknown key gives the nearest one") {
     CHECK_FALSE(set(document, "program..steps=1"));
 }
 
+TEST_CASE("all within a value of --set stands on the line of what it replaces") {
+    Document document = document_of("steps = 30\n\ncable = 2\n");
+    REQUIRE(set(document, "cable=[{ name = \"flexor\" }]"));
+    const Value& cable = std::get<Table>(document.root.data).at(1).second;
+    const Value& first = std::get<Array>(cable.data).at(0);
+    CHECK(cable.line == 3);
+    CHECK(first.line == 3);
+    CHECK(std::get<Table>(first.data).at(0).second.line == 3);
+    REQUIRE(set(document, "spring=[{ name = \"band\" }]"));
+    CHECK(std::get<Array>(std::get<Table>(document.root.data).at(2).second.data).at(0).line == 0);
+}
+
 TEST_CASE("parameters may be used in formulas") {
     Document document =
         document_of("[parameters]\ngaps = 6\npitch = \"= 84 / gaps\"\n[a]\nx = [\"= pitch * 2\", 1]\nn = \"= gaps\"\n");

@@ -19,6 +19,8 @@ TEST_CASE("quantities convert to SI") {
 
 TEST_CASE("a quantity without a unit, with a foreign unit or without a number is refused") {
     CHECK(parse_quantity("1e308 GPa", Dimension::pressure).error().message == "\"1e308 GPa\" is too large");
+    CHECK_FALSE(parse_quantity("+-5 mm", Dimension::length));
+    CHECK_FALSE(parse_quantity("++5 mm", Dimension::length));
     CHECK(parse_quantity("12", Dimension::pressure).error().message.find("has no unit") != std::string::npos);
     CHECK(parse_quantity("12 mm", Dimension::pressure).error().message.find("MPa") != std::string::npos);
     for (const char* text : {"", "MPa", "nan MPa", "inf MPa", "1 2 MPa", "1e999 MPa", "0x10 MPa"}) {
