@@ -126,6 +126,27 @@ TEST_CASE("a constant that the data do not determine is named") {
     CHECK(named);
 }
 
+TEST_CASE("terms of an Ogden law that are one and the same are named, and have no interval") {
+    const TensileTest test = made_test([](double l) { return 0.1e6 * (l - 1 / (l * l)); }, 1e-3);
+    const Fit result = fit_of(test, FitLaw::ogden, 3);
+    REQUIRE_FALSE(result.warnings.empty());
+    CHECK(result.warnings[0].find("the data cannot tell ") == 0);
+    CHECK(result.warnings[0].find(" apart") != std::string::npos);
+    CHECK(std::ranges::any_of(result.constants, [](const Constant& c) { return std::isinf(c.half_width); }));
+    CHECK(fit_text(result).find("(no interval)") != std::string::npos);
+    CHECK(fit_json(result, test).find("\"confidence_95\": null") != std::string::npos);
+    const Fit apart = fit_of(made_test(ogden, 1e-3), FitLaw::ogden, 2);
+    CHECK(std::ranges::all_of(apart.constants, [](const Constant& c) { return std::isfinite(c.half_width); }));
+}
+
+TEST_CASE("the two moduli of a neo-Hookean fit are told apart") {
+    const TensileTest test = made_test([](double l) { return 0.1e6 * (l - 1 / (l * l)); }, 0);
+    const Fit result = fit_of(test, FitLaw::neo_hookean);
+    CHECK(fit_text(result).find("3 mu; the material below has 2 mu (1 + poisson_ratio), 0.298 MPa") !=
+          std::string::npos);
+    CHECK(fit_json(result, test).find("\"youngs_modulus_Pa\": 298") != std::string::npos);
+}
+
 TEST_CASE("the fitted law is written as a material for the robot file") {
     const Fit y = fit_of(made_test(yeoh, 0), FitLaw::yeoh);
     CHECK(material_toml(y, "cast") ==

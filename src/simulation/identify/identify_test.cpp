@@ -202,6 +202,39 @@ TEST_CASE("an unknown at its bound is reported") {
     CHECK(has_warning(result, {"material.soft.youngs_modulus", "is at its bound, 1 MPa"}));
 }
 
+TEST_CASE("a damping that the data take below zero is zero, with an interval from zero") {
+    const Bar bar(R"(
+        program = { duration = "120 ms", time_step = "6 ms", gravity = [0, 0, -9.81], mass_damping = 5 }
+    )");
+    const auto unknowns = bar.unknowns({"program.mass_damping"});
+    const std::vector<std::string> columns = {"tip_z_mm", "middle_z_mm"};
+    const std::vector<double> times = {0.02, 0.04, 0.05, 0.06, 0.08, 0.1, 0.12};
+    const auto at = [&](double damping) {
+        return solve(bar, unknowns, {damping}, bar.channels(columns), times)->values();
+    };
+    // As with a damping of about -1, in noise that leaves it open.
+    const Eigen::MatrixXd rest = at(0), damped = at(4);
+    Noise noise(0.003, 3);
+    std::string csv = "time,tip_z_mm,middle_z_mm";
+    for (std::size_t t = 0; t < times.size(); ++t) {
+        const auto row = static_cast<Eigen::Index>(t);
+        csv += fmt::format("\n{}", times[t]);
+        for (Eigen::Index c = 0; c < 2; ++c)
+            csv += fmt::format(",{:.15g}", rest(row, c) - 0.25 * (damped(row, c) - rest(row, c)) + noise(0));
+    }
+    const Identification result = find(bar, unknowns, bar.read(csv + "\n"));
+    CHECK(result.converged);
+    const Found& found = result.found[0];
+    CHECK(found.matters);
+    CHECK(found.at_bound);
+    CHECK(found.value == 0);
+    REQUIRE(found.high);
+    CHECK(*found.low == 0);
+    CHECK(*found.high > 0);
+    CHECK(*found.high < 20);
+    CHECK(has_warning(result, {"program.mass_damping", "is at its bound, 0", "allow up to"}));
+}
+
 TEST_CASE("95 % intervals hold the true value in about 95 % of tries, and held-out rows judge the fit") {
     const Bar bar(pulled, {"program.steps=2"});
     const auto unknowns = bar.unknowns({"material.firm.youngs_modulus", "material.soft.youngs_modulus"});

@@ -130,6 +130,31 @@ TEST_CASE("a waypoint that the rate limit leaves out of reach names the rate") {
     CHECK_FALSE(result.reached);
 }
 
+TEST_CASE("a slack cable too changes by no more than its rate") {
+    const Model model = made(bar(2));
+    InverseTask task = task_for(model, {{0.7, 1.2}, {0.7, 1.2}});
+    const Vec3 a = tip_under(model, task, {0.8, 1.2}), b = tip_under(model, task, {0.99, 1.2});
+    task.goals = {at_point(a, 1e-4)};
+    task.goals[0].wanted = {{a}, {b}};
+    task.times = {1, 1};
+    task.inputs[1].rate = 0.01;
+    const InverseResult result = solve(model, task);
+    REQUIRE(result.waypoints.size() == 2);
+    CHECK(result.reached);
+    const double change = result.waypoints[1].values[1] - result.waypoints[0].values[1];
+    CHECK(change == near(-0.01, {.absolute = 1e-9}));  // free, it would be taken up by more
+}
+
+TEST_CASE("a slack cable that is too long to pull is at the end of its range") {
+    const Model model = made(bar(1));
+    InverseTask task = task_for(model, {{1.05, 1.2}});
+    task.goals = {at_point(tip_under(model, task, {0.9}))};
+    const Waypoint found = solve(model, task).waypoints.at(0);
+    CHECK_FALSE(found.reached);
+    CHECK(names(found, Limit::Kind::lower, "above"));
+    CHECK_FALSE(names(found, Limit::Kind::slack, "above"));
+}
+
 TEST_CASE("for redundant cables a tension penalty gives the smallest tensions") {
     const Model model = made(bar(2, 1, CableTarget::Kind::tension_N));
     InverseTask task = task_for(model, {{0, 20}, {0, 20}});

@@ -13,6 +13,7 @@
 
 using namespace pliant;
 using namespace pliant::robot;
+using pliant::test::holds;
 using testing::check_problem;
 
 namespace {
@@ -71,6 +72,17 @@ TEST_CASE("goals and ranges are converted to SI, and refer to markers and actuat
     CHECK(task->inputs[0].low == near(0.8, {.relative = 1e-12}));
     CHECK(*task->inputs[0].rate == near(0.05, {.relative = 1e-12}));
     CHECK(task->inputs[0].effort_price == near(2, {.relative = 1e-12}));
+}
+
+TEST_CASE("a goal that is too far away for its direction to be told is refused") {
+    const auto problem = [](const std::string& x) {
+        const auto built =
+            testing::build(parse_robot(robot_with_cable + reach + "point = [" + x + ", 5, 9]\n", "bar.toml"));
+        const auto task = build_goals(built.robot, built.model);
+        return task ? "" : task.error().message;
+    };
+    CHECK(problem("1e6").empty());
+    CHECK(holds(problem("1e30"), "bar.toml: goal \"reach\": its point [1e+30, 5, 9] is over a million times"));
 }
 
 TEST_CASE("a path is read from a table, in the unit that its columns name") {
