@@ -14,6 +14,7 @@
 
 #include "../usage.hpp"
 #include "base/core/counted.hpp"
+#include "base/core/files.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
 #include "output_option.hpp"
@@ -88,6 +89,10 @@ void print_workspace(const WorkspaceArguments& options, const Model& model, cons
 
 Result<int> workspace(const WorkspaceArguments& options) {
     if (Status status = expect(FileKind::robot, options.robot); !status) return tl::unexpected(status.error());
+    if (!options.folder.empty()) {
+        if (Status place = check_folder_place(options.folder, "workspace.json"); !place)
+            return tl::unexpected(place.error());
+    }
     const Result<WorkspaceOptions> search = search_options(options);
     if (!search) return tl::unexpected(search.error());
     auto progress = terminal_progress(options.output);
