@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -81,9 +82,16 @@ Result<mesh::TetMesh> read(const MeshOptions& options) {
     return *factor == 1 ? std::move(*mesh) : mesh::scaled(std::move(*mesh), *factor);
 }
 
-void print_report(const MeshOptions& options, const std::string& file, const mesh::MeshReport& report) {
+/// Of the mesh that is reported on; empty for a mesh file without --to.
+std::optional<double> written_unit_mm(const MeshOptions& options) {
+    const Result<double> to = unit_factor(options.to_unit, Dimension::length);
+    return to ? std::optional(1e3 * *to) : std::nullopt;
+}
+
+void print_report(const MeshOptions& options, const std::string& file, const mesh::MeshReport& report,
+                  std::optional<double> unit_mm) {
     if (options.output.json)
-        fmt::print("{}\n", mesh::report_json(report));
+        fmt::print("{}\n", mesh::report_json(report, unit_mm));
     else if (!options.output.quiet)
         fmt::print("{}: {}\n", file, mesh::report_text(report));
 }
@@ -95,9 +103,9 @@ Status draw(const MeshOptions& options, const std::string& title, const mesh::Me
     return write_file(options.picture_file, *png);
 }
 
-Status tell_mesh(const MeshOptions& options, const mesh::TetMesh& mesh) {
+Status tell_mesh(const MeshOptions& options, const mesh::TetMesh& mesh, std::optional<double> unit_mm) {
     const mesh::MeshReport report = mesh::report_on(mesh);
-    print_report(options, options.output_file, report);
+    print_report(options, options.output_file, report, unit_mm);
     return draw(options, options.output_file, report);
 }
 
@@ -111,14 +119,14 @@ Status build(const MeshOptions& options) {
     on_signal(OnSignal::ask_twice);
     if (Status status = write_robot(options, *robot, *mesh); !status) return status;
     progress.reset();
-    return tell_mesh(options, mesh::scaled(*mesh, 1 / robot->unit_m));
+    return tell_mesh(options, mesh::scaled(*mesh, 1 / robot->unit_m), 1e3 * robot->unit_m);
 }
 
 Status convert(const MeshOptions& options) {
     const Result<mesh::TetMesh> mesh = read(options);
     if (!mesh) return tl::unexpected(mesh.error());
     if (Status status = mesh::write_tet_mesh(options.output_file, *mesh, encoding(options)); !status) return status;
-    return tell_mesh(options, *mesh);
+    return tell_mesh(options, *mesh, written_unit_mm(options));
 }
 
 Status describe(const MeshOptions& options, const std::string& file) {
@@ -127,7 +135,7 @@ Status describe(const MeshOptions& options, const std::string& file) {
     if (options.output.json || !options.picture_file.empty()) {
         const Result<mesh::MeshReport> report = mesh::report_on_file(file, *factor);
         if (!report) return tl::unexpected(report.error());
-        print_report(options, file, *report);
+        print_report(options, file, *report, written_unit_mm(options));
         return draw(options, file, *report);
     }
     const Result<std::string> text = mesh::describe_mesh_file(file, *factor);

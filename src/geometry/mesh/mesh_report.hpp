@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,7 +44,8 @@ struct MeshReport {
 /// Number of tets with a dihedral angle below this many degrees.
 [[nodiscard]] std::size_t sliver_count(const TetMesh& mesh, double below_deg);
 [[nodiscard]] std::string report_text(const MeshReport& report);
-/// The report as a JSON object; docs/reference/geometry.md lists its keys.
-[[nodiscard]] std::string report_json(const MeshReport& report);
+/// The report as a JSON object; docs/reference/geometry.md lists its keys. `unit_mm`: the mesh's unit, where it is
+/// known.
+[[nodiscard]] std::string report_json(const MeshReport& report, std::optional<double> unit_mm = {});
 
 }  // namespace pliant::mesh
