@@ -36,6 +36,18 @@ std::string last_words(const fs::path& folder, const std::vector<std::size_t>& t
     return "nothing";
 }
 
+/// Its lines as one sentence after the other.
+std::string joined_lines(std::string_view text) {
+    std::string joined;
+    for (text = trimmed(text); !text.empty();) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::string_view line = trimmed(text.substr(0, end));
+        if (!line.empty()) joined += (joined.empty() ? "" : "; ") + std::string(line);
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return joined;
+}
+
 enum class Jobs { some, none, unknown };
 
 class Slurm {
@@ -110,7 +122,7 @@ private:
         if (!answer) return tl::unexpected(answer.error());
         constexpr auto first_patience = std::chrono::minutes(5);
         if (!passes_later(answer->errors) || Clock::now() - begun_ > first_patience)
-            return failure("Slurm does not answer: {}", trimmed(answer->errors));
+            return failure("Slurm does not answer: {}", joined_lines(answer->errors));
         progress_.advance("waiting for Slurm", 0);
         return Jobs::unknown;
     }

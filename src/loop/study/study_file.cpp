@@ -214,9 +214,6 @@ Status read_table_rows(const CsvTable& table, Plan& plan) {
                                       row.cells[k], plan.keys[k].name);
             plan.keys[k].numeric = plan.keys[k].numeric && number;
         }
-        if (row.cells.size() > plan.keys.size())
-            return input_error_at(table.file, row.line, "has {} values; there are {} columns", row.cells.size(),
-                                  plan.keys.size());
         plan.rows.push_back(std::move(values));
     }
     return {};
