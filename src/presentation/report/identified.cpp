@@ -50,8 +50,10 @@ Plot over_time(const Identification& result, const std::string& unit, const std:
 }
 
 Plot over_measured(const std::string& unit, const std::map<std::size_t, Rows>& rows) {
-    Plot plot{
-        "Simulated over measured", label("measured, change since the first row", unit), label("simulated", unit), {}};
+    Plot plot{"Simulated over measured",
+              label("measured, change since the first row", unit),
+              label("simulated, change since the first row", unit),
+              {}};
     Series before{"before", {}, true}, after{"after", {}, true}, equal{"equal", {}, false};
     double low = 0, high = 0;
     for (const auto& [channel, list] : rows) {

@@ -55,7 +55,7 @@ TEST_CASE("many columns are plotted simulated against measured, beside the diago
     REQUIRE(plots.size() == 1);
     CHECK(plots[0].file == "measured_ratio.png");
     const Plot& plot = plots[0].plot;
-    CHECK(plot.y_label == "simulated");
+    CHECK(plot.y_label == "simulated, change since the first row");
     REQUIRE(plot.series.size() == 3);
     CHECK(plot.series[0].points.size() == 15);
     CHECK(plot.series[1].points[0].y - plot.series[1].points[0].x == near(0.5, {.relative = 1e-12}));

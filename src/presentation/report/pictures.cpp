@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/core/counted.hpp"
 #include "presentation/draw/canvas.hpp"
 #include "presentation/draw/gif.hpp"
 #include "presentation/draw/raycast.hpp"
@@ -29,7 +30,7 @@ std::string step_title(const Simulation& s, const sim::Step& step) {
     return step.index == 0 ? "at rest" : fmt::format("step {} of {}", step.index, s.result.steps.back().index);
 }
 
-/// The first two cables and the first two chambers: "flexor 70 %, 71.3 N".
+/// The first two cables and the first two chambers, and how many more there are: "flexor 70 %, 71.3 N".
 std::string actuators_line(const sim::Step& step) {
     constexpr std::size_t named = 2;
     constexpr double no_force_N = 1e-9;  // at rest, gap elements have only rounding errors
@@ -39,10 +40,12 @@ std::string actuators_line(const sim::Step& step) {
         const double tension_N = std::fabs(c.tension_N) < no_force_N ? 0 : c.tension_N;
         parts.push_back(fmt::format("{} {:.3g} %, {:.3g} N", c.name, 100 * c.length_ratio, tension_N));
     }
+    if (step.cables.size() > named) parts.push_back(counted(step.cables.size() - named, "more cable"));
     for (std::size_t i = 0; i < std::min(named, step.chambers.size()); ++i) {
         const auto& c = step.chambers[i];
         parts.push_back(fmt::format("{} {:.4g} %, {:.3g} kPa", c.name, 100 * c.volume_ratio, 1e-3 * c.pressure_Pa));
     }
+    if (step.chambers.size() > named) parts.push_back(counted(step.chambers.size() - named, "more chamber"));
     return fmt::format("{}", fmt::join(parts, " · "));
 }
 
