@@ -27,13 +27,18 @@ tl::unexpected<Error> no_name() {
     return input_error("the name of a file is empty");
 }
 
+/// For a path whose kind the system does not tell, as of one in a folder that may not be read.
+tl::unexpected<Error> unknown_place(const fs::path& path, const std::error_code& code) {
+    return input_error_at(path.string(), 0, "{}", code.message());
+}
+
 }  // namespace
 
 Result<std::string> read_file(const fs::path& path, std::uintmax_t limit_bytes) {
     if (path.empty()) return no_name();
     std::error_code code;
     const fs::file_status status = fs::status(path, code);
-    if (path.empty()) return input_error("the name of a file is empty");
+    if (status.type() == fs::file_type::none) return unknown_place(path, code);
     if (!fs::exists(status)) return input_error_at(path.string(), 0, "no such file");
     if (fs::is_directory(status)) return input_error_at(path.string(), 0, "is a folder, a file is needed");
     if (!fs::is_regular_file(status)) return input_error_at(path.string(), 0, "is not a regular file");
@@ -172,6 +177,7 @@ Status check_file_place(const fs::path& path) {
     if (path.empty()) return no_name();
     std::error_code code;
     const fs::file_type type = fs::status(path, code).type();
+    if (type == fs::file_type::none) return unknown_place(path, code);
     if (is_written_directly(path, type)) return {};
     if (Status current = check_current_folder(path); !current) return current;
     const Result<fs::path> target = replaceable_file(path);

@@ -25,6 +25,9 @@ TEST_CASE("a file is written whole and read back") {
     CHECK(read_file(scratch.path()).error().message.find("folder") != std::string::npos);
     CHECK(read_file(scratch / "none").error().message.find("no such file") != std::string::npos);
     CHECK(read_file("").error().message == "the name of a file is empty");
+    fs::create_symlink("loop", scratch / "loop");  // of what the system does not tell the kind
+    CHECK(holds(read_file(scratch / "loop").error().message, "loop: Too many levels of symbolic links"));
+    CHECK(holds(check_file_place(scratch / "loop").error().message, "loop: Too many levels of symbolic links"));
     CHECK_FALSE(write_file(scratch / "no" / "folder", bytes));
 }
 
