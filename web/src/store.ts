@@ -276,14 +276,14 @@ function forget() {
 }
 
 const pingEvery = 5000; // ms
-const mostUnanswered = 3; // unanswered pings before the connection counts as dead: a computer may be busy
+const mostSilentPings = 3; // unanswered pings before the connection counts as dead: a computer may be busy
 
 
 export function connect() {
   const opened = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/live`);
   opened.binaryType = 'arraybuffer';
   socket = opened;
-  let unanswered = 0;
+  let silentPings = 0;
   const lost = () => {
     clearInterval(ping);
     if (socket !== opened) return;
@@ -295,8 +295,8 @@ export function connect() {
   };
   // A crashed computer does not close its connections: only missing answers reveal it.
   const ping = window.setInterval(() => {
-    if (unanswered >= mostUnanswered) return lost();
-    unanswered += 1;
+    if (silentPings >= mostSilentPings) return lost();
+    silentPings += 1;
     send({ type: 'ping' });
   }, pingEvery);
   opened.onopen = () => {
@@ -306,7 +306,7 @@ export function connect() {
     if (fields.length) send({ type: 'fields', names: fields });
   };
   opened.onmessage = (event: MessageEvent) => {
-    unanswered = 0;
+    silentPings = 0;
     if (typeof event.data === 'string') receiveText(event.data);
     else receiveFrame(event.data as ArrayBuffer);
   };
