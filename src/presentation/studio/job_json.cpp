@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "base/core/json.hpp"
+#include "base/core/parse_all.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/print_session.hpp"
 #include "printing/job/manifest.hpp"
@@ -138,8 +139,7 @@ Response layer_image(OpenJob& open, const Request& request) {
 
 int whole_number(std::string_view text) {
     int value = -1;
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return code == std::errc() && end == text.data() + text.size() ? value : -1;
+    return parse_all(text, value) ? value : -1;
 }
 
 }  // namespace pliant::studio

@@ -8,7 +8,7 @@
 #include "base/core/toml_edit.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/json_toml.hpp"
-#include "presentation/studio/limits.hpp"
+#include "presentation/studio/request_reading.hpp"
 #include "presentation/studio/studio.hpp"
 #include "robot/file/material_library.hpp"
 
@@ -19,9 +19,7 @@ using Json = nlohmann::json;
 
 Response set_values(Studio& studio, const Request& request) {
     const Json json = parse_json(request.body);
-    if (!json.is_object() || !json.contains("changes") || !json["changes"].is_array() || json["changes"].empty() ||
-        json["changes"].size() > most_changes)
-        return error_response(422, "changes: a list of 1 to 256 is needed, each with key and value");
+    if (Status list = check_changes(json); !list) return error_response(list.error());
     std::string text = studio.document().text;
     for (const Json& change : json["changes"]) {
         if (!change.is_object() || !change.contains("key") || !change["key"].is_string() || !change.contains("value"))
@@ -45,8 +43,7 @@ Response add_entry(Studio& studio, const Request& request) {
 }
 
 Response open_new(Studio& studio, const Request& request) {
-    const auto name = request.query.find("name");
-    return done(studio.open_new(request.body, name == request.query.end() ? "" : name->second));
+    return done(studio.open_new(request.body, asked_for(request, "name")));
 }
 
 Response check(Studio& studio, const Request& request) {

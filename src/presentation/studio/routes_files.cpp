@@ -6,6 +6,7 @@
 #include "presentation/studio/examples.hpp"
 #include "presentation/studio/limits.hpp"
 #include "presentation/studio/received_file.hpp"
+#include "presentation/studio/request_reading.hpp"
 #include "presentation/studio/studio.hpp"
 #include "printing/job/job.hpp"
 
@@ -28,11 +29,6 @@ std::string content_json(const std::string& name, const GeometryContent& content
                        {"parts", content.parts},
                        {"notes", content.notes}};
     return dumped(json);
-}
-
-std::string asked_for(const Request& request, const char* key) {
-    const auto found = request.query.find(key);
-    return found == request.query.end() ? "" : found->second;
 }
 
 Response receive(Studio& studio, const Request& request) {

@@ -9,6 +9,7 @@
 #include "presentation/studio/job_json.hpp"
 #include "presentation/studio/job_part.hpp"
 #include "presentation/studio/printer_files.hpp"
+#include "presentation/studio/request_reading.hpp"
 #include "presentation/studio/slice_order.hpp"
 #include "presentation/studio/slice_robot.hpp"
 #include "presentation/studio/studio.hpp"
@@ -62,11 +63,11 @@ Response image(Studio& studio, const Request& request) {
 
 /// The job to compare with: ?name= in the folder, or by default the previous one.
 Result<std::shared_ptr<OpenJob>> other_job(Studio& studio, const Request& request) {
-    const auto name = request.query.find("name");
-    if (name == request.query.end() || name->second.empty()) return studio.make().other();
-    const Result<std::filesystem::path> path = studio.folder().resolve(name->second);
+    const std::string name = asked_for(request, "name");
+    if (name.empty()) return studio.make().other();
+    const Result<std::filesystem::path> path = studio.folder().resolve(name);
     if (!path) return tl::unexpected(path.error());
-    if (path->extension() != ".zip") return input_error("\"{}\": a job (.zip) is needed", name->second);
+    if (path->extension() != ".zip") return input_error("\"{}\": a job (.zip) is needed", name);
     return studio.make().other(*path);
 }
 
@@ -115,14 +116,10 @@ Response download(Studio& studio, const Request&) {
 }
 
 Response save(Studio& studio, const Request& request) {
-    const Json json = parse_json(request.body);
-    const std::string name =
-        json.is_object() && json.contains("name") && json["name"].is_string() ? json["name"].get<std::string>() : "";
-    const Result<std::filesystem::path> path = studio.folder().resolve(name);
+    const Result<std::filesystem::path> path = studio.folder().resolve(body_text(request, "name"));
     if (!path) return error_response(path.error());
     if (path->extension() != ".zip") return error_response(422, "a job file ends with .zip");
-    const Status saved = studio.make().save(*path);
-    return saved ? json_response("{}") : error_response(saved.error());
+    return done(studio.make().save(*path));
 }
 
 /// Plans the same job for every built-in machine.
@@ -177,8 +174,7 @@ Result<SliceOrder> read_order(Studio& studio, const Request& request) {
 Response slice(Studio& studio, const Request& request) {
     Result<SliceOrder> order = read_order(studio, request);
     if (!order) return error_response(order.error());
-    const Status status = studio.make().slice(std::move(*order));
-    return status ? json_response("{}") : error_response(status.error());
+    return done(studio.make().slice(std::move(*order)));
 }
 
 /// Estimate of time and resin before slicing, or why the order cannot be sliced: an answer, not a failed request.
@@ -194,9 +190,7 @@ Response estimate(Studio& studio, const Request& request) {
 
 /// Data of a printer for the slicing form.
 Response printer(Studio& studio, const Request& request) {
-    const auto name = request.query.find("name");
-    const Result<prepare::PrinterFile> file =
-        read_printer(studio.folder(), name == request.query.end() ? "tower" : name->second);
+    const Result<prepare::PrinterFile> file = read_printer(studio.folder(), asked_for(request, "name", "tower"));
     if (!file) return error_response(file.error());
     const machine::Printer& p = file->printer;
     Json resins = Json::array(), vats = Json::array();

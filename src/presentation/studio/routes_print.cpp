@@ -1,12 +1,14 @@
 // The print: the choice of machine, and requests to the host's control, docs/reference/host-api.md.
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "base/core/json.hpp"
+#include "base/core/parse_all.hpp"
 #include "presentation/print_report/print_report.hpp"
+#include "presentation/studio/job_json.hpp"
 #include "presentation/studio/journal_names.hpp"
 #include "presentation/studio/journal_view.hpp"
+#include "presentation/studio/request_reading.hpp"
 #include "presentation/studio/studio.hpp"
 
 namespace pliant::studio {
@@ -15,8 +17,7 @@ namespace {
 using Json = nlohmann::json;
 
 double speed_of(const Request& request) {
-    const Json json = parse_json(request.body);
-    return json.is_object() && json.contains("speed") && json["speed"].is_number() ? json["speed"].get<double>() : 1;
+    return number_at(parse_json(request.body), "speed", 1);
 }
 
 Response take_twin(Studio& studio, const Request& request) {
@@ -37,19 +38,10 @@ Response take_port(Studio& studio, const Request& request) {
     if (!studio.folder().holds(job->file))
         return error_response(409, "save the job into the folder first: the print journal is stored next to it");
     const Json json = parse_json(request.body);
-    const auto text = [&](const char* key) {
-        return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
-    };
-    operate::PortOptions port{text("device"), text("projector"), speed_of(request), {}, {}};
-    const bool display = !port.projector.empty() && port.projector.find_first_not_of("0123456789") == std::string::npos;
-    if (!display) {
-        const Result<std::filesystem::path> folder = studio.folder().resolve(port.projector);
-        if (!folder) return error_response(422, "projector: " + folder.error().message);
-        std::error_code error;
-        std::filesystem::create_directories(*folder, error);
-        port.projector = folder->string();
-    }
-    if (const std::string clock = text("clock"); !clock.empty()) {
+    const Result<std::string> projector = projector_place(studio.folder(), text_at(json, "projector"));
+    if (!projector) return error_response(projector.error());
+    operate::PortOptions port{text_at(json, "device"), *projector, speed_of(request), {}, {}};
+    if (const std::string clock = text_at(json, "clock"); !clock.empty()) {
         const Result<std::filesystem::path> file = studio.folder().resolve(clock);
         if (!file) return error_response(422, "clock: " + file.error().message);
         port.clock_file = *file;
@@ -105,29 +97,22 @@ Response set_door(Studio& studio, const Request& request) {
 }
 
 /// A number in the query, 0 if invalid.
-std::size_t number_of(const Request& request, const char* key) {
-    const auto found = request.query.find(key);
-    std::size_t number = 0;
-    if (found != request.query.end())
-        std::from_chars(found->second.data(), found->second.data() + found->second.size(), number);
-    return number;
+template <class Number>
+Number number_of(const Request& request, const char* key) {
+    Number number = 0;
+    return parse_all(asked_for(request, key), number) ? number : 0;
 }
 
 Response printed_part(Studio& studio, const Request& request) {
     std::string packet =
-        studio.print().part(static_cast<int>(number_of(request, "revision")), number_of(request, "from"));
+        studio.print().part(number_of<int>(request, "revision"), number_of<std::size_t>(request, "from"));
     if (packet.empty()) return error_response(404, "no machine is connected");
     return {200, "application/octet-stream", std::move(packet)};
 }
 
 Response printed_image(Studio& studio, const Request& request) {
-    const auto number = [&](const char* printed_part) {
-        const std::string& text = request.parts.at(printed_part);
-        int value = -1;
-        const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-        return code == std::errc() && end == text.data() + text.size() ? value : -1;
-    };
-    Result<std::string> png = studio.print().image(number("layer"), number("material"));
+    Result<std::string> png =
+        studio.print().image(whole_number(request.parts.at("layer")), whole_number(request.parts.at("material")));
     if (!png) return error_response(404, png.error().message);
     return {200, "image/png", std::move(*png)};
 }

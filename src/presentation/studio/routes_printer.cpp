@@ -7,8 +7,8 @@
 #include "presentation/studio/examples.hpp"
 #include "presentation/studio/job_json.hpp"
 #include "presentation/studio/json_toml.hpp"
-#include "presentation/studio/limits.hpp"
 #include "presentation/studio/printer_files.hpp"
+#include "presentation/studio/request_reading.hpp"
 #include "presentation/studio/studio.hpp"
 #include "printing/host/projector_patterns.hpp"
 #include "printing/operate/board.hpp"
@@ -18,17 +18,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string text_at(const Json& json, const char* key) {
-    return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
-}
-
-double number_at(const Json& json, const char* key, double otherwise) {
-    return json.is_object() && json.contains(key) && json[key].is_number() ? json[key].get<double>() : otherwise;
-}
+constexpr int fastest_baud_rate = 10'000'000, largest_square_px = 1'000'000;
 
 std::string asked_name(const Request& request) {
-    const auto name = request.query.find("name");
-    return name == request.query.end() ? "tower" : name->second;
+    return asked_for(request, "name", "tower");
 }
 
 Response setup(Studio& studio, const Request& request) {
@@ -51,9 +44,7 @@ Response make(Studio& studio, const Request& request) {
 
 Response change(Studio& studio, const Request& request) {
     const Json json = parse_json(request.body);
-    if (!json.is_object() || !json.contains("changes") || !json["changes"].is_array() || json["changes"].empty() ||
-        json["changes"].size() > most_changes)
-        return error_response(422, "changes: a list of 1 to 256 is needed, each with key and value");
+    if (Status list = check_changes(json); !list) return error_response(list.error());
     PrinterChanges changes;
     for (const Json& one : json["changes"]) {
         if (text_at(one, "key").empty() || !one.contains("value"))
@@ -71,8 +62,9 @@ Response probe(Studio& studio, const Request& request) {
     if (!studio.print().files().job.empty()) return error_response(409, "a machine is connected: disconnect it first");
     const std::string device = text_at(json, "device");
     if (Status known = check_device(device); !known) return error_response(known.error());
-    const Result<std::string> answers =
-        operate::ask_board(device, static_cast<int>(number_at(json, "baud_rate", file->printer.controller.baud_rate)));
+    const Result<int> baud_rate = whole_at(json, "baud_rate", file->printer.controller.baud_rate, fastest_baud_rate);
+    if (!baud_rate) return error_response(baud_rate.error());
+    const Result<std::string> answers = operate::ask_board(device, *baud_rate);
     if (!answers) return error_response(answers.error());
     return json_response(board_json(*answers, file->printer));
 }
@@ -81,23 +73,18 @@ Response show_pattern(Studio& studio, const Request& request) {
     const Json json = parse_json(request.body);
     const auto file = read_printer(studio.folder(), text_at(json, "name"));
     if (!file) return error_response(file.error());
-    ProjectorSession::Order order{text_at(json, "projector"), text_at(json, "pattern"),
-                                  static_cast<int>(number_at(json, "square", 1)), number_at(json, "seconds", 0)};
-    if (!host::display_number(order.where)) {
-        const Result<std::filesystem::path> folder = studio.folder().resolve(order.where);
-        if (!folder) return error_response(422, "projector: " + folder.error().message);
-        std::error_code error;
-        std::filesystem::create_directories(*folder, error);
-        order.where = folder->string();
-    }
+    const Result<int> square_px = whole_at(json, "square", 1, largest_square_px);
+    if (!square_px) return error_response(square_px.error());
+    const Result<std::string> where = projector_place(studio.folder(), text_at(json, "projector"));
+    if (!where) return error_response(where.error());
+    const ProjectorSession::Order order{*where, text_at(json, "pattern"), *square_px, number_at(json, "seconds", 0)};
     return done(studio.projector().show(order, file->printer.projector));
 }
 
 Response test_pattern(Studio& studio, const Request& request) {
     const auto file = read_printer(studio.folder(), asked_name(request));
     if (!file) return error_response(file.error());
-    const auto square = request.query.find("square");
-    const int square_px = square == request.query.end() ? 1 : whole_number(square->second);
+    const int square_px = whole_number(asked_for(request, "square", "1"));
     Result<std::string> png = pattern_picture(request.parts.at("pattern"), square_px, file->printer.projector);
     if (!png) return error_response(404, png.error().message);
     return {200, "image/png", std::move(*png)};

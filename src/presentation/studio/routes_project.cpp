@@ -2,22 +2,15 @@
 #include <nlohmann/json.hpp>
 
 #include "base/core/files.hpp"
-#include "base/core/json.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/examples.hpp"
+#include "presentation/studio/request_reading.hpp"
 #include "presentation/studio/studio.hpp"
 
 namespace pliant::studio {
 namespace {
 
 using Json = nlohmann::json;
-
-/// The text under `key` in the JSON body; "" if missing.
-std::string body_text(const Request& request, const char* key) {
-    const Json json = parse_json(request.body);
-    if (!json.is_object() || !json.contains(key) || !json[key].is_string()) return "";
-    return json[key].get<std::string>();
-}
 
 /// Adds the printer files of the folder: other TOML files have no projector.
 void add_own_printers(const ProjectFolder& folder, Json& printers) {

@@ -1,11 +1,12 @@
 // Goals and identification: options, the search, its result.
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
+#include "base/core/parse_all.hpp"
 #include "presentation/studio/dumped.hpp"
 #include "presentation/studio/goal_task.hpp"
+#include "presentation/studio/request_reading.hpp"
 #include "presentation/studio/studio.hpp"
 #include "simulation/identify/unknown.hpp"
 
@@ -13,10 +14,6 @@ namespace pliant::studio {
 namespace {
 
 using Json = nlohmann::json;
-
-Response nothing_built() {
-    return error_response(404, "no robot has been built yet");
-}
 
 Response goal_inputs(Studio& studio, const Request&) {
     const auto built = studio.simulation().built();
@@ -39,8 +36,7 @@ Response begin_goal(Studio& studio, const Request& request) {
     if (!order) return error_response(order.error());
     Result<sim::InverseTask> task = goal_task(*built, *order);
     if (!task) return error_response(task.error());
-    const Status begun = studio.search().find_inputs(std::move(built), std::move(*task));
-    return begun ? json_response("{}") : error_response(begun.error());
+    return done(studio.search().find_inputs(std::move(built), std::move(*task)));
 }
 
 Response begin_identify(Studio& studio, const Request& request) {
@@ -48,8 +44,7 @@ Response begin_identify(Studio& studio, const Request& request) {
     if (!built) return nothing_built();
     Result<IdentifyOrder> order = parse_identify_order(request.body);
     if (!order) return error_response(order.error());
-    const Status begun = studio.search().identify(std::move(built), std::move(*order));
-    return begun ? json_response("{}") : error_response(begun.error());
+    return done(studio.search().identify(std::move(built), std::move(*order)));
 }
 
 Response begin_workspace(Studio& studio, const Request& request) {
@@ -59,8 +54,7 @@ Response begin_workspace(Studio& studio, const Request& request) {
     if (!order) return error_response(order.error());
     Result<sim::InverseTask> task = workspace_task(*built, *order);
     if (!task) return error_response(task.error());
-    const Status begun = studio.search().find_workspace(std::move(built), std::move(*task), *order);
-    return begun ? json_response("{}") : error_response(begun.error());
+    return done(studio.search().find_workspace(std::move(built), std::move(*task), *order));
 }
 
 Response begin_sweep(Studio& studio, const Request& request) {
@@ -68,23 +62,19 @@ Response begin_sweep(Studio& studio, const Request& request) {
     if (!built) return nothing_built();
     Result<SweepOrder> order = parse_sweep_order(request.body);
     if (!order) return error_response(order.error());
-    const Status begun = studio.search().sweep(std::move(built), std::move(*order));
-    return begun ? json_response("{}") : error_response(begun.error());
+    return done(studio.search().sweep(std::move(built), std::move(*order)));
 }
 
 Response begin_motion(Studio& studio, const Request&) {
     auto built = studio.simulation().built();
     if (!built) return nothing_built();
-    const Status begun = studio.search().run_motion(std::move(built));
-    return begun ? json_response("{}") : error_response(begun.error());
+    return done(studio.search().run_motion(std::move(built)));
 }
 
 /// A whole number in a path; empty if invalid.
 std::optional<std::size_t> index_in(const std::string& text) {
     std::size_t index = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return index;
+    return parse_all(text, index) ? std::optional(index) : std::nullopt;
 }
 
 Response motion_frame(Studio& studio, const Request& request) {
@@ -92,9 +82,9 @@ Response motion_frame(Studio& studio, const Request& request) {
     const std::optional<std::size_t> step = index_in(request.parts.at("step"));
     if (!found || !found->motion || !step || *step >= found->motion->count())
         return error_response(404, "there is no such step");
-    const auto field = request.query.find("field");
+    const std::string field = asked_for(request, "field");
     std::set<std::string> fields;
-    if (field != request.query.end() && view::is_field(field->second)) fields.insert(field->second);
+    if (view::is_field(field)) fields.insert(field);
     return {200, "application/octet-stream", found->motion->frame(*step, fields)};
 }
 

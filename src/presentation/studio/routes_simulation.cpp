@@ -1,12 +1,10 @@
 // The interactive robot: its scene, and exports of its state.
-#include <unistd.h>
-
-#include <atomic>
-
 #include "base/core/files.hpp"
 #include "presentation/report/frames.hpp"
 #include "presentation/report/gltf.hpp"
 #include "presentation/report/tables.hpp"
+#include "presentation/studio/access.hpp"
+#include "presentation/studio/request_reading.hpp"
 #include "presentation/studio/studio.hpp"
 
 namespace pliant::studio {
@@ -14,7 +12,7 @@ namespace {
 
 Response scene(Studio& studio, const Request&) {
     const auto packet = studio.simulation().scene();
-    if (!packet) return error_response(404, "no robot has been built yet");
+    if (!packet) return nothing_built();
     return {200, "application/octet-stream", *packet};
 }
 
@@ -22,23 +20,19 @@ Response frame(Studio& studio, const Request&) {
     // A newly built robot has no state yet: that is not an error.
     if (const auto packet = studio.simulation().last_frame()) return {200, "application/octet-stream", *packet};
     if (studio.simulation().scene()) return {200, "application/octet-stream", ""};
-    return error_response(404, "no robot has been built yet");
-}
-
-Response nothing_yet() {
-    return error_response(404, "no robot has been built yet");
+    return nothing_built();
 }
 
 Response table(Studio& studio, std::string (*write)(const sim::Trajectory&), const char* name) {
     const sim::Trajectory history = studio.simulation().history();
-    if (history.steps.empty()) return nothing_yet();
+    if (history.steps.empty()) return nothing_built();
     return {200, "text/csv; charset=utf-8", write(history), name};
 }
 
 Response glb(Studio& studio, const Request&) {
     const auto built = studio.simulation().built();
     const sim::Trajectory history = studio.simulation().history();
-    if (!built || history.steps.empty()) return nothing_yet();
+    if (!built || history.steps.empty()) return nothing_built();
     const auto& regions = built->scene.region_material();
     const report::Simulation simulation = report::simulation_of(built->robot, built->model, history);
     return {200, "model/gltf-binary",
@@ -49,14 +43,12 @@ Response glb(Studio& studio, const Request&) {
 Response vtu(Studio& studio, const Request&) {
     const auto built = studio.simulation().built();
     sim::Trajectory history = studio.simulation().history();
-    if (!built || history.steps.empty()) return nothing_yet();
+    if (!built || history.steps.empty()) return nothing_built();
     history.steps.erase(history.steps.begin(), history.steps.end() - 1);
-    static std::atomic<int> counter = 0;
-    const auto folder = std::filesystem::temp_directory_path() /
-                        ("pliant_studio_" + std::to_string(::getpid()) + "_" + std::to_string(counter++));
+    const auto folder = std::filesystem::temp_directory_path() / ("pliant_studio_" + random_key());
     std::error_code error;
-    std::filesystem::create_directory(folder, error);
-    std::filesystem::create_directory(folder / "frames", error);
+    std::filesystem::create_directories(folder / "frames", error);
+    if (error) return error_response(failure("{}: {}", folder.string(), error.message()).value());
     const report::Simulation simulation = report::simulation_of(built->robot, built->model, history);
     Progress silent;
     const Status written = report::write_frames(folder, simulation, silent);

@@ -760,3 +760,17 @@ TEST_CASE("a body that is no JSON object is refused as such, by every request th
     }
     CHECK(ask(*studio, "POST", "/api/open", "{}").body == R"({"error":"name: the name of a file is needed"})");
 }
+
+TEST_CASE("a number of a page that is not whole or too large is refused, and does not reach the machine") {
+    const auto studio = opened();
+    const auto shown = [&](const std::string& square) {
+        return ask(*studio, "POST", "/api/printer/pattern",
+                   R"({"name": "tower", "projector": "0", "pattern": "checkerboard", "seconds": 1, "square": )" +
+                       square + "}")
+            .body;
+    };
+    for (const char* square : {"1e300", "-1e300", "0", "1.5"}) {
+        INFO(square);
+        CHECK(shown(square) == R"({"error":"square: a whole number from 1 to 1000000 is needed"})");
+    }
+}
