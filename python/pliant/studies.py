@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from . import _check, _toml
 from ._values import Value
-from .errors import Cancelled, Failure, InputError
+from .errors import Cancelled, Failure, InputError, arguments_for_options
 
 
 class SobolIndex(NamedTuple):
@@ -194,11 +194,10 @@ def _complain(status: int, told: dict[str, Any], errors: str) -> None:
     lines = errors.strip().splitlines()
     ended = f"pliant study ended with exit status {status}"
     message = str(told["error"]) if "error" in told else lines[-1] if lines else ended
-    for words, arguments in _ARGUMENTS.items():
-        message = message.replace(words, arguments)
-    if status == 2:
-        raise InputError(message)
-    raise (Cancelled if message.startswith("cancelled") else Failure)(message)
+    with arguments_for_options(_ARGUMENTS):
+        if status == 2:
+            raise InputError(message)
+        raise (Cancelled if message.startswith("cancelled") else Failure)(message)
 
 
 def _run(words: list[str]) -> tuple[int, str, str]:
