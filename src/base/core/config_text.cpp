@@ -10,26 +10,6 @@
 namespace pliant::config {
 namespace {
 
-std::string toml_string(std::string_view text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\')
-            out += {'\\', c};
-        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-        else
-            out += c;
-    }
-    return out + '"';
-}
-
-std::string bare_or_quoted(const std::string& key) {
-    const bool bare = !key.empty() && std::ranges::all_of(key, [](char c) {
-        return is_letter(c) || is_digit(c) || c == '_' || c == '-';
-    });
-    return bare ? key : toml_string(key);
-}
-
 /// With a point or an exponent, so that it is not read back as an integer.
 std::string real_text(double value) {
     if (std::isnan(value)) return "nan";
@@ -54,7 +34,7 @@ struct InlineText {
     std::string operator()(const std::string& value) const { return toml_string(value); }
     std::string operator()(const Array& list) const { return fmt::format("[{}]", joined(list, inline_text)); }
     std::string operator()(const Table& table) const {
-        const auto entry = [](const Entry& e) { return bare_or_quoted(e.first) + " = " + inline_text(e.second); };
+        const auto entry = [](const Entry& e) { return key_text(e.first) + " = " + inline_text(e.second); };
         return table.empty() ? "{}" : fmt::format("{{ {} }}", joined(table, entry));
     }
 };
@@ -77,26 +57,44 @@ bool is_table_of_tables(const Table& table) {
 
 std::string lines_of(const Table& table) {
     std::string text;
-    for (const auto& [key, value] : table) text += fmt::format("{} = {}\n", bare_or_quoted(key), inline_text(value));
+    for (const auto& [key, value] : table) text += fmt::format("{} = {}\n", key_text(key), inline_text(value));
     return text;
 }
 
 }  // namespace
+
+std::string toml_string(std::string_view text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            out += {'\\', c};
+        else if (is_control(c))
+            out += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
+        else
+            out += c;
+    }
+    return out + '"';
+}
+
+std::string key_text(std::string_view key) {
+    const auto bare = [](char c) { return is_letter(c) || is_digit(c) || c == '-' || c == '_'; };
+    return !key.empty() && std::ranges::all_of(key, bare) ? std::string(key) : toml_string(key);
+}
 
 std::string toml_text(const Value& root) {
     std::string plain, tables;
     for (const auto& [key, value] : std::get<Table>(root.data)) {
         if (const auto* table = std::get_if<Table>(&value.data); table != nullptr && is_table_of_tables(*table)) {
             for (const auto& [name, entry] : *table)
-                tables += fmt::format("\n[{}.{}]\n{}", bare_or_quoted(key), bare_or_quoted(name),
-                                      lines_of(std::get<Table>(entry.data)));
+                tables +=
+                    fmt::format("\n[{}.{}]\n{}", key_text(key), key_text(name), lines_of(std::get<Table>(entry.data)));
         } else if (table != nullptr) {
-            tables += fmt::format("\n[{}]\n{}", bare_or_quoted(key), lines_of(*table));
+            tables += fmt::format("\n[{}]\n{}", key_text(key), lines_of(*table));
         } else if (is_list_of_tables(value)) {
             for (const Value& entry : std::get<Array>(value.data))
-                tables += fmt::format("\n[[{}]]\n{}", bare_or_quoted(key), lines_of(std::get<Table>(entry.data)));
+                tables += fmt::format("\n[[{}]]\n{}", key_text(key), lines_of(std::get<Table>(entry.data)));
         } else {
-            plain += fmt::format("{} = {}\n", bare_or_quoted(key), inline_text(value));
+            plain += fmt::format("{} = {}\n", key_text(key), inline_text(value));
         }
     }
     return plain + tables;

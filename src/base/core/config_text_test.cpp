@@ -60,3 +60,11 @@ TEST_CASE("a document written as text is read back the same") {
     CHECK(same(document->root, again->root));
     CHECK(toml_text(again->root) == text);
 }
+
+TEST_CASE("a key is bare where it can be, and keeps its control characters where it cannot") {
+    CHECK(key_text("soft-1_b") == "soft-1_b");
+    CHECK(key_text("") == "\"\"");
+    CHECK(key_text("soft \"1\"\\") == "\"soft \\\"1\\\"\\\\\"");
+    CHECK(key_text("a\nb\x7f") == "\"a\\u000ab\\u007f\"");
+    CHECK(key_text("größe") == "\"größe\"");
+}

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/core/config_text.hpp"
 #include "base/core/letters.hpp"
 #include "base/core/toml_nesting.hpp"
 
@@ -143,17 +144,6 @@ Result<std::string> checked(std::string text) {
 }
 
 }  // namespace
-
-std::string key_text(std::string_view key) {
-    const auto bare = [](char c) { return is_letter(c) || is_digit(c) || c == '-' || c == '_'; };
-    if (!key.empty() && std::all_of(key.begin(), key.end(), bare)) return std::string(key);
-    std::string quoted = "\"";
-    for (const char c : key) {
-        if (c == '"' || c == '\\') quoted += '\\';
-        quoted += c;
-    }
-    return quoted + '"';
-}
 
 Result<std::string> with_value(std::string_view text, std::string_view path, std::string_view value) {
     if (Status status = is_value(value); !status) return tl::unexpected(status.error());

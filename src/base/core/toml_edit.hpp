@@ -22,7 +22,4 @@ using EntryText = std::vector<std::pair<std::string, std::string>>;
 /// array. Errors as above; also if `list` is not a list.
 [[nodiscard]] Result<std::string> with_entry(std::string_view text, std::string_view list, const EntryText& entry);
 
-/// A key in TOML syntax: bare, or quoted if necessary.
-[[nodiscard]] std::string key_text(std::string_view key);
-
 }  // namespace pliant::config

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/core/toml_edit.hpp"
+#include "base/core/config_text.hpp"
 
 namespace pliant::studio {
 

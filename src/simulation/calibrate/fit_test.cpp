@@ -155,5 +155,6 @@ TEST_CASE("the fitted law is written as a material for the robot file") {
     const Fit neo = fit_of(made_test([](double l) { return 0.4e6 * (l - 1 / (l * l)); }, 0), FitLaw::neo_hookean);
     CHECK(material_toml(neo, "cast").find("youngs_modulus = \"1.192 MPa\"") != std::string::npos);  // 2 mu (1 + nu)
     CHECK(material_toml(y, "Skin 20 \"M\"").find("[material.\"Skin 20 \\\"M\\\"\"]") == 0);
+    CHECK(material_toml(y, "a\nb").find("[material.\"a\\u000ab\"]") == 0);
     CHECK(fit_json(y, made_test(yeoh, 0)).find("\"confidence_95\"") != std::string::npos);
 }

@@ -1,10 +1,9 @@
 // Output of a fit: text, robot file and JSON.
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/core/config_text.hpp"
 #include "base/core/json.hpp"
 #include "simulation/calibrate/fit.hpp"
 
@@ -16,20 +15,6 @@ std::string pressure(double value_Pa) {
     if (size >= 1e5) return fmt::format("{:.5g} MPa", value_Pa / 1e6);
     if (size >= 100) return fmt::format("{:.5g} kPa", value_Pa / 1e3);
     return fmt::format("{:.5g} Pa", value_Pa);
-}
-
-/// A TOML key: quoted if it has characters other than letters, digits, - and _.
-std::string toml_key(const std::string& name) {
-    const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-        return std::isalnum(c) != 0 || c == '-' || c == '_';
-    });
-    if (bare) return name;
-    std::string quoted = "\"";
-    for (const char c : name) {
-        if (c == '"' || c == '\\') quoted += '\\';
-        if (static_cast<unsigned char>(c) >= ' ') quoted += c;
-    }
-    return quoted + "\"";
 }
 
 std::string join(const std::vector<std::string>& list) {
@@ -50,7 +35,7 @@ std::optional<double> modulus_of_material(const Fit& fit) {
 
 std::string material_toml(const Fit& fit, const std::string& name) {
     const double nu = material::poisson_ratio(material::moduli(fit.law));
-    std::string text = fmt::format("[material.{}]\nlaw = \"{}\"\n", toml_key(name), material::name(fit.law));
+    std::string text = fmt::format("[material.{}]\nlaw = \"{}\"\n", config::key_text(name), material::name(fit.law));
     std::vector<std::string> mu;
     std::vector<std::string> alpha;
     for (const Constant& c : fit.constants) {
