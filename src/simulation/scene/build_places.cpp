@@ -64,48 +64,18 @@ std::vector<int> select_on_surface(ModelDraft& draft, const SurfaceSelector& sel
     return nodes;
 }
 
-/// The nodes inside a selector; `kind`, `name` and `line` are for messages.
-std::vector<int> select(ModelDraft& draft, const Selector& selector, std::string_view kind, const std::string& name,
-                        int line) {
-    const auto& points = draft.description.mesh.points;
-    std::vector<int> nodes;
-    const auto collect = [&](const auto& inside) {
-        for (std::size_t n = 0; n < points.size(); ++n) {
-            if (inside(points[n])) nodes.push_back(static_cast<int>(n));
-        }
-    };
-    if (const auto* box = std::get_if<BoxSelector>(&selector)) {
-        collect([&, b = draft.box_of(*box)](const Vec3& p) { return b.contains(p, draft.box_margin); });
-    } else if (const auto* plane = std::get_if<PlaneSelector>(&selector)) {
-        const Vec3 normal = plane->normal / norm(plane->normal);
-        collect([&](const Vec3& p) {
-            return std::fabs(dot(normal, p - draft.robot.unit_m * plane->point)) < draft.tolerance;
-        });
-    } else if (const auto* sphere = std::get_if<SphereSelector>(&selector)) {
-        collect([&](const Vec3& p) {
-            return norm(p - draft.robot.unit_m * sphere->center) <=
-                   draft.robot.unit_m * sphere->radius + draft.box_margin;
-        });
-    } else if (const auto* surface = std::get_if<SurfaceSelector>(&selector)) {
-        nodes = select_on_surface(draft, *surface, kind, name, line);
-    } else {
-        nodes = std::get<NodeSelector>(selector).nodes;
-        for (const int node : nodes) {
-            if (node < static_cast<int>(points.size())) continue;
-            draft.problem(line, kind, name,
-                          fmt::format("node {} does not exist, the mesh has {}", node, points.size()));
-            return {};
-        }
-    }
+/// caught_nodes(), with a problem if there are none.
+std::vector<int> some_caught_nodes(ModelDraft& draft, const Selector& selector, std::string_view kind,
+                                   const std::string& name, int line) {
+    const std::size_t before = draft.problems.size();
+    std::vector<int> nodes = caught_nodes(draft, selector, kind, name, line);
+    if (nodes.empty() && draft.problems.size() == before)
+        draft.problem(line, kind, name, "catches no node of the mesh; " + draft.show_bounds());
     return nodes;
 }
 
 void add_support(ModelDraft& draft, const FixedSpec& fixed) {
-    const std::size_t before = draft.problems.size();
-    std::vector<int> nodes = select(draft, fixed.selector, "fixed", fixed.name, fixed.line);
-    if (nodes.empty() && draft.problems.size() == before) {
-        draft.problem(fixed.line, "fixed", fixed.name, "catches no node of the mesh; " + draft.show_bounds());
-    }
+    std::vector<int> nodes = some_caught_nodes(draft, fixed.selector, "fixed", fixed.name, fixed.line);
     constexpr double radians = std::numbers::pi / 180;
     const sim::Turn turn{radians * fixed.rotate_deg, fixed.rotation_axis, draft.robot.unit_m * fixed.rotation_center};
     draft.description.supports.push_back(
@@ -113,17 +83,14 @@ void add_support(ModelDraft& draft, const FixedSpec& fixed) {
 }
 
 void add_plate(ModelDraft& draft, const PlateSpec& plate) {
-    const std::size_t before = draft.problems.size();
-    std::vector<int> nodes = select(draft, plate.selector, "plate", plate.name, plate.line);
-    if (nodes.empty() && draft.problems.size() == before)
-        draft.problem(plate.line, "plate", plate.name, "catches no node of the mesh; " + draft.show_bounds());
+    std::vector<int> nodes = some_caught_nodes(draft, plate.selector, "plate", plate.name, plate.line);
     if (!nodes.empty()) draft.description.plates.push_back({plate.name, std::move(nodes)});
 }
 
 void add_load_on_faces(ModelDraft& draft, const LoadSpec& load, const Selector& selector) {
     const std::size_t before = draft.problems.size();
     std::vector<bool> caught(draft.description.mesh.points.size(), false);
-    for (const int node : select(draft, selector, "load", load.name, load.line))
+    for (const int node : caught_nodes(draft, selector, "load", load.name, load.line))
         caught[static_cast<std::size_t>(node)] = true;
     std::vector<mesh::Face> faces;
     for (const mesh::Face& face : mesh::boundary_faces(draft.bodies)) {
@@ -157,10 +124,7 @@ void add_evenly(ModelDraft& draft, const LoadSpec& load, const std::vector<int>&
 
 /// Only nodes that belong to tets; others belong to nothing.
 void add_load_on_nodes(ModelDraft& draft, const LoadSpec& load, const Selector& selector) {
-    const std::size_t before = draft.problems.size();
-    const std::vector<int> nodes = select(draft, selector, "load", load.name, load.line);
-    if (nodes.empty() && draft.problems.size() == before)
-        draft.problem(load.line, "load", load.name, "catches no node of the mesh; " + draft.show_bounds());
+    const std::vector<int> nodes = some_caught_nodes(draft, selector, "load", load.name, load.line);
     if (!nodes.empty()) add_evenly(draft, load, nodes);
 }
 
@@ -340,7 +304,37 @@ bool are_held(const sim::Description& description, std::span<const sim::Attachme
 
 std::vector<int> caught_nodes(ModelDraft& draft, const Selector& selector, std::string_view kind,
                               const std::string& name, int line) {
-    return select(draft, selector, kind, name, line);
+    const auto& points = draft.description.mesh.points;
+    std::vector<int> nodes;
+    const auto collect = [&](const auto& inside) {
+        for (std::size_t n = 0; n < points.size(); ++n) {
+            if (inside(points[n])) nodes.push_back(static_cast<int>(n));
+        }
+    };
+    if (const auto* box = std::get_if<BoxSelector>(&selector)) {
+        collect([&, b = draft.box_of(*box)](const Vec3& p) { return b.contains(p, draft.box_margin); });
+    } else if (const auto* plane = std::get_if<PlaneSelector>(&selector)) {
+        const Vec3 normal = plane->normal / norm(plane->normal);
+        collect([&](const Vec3& p) {
+            return std::fabs(dot(normal, p - draft.robot.unit_m * plane->point)) < draft.tolerance;
+        });
+    } else if (const auto* sphere = std::get_if<SphereSelector>(&selector)) {
+        collect([&](const Vec3& p) {
+            return norm(p - draft.robot.unit_m * sphere->center) <=
+                   draft.robot.unit_m * sphere->radius + draft.box_margin;
+        });
+    } else if (const auto* surface = std::get_if<SurfaceSelector>(&selector)) {
+        nodes = select_on_surface(draft, *surface, kind, name, line);
+    } else {
+        nodes = std::get<NodeSelector>(selector).nodes;
+        for (const int node : nodes) {
+            if (node < static_cast<int>(points.size())) continue;
+            draft.problem(line, kind, name,
+                          fmt::format("node {} does not exist, the mesh has {}", node, points.size()));
+            return {};
+        }
+    }
+    return nodes;
 }
 
 sim::Wall pressed_wall(const ModelDraft& draft, std::vector<mesh::Face> faces) {

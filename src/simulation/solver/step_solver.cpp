@@ -240,8 +240,7 @@ private:
     /// `cut_short`: because it leads through something. Pairs further away are taken in until none of them is met
     /// unseen.
     bool step_through_contact(const Terms& terms, bool cut_short) {
-        const bool by_means = controls_.inertia && !controls_.inertia->means().empty();
-        if (system_.model().contact(controls_.met) == nullptr || by_gaps_ || by_means) return false;
+        if (system_.model().contact(controls_.met) == nullptr || by_gaps_ || controls_.of_means()) return false;
         const bool rubs = controls_.friction && !controls_.friction->pairs().empty();
         if (!cut_short && !rubs && !system_.touches(state_, controls_)) return false;
         for (const double beyond : {0.5, 1.0, 2.0, 4.0}) {
