@@ -44,10 +44,6 @@ struct CheckOptions {
     Output output;
 };
 
-std::string bodies(std::size_t count) {
-    return count == 1 ? "1 body" : fmt::format("{} bodies", count);
-}
-
 /// A robot is meshed for the check: overlaps, cables outside, empty selectors only show then.
 Result<std::string> check_robot(const std::string& file, const std::vector<std::string>& assignments,
                                 Progress& progress) {
@@ -56,9 +52,10 @@ Result<std::string> check_robot(const std::string& file, const std::vector<std::
     const Result<robot::Scene> scene = robot::build_scene(std::move(*read), progress);
     if (!scene) return tl::unexpected(scene.error());
     const robot::Robot& robot = scene->robot;
-    std::string text = fmt::format("robot \"{}\": {}, {}, {}, {}", robot.name, bodies(robot.bodies.size()),
-                                   counted(robot.materials.size(), "material"), counted(robot.cables.size(), "cable"),
-                                   counted(scene->model.mesh().tet_count(), "tet"));
+    std::string text =
+        fmt::format("robot \"{}\": {}, {}, {}, {}", robot.name, counted(robot.bodies.size(), "body", "bodies"),
+                    counted(robot.materials.size(), "material"), counted(robot.cables.size(), "cable"),
+                    counted(scene->model.mesh().tet_count(), "tet"));
     for (const std::string& note : robot.notes) text += "\n  note: " + note;
     for (const std::string& note : robot::unused_materials(robot)) text += "\n  note: " + note;
     for (const std::string& note : scene->mesh_notes) text += "\n  note: " + note;

@@ -5,7 +5,6 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -19,6 +18,7 @@
 #include "base/core/counted.hpp"
 #include "base/core/files.hpp"
 #include "base/core/own_core.hpp"
+#include "base/core/parse_all.hpp"
 #include "command.hpp"
 #include "interrupt.hpp"
 #include "loop/study/folder.hpp"
@@ -66,9 +66,7 @@ std::optional<std::size_t> number_of(std::initializer_list<const char*> names) {
         const char* const text = std::getenv(name);
         if (text == nullptr) continue;
         std::size_t number = 0;
-        const std::string_view all(text);
-        const auto [end, error] = std::from_chars(all.data(), all.data() + all.size(), number);
-        if (error == std::errc{} && end == all.data() + all.size()) return number;
+        if (parse_all(text, number)) return number;
     }
     return std::nullopt;
 }

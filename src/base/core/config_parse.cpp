@@ -3,11 +3,11 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/core/config.hpp"
 #include "base/core/files.hpp"
+#include "base/core/parse_all.hpp"
 #include "base/core/text.hpp"
 #include "base/core/toml_nesting.hpp"
 
@@ -80,9 +80,7 @@ Value* find_child(Value& parent, std::string_view part) {
         }
     }
     std::size_t index = 0;
-    const auto [end, code] = std::from_chars(part.data(), part.data() + part.size(), index);
-    const bool whole = code == std::errc() && end == part.data() + part.size();
-    return whole && index < list->size() ? &(*list)[index] : nullptr;
+    return parse_all(part, index) && index < list->size() ? &(*list)[index] : nullptr;
 }
 
 std::vector<std::string> child_names(const Value& parent) {

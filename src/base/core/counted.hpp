@@ -7,9 +7,13 @@
 
 namespace pliant {
 
-/// A count and its noun; the plural adds an s.
+/// A count and its noun, for one and for several.
+[[nodiscard]] inline std::string counted(std::size_t count, std::string_view one, std::string_view several) {
+    return std::to_string(count) + " " + std::string(count == 1 ? one : several);
+}
+/// The plural adds an s.
 [[nodiscard]] inline std::string counted(std::size_t count, std::string_view word) {
-    return std::to_string(count) + " " + std::string(word) + (count == 1 ? "" : "s");
+    return counted(count, word, std::string(word) + "s");
 }
 
 }  // namespace pliant

@@ -32,7 +32,7 @@ namespace pliant {
     return out;
 }
 
-/// Without leading and trailing blanks, tabs and carriage returns.
+/// Without leading and trailing blanks, tabs and line ends.
 [[nodiscard]] constexpr std::string_view trimmed(std::string_view text) {
     constexpr std::string_view blanks = " \t\r\n";
     const std::size_t begin = text.find_first_not_of(blanks);

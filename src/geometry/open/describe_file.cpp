@@ -97,8 +97,7 @@ std::string body_text(const threemf::Body& body) {
 }
 
 std::string plate_text(const threemf::ThreeMf& plate) {
-    std::string text =
-        fmt::format("3MF file: {} {}", plate.bodies.size(), plate.bodies.size() == 1 ? "body" : "bodies");
+    std::string text = "3MF file: " + counted(plate.bodies.size(), "body", "bodies");
     for (const threemf::Body& body : plate.bodies) text += body_text(body);
     for (const std::string& warning : plate.warnings) text += "\n  warning: " + warning;
     return text;

@@ -28,8 +28,8 @@ Result<GeometryContent> content_of(const mesh::SurfaceFile& surface) {
 
 Result<GeometryContent> content_of(const threemf::ThreeMf& plate) {
     if (plate.bodies.empty()) return input_error("the 3MF file has no body");
-    GeometryContent content{"3mf", 1, {}, fmt::format("3MF file, {} bodies", plate.bodies.size()), {}, plate.warnings};
-    if (plate.bodies.size() == 1) content.text = "3MF file, 1 body";
+    GeometryContent content{"3mf",         1, {}, "3MF file, " + counted(plate.bodies.size(), "body", "bodies"), {},
+                            plate.warnings};
     for (const threemf::Body& body : plate.bodies) {
         if (!body.slices.empty())
             return input_error("{}: is a stack of slices, which can be printed but not simulated; surfaces are needed",

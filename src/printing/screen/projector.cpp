@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -17,6 +16,7 @@
 #include <utility>
 
 #include "base/core/file_handle.hpp"
+#include "base/core/parse_all.hpp"
 #include "base/core/process.hpp"
 
 namespace pliant::host {
@@ -215,9 +215,7 @@ Result<std::vector<PanelInfo>> list_displays(const std::filesystem::path& progra
 
 std::optional<int> display_number(const std::string& where) {
     int number = -1;
-    const auto [end, error] = std::from_chars(where.data(), where.data() + where.size(), number);
-    if (error != std::errc() || end != where.data() + where.size() || number < 0) return std::nullopt;
-    return number;
+    return parse_all(where, number) && number >= 0 ? std::optional(number) : std::nullopt;
 }
 
 Result<bool> release_display(int display) {

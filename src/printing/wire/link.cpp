@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <utility>
 
+#include "base/core/letters.hpp"
+#include "base/core/parse_all.hpp"
 #include "printing/wire/line_frame.hpp"
 
 namespace pliant::host {
@@ -27,19 +28,11 @@ bool contains(std::string_view text, std::string_view part) {
     return text.find(part) != std::string_view::npos;
 }
 
-std::string_view trim(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\r')) text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\r')) text.remove_suffix(1);
-    return text;
-}
-
 /// A valid line number that is the whole text. Bytes get lost in this direction, too: a truncated number does not
 /// count.
 std::optional<long> whole_number(std::string_view text) {
-    text = trim(text);
     long value = 0;
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool whole = code == std::errc() && end == text.data() + text.size();
+    const bool whole = parse_all(trimmed(text), value);
     return whole && value >= 0 && value <= most_number ? std::optional(value) : std::nullopt;
 }
 
@@ -47,7 +40,7 @@ bool is_restart(std::string_view line) {
     constexpr std::array<std::string_view, 5> causes = {"PowerUp", "External Reset", "Brown out Reset",
                                                         "Watchdog Reset", "Software Reset"};
     if (line == "start") return true;
-    if (begins(line, "echo:")) line = trim(line.substr(5));
+    if (begins(line, "echo:")) line = trimmed(line.substr(5));
     return std::find(causes.begin(), causes.end(), line) != causes.end();
 }
 
@@ -255,7 +248,7 @@ Result<bool> Link::hear_once(double timeout_s) {
     for (std::size_t end = heard_.find('\n'); end != std::string::npos; end = heard_.find('\n')) {
         const std::string line = heard_.substr(0, end);
         heard_.erase(0, end + 1);
-        if (Status status = handle(trim(line)); !status) return tl::unexpected(status.error());
+        if (Status status = handle(trimmed(line)); !status) return tl::unexpected(status.error());
     }
     if (heard_.size() > longest_answer) heard_.clear();
     return true;
@@ -305,7 +298,7 @@ void Link::handle_firmware(std::string_view line) {
     if (begins(line, "FIRMWARE_NAME:")) {
         std::string_view name = line.substr(14);
         for (const char* key : {" SOURCE_CODE_URL:", " PROTOCOL_VERSION:"}) name = name.substr(0, name.find(key));
-        firmware_.name = trim(name);
+        firmware_.name = trimmed(name);
     }
     if (!begins(line, "Cap:")) return;
     const std::string_view rest = line.substr(4);
@@ -318,7 +311,7 @@ void Link::handle_firmware(std::string_view line) {
 /// which will be requested again.
 Status Link::handle_unknown(std::string_view line) {
     if (!connected_ || tolerant_) return {};
-    const std::string_view text = trim(line.substr(21));
+    const std::string_view text = trimmed(line.substr(21));
     const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
     const std::string_view command = quoted ? text.substr(1, text.size() - 2) : text;
     if (!has_been_sent(command)) return {};
@@ -343,7 +336,7 @@ bool Link::has_been_sent(std::string_view command) const {
 Status Link::handle_error(std::string_view line) {
     const bool damaged = contains(line, "Line Number is not Last") || contains(line, "checksum mismatch") ||
                          contains(line, "No Checksum with line number");
-    if (!damaged) return handle_halt(trim(line.substr(6)));
+    if (!damaged) return handle_halt(trimmed(line.substr(6)));
     // The Resend that should follow may be lost, but the error contains the same number.
     const std::size_t last = line.find("Last Line:");
     if (last != std::string_view::npos) {

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
 
 #include "base/core/letters.hpp"
+#include "base/core/parse_all.hpp"
 #include "base/core/text.hpp"
 #include "base/core/units.hpp"
 #include "robot/description/cable_length.hpp"
@@ -168,8 +168,7 @@ Result<double> read_bound(const Unknown& unknown, std::string_view text) {
         return value;
     }
     double value = 0;
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code == std::errc() && end == text.data() + text.size() && std::isfinite(value)) return value;
+    if (parse_all(text, value) && std::isfinite(value)) return value;
     return input_error("{}: \"{}\" is not a number", unknown.key, text.substr(0, 40));
 }
 
