@@ -5,6 +5,7 @@ import { useEffect, useRef } from 'preact/hooks';
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { counted } from '../counted';
+import { fitTo } from '../fit_to';
 import { orbitHelp, orbitKeys, turnAround } from '../orbit_keys';
 import { mayDrive, say, scene } from '../store';
 import { theme } from '../theme';
@@ -87,12 +88,7 @@ class BedView {
     ];
     for (const [name, listener, early] of this.listeners) canvas.addEventListener(name, listener, early);
     this.resize = new ResizeObserver(() => {
-      const box = canvas.parentElement!.getBoundingClientRect();
-      if (!box.width) return;
-      this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-      this.renderer.setSize(box.width, box.height, false);
-      this.camera.aspect = box.width / box.height;
-      this.camera.updateProjectionMatrix();
+      if (!fitTo(canvas, this.renderer, this.camera)) return;
       if (!this.sized) this.home();
       this.sized = true;
       this.draw();

@@ -3,6 +3,7 @@
 import { useEffect, useRef, useState } from 'preact/hooks';
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { fitTo } from '../fit_to';
 import { Icon } from '../icons';
 import { placeLabels, type Label } from '../labels';
 import { orbitHelp, orbitKeys, turnAround } from '../orbit_keys';
@@ -147,12 +148,7 @@ class StackView {
   }
 
   private fit() {
-    const box = this.canvas.parentElement!.getBoundingClientRect();
-    if (!box.width) return;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    this.renderer.setSize(box.width, box.height, false);
-    this.camera.aspect = box.width / box.height;
-    this.camera.updateProjectionMatrix();
+    if (!fitTo(this.canvas, this.renderer, this.camera)) return;
     if (!this.sized) this.home();
     this.sized = true;
     this.draw();

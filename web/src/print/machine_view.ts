@@ -1,6 +1,7 @@
 // The machine in 3D, made of simple boxes: tower with its vats, carriage with the cleaning vat, platform with the part.
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { fitTo } from '../fit_to';
 import { placeLabels } from '../labels';
 import { fitPoints } from '../simulate/fit';
 import { orbitKeys, turnAround } from '../orbit_keys';
@@ -88,12 +89,7 @@ export class MachineView {
     this.world.add(this.floor);
     this.nameParts();
     this.resize = new ResizeObserver(() => {
-      const box = canvas.parentElement!.getBoundingClientRect();
-      if (!box.width) return;
-      this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-      this.renderer.setSize(box.width, box.height, false);
-      this.camera.aspect = box.width / box.height;
-      this.camera.updateProjectionMatrix();
+      if (!fitTo(canvas, this.renderer, this.camera)) return;
       this.fitted.makeEmpty();
       this.fit();
       this.draw();
