@@ -373,10 +373,27 @@ std::vector<std::pair<std::string, Reader>> Reader::named_tables(std::string_vie
     return readers;
 }
 
+namespace {
+
+/// The only one of these names that begins with what was written, as "fixed" does with "fix"; "" if there is none.
+std::string completed_name(std::string_view written, const std::vector<std::string>& names) {
+    constexpr std::size_t least = 3;
+    std::string found;
+    for (const std::string& name : names) {
+        if (written.size() < least || !name.starts_with(written)) continue;
+        if (!found.empty() && found != name) return "";
+        found = name;
+    }
+    return found;
+}
+
+}  // namespace
+
 void Reader::finish() {
     for (const auto& [name, value] : std::get<Table>(table_->data)) {
         if (std::find(marks_->asked.begin(), marks_->asked.end(), name) != marks_->asked.end()) continue;
-        const std::string near = nearest_name(name, marks_->asked);
+        std::string near = nearest_name(name, marks_->asked);
+        if (near.empty()) near = completed_name(name, marks_->asked);
         add(name, near.empty() ? "unknown key; known here: " + join_names(marks_->asked)
                                : fmt::format("unknown key; did you mean \"{}\"?", near));
     }

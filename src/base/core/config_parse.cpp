@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "base/core/config.hpp"
 #include "base/core/files.hpp"
@@ -109,21 +111,27 @@ class Evaluator {
 public:
     explicit Evaluator(std::string file) : file_(std::move(file)) {}
 
-    Result<double> evaluate(const Value& value) {
+    /// The names of [parameters], of which a formula may use those that are defined.
+    void announce(std::string name) { announced_.push_back(std::move(name)); }
+
+    Result<double> evaluate(const Value& value, const std::string& key) {
         const std::string formula = std::get<std::string>(value.data).substr(1);
         try {
             parser_.SetExpr(formula);
             const double result = parser_.Eval();
             if (std::isfinite(result)) return result;
-            return input_error_at(file_, value.line, "\"={}\" is not a finite number", formula);
+            return input_error_at(file_, value.line, "{}: \"={}\" is not a finite number", key, formula);
         } catch (const mu::ParserError& error) {
-            return input_error_at(file_, value.line, "\"={}\": {}", formula, error.GetMsg());
+            const bool unknown = error.GetCode() == mu::ecUNASSIGNABLE_TOKEN;
+            return input_error_at(file_, value.line, "{}: \"={}\": {}", key, formula,
+                                  unknown ? no_parameter(error.GetToken(), key) : error.GetMsg());
         }
     }
 
     Status define(const std::string& name, double value, int line) {
         try {
             parser_.DefineConst(name, value);
+            defined_.push_back(name);
             return {};
         } catch (const mu::ParserError& error) {
             return input_error_at(file_, line, "parameters.{}: not a name for a parameter; use letters, digits and _",
@@ -131,26 +139,38 @@ public:
         }
     }
 
-    Status replace_formulas(Value& value) {
+    Status replace_formulas(Value& value, const std::string& key) {
         if (is_formula(value)) {
-            const Result<double> number = evaluate(value);
+            const Result<double> number = evaluate(value, key);
             if (!number) return tl::unexpected(number.error());
             value.data = *number;
         } else if (auto* list = std::get_if<Array>(&value.data)) {
-            for (Value& item : *list) {
-                if (Status status = replace_formulas(item); !status) return status;
+            for (std::size_t i = 0; i < list->size(); ++i) {
+                if (Status status = replace_formulas((*list)[i], fmt::format("{}[{}]", key, i)); !status) return status;
             }
         } else if (auto* table = std::get_if<Table>(&value.data)) {
             for (auto& [name, item] : *table) {
-                if (Status status = replace_formulas(item); !status) return status;
+                if (Status status = replace_formulas(item, key.empty() ? name : key + "." + name); !status)
+                    return status;
             }
         }
         return {};
     }
 
 private:
+    [[nodiscard]] std::string no_parameter(const std::string& token, const std::string& key) const {
+        if (key == "parameters." + token) return fmt::format("\"{}\" is what is defined here", token);
+        if (std::ranges::find(announced_, token) != announced_.end())
+            return fmt::format("\"{}\" is defined below; a formula may use the parameters above it", token);
+        const std::string near = nearest_name(token, defined_);
+        return fmt::format("there is no parameter \"{}\"{}", token,
+                           near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near));
+    }
+
     std::string file_;
     mu::Parser parser_;
+    std::vector<std::string> announced_;
+    std::vector<std::string> defined_;
 };
 
 /// UTF-16 and UTF-32, as some editors save them: by their mark, or by the zeros of plain letters.
@@ -187,6 +207,9 @@ Result<Document> parse(std::string_view text, const std::filesystem::path& file)
         }
         return Document{file, std::move(*root)};
     } catch (const toml::parse_error& error) {
+        if (error.description().find("invalid utf-8") != std::string_view::npos)
+            return input_error_at(file.string(), error.source().begin.line,
+                                  "is not UTF-8 text: it has bytes of another encoding; save it as UTF-8");
         return input_error_at(file.string(), error.source().begin.line, "not valid TOML: {}", error.description());
     }
 }
@@ -247,8 +270,9 @@ Status resolve_parameters(Document& document) {
         auto* table = std::get_if<Table>(&found->second.data);
         if (table == nullptr)
             return input_error_at(document.file.string(), found->second.line, "parameters: must be a table of numbers");
+        for (const auto& [name, value] : *table) evaluator.announce(name);
         for (auto& [name, value] : *table) {
-            if (Status status = evaluator.replace_formulas(value); !status) return status;
+            if (Status status = evaluator.replace_formulas(value, "parameters." + name); !status) return status;
             double number = 0;
             if (const auto* whole = std::get_if<std::int64_t>(&value.data))
                 number = static_cast<double>(*whole);
@@ -261,7 +285,7 @@ Status resolve_parameters(Document& document) {
         }
         root.erase(found);
     }
-    return evaluator.replace_formulas(document.root);
+    return evaluator.replace_formulas(document.root, "");
 }
 
 }  // namespace pliant::config

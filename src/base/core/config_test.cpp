@@ -232,6 +232,30 @@ TEST_CASE("parameters may be used in formulas") {
     CHECK(resolve_parameters(bad).error().message.find("test.toml:2:") == 0);
 }
 
+TEST_CASE("a formula that names what is no parameter says where it stands and what would be right") {
+    const auto refused = [](const std::string& text) {
+        Document document = document_of(text);
+        return resolve_parameters(document).error().message;
+    };
+    CHECK(refused("[parameters]\nhalf = \"= pitch / 2\"\npitch = 8\n") ==
+          "test.toml:2: parameters.half: \"= pitch / 2\": \"pitch\" is defined below; a formula may use the parameters "
+          "above it");
+    CHECK(refused("[parameters]\npitch = \"= pitch + 1\"\n") ==
+          "test.toml:2: parameters.pitch: \"= pitch + 1\": \"pitch\" is what is defined here");
+    CHECK(refused("[parameters]\npitch = 8\n[[body]]\nat = [1, \"= ptch / 2\"]\n") ==
+          "test.toml:4: body[0].at[1]: \"= ptch / 2\": there is no parameter \"ptch\"; did you mean \"pitch\"?");
+}
+
+TEST_CASE("the beginning of one known key is taken for that key") {
+    Document document = document_of("fix = 1\n");
+    Problems problems("test.toml");
+    Reader root(document.root, problems);
+    CHECK(root.number("fixed", 0.0) == 0);
+    CHECK(root.number("body", 0.0) == 0);
+    root.finish();
+    CHECK(message(problems) == "test.toml:1: fix: unknown key; did you mean \"fixed\"?");
+}
+
 TEST_CASE("parameters on one line are defined in the order in which they are written") {
     Document document =
         document_of("parameters = { width = 10, half = \"= width / 2\", a = \"= half / 5\" }\nx = \"= a\"\n");
@@ -286,5 +310,7 @@ TEST_CASE("a file that is not UTF-8 but UTF-16 or UTF-32 is told from one that i
         REQUIRE_FALSE(document);
         CHECK(document.error().message ==
               "x.toml: is not UTF-8 text but looks like UTF-16 or UTF-32; save it as UTF-8");
+        CHECK(parse("a = 1\nname = \"gr\xFC\x6E\"\n", "x.toml").error().message ==
+              "x.toml:2: is not UTF-8 text: it has bytes of another encoding; save it as UTF-8");
     }
 }

@@ -85,6 +85,14 @@ DimensionInfo info(Dimension dimension) {
     return {"", {}};
 }
 
+/// Keyboards have the Greek letter mu, U+03BC, beside the sign of micro, U+00B5.
+std::string with_micro_sign(std::string text) {
+    constexpr std::string_view letter = "\xCE\xBC", sign = "\xC2\xB5";
+    for (std::size_t at = text.find(letter); at != std::string::npos; at = text.find(letter, at))
+        text.replace(at, letter.size(), sign);
+    return text;
+}
+
 /// Converts "N*mm" and "N * mm" to "N mm".
 std::string with_spaces(std::string_view unit) {
     std::string text;
@@ -112,7 +120,7 @@ std::string_view describe(Dimension dimension) {
 
 Result<double> unit_factor(std::string_view unit, Dimension dimension) {
     const DimensionInfo known = info(dimension);
-    const std::string wanted = with_spaces(unit);
+    const std::string wanted = with_micro_sign(with_spaces(unit));
     std::string names;
     for (const Unit& u : known.units) {
         if (u.name == wanted) return u.factor;
@@ -133,6 +141,11 @@ Result<double> parse_quantity(std::string_view text, Dimension dimension) {
     }
     const std::string_view unit = trim(std::string_view(end, static_cast<std::size_t>(last - end)));
     if (unit.empty()) return input_error("\"{}\" has no unit; write {}", text, describe(dimension));
+    if (unit.size() > 1 && unit[0] == ',' && unit[1] >= '0' && unit[1] <= '9') {
+        std::string pointed(trimmed);
+        pointed[static_cast<std::size_t>(unit.data() - trimmed.data())] = '.';
+        return input_error("\"{}\" has a decimal comma; write a point: \"{}\"", text, pointed);
+    }
     const Result<double> factor = unit_factor(unit, dimension);
     if (!factor) return factor;
     if (!std::isfinite(value * *factor)) return input_error("\"{}\" is too large", text);

@@ -17,6 +17,16 @@ TEST_CASE("quantities convert to SI") {
     CHECK(*parse_quantity("1 N m/deg", Dimension::torsional_stiffness) == near(57.29577951308232, {.relative = 1e-12}));
 }
 
+TEST_CASE("the Greek letter mu is the sign of micro") {
+    CHECK(*parse_quantity("5 \xCE\xBCm", Dimension::length) == near(5e-6, {.relative = 1e-12}));
+    CHECK(*parse_quantity("5 \xC2\xB5m", Dimension::length) == near(5e-6, {.relative = 1e-12}));
+}
+
+TEST_CASE("a decimal comma is told") {
+    CHECK(parse_quantity("1,2 MPa", Dimension::pressure).error().message ==
+          "\"1,2 MPa\" has a decimal comma; write a point: \"1.2 MPa\"");
+}
+
 TEST_CASE("a quantity without a unit, with a foreign unit or without a number is refused") {
     CHECK(parse_quantity("1e308 GPa", Dimension::pressure).error().message == "\"1e308 GPa\" is too large");
     CHECK_FALSE(parse_quantity("+-5 mm", Dimension::length));

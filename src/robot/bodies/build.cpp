@@ -211,7 +211,7 @@ Result<mesh::Solid> notches_of(const Robot& robot, const std::vector<mesh::BodyG
 Diagnostic place_of(const Robot& robot, const Error& error) {
     for (const Region& region : regions_of(robot)) {
         if (!error.problems.empty() && error.problems.back().key == region.name)
-            return place(robot, region.line, region.kind, "");
+            return place(robot, region.line, "", "");
     }
     return place(robot, 0, "", "");
 }

@@ -136,7 +136,8 @@ void add_cable(ModelDraft& draft, const sim::Attacher& attacher, const CableSpec
         attach_path(draft, attacher, spec, points, "cable", spec.guides_at_crossings ? "guide point" : "point"),
         spec.target, spec.friction, spec.anchor != Anchor::last};
     check_shortening(draft, spec, points);
-    if (cable.target.kind != sim::CableTarget::Kind::tension_N && are_held(draft.description, cable.points))
+    const bool complete = cable.points.size() == points.size();  // otherwise the error is told already
+    if (complete && cable.target.kind != sim::CableTarget::Kind::tension_N && are_held(draft.description, cable.points))
         draft.problem(spec.line, "cable", spec.name,
                       "cannot change its length: all of its points are fixed in space or in a [[fixed]]");
     if (spec.gap_elements) drive_by_gaps(draft, spec, points);

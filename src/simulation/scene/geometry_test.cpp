@@ -275,9 +275,9 @@ TEST_CASE("an error of the mesher names the body concerned, otherwise the robot 
     };
     const std::string bar = body("bar", "geometry = { box = [[0, 0, 0], [40, 10, 10]] }");
     const std::string lost = body("lost", "geometry = { box = [[1, 1, 1], [2, 2, 2]] }");
-    CHECK(problem_of(lost + bar) == "bar.toml:12: body: body \"lost\" is empty: all of it belongs to later ones");
+    CHECK(problem_of(lost + bar) == "bar.toml:12: body \"lost\" is empty: all of it belongs to later ones");
     const std::string apart = body("apart", "geometry = { box = [[50, 0, 0], [60, 10, 10]] }");
-    CHECK(problem_of(apart + lost + bar).starts_with("bar.toml:16: body: body \"lost\" is empty"));
+    CHECK(problem_of(apart + lost + bar).starts_with("bar.toml:16: body \"lost\" is empty"));
     const pliant::test::Variable soon("PLIANT_MESH_SECONDS", "1e-6");
     CHECK(problem_of(bar).starts_with("bar.toml: meshing took longer than 1e-06 s and was ended"));
 }
