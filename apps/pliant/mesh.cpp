@@ -17,6 +17,7 @@
 #include "interrupt.hpp"
 #include "output_option.hpp"
 #include "presentation/report/mesh_picture.hpp"
+#include "printed.hpp"
 #include "robot/bodies/build.hpp"
 #include "simulation/peers/calculix_deck.hpp"
 #include "simulation/scene/build_model.hpp"
@@ -119,7 +120,10 @@ Status build(const MeshOptions& options) {
     on_signal(OnSignal::ask_twice);
     if (Status status = write_robot(options, *robot, *mesh); !status) return status;
     progress.reset();
-    return tell_mesh(options, mesh::scaled(*mesh, 1 / robot->unit_m), 1e3 * robot->unit_m);
+    mesh::TetMesh told = mesh::scaled(*mesh, 1 / robot->unit_m);
+    if (const auto model = robot::build_model(*robot, *mesh); !model)
+        told.notes.push_back("no simulation accepts this robot: " + one_line(model.error().message));
+    return tell_mesh(options, told, 1e3 * robot->unit_m);
 }
 
 Status convert(const MeshOptions& options) {

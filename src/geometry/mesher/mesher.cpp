@@ -30,6 +30,22 @@ Status check_extent(std::span<const BodyGeometry> bodies) {
         extent, smallest, largest);
 }
 
+/// Coordinates are read to some 16 digits, and the mesher compares them to some 8.
+Status check_near(std::span<const BodyGeometry> bodies) {
+    constexpr double farthest_sizes = 1e6;
+    for (const BodyGeometry& body : bodies) {
+        const Box3 box = bounds(body);
+        if (box.empty()) continue;
+        const double far = norm(box.center()), size = box.diagonal();
+        if (far > farthest_sizes * size)
+            return input_error(
+                "body \"{}\" measures {:.3g} and lies {:.3g} from the origin, more than {:g} times as far: its shape "
+                "has no digits left; move it nearer",
+                body.name, size, far, farthest_sizes);
+    }
+    return {};
+}
+
 }  // namespace
 
 Box3 bounds(const BodyGeometry& body) {
@@ -39,6 +55,7 @@ Box3 bounds(const BodyGeometry& body) {
 
 Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings, Progress& progress) {
     if (Status status = check_extent(bodies); !status) return tl::unexpected(status.error());
+    if (Status status = check_near(bodies); !status) return tl::unexpected(status.error());
     Packer request;
     pack(request, bodies);
     pack(request, settings);

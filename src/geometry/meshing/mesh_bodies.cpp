@@ -1,6 +1,7 @@
 #include "geometry/meshing/mesh_bodies.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/core/boxes.hpp"
@@ -185,6 +186,20 @@ void follow_thin_walls(std::vector<TetMesh>& meshes, const TriMesh& surface, std
         "edges are shorter than the mesh size beside walls that are much thinner than it");
 }
 
+/// A note where a remeshed surface lost a part of its volume: chords of curves lie inside them.
+void judge_volume(std::vector<TetMesh>& meshes, const TriMesh& surface) {
+    constexpr double told = 2e-3;
+    double meshed = 0;
+    for (const TetMesh& mesh : meshes) meshed += volume(mesh);
+    const double drawn = signed_volume(surface);
+    const double share = drawn > 0 ? meshed / drawn - 1 : 0;
+    if (std::fabs(share) <= told) return;
+    meshes.front().notes.push_back(
+        fmt::format("its mesh has a volume of {:.6g}, {:.2g} % {} than its file: longer edges cut across curves; a "
+                    "smaller size helps",
+                    meshed, 100 * std::fabs(share), share > 0 ? "more" : "less"));
+}
+
 /// The meshes of the surface of body `b`. A damaged one is meshed from its winding number, as it was read.
 Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies, std::size_t b,
                                             const MeshSettings& settings, const SizeField& field, Progress& progress) {
@@ -211,6 +226,7 @@ Result<std::vector<Part>> mesh_surface_body(std::span<const BodyGeometry> bodies
     } else {
         replace_slivers(*meshes, surface, settings, progress);
         follow_thin_walls(*meshes, surface, b, settings, field);
+        judge_volume(*meshes, surface);
     }
     if (progress.cancelled()) return cancelled();
     if (slivers.removed > 0 && !damaged) {
@@ -405,6 +421,13 @@ Status follow_walls(const Drawing& drawing, const MeshSettings& settings, SizeFi
         settings.through_wall, tets, most);
 }
 
+/// Without the rounding errors of coordinates that are zero.
+Vec3 rounded(Vec3 p, double size) {
+    constexpr double noise = 1e-9;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = std::fabs(p[k]) < noise * size ? 0 : p[k];
+    return p;
+}
+
 /// A note for each body with a wall of fewer than three elements: its thinnest wall, by the edge length there.
 void judge_walls(std::span<const BodyGeometry> bodies, TetMesh& mesh) {
     constexpr double enough = 2.5;  // about three
@@ -417,11 +440,11 @@ void judge_walls(std::span<const BodyGeometry> bodies, TetMesh& mesh) {
                 thinnest = &wall;
         }
         if (thinnest == nullptr || thinnest->thickness > enough * thinnest->edge) continue;
+        const Vec3 place = rounded(thinnest->at, bounds(bodies[b]).diagonal());
         mesh.notes.push_back(fmt::format(
             "body \"{}\": the wall at ({:.4g}, {:.4g}, {:.4g}), {:.3g} thick, has about {:.1f} elements through it; "
             "elements_through_wall asks for more",
-            bodies[b].name, thinnest->at.x, thinnest->at.y, thinnest->at.z, thinnest->thickness,
-            thinnest->thickness / thinnest->edge));
+            bodies[b].name, place.x, place.y, place.z, thinnest->thickness, thinnest->thickness / thinnest->edge));
     }
 }
 

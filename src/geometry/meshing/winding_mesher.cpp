@@ -346,14 +346,28 @@ Centred centre(std::span<const TriMesh> surfaces) {
     return result;
 }
 
+/// Triangles most of whose edges are open, and more of whose box they enclose by half than wholly.
+bool is_unrelated(const WindingGrid& surface, const SurfaceDamage& damage, const Box3& box, double enclosed) {
+    constexpr std::size_t open_edges_each = 2;
+    constexpr double hardly = 0.2;
+    if (damage.open_edges <= open_edges_each * surface.surface().triangles.size()) return false;
+    const double doubtful = share_of(box, [&](const Vec3& p) {
+        const double times = surface.winding_number(p);
+        return times < -hardly || (times > hardly && times <= surely_inside);
+    });
+    return doubtful >= enclosed;
+}
+
 /// Of each region, by sampling.
-Result<std::vector<double>> expected_volumes(const LabelledSpace& space, std::span<const std::string> names) {
+Result<std::vector<double>> expected_volumes(const LabelledSpace& space, std::span<const SurfaceDamage> damage,
+                                             std::span<const std::string> names) {
     std::vector<double> volumes;
     for (std::size_t s = 0; s < space.surfaces().size(); ++s) {
         const WindingGrid& surface = space.surfaces()[s];
         const Box3 box = grown(surface.box());
         const auto encloses = [&](const Vec3& p) { return surface.winding_number(p) > surely_inside; };
-        if (surface.surface().triangles.empty() || share_of(box, encloses) == 0)
+        const double enclosed = surface.surface().triangles.empty() ? 0 : share_of(box, encloses);
+        if (enclosed == 0 || is_unrelated(surface, damage[s], box, enclosed))
             return kernel::about(
                 names[s], {Cause::input,
                            fmt::format("{} encloses nothing: it is an open sheet, or more hole than wall", names[s])});
@@ -435,7 +449,7 @@ Result<TetMesh> mesh_finely_enough(const Task& task, const SharpEdges& edges, co
 Result<JointMesh> mesh_centred(Centred centred, std::span<const std::string> names, double size,
                                const SizeOfSurface& size_at, double angle_deg, Progress& progress) {
     const LabelledSpace space(std::move(centred.surfaces));
-    const Result<std::vector<double>> volumes = expected_volumes(space, names);
+    const Result<std::vector<double>> volumes = expected_volumes(space, centred.damage, names);
     if (!volumes) return tl::unexpected(volumes.error());
     double whole = 0;
     double nodes = 0;

@@ -7,11 +7,14 @@
 #include "base/core/text.hpp"
 #include "geometry/files/surface_file.hpp"
 #include "geometry/files/tet_file.hpp"
+#include "geometry/mesh/triangle_corners.hpp"
 #include "geometry/mesher/mesher.hpp"
+#include "geometry/repair/narrow_gaps.hpp"
 #include "geometry/shapes/flat_faces.hpp"
 #include "geometry/shapes/overlap_note.hpp"
 #include "robot/bodies/body_surface.hpp"
 #include "robot/bodies/crossed_notches.hpp"
+#include "robot/bodies/mesh_budget.hpp"
 #include "robot/description/regions.hpp"
 
 namespace pliant::robot {
@@ -161,19 +164,61 @@ mesh::MeshSettings mesh_settings(const Robot& robot, double size) {
     return settings;
 }
 
-/// If the file gives no size, thin walls and many fingers must not produce a mesh on which every step takes minutes: a
-/// mesh with too many nodes is rebuilt with fewer elements through walls and then longer edges, and a note says so.
+/// With more nodes a step takes longer than seconds.
+constexpr std::size_t most_automatic_nodes = 20000;
+
+/// What the bodies measure; less of them where one cannot be measured, which is told when it is meshed.
+std::vector<Bulk> measured(const std::vector<mesh::BodyGeometry>& bodies, double size, Progress& progress) {
+    constexpr double chords = 0.05;  // of the size: exact enough to count elements
+    std::vector<Bulk> found;
+    for (const mesh::BodyGeometry& body : bodies) {
+        if (const auto* surface = std::get_if<mesh::TriMesh>(&body.shape)) {
+            found.push_back({std::fabs(mesh::signed_volume(*surface)), mesh::surface_area(*surface)});
+        } else if (!body.air) {
+            const auto drawn = mesh::tessellate(std::get<mesh::Solid>(body.shape), chords * size, progress);
+            if (drawn) found.push_back({std::fabs(mesh::signed_volume(*drawn)), mesh::surface_area(*drawn)});
+        }
+    }
+    return found;
+}
+
+/// A rough number, without digits that nobody knows.
+std::string about(double count) {
+    const double step = std::pow(10, std::floor(std::log10(std::max(count, 1.0))) - 1);
+    return fmt::format("about {:.0f}", std::round(count / step) * step);
+}
+
+std::string coarser_note(std::size_t nodes, const std::string& usual, double size, int through_wall) {
+    const bool few = nodes <= most_automatic_nodes;
+    return fmt::format(
+        "no mesh.size is given: {} nodes in place of {} with 3 elements through every wall, {}; for a {} mesh set "
+        "mesh.size (here {:.3g}) or mesh.elements_through_wall (here {})",
+        nodes, usual,
+        few ? "so that a step takes seconds"
+            : fmt::format("still more than the {} with which a step takes seconds", most_automatic_nodes),
+        few ? "finer" : "coarser", size, through_wall);
+}
+
+/// If the file gives no size, thin walls and many fingers must not produce a mesh on which every step takes minutes:
+/// where the bodies are surely too large for it, a coarser one is made from the start, and a mesh that turns out to
+/// have too many nodes is rebuilt with fewer elements through walls and then longer edges. A note says so.
 Result<mesh::TetMesh> mesh_within_budget(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies,
                                          Progress& progress) {
-    constexpr std::size_t most_automatic_nodes = 20000;
-    constexpr int tries = 3;
     constexpr double most_coarser = 1.6;  // per attempt: notches and walls should still be meshed well
     double size = general_size(robot, bodies);
     mesh::MeshSettings settings = mesh_settings(robot, size);
-    Result<mesh::TetMesh> mesh = mesh_with_sizes(bodies, size, settings, progress);
     const bool asked = has_size(robot) || robot.mesh.elements_through_wall || robot.mesh.size_near_cables > 0;
-    if (!mesh || asked || mesh->points.size() <= most_automatic_nodes) return mesh;
-    const std::size_t usual = mesh->points.size();
+    if (asked) return mesh_with_sizes(bodies, size, settings, progress);
+    const std::vector<Bulk> bulk = measured(bodies, size, progress);
+    const Fineness usual{size, settings.through_wall, settings.order};
+    const Fineness planned = within_budget(bulk, usual, most_automatic_nodes);
+    const bool foreseen = planned.size > usual.size || planned.through_wall < usual.through_wall;
+    const int tries = foreseen ? 1 : 3;
+    size = planned.size;
+    settings.through_wall = planned.through_wall;
+    Result<mesh::TetMesh> mesh = mesh_with_sizes(bodies, size, settings, progress);
+    if (!mesh || (!foreseen && mesh->points.size() <= most_automatic_nodes)) return mesh;
+    const std::string instead = foreseen ? about(expected_nodes(bulk, usual)) : std::to_string(mesh->points.size());
     for (int i = 0; i < tries && mesh && mesh->points.size() > most_automatic_nodes; ++i) {
         const double excess = static_cast<double>(mesh->points.size()) / static_cast<double>(most_automatic_nodes);
         if (settings.through_wall > 1)
@@ -182,13 +227,62 @@ Result<mesh::TetMesh> mesh_within_budget(const Robot& robot, const std::vector<m
             size *= std::clamp(std::cbrt(excess), 1.1, most_coarser);
         mesh = mesh_with_sizes(bodies, size, settings, progress);
     }
-    if (mesh)
-        mesh->notes.push_back(
-            fmt::format("no mesh.size is given: {} nodes in place of {} with 3 elements through every "
-                        "wall, so that a step takes seconds; for a finer mesh set mesh.size (here {:.3g}) "
-                        "or mesh.elements_through_wall (here {})",
-                        mesh->points.size(), usual, size, settings.through_wall));
+    if (mesh) mesh->notes.push_back(coarser_note(mesh->points.size(), instead, size, settings.through_wall));
     return mesh;
+}
+
+/// What is cut from a shape, but lies beside it.
+bool cuts_nothing(const mesh::Solid& solid) {
+    const auto* combined = std::get_if<mesh::CombinedSolid>(&solid->shape);
+    if (combined == nullptr) return false;
+    if (std::ranges::any_of(combined->parts, cuts_nothing)) return true;
+    if (combined->operation != mesh::CombinedSolid::Operation::subtract) return false;
+    const Box3 whole = mesh::bounds(combined->parts.front());
+    return std::any_of(combined->parts.begin() + 1, combined->parts.end(),
+                       [&](const mesh::Solid& part) { return !boxes_meet(whole, mesh::bounds(part)); });
+}
+
+/// Notes on what is allowed, but hardly meant.
+std::vector<std::string> doubtful(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies) {
+    constexpr double too_coarse = 2;  // sizes of the robot
+    std::vector<std::string> notes;
+    for (const BodySpec& body : robot.bodies) {
+        const auto* solid = std::get_if<mesh::Solid>(&body.geometry);
+        if (solid != nullptr && cuts_nothing(*solid))
+            notes.push_back(fmt::format(
+                "body \"{}\": a shape of a difference lies outside of what it is cut from: it cuts nothing away",
+                body.name));
+    }
+    Box3 box;
+    for (const mesh::BodyGeometry& body : bodies) {
+        box.add(mesh::bounds(body).low);
+        box.add(mesh::bounds(body).high);
+    }
+    const double longest = std::max({box.size().x, box.size().y, box.size().z});
+    if (robot.mesh.size > too_coarse * longest)
+        notes.push_back(
+            fmt::format("mesh.size, {:.3g}, is {:.3g} times as long as the robot, {:.3g}: it has no effect but that "
+                        "its shape is meshed as coarsely as it can be",
+                        robot.mesh.size, robot.mesh.size / longest, longest));
+    return notes;
+}
+
+/// Notes on bodies that stay apart by so little that they were probably drawn to touch. Gaps that close_gaps reaches
+/// have notes of their own; who gives it has thought of them.
+std::vector<std::string> apart_by_little(const Robot& robot, const mesh::TetMesh& mesh, double closed) {
+    constexpr double hardly_seen_m = 20e-6;  // half a usual pixel
+    const double tolerance = hardly_seen_m / robot.unit_m;
+    if (robot.mesh.close_gaps || closed >= tolerance) return {};
+    std::vector<std::string> notes;
+    for (const mesh::NarrowGap& gap : mesh::narrow_gaps(mesh, tolerance)) {
+        const auto first = static_cast<std::size_t>(gap.first), second = static_cast<std::size_t>(gap.second);
+        if (second >= robot.bodies.size() || gap.width <= closed) continue;
+        notes.push_back(
+            fmt::format("body \"{}\" and \"{}\" are {:.3g} apart at ({:.4g}, {:.4g}, {:.4g}), less than a printer "
+                        "shows: they are not joined in the simulation; a larger mesh.close_gaps joins them",
+                        robot.bodies[first].name, robot.bodies[second].name, gap.width, gap.at.x, gap.at.y, gap.at.z));
+    }
+    return notes;
 }
 
 Result<mesh::Solid> notches_of(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies,
@@ -234,7 +328,12 @@ Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) 
     }
     Result<mesh::TetMesh> mesh = mesh_within_budget(robot, bodies, progress);
     if (!mesh) return tl::unexpected(at(place_of(robot, mesh.error()), mesh.error()));
+    const std::vector<std::string> odd = doubtful(robot, bodies);
+    notes.insert(notes.end(), odd.begin(), odd.end());
     mesh->notes.insert(mesh->notes.begin(), notes.begin(), notes.end());
+    const double closed = mesh_settings(robot, general_size(robot, bodies)).close_gaps;
+    const std::vector<std::string> apart = apart_by_little(robot, *mesh, closed);
+    mesh->notes.insert(mesh->notes.end(), apart.begin(), apart.end());
     return mesh;
 }
 
