@@ -199,35 +199,53 @@ std::string coarser_note(std::size_t nodes, const std::string& usual, double siz
         few ? "finer" : "coarser", size, through_wall);
 }
 
+mesh::MeshSettings settings_of(const Robot& robot, const Fineness& fineness) {
+    mesh::MeshSettings settings = mesh_settings(robot, fineness.size);
+    settings.through_wall = fineness.through_wall;
+    return settings;
+}
+
+/// The next try after a mesh with too many nodes: the walls' elements first, then edges.
+Fineness coarser(Fineness fineness, std::size_t nodes) {
+    constexpr double most_coarser = 1.6;  // per attempt: notches and walls should still be meshed well
+    const double excess = static_cast<double>(nodes) / static_cast<double>(most_automatic_nodes);
+    if (fineness.through_wall > 1)
+        --fineness.through_wall;
+    else
+        fineness.size *= std::clamp(std::cbrt(excess), 1.1, most_coarser);
+    return fineness;
+}
+
+/// The same where the number was foreseen: by as much as it was wrong.
+Fineness corrected(std::span<const Bulk> bulk, const Fineness& fineness, std::size_t nodes) {
+    constexpr double margin = 0.9;
+    const double wrong = static_cast<double>(nodes) / expected_nodes(bulk, fineness);
+    return coarsened(bulk, fineness, margin * static_cast<double>(most_automatic_nodes) / wrong);
+}
+
 /// If the file gives no size, thin walls and many fingers must not produce a mesh on which every step takes minutes:
 /// where the bodies are surely too large for it, a coarser one is made from the start, and a mesh that turns out to
 /// have too many nodes is rebuilt with fewer elements through walls and then longer edges. A note says so.
 Result<mesh::TetMesh> mesh_within_budget(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies,
                                          Progress& progress) {
-    constexpr double most_coarser = 1.6;  // per attempt: notches and walls should still be meshed well
-    double size = general_size(robot, bodies);
-    mesh::MeshSettings settings = mesh_settings(robot, size);
+    const double size = general_size(robot, bodies);
+    const mesh::MeshSettings settings = mesh_settings(robot, size);
     const bool asked = has_size(robot) || robot.mesh.elements_through_wall || robot.mesh.size_near_cables > 0;
     if (asked) return mesh_with_sizes(bodies, size, settings, progress);
     const std::vector<Bulk> bulk = measured(bodies, size, progress);
     const Fineness usual{size, settings.through_wall, settings.order};
-    const Fineness planned = within_budget(bulk, usual, most_automatic_nodes);
-    const bool foreseen = planned.size > usual.size || planned.through_wall < usual.through_wall;
-    const int tries = foreseen ? 1 : 3;
-    size = planned.size;
-    settings.through_wall = planned.through_wall;
-    Result<mesh::TetMesh> mesh = mesh_with_sizes(bodies, size, settings, progress);
+    Fineness taken = within_budget(bulk, usual, most_automatic_nodes);
+    const bool foreseen = taken.size > usual.size || taken.through_wall < usual.through_wall;
+    Result<mesh::TetMesh> mesh = mesh_with_sizes(bodies, taken.size, settings_of(robot, taken), progress);
     if (!mesh || (!foreseen && mesh->points.size() <= most_automatic_nodes)) return mesh;
     const std::string instead = foreseen ? about(expected_nodes(bulk, usual)) : std::to_string(mesh->points.size());
+    const int tries = foreseen ? 1 : 3;
     for (int i = 0; i < tries && mesh && mesh->points.size() > most_automatic_nodes; ++i) {
-        const double excess = static_cast<double>(mesh->points.size()) / static_cast<double>(most_automatic_nodes);
-        if (settings.through_wall > 1)
-            --settings.through_wall;
-        else
-            size *= std::clamp(std::cbrt(excess), 1.1, most_coarser);
-        mesh = mesh_with_sizes(bodies, size, settings, progress);
+        const std::size_t nodes = mesh->points.size();
+        taken = foreseen ? corrected(bulk, taken, nodes) : coarser(taken, nodes);
+        mesh = mesh_with_sizes(bodies, taken.size, settings_of(robot, taken), progress);
     }
-    if (mesh) mesh->notes.push_back(coarser_note(mesh->points.size(), instead, size, settings.through_wall));
+    if (mesh) mesh->notes.push_back(coarser_note(mesh->points.size(), instead, taken.size, taken.through_wall));
     return mesh;
 }
 

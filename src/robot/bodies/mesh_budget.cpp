@@ -41,9 +41,8 @@ double fewest_nodes(std::span<const Bulk> bodies, const Fineness& fineness) {
     return sure * nodes(bodies, fineness, 6);  // of a cube or a sphere: its width
 }
 
-Fineness within_budget(std::span<const Bulk> bodies, Fineness fineness, double most) {
+Fineness coarsened(std::span<const Bulk> bodies, Fineness fineness, double most) {
     constexpr double matters = 1.3, longer = 1.05;
-    if (fewest_nodes(bodies, fineness) <= most) return fineness;
     const auto plain = [](Fineness one) { return Fineness{one.size, 0, one.order}; };
     while (expected_nodes(bodies, fineness) > most) {
         const bool by_walls = fineness.through_wall > 0 &&
@@ -54,6 +53,11 @@ Fineness within_budget(std::span<const Bulk> bodies, Fineness fineness, double m
             fineness.size *= longer;
     }
     return fineness;
+}
+
+Fineness within_budget(std::span<const Bulk> bodies, const Fineness& fineness, double most) {
+    constexpr double margin = 0.75;  // coarse meshes have up to a quarter more nodes than expected
+    return fewest_nodes(bodies, fineness) <= most ? fineness : coarsened(bodies, fineness, margin * most);
 }
 
 }  // namespace pliant::robot

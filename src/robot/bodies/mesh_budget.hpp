@@ -24,8 +24,10 @@ struct Fineness {
 /// Fewer than any mesh of these bodies has.
 [[nodiscard]] double fewest_nodes(std::span<const Bulk> bodies, const Fineness& fineness);
 
-/// The same fineness if the mesh may have at most `most` nodes; if it surely has more, fewer elements through walls
-/// and then longer edges, so that about `most` are expected.
-[[nodiscard]] Fineness within_budget(std::span<const Bulk> bodies, Fineness fineness, double most);
+/// Fewer elements through walls, where these need the nodes, and longer edges, until at most `most` nodes are expected.
+[[nodiscard]] Fineness coarsened(std::span<const Bulk> bodies, Fineness fineness, double most);
+
+/// The same fineness if the mesh may have at most `most` nodes; if it surely has more, one of somewhat fewer than that.
+[[nodiscard]] Fineness within_budget(std::span<const Bulk> bodies, const Fineness& fineness, double most);
 
 }  // namespace pliant::robot
