@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 #include <numbers>
+#include <random>
 
 #include "base/core/near.hpp"
 #include "geometry/mesh/mesh_report.hpp"
@@ -280,6 +281,48 @@ TEST_CASE("bodies too small or too large for the mesher are refused, those withi
         else
             CHECK(mesh.error().message.find("choose another length_unit") != std::string::npos);
     }
+}
+
+TEST_CASE("a surface so far from the origin that its shape has no digits left is refused") {
+    Progress silent;
+    const TriMesh cube = tessellate(box({0, 0, 0}, {10, 10, 10}), 0.1).value();
+    const auto moved = [&](double by) {
+        TriMesh surface = cube;
+        for (Vec3& p : surface.points) p.x += by;
+        return mesh_bodies(std::vector<BodyGeometry>{{"cube", surface}}, {.size = 5, .order = 1}, silent);
+    };
+    CHECK(moved(1e5));
+    const auto far = moved(1e8);
+    REQUIRE_FALSE(far);
+    CHECK(far.error().message.starts_with("body \"cube\" measures 17.3 and lies 1e+08 from the origin"));
+}
+
+TEST_CASE("a remeshed sphere tells how much of its volume is lost, a cube has nothing to tell") {
+    Progress silent;
+    const auto notes_of = [&](const Solid& drawn) {
+        const TriMesh surface = tessellate(drawn, 0.01).value();
+        const auto mesh = mesh_bodies(std::vector<BodyGeometry>{{"b", surface}}, {.size = 4, .order = 1}, silent);
+        REQUIRE(mesh);
+        std::string notes;
+        for (const std::string& note : mesh->notes) notes += note + "\n";
+        return notes;
+    };
+    CHECK(notes_of(solid(SphereSolid{{0, 0, 0}, 10})).find("% less than its file") != std::string::npos);
+    CHECK(notes_of(box({0, 0, 0}, {10, 10, 10})).find("than its file") == std::string::npos);
+}
+
+TEST_CASE("triangles that have nothing to do with each other enclose nothing") {
+    Progress silent;
+    TriMesh soup;
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> anywhere(-10, 10);
+    for (int t = 0; t < 100; ++t) {
+        for (int k = 0; k < 3; ++k) soup.points.push_back({anywhere(random), anywhere(random), anywhere(random)});
+        soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+    }
+    const auto mesh = mesh_bodies(std::vector<BodyGeometry>{{"soup", soup}}, {.size = 2, .order = 1}, silent);
+    REQUIRE_FALSE(mesh);
+    CHECK(mesh.error().message.find("encloses nothing") != std::string::npos);
 }
 
 TEST_CASE("a caller that cancels gets no mesh") {

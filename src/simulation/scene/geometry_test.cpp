@@ -264,6 +264,39 @@ TEST_CASE("a body from STEP touches an STL body and a drawn one; a drawn chamber
                   "has no solid \"lid\"");
 }
 
+TEST_CASE(
+    "notes on what is allowed but hardly meant: a cut beside the body, a size beyond it, a gap that nobody sees") {
+    const auto notes_of = [](const std::string& bodies, const std::vector<std::string>& set) {
+        const Result<Robot> robot = parse_robot(head + bodies, "bar.toml", set);
+        REQUIRE(robot);
+        Progress silent;
+        const Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+        REQUIRE(mesh);
+        std::string notes;
+        for (const std::string& note : mesh->notes) notes += note + "\n";
+        return notes;
+    };
+    const auto has = [](const std::string& notes, std::string_view words) {
+        return notes.find(words) != std::string::npos;
+    };
+    const std::string bar = body("bar", "geometry = { box = [[0, 0, 0], [40, 10, 10]] }");
+    CHECK_FALSE(has(notes_of(bar, {}), "as long as the robot"));
+    CHECK(has(notes_of(bar, {"mesh.size=5 m"}), "mesh.size, 5e+03, is 125 times as long as the robot, 40"));
+    const auto cut = [&](const std::string& at) {
+        return notes_of(body("bar", "geometry = { difference = [{ box = [[0, 0, 0], [40, 10, 10]] }, { box = [[" + at +
+                                        ", 2, 2], [50, 8, 8]] }] }"),
+                        {});
+    };
+    CHECK(has(cut("45"), "body \"bar\": a shape of a difference lies outside of what it is cut from"));
+    CHECK_FALSE(has(cut("35"), "cut from"));
+    const auto beside = [&](const std::string& x) {
+        return bar + body("next", "geometry = { box = [[" + x + ", 0, 0], [60, 10, 10]] }");
+    };
+    CHECK(has(notes_of(beside("40.01"), {}), "body \"bar\" and \"next\" are 0.01 apart"));
+    CHECK_FALSE(has(notes_of(beside("40.05"), {}), "apart"));
+    CHECK_FALSE(has(notes_of(beside("40.01"), {"mesh.close_gaps=0 mm"}), "apart"));
+}
+
 TEST_CASE("an error of the mesher names the body concerned, otherwise the robot file") {
     const auto problem_of = [](const std::string& bodies) {
         const Result<Robot> robot = parse_robot(head + bodies, "bar.toml", {"mesh.size=0.8 mm"});
