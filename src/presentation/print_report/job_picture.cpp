@@ -35,7 +35,7 @@ struct Views {
     Extent extent;
     std::vector<Colour> colours;            ///< of the materials
     std::vector<std::vector<Shot>> layers;  ///< those shown from above
-    std::vector<int> numbers;               ///< their layer numbers
+    std::vector<int> numbers;               ///< their layer numbers, from 0
     /// Per layer, per material: brightness of every column, summed over the rows.
     std::vector<std::vector<std::vector<std::int64_t>>> columns;
 };
@@ -155,7 +155,7 @@ void draw_layers(Canvas& canvas, const Views& views, const job::Manifest& m) {
                            }),
                      780, y);
         const int z_um = m.layers[static_cast<std::size_t>(views.numbers[i])].z_um;
-        canvas.text({780, y - 15.0}, fmt::format("layer {}, up to {:.2f} mm", views.numbers[i], z_um / 1000.0),
+        canvas.text({780, y - 15.0}, fmt::format("layer {}, up to {:.2f} mm", views.numbers[i] + 1, z_um / 1000.0),
                     {.size = 22, .colour = ink});
     }
 }
@@ -183,7 +183,8 @@ void draw_sheet(Canvas& canvas, const Views& views, const job::Manifest& m) {
                      x, y);
         const int z_um = m.layers[static_cast<std::size_t>(views.numbers[i])].z_um;
         canvas.text({static_cast<double>(x), y - 9.0},
-                    fmt::format("layer {}, {:.2f} mm", views.numbers[i], z_um / 1000.0), {.size = 19, .colour = ink});
+                    fmt::format("layer {}, {:.2f} mm", views.numbers[i] + 1, z_um / 1000.0),
+                    {.size = 19, .colour = ink});
     }
 }
 

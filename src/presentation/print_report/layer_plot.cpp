@@ -41,8 +41,8 @@ std::string axes(const Frame& frame) {
     constexpr int marks = 4;
     for (int k = 0; k <= marks; ++k) {
         const double layer = std::round((frame.layers - 1.0) * k / marks);
-        svg +=
-            fmt::format("<text x=\"{:.1f}\" y=\"240\" text-anchor=\"middle\">{:.0f}</text>\n", frame.x(layer), layer);
+        svg += fmt::format("<text x=\"{:.1f}\" y=\"240\" text-anchor=\"middle\">{:.0f}</text>\n", frame.x(layer),
+                           layer + 1);
     }
     return svg;
 }

@@ -39,13 +39,19 @@ figure img { cursor: default; }
 td.wide { white-space: normal; text-align: left; min-width: 18em; }
 )";
 
+/// Counted from the first exposure of all.
+struct PlannedTimes {
+    std::vector<double> at_s;  ///< of every layer's first exposure; -1: none
+    double end_s = 0;          ///< of the last exposure
+};
+
 struct Printed {
     const job::Archive& archive;
     const machine::Printer& printer;
     const PrintExtras& extras;
     PrintStory story;
     plan::Plan plan;
-    std::vector<double> planned_at_s;  ///< of every layer's first exposure, counted from the first of all
+    PlannedTimes planned;
 };
 
 std::string swatch(const Colour& colour) {
@@ -72,9 +78,9 @@ std::string_view end_text(PrintEnd end) {
     return "not begun";
 }
 
-std::vector<double> planned_times(const plan::Plan& plan, const job::Manifest& job, const machine::Printer& printer) {
+PlannedTimes planned_times(const plan::Plan& plan, const job::Manifest& job, const machine::Printer& printer) {
     const plan::JobTimeline line = plan::job_timeline(plan, job, printer);
-    std::vector<double> at(job.layers.size(), -1);
+    PlannedTimes planned{std::vector<double>(job.layers.size(), -1), 0};
     std::size_t visit = 0;
     double first_s = -1;
     for (const plan::Stretch& s : line.stretches) {
@@ -82,10 +88,11 @@ std::vector<double> planned_times(const plan::Plan& plan, const job::Manifest& j
         while (visit + 1 < line.visits.size() && line.visits[visit].end_s < s.end_s) ++visit;
         if (visit >= line.visits.size()) break;
         if (first_s < 0) first_s = s.begin_s;
-        double& mine = at[static_cast<std::size_t>(line.visits[visit].layer)];
+        double& mine = planned.at_s[static_cast<std::size_t>(line.visits[visit].layer)];
         if (mine < 0) mine = s.begin_s - first_s;
+        planned.end_s = std::max(planned.end_s, s.end_s - first_s);
     }
-    return at;
+    return planned;
 }
 
 /// Time of the first exposure of each layer; -1: none.
@@ -145,11 +152,10 @@ std::string tiles(const Printed& p) {
     }
     for (const job::Layer& layer : p.archive.manifest().layers) images += layer.images.size();
     for (const Resin& resin : resin_of(p)) resin_ml += resin.printed_ml;
-    const double planned_s = *std::max_element(p.planned_at_s.begin(), p.planned_at_s.end());
     std::string out = "<section class=\"tiles\">\n";
     out += html_tile(fmt::format("{} of {}", whole, images), "images fully exposed");
     out += html_tile(plan::clock_text(last_s),
-                     fmt::format("first to last exposure; planned {}", plan::clock_text(planned_s)));
+                     fmt::format("first to last exposure; planned {}", plan::clock_text(p.planned.end_s)));
     out += html_tile(plan::clock_text(lit_s), "exposure time");
     out += html_tile(fmt::format("{:.2f} ml", resin_ml), "resin cured, as drawn");
     out += html_tile(fmt::format("{}", p.plan.swaps), p.plan.swaps == 1 ? "swap planned" : "swaps planned");
@@ -164,13 +170,15 @@ std::string happenings(const Printed& p) {
     if (p.story.happenings.empty())
         return "<h2>What happened</h2>\n<p>One host, no pause, no fault: every step as planned.</p>\n";
     std::string out =
-        "<h2>What happened</h2>\n<p>Layers are counted from 0, as in the job.</p>\n<div class=\"scroll\"><table "
+        "<h2>What happened</h2>\n<p>Layers are counted from 1; in the job and its journal from 0.</p>\n<div "
+        "class=\"scroll\"><table "
         "class=\"words\"><thead><tr><th>after</th><th>layer</th>"
         "<th>what</th><th>how it went on</th></tr></thead><tbody>\n";
     for (const Happening& h : p.story.happenings) {
-        out += fmt::format("<tr{}><td>{}</td><td>{}</td><td class=\"wide\">{}</td><td class=\"wide\">{}</td></tr>\n",
-                           h.fault ? " class=\"fault\"" : "", h.at_s < 0 ? "–" : plan::clock_text(h.at_s),
-                           h.layer < 0 ? "–" : fmt::format("{}", h.layer), html_escaped(h.text), html_escaped(h.then));
+        out +=
+            fmt::format("<tr{}><td>{}</td><td>{}</td><td class=\"wide\">{}</td><td class=\"wide\">{}</td></tr>\n",
+                        h.fault ? " class=\"fault\"" : "", h.at_s < 0 ? "–" : plan::clock_text(h.at_s),
+                        h.layer < 0 ? "–" : fmt::format("{}", h.layer + 1), html_escaped(h.text), html_escaped(h.then));
     }
     return out + "</tbody></table></div>\n";
 }
@@ -206,7 +214,7 @@ std::string plots(const Printed& p) {
     const std::vector<double> given = given_times(p.story, m.layers.size());
     LayerLine planned{"planned", "var(--faint)", {}, true}, happened{"happened", "var(--accent)", {}, false};
     for (std::size_t l = 0; l < m.layers.size(); ++l) {
-        if (p.planned_at_s[l] >= 0) planned.points.emplace_back(l, p.planned_at_s[l] / 60);
+        if (p.planned.at_s[l] >= 0) planned.points.emplace_back(l, p.planned.at_s[l] / 60);
         if (given[l] >= 0) happened.points.emplace_back(l, given[l] / 60);
     }
     std::string out = "<h2>Plan and print</h2>\n<section class=\"plots\">\n";
@@ -240,7 +248,7 @@ std::string lights_table(const Printed& p) {
         const auto material = static_cast<std::size_t>(key.second);
         out += fmt::format(
             "<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.3f} s</td><td>{:.3f} s</td><td>{}</td><td>{}</td></tr>\n",
-            key.first, material < m.materials.size() ? html_escaped(m.materials[material].name) : "?",
+            key.first + 1, material < m.materials.size() ? html_escaped(m.materials[material].name) : "?",
             plan::clock_text(light.at_s), light.planned_s, light.lit_s, light.pieces, light.complete ? "yes" : "no");
     }
     return out + "</tbody></table></div>\n</details>\n";
@@ -308,10 +316,12 @@ Result<std::string> print_report(const job::Archive& archive, const machine::Pri
     const job::Manifest& m = archive.manifest();
     Result<plan::Plan> plan = plan::make_plan(m, printer);
     if (!plan) return tl::unexpected(plan.error());
-    Result<PrintStory> story = story_of(journal);
+    std::vector<std::string> names;
+    for (const job::Material& material : m.materials) names.push_back(material.name);
+    Result<PrintStory> story = story_of(journal, names);
     if (!story) return tl::unexpected(story.error());
-    std::vector<double> planned_at_s = planned_times(*plan, m, printer);
-    const Printed p{archive, printer, extras, std::move(*story), std::move(*plan), std::move(planned_at_s)};
+    PlannedTimes planned = planned_times(*plan, m, printer);
+    const Printed p{archive, printer, extras, std::move(*story), std::move(*plan), std::move(planned)};
     const Result<std::string> drawn = pictures(p);
     if (!drawn) return drawn;
     const Result<std::string> cured = block_of(p);

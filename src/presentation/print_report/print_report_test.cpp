@@ -55,6 +55,24 @@ Records interrupted_and_resumed() {
     return records;
 }
 
+/// A job of the tower with a block of pixels in every image.
+Result<job::Archive> written(const fs::path& file, job::Manifest m) {
+    auto writer = job::Writer::create(file);
+    int number = 0;
+    for (job::Layer& layer : m.layers) {
+        for (job::LayerImage& image : layer.images) {
+            slice::RunImage pixels(m.width_px, m.height_px);
+            for (int row = 20; row < 30; ++row) pixels.append(row, 20, 40, 255);
+            image.file = "layers/" + std::to_string(number++) + ".png";
+            image.area_mm2 = 1000;
+            REQUIRE(writer->add_image(image.file, job::encode(pixels)));
+        }
+    }
+    REQUIRE(writer->add_file("printer.toml", read_file("examples/printers/tower.toml").value()));
+    REQUIRE(writer->finish(m));
+    return job::Archive::open(file);
+}
+
 }  // namespace
 
 TEST_CASE("a print's story: parts of an exposure add up, the time continues, faults were survived") {
@@ -70,8 +88,8 @@ TEST_CASE("a print's story: parts of an exposure add up, the time continues, fau
     // The second boot of the computer continues from the last known exposure.
     CHECK(story.lights.at({1, 1}).at_s == near(60 + 30, {.relative = 1e-12}));
     REQUIRE(story.faults == 2);
-    CHECK(story.happenings[0].text == "the host died in the light of layer 1; its guard made dark after 1.00 s");
-    CHECK(story.happenings[0].then == "survived: the light went on in layer 1");
+    CHECK(story.happenings[0].text == "the host died in the light of layer 2; its guard made dark after 1.00 s");
+    CHECK(story.happenings[0].then == "survived: the light went on in layer 2");
     CHECK(story.happenings[1].text == "the computer has been started anew, and the controller has lost its position");
 }
 
@@ -81,11 +99,23 @@ TEST_CASE("a print left unfinished is called interrupted; a damaged journal name
     const PrintStory story = story_of(records).value();
     CHECK(story.end == PrintEnd::interrupted);
     REQUIRE(story.happenings.size() == 1);
-    CHECK(story.happenings[0].text == "the host ended in the light of layer 1");
+    CHECK(story.happenings[0].text == "the host ended in the light of layer 2");
     CHECK(story.happenings[0].then == "the print waits to be resumed");
     dark(records, 99, 1, true, "host");
     CHECK(story_of(records).error().message == "record 6: no light 99 is on");
     CHECK(story_of({}).value().end == PrintEnd::not_begun);
+}
+
+TEST_CASE("changes of exposures and layers without light are told with names, counted from 1") {
+    Records records = interrupted_and_resumed();
+    records.resize(4);  // begin, session, light and dark of layer 0
+    add(records, "exposure", {{"material", "1"}, {"seconds", "3"}, {"from", "1"}});
+    add(records, "skip", {{"layer", "4"}});
+    const PrintStory story = story_of(records, {"soft", "rigid"}).value();
+    REQUIRE(story.happenings.size() == 2);
+    CHECK(story.happenings[0].text == "rigid is lit for 3 s from layer 2 on");
+    CHECK(story.happenings[1].text == "layer 5 gets no light");
+    CHECK(story_of(records).value().happenings[0].text == "material 2 is lit for 3 s from layer 2 on");
 }
 
 TEST_CASE("a pause says what somebody was asked to do") {
@@ -116,26 +146,13 @@ TEST_CASE("a print report is one page with pictures, exposures, faults and resin
     machine::Printer printer = plan::test::tower();
     job::Manifest m = plan::test::make_job({{0}, {0, 1}}, {"semi-flex", "rigid-flex"});
     m.name = "<b>two</b>";
-    auto writer = job::Writer::create(file);
-    int number = 0;
-    for (job::Layer& layer : m.layers) {
-        for (job::LayerImage& image : layer.images) {
-            slice::RunImage pixels(m.width_px, m.height_px);
-            for (int row = 20; row < 30; ++row) pixels.append(row, 20, 40, 255);
-            image.file = "layers/" + std::to_string(number++) + ".png";
-            image.area_mm2 = 1000;
-            REQUIRE(writer->add_image(image.file, job::encode(pixels)));
-        }
-    }
-    REQUIRE(writer->add_file("printer.toml", read_file("examples/printers/tower.toml").value()));
-    REQUIRE(writer->finish(m));
-    const auto archive = job::Archive::open(file);
+    const auto archive = written(file, m);
     REQUIRE(archive);
     const auto page =
         print_report(*archive, printer, interrupted_and_resumed(), {"virtual printer", "Marlin", 1234, 5, nullptr});
     REQUIRE_MESSAGE(page, (page ? "" : page.error().message));
     for (const std::string text :
-         {"&lt;b&gt;two", "3 of 3", "2</b><span>faults", "1234", "5 resent", "survived: the light went on in layer 1",
+         {"&lt;b&gt;two", "3 of 3", "2</b><span>faults", "1234", "5 resent", "survived: the light went on in layer 2",
           "data:image/png;base64", "<svg", "12 records"})
         CHECK_MESSAGE(page->find(text) != std::string::npos, text);
     CHECK(page->find("<b>two") == std::string::npos);
@@ -147,4 +164,17 @@ TEST_CASE("a print report is one page with pictures, exposures, faults and resin
     REQUIRE_FALSE(refused);
     CHECK(refused.error().message ==
           journal.string() + ": this journal is of another job, or job.zip has changed since");
+}
+
+TEST_CASE("a report compares like times: from the start of the first exposure to the end of the last") {
+    const pliant::test::Folder folder("report");
+    const auto archive =
+        written(folder / "job.zip", plan::test::make_job({{0}}, {"semi-flex"}));  // a bottom layer of 12 s
+    REQUIRE(archive);
+    Records records;
+    add(records, "begin", {{"job", "one"}, {"digest", "d"}, {"printer", "tower"}, {"format", "1"}});
+    dark(records, light(records, 0, 0, 1000), 12, true, "host");
+    const auto page = print_report(*archive, plan::test::tower(), records, {});
+    REQUIRE_MESSAGE(page, (page ? "" : page.error().message));
+    CHECK(page->find("0:00:12</b><span>first to last exposure; planned 0:00:12") != std::string::npos);
 }

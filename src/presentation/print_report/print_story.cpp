@@ -4,6 +4,8 @@
 
 #include <optional>
 
+#include "printing/host/print_names.hpp"
+
 namespace pliant::report {
 namespace {
 
@@ -15,6 +17,7 @@ std::string text_of(const host::JournalRecord& record, std::string_view key) {
 
 class Teller {
 public:
+    explicit Teller(const std::vector<std::string>& materials) : materials_(materials) {}
     [[nodiscard]] Status take(const host::JournalRecord& record);
     [[nodiscard]] PrintStory finish() {
         for (const auto& [record, key] : open_) {
@@ -22,7 +25,7 @@ public:
                                          last_at_s_,
                                          key.first,
                                          true,
-                                         fmt::format("the host ended in the light of layer {}", key.first),
+                                         "the host ended in the light of " + host::layer_text(key.first),
                                          {}});
             ++story_.faults;
         }
@@ -39,8 +42,10 @@ private:
         story_.happenings.push_back({record.number, last_at_s_, last_layer_, fault, std::move(text), {}});
         if (fault) ++story_.faults;
     }
+    [[nodiscard]] Status skip(const host::JournalRecord& record);
     void say_how_it_went_on(std::size_t index);
 
+    const std::vector<std::string>& materials_;
     PrintStory story_;
     std::string boot_;
     std::optional<double> zero_s_;  ///< on the devices' clock: the time of the print's first exposure
@@ -98,27 +103,35 @@ Status Teller::dark(const host::JournalRecord& record) {
     light.lit_s += *on;
     light.complete = text_of(record, "done") == "1";
     const std::string by = text_of(record, "by");
-    const int layer = known->second.first;
+    const std::string layer = host::layer_text(known->second.first);
     open_.erase(known);
     if (by == "guard")
         tell(record, true,
-             fmt::format("the host died in the light of layer {}; its guard made dark after {:.2f} s", layer, *on));
+             fmt::format("the host died in the light of {}; its guard made dark after {:.2f} s", layer, *on));
     if (by == "assumed")
-        tell(record, true,
-             fmt::format("nobody saw the end of the light of layer {}; {:.2f} s were assumed", layer, *on));
+        tell(record, true, fmt::format("nobody saw the end of the light of {}; {:.2f} s were assumed", layer, *on));
     if (by == "host" && !light.complete)
         tell(record, false,
-             fmt::format("the light of layer {} broke off after {:.2f} of {:.2f} s", layer, light.lit_s,
-                         light.planned_s));
+             fmt::format("the light of {} broke off after {:.2f} of {:.2f} s", layer, light.lit_s, light.planned_s));
     return {};
 }
 
 Status Teller::change(const host::JournalRecord& record) {
+    const auto material = record.whole("material"), from = record.whole("from");
     const auto seconds = record.number_of("seconds");
+    if (!material) return tl::unexpected(material.error());
+    if (!from) return tl::unexpected(from.error());
     if (!seconds) return tl::unexpected(seconds.error());
     tell(record, false,
-         fmt::format("material {} is lit for {:g} s from layer {} on", text_of(record, "material"), *seconds,
-                     text_of(record, "from")));
+         fmt::format("{} is lit for {:g} s from {} on", host::material_text(materials_, static_cast<int>(*material)),
+                     *seconds, host::layer_text(static_cast<int>(*from))));
+    return {};
+}
+
+Status Teller::skip(const host::JournalRecord& record) {
+    const auto layer = record.whole("layer");
+    if (!layer) return tl::unexpected(layer.error());
+    tell(record, false, host::layer_text(static_cast<int>(*layer)) + " gets no light");
     return {};
 }
 
@@ -128,6 +141,7 @@ Status Teller::take(const host::JournalRecord& record) {
     if (kind == "light") return light(record);
     if (kind == "dark") return dark(record);
     if (kind == "exposure") return change(record);
+    if (kind == "skip") return skip(record);
     if (kind == "begin") {
         story_.job = text_of(record, "job");
         story_.digest = text_of(record, "digest");
@@ -135,8 +149,6 @@ Status Teller::take(const host::JournalRecord& record) {
         story_.end = PrintEnd::interrupted;
     } else if (kind == "stop") {
         tell(record, true, "stopped: " + text_of(record, "why"));
-    } else if (kind == "skip") {
-        tell(record, false, "layer " + text_of(record, "layer") + " gets no light");
     } else if (kind == "pause") {
         const std::string asked = text_of(record, "asked");
         tell(record, false, asked.empty() ? "paused" : "paused: " + asked);
@@ -159,7 +171,7 @@ void Teller::say_how_it_went_on(std::size_t index) {
     if (!h.fault) return;
     const auto next = begun_.upper_bound(h.record);
     if (next != begun_.end())
-        h.then = fmt::format("survived: the light went on in layer {}", next->second.second);
+        h.then = "survived: the light went on in " + host::layer_text(next->second.second);
     else if (story_.end == PrintEnd::complete)
         h.then = "survived: all light had been given";
     else
@@ -168,8 +180,9 @@ void Teller::say_how_it_went_on(std::size_t index) {
 
 }  // namespace
 
-Result<PrintStory> story_of(const std::vector<host::JournalRecord>& records) {
-    Teller teller;
+Result<PrintStory> story_of(const std::vector<host::JournalRecord>& records,
+                            const std::vector<std::string>& materials) {
+    Teller teller(materials);
     for (const host::JournalRecord& record : records) {
         if (Status status = teller.take(record); !status) return tl::unexpected(status.error());
     }

@@ -27,7 +27,7 @@ struct Happening {
     double at_s = -1;  ///< time of the exposure before it, counted from the first exposure; -1: before any
     int layer = -1;    ///< layer of that exposure
     bool fault = false;
-    std::string text;
+    std::string text;  ///< for people: counts layers from 1
     std::string then;  ///< how the print continued
 };
 
@@ -44,7 +44,8 @@ struct PrintStory {
 };
 
 /// Time accumulates over sessions within one boot of the computer; the time between boots counts as zero. Errors: a
-/// record without the values of its kind.
-[[nodiscard]] Result<PrintStory> story_of(const std::vector<host::JournalRecord>& records);
+/// record without the values of its kind. `materials`: their names in the job, for the texts.
+[[nodiscard]] Result<PrintStory> story_of(const std::vector<host::JournalRecord>& records,
+                                          const std::vector<std::string>& materials = {});
 
 }  // namespace pliant::report

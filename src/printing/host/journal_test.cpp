@@ -235,3 +235,14 @@ TEST_CASE("what cannot be the beginning of a journal is none, whoever reads it")
     CHECK(parse_journal("", "x")->records.empty());
     CHECK(parse_journal("05ec2", "x")->records.empty());
 }
+
+TEST_CASE("an exposure of unknown length is named as people count layers, with its material") {
+    JournalFacts facts =
+        facts_of(
+            parse_journal(three_records().substr(0, three_records().rfind('\n', three_records().size() - 2) + 1), "x")
+                ->records)
+            .value();
+    const auto open = close_open_light(facts, nullptr, {}, {"soft", "rigid"});
+    REQUIRE_FALSE(open);
+    CHECK(open.error().message.starts_with("layer 1, rigid: an exposure of 2.5 s was in progress"));
+}

@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "printing/host/print_names.hpp"
 #include "printing/host/resume_point.hpp"
 
 namespace pliant::host {
@@ -129,11 +130,6 @@ double PrintRun::exposure_s(const machine::Expose& light) const {
     return seconds;
 }
 
-std::string PrintRun::material_name(int material) const {
-    const auto m = static_cast<std::size_t>(material);
-    return m < run_.job.materials.size() ? run_.job.materials[m] : fmt::format("material {}", material + 1);
-}
-
 bool PrintRun::skipped(int layer) const {
     return std::find(facts_.skipped_layers.begin(), facts_.skipped_layers.end(), layer) != facts_.skipped_layers.end();
 }
@@ -151,7 +147,7 @@ Status PrintRun::expose(std::size_t step) {
     LightFact& fact = found->second;
     if (is_new && skipped(light.layer)) {
         facts_.lights.erase(found);
-        run_.desk.event("log", fmt::format("the exposure of layer {} is skipped", light.layer + 1));
+        run_.desk.event("log", fmt::format("the exposure of {} is skipped", layer_text(light.layer)));
         return {};
     }
     if (is_new) fact = {light.layer, light.material, exposure_s(light), 0, false, 0, 0};
@@ -196,8 +192,8 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
     const double start_s = clock_.now();
     if (run_.setup.guard != nullptr) run_.setup.guard->lit(start_s);
     Status status = projector_.show_for(image, left_s);
-    run_.desk.event("light",
-                    fmt::format("layer {}, {}, {:.3f} s", fact.layer + 1, material_name(fact.material), left_s));
+    run_.desk.event("light", fmt::format("{}, {}, {:.3f} s", layer_text(fact.layer),
+                                         material_text(run_.job.materials, fact.material), left_s));
     run_.desk.update([&](Snapshot& s) {
         s.lit = true;
         s.exposure_s = fact.planned_s;
@@ -315,14 +311,14 @@ Status PrintRun::keep_changes() {
             s.exposures_s.resize(run_.job.materials.size());
             s.exposures_s[static_cast<std::size_t>(change.material)] = change.seconds;
         });
-        run_.desk.event("log", fmt::format("from layer {} on, {} is exposed for {:g} s", change.from_layer + 1,
-                                           material_name(change.material), change.seconds));
+        run_.desk.event("log", fmt::format("from {} on, {} is exposed for {:g} s", layer_text(change.from_layer),
+                                           material_text(run_.job.materials, change.material), change.seconds));
     }
     for (const int layer : run_.desk.take_skips()) {
         if (layer <= layer_) continue;
         if (Status status = note("skip", {{"layer", fmt::format("{}", layer)}}); !status) return status;
         facts_.skipped_layers.push_back(layer);
-        run_.desk.event("log", fmt::format("layer {} will be skipped", layer + 1));
+        run_.desk.event("log", fmt::format("{} will be skipped", layer_text(layer)));
     }
     return {};
 }

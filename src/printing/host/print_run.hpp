@@ -68,7 +68,6 @@ private:
     [[nodiscard]] Result<Ending> park(Ending ending);
     [[nodiscard]] Status note(std::string_view kind, const JournalValues& values);
     [[nodiscard]] double exposure_s(const machine::Expose& light) const;
-    [[nodiscard]] std::string material_name(int material) const;  ///< for messages
     [[nodiscard]] bool skipped(int layer) const;
     [[nodiscard]] bool at_safe_point() const;
     [[nodiscard]] int next_layer(std::size_t step) const;

@@ -226,7 +226,7 @@ Result<Ending> Control::Private::go_on(const StartOptions& options, bool abandon
     auto facts = facts_of(journal.records());
     if (!facts) return input_error("{}: {}", job->journal.string(), facts.error().message);
     if (Status status = check_journal(*facts); !status) return tl::unexpected(status.error());
-    const auto open_light = close_open_light(*facts, setup.guard, options.assume);
+    const auto open_light = close_open_light(*facts, setup.guard, options.assume, job->materials);
     if (!open_light) return tl::unexpected(open_light.error());
     if (*open_light) {
         const auto noted = journal.append("dark", {{"light", fmt::format("{}", (*open_light)->light)},

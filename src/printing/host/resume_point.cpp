@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "printing/host/machine.hpp"
+#include "printing/host/print_names.hpp"
 #include "printing/machine/follow.hpp"
 
 namespace pliant::host {
@@ -152,7 +153,8 @@ bool is_enough(double lit_s, double planned_s) {
     return planned_s - lit_s < std::min(0.02, 0.02 * planned_s);
 }
 
-Result<std::optional<OpenLight>> close_open_light(JournalFacts& facts, Guard* guard, const Assume& assume) {
+Result<std::optional<OpenLight>> close_open_light(JournalFacts& facts, Guard* guard, const Assume& assume,
+                                                  const std::vector<std::string>& materials) {
     for (auto& [step, fact] : facts.lights) {
         if (fact.open_light == 0) continue;
         OpenLight open{fact.open_light, 0, false, false};
@@ -169,10 +171,11 @@ Result<std::optional<OpenLight>> close_open_light(JournalFacts& facts, Guard* gu
             open.assumed = true;
         } else {
             return failure(
-                "layer {}, material {}: an exposure of {:g} s was in progress when the host ended, and how long it "
+                "{}, {}: an exposure of {:g} s was in progress when the host ended, and how long it "
                 "lasted is not recorded; inspect the part and resume with --assume-lit SECONDS (0: none, {:g}: all of "
                 "it)",
-                fact.layer, fact.material, fact.planned_s - fact.lit_s, fact.planned_s - fact.lit_s);
+                layer_text(fact.layer), material_text(materials, fact.material), fact.planned_s - fact.lit_s,
+                fact.planned_s - fact.lit_s);
         }
         fact.lit_s += open.on_s;
         fact.complete = open.complete = is_enough(fact.lit_s, fact.planned_s);

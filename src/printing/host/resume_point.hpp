@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "base/core/error.hpp"
 #include "printing/host/control_types.hpp"
@@ -35,8 +37,9 @@ struct OpenLight {
 };
 
 /// nullopt: there is none. Errors: there is one whose end was not observed: `assume` must give its duration.
-[[nodiscard]] Result<std::optional<OpenLight>> close_open_light(JournalFacts& facts, Guard* guard,
-                                                                const Assume& assume);
+/// `materials`: names for the message.
+[[nodiscard]] Result<std::optional<OpenLight>> close_open_light(JournalFacts& facts, Guard* guard, const Assume& assume,
+                                                                const std::vector<std::string>& materials);
 
 /// The first step whose exposure is incomplete; the number of steps if there is none.
 [[nodiscard]] std::size_t next_light(const JournalFacts& facts, const Script& script);
