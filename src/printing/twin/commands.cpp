@@ -185,6 +185,8 @@ void Twin::execute_set(const Command& c) {
 
 /// Switching is queued with the moves: it takes effect when those before it are done.
 void Twin::execute_switch(const Command& c) {
+    if (machine::moves_emergency_line(printer_, c))
+        return violation(fmt::format("M42 P{}: that pin is the emergency line", printer_.emergency_line.pin));
     const bool fan = !c.is('M', 42);
     if (fan && options_.report_fans) {
         say(fmt::format("M106 P{:g} S{:g}", c.value('P').value_or(0), c.is('M', 107) ? 0 : c.value('S').value_or(255)));

@@ -94,6 +94,14 @@ TEST_CASE("moves that the interlocks forbid are refused, reported and recorded")
     CHECK(holds(b.twin.log().violations.back(), "no vat under the platform"));
 }
 
+TEST_CASE("a command to the pin of the emergency line is refused, reported and recorded") {
+    Peer b;
+    CHECK(holds(b.send("M42 P12 S0"), "Error:interlock: M42 P12: that pin is the emergency line"));
+    REQUIRE(b.twin.log().violations.size() == 1);
+    CHECK(holds(b.twin.log().violations[0], "that pin is the emergency line"));
+    CHECK(b.send("M42 P57 S0") == "ok\n");
+}
+
 TEST_CASE("M410 stops a move half-way, and the axes must be homed again") {
     Peer b;
     b.home();
