@@ -1,5 +1,5 @@
-// The clock of a virtual printer, shared with its host through a file: however slow the computer is, both agree on the
-// length of every exposure.
+// The clock of a virtual printer, shared with its host through a file: both measure exposures by it. The printer does
+// not wait for the host: it moves the clock on by at most 0.1 s at once, also while the host is busy.
 #pragma once
 
 #include <filesystem>

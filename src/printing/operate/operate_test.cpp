@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <memory>
 #include <thread>
 
 #include "base/core/files.hpp"
@@ -10,9 +11,29 @@
 #include "printing/operate/clock_file.hpp"
 #include "printing/operate/layer_command.hpp"
 #include "printing/operate/picture_projector.hpp"
+#include "printing/wire/scaled_time.hpp"
 
 using namespace pliant;
 using namespace pliant::operate;
+
+namespace {
+
+/// Nothing ever arrives; every look takes the printer 0.1 s.
+class SilentWire final : public host::Wire {
+public:
+    explicit SilentWire(const ClockFile* clock) : clock_(clock) {}
+    [[nodiscard]] Status write(std::string_view) override { return {}; }
+    [[nodiscard]] Result<std::string> read(double timeout_s) override {
+        CHECK(timeout_s == 0);
+        if (clock_ != nullptr) clock_->set(clock_->now() + 0.1);
+        return std::string();
+    }
+
+private:
+    const ClockFile* clock_;
+};
+
+}  // namespace
 
 TEST_CASE("with a folder as projector the picture is there exactly during the exposure") {
     const pliant::test::Folder folder;
@@ -69,6 +90,18 @@ TEST_CASE("host and virtual printer share a clock through a file") {
     time.join();
     ClockFile moved = std::move(*host);
     CHECK(moved.now() == 14.5);
+}
+
+TEST_CASE("waiting for an answer ends by the printer's clock, and does not outlast the printer") {
+    const pliant::test::Folder folder;
+    const auto clock = ClockFile::create(folder.path() / "clock");
+    REQUIRE(clock.has_value());
+    host::ClockedWire wire(std::make_unique<SilentWire>(&*clock), *clock);
+    CHECK(wire.read(3).value().empty());
+    CHECK(clock->now() >= 3);
+    CHECK(clock->now() < 3.15);  // one step of the clock too long at most
+    host::ClockedWire dead(std::make_unique<SilentWire>(nullptr), *clock);
+    CHECK(dead.read(0.01).value().empty());
 }
 
 TEST_CASE("a file that is not a clock is refused, and not changed") {

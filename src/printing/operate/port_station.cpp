@@ -77,7 +77,17 @@ Result<std::unique_ptr<PortStation>> PortStation::open(PortOptions options, Read
 }
 
 host::ControlSetup PortStation::setup(const machine::Printer& printer) {
-    host::ControlSetup setup = port_setup(options_.device, options_.speed, printer, *projector_, clock(), &*guard_);
+    const double speed = file_ ? 1 : options_.speed;
+    host::ControlSetup setup = port_setup(options_.device, speed, printer, *projector_, clock(), &*guard_);
+    if (file_) {
+        // In real time, a wait of 10 ms for an answer would prolong an exposure of a fast printer by seconds.
+        setup.open_wire = [open = std::move(setup.open_wire),
+                           &clock = *file_]() -> Result<std::unique_ptr<host::Wire>> {
+            auto wire = open();
+            if (!wire) return wire;
+            return std::make_unique<host::ClockedWire>(std::move(*wire), clock);
+        };
+    }
     setup.emergency_line = emergency_line_.get();
     return setup;
 }

@@ -1,8 +1,11 @@
-// Accelerated time, for a virtual printer with a fast clock: the host's timeouts and exposures shrink with it.
+// Accelerated time, for a virtual printer with a fast clock: the host's timeouts and exposures shrink with it, or
+// follow a clock that the printer moves on.
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
+#include <thread>
 #include <utility>
 
 #include "printing/wire/devices.hpp"
@@ -35,6 +38,30 @@ public:
 private:
     std::unique_ptr<Wire> wire_;
     double speed_;
+};
+
+/// Waits for answers in the time of a clock that another process moves on; never longer than the same time on this
+/// computer's clock, since that process may have died. `clock` must outlive it.
+class ClockedWire final : public Wire {
+public:
+    ClockedWire(std::unique_ptr<Wire> wire, const Clock& clock) : wire_(std::move(wire)), clock_(clock) {}
+    [[nodiscard]] Status write(std::string_view bytes) override { return wire_->write(bytes); }
+    [[nodiscard]] Result<std::string> read(double timeout_s) override {
+        using Real = std::chrono::steady_clock;
+        constexpr std::chrono::microseconds look_every(200);
+        const double end_s = clock_.now() + timeout_s;
+        const auto latest = Real::now() + std::chrono::duration<double>(timeout_s);
+        for (;;) {
+            Result<std::string> bytes = wire_->read(0);
+            if (!bytes || !bytes->empty() || clock_.now() >= end_s || Real::now() >= latest) return bytes;
+            std::this_thread::sleep_for(look_every);
+        }
+    }
+    [[nodiscard]] Status reset() override { return wire_->reset(); }
+
+private:
+    std::unique_ptr<Wire> wire_;
+    const Clock& clock_;
 };
 
 }  // namespace pliant::host
