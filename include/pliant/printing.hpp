@@ -39,7 +39,8 @@ struct PrintPlan {
         int slot = 0;         ///< its place in the tower, from 1
         std::string resin;    ///< the resin it must hold
         double resin_ml = 0;  ///< used by the job
-        bool refill = false;  ///< the printer file names another resin for it, or none
+        bool refill = false;  ///< to be filled in before the print: the printer file has another resin there, or none
+        std::vector<int> refills;  ///< layers, from 0, before which it must be refilled during the print
     };
     int layers = 0;                     ///< number of layers of the part
     int swaps = 0;                      ///< number of vat swaps

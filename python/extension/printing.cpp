@@ -15,7 +15,7 @@ py::dict plan_dict(const PrintPlan& plan) {
     using namespace py::literals;
     py::list vats;
     for (const PrintPlan::Vat& vat : plan.vats)
-        vats.append(py::make_tuple(vat.slot, vat.resin, vat.resin_ml, vat.refill));
+        vats.append(py::make_tuple(vat.slot, vat.resin, vat.resin_ml, vat.refill, vat.refills));
     return py::dict("layers"_a = plan.layers, "swaps"_a = plan.swaps, "seconds"_a = plan.seconds,
                     "swap_s"_a = plan.swap_s, "clean_s"_a = plan.clean_s, "expose_s"_a = plan.expose_s,
                     "move_s"_a = plan.move_s, "solution_ml"_a = plan.solution_ml, "vats"_a = vats,

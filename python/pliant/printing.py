@@ -41,8 +41,10 @@ class Vat(NamedTuple):
     resin: str
     #: resin used by the job, ml
     resin_ml: float
-    #: True if the printer file names another resin for it, or none
+    #: True if it is to be filled in before the print: the printer file names another resin for it, or none
     refill: bool
+    #: layers, from 0, before which it must be refilled during the print
+    refills: list[int]
 
 
 @dataclass(frozen=True)

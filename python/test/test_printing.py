@@ -28,6 +28,8 @@ def test_a_plan_equals_that_of_the_command_line(job):
     told = json.loads(subprocess.run(run, check=True, capture_output=True, text=True).stdout)
     assert (told["layers"], told["swaps"]) == (plan.layers, plan.swaps)
     assert told["seconds"]["total"] == round(plan.seconds, 3)
+    vats = [(v["slot"], v["refill"], [r["layer"] for r in v["refills"]]) for v in told["vats"]]
+    assert vats == [(v.slot, v.refill, v.refills) for v in plan.vats]
     assert isinstance(pliant.check(file), list)
 
 

@@ -32,7 +32,12 @@ PrintPlan plan_of(const plan::Plan& plan) {
                   plan.solution.used_ml,
                   {},
                   plan.warnings};
-    for (const plan::VatUse& vat : plan.vats) out.vats.push_back({vat.slot, vat.resin, vat.resin_ml, vat.refill});
+    for (const plan::VatUse& vat : plan.vats) {
+        out.vats.push_back({vat.slot, vat.resin, vat.resin_ml, vat.refill, {}});
+        for (const plan::RefillBefore& refill : plan.refills) {
+            if (refill.slot == vat.slot) out.vats.back().refills.push_back(refill.layer);
+        }
+    }
     return out;
 }
 

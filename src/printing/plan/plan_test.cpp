@@ -115,6 +115,10 @@ TEST_CASE("warnings: a material that prints nothing, and a vat that holds too li
     CHECK(
         holds(plan.warnings[1], "the vat of slot 1 gives 0.0 ml of \"semi-flex\" at a time: refill it before layer 4"));
     CHECK(holds(plan.warnings[2], "1 layer would have to be cured deeper"));
+    const auto json = nlohmann::json::parse(plan_json(plan));
+    REQUIRE(json["vats"].size() == 1);
+    CHECK(json["vats"][0]["refill"] == false);  // the printer file has that resin there
+    CHECK(json["vats"][0]["refills"] == nlohmann::json::parse(R"([{"layer": 4}])"));
 }
 
 TEST_CASE("layers that a longer exposure cures deep enough are not counted as too thick") {

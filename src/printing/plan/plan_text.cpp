@@ -69,11 +69,20 @@ Json layers_json(const Plan& plan) {
             {"move", std::move(move)}};
 }
 
-Json vat_json(const VatUse& use) {
+Json refills_json(const Plan& plan, int slot) {
+    Json refills = Json::array();
+    for (const RefillBefore& refill : plan.refills) {
+        if (refill.slot == slot) refills.push_back({{"layer", refill.layer}});
+    }
+    return refills;
+}
+
+Json vat_json(const Plan& plan, const VatUse& use) {
     return {{"slot", use.slot},
             {"resin", use.resin},
             {"materials", use.materials},
             {"refill", use.refill},
+            {"refills", refills_json(plan, use.slot)},
             {"first_layer", use.first_layer},
             {"last_layer", use.last_layer},
             {"waste_ml", rounded(use.waste_ml)},
@@ -135,7 +144,7 @@ std::string plan_json(const Plan& plan) {
     Json vats = Json::array();
     for (const VatUse& use : plan.vats) {
         resin[std::to_string(use.slot)] = rounded(use.resin_ml);
-        vats.push_back(vat_json(use));
+        vats.push_back(vat_json(plan, use));
     }
     const Json json = {{"job", plan.job},
                        {"printer", plan.printer},
