@@ -265,6 +265,8 @@ Result<int> print_on_live_twin(const LiveOptions& options, operate::ReadyJob& re
 void show_hint(const operate::PrintCall& call, const operate::ReadyJob& ready, std::optional<long> before) {
     const auto now = operate::interrupted_at(ready.job.journal, ready.job.digest, ready.printer.name);
     if (!now || (call.resumed && now == before)) return;
+    if (Status way = operate::check_resumable(ready); !way)
+        return fmt::print(stderr, "cannot be resumed: {}\n", way.error().message);
     fmt::print(stderr, "resume with: {}\n", operate::resume_command(call));
 }
 

@@ -121,7 +121,12 @@ TEST_CASE("after a controller restart anywhere the light is off; the print resum
         const bool begun = b.snapshot().can_resume;
         if (!begun) CHECK(b.twin->log().homings == 0);
         b.start({begun, {}});
-        ++(has_gone_on(b, whole) ? resumed : refused);
+        const bool went_on = has_gone_on(b, whole);
+        ++(went_on ? resumed : refused);
+        if (went_on) continue;
+        b.start();
+        CHECK(b.last_error().find("this job was interrupted and cannot be resumed: ") != std::string::npos);
+        CHECK(b.last_error().find("delete the journal and start the print anew") != std::string::npos);
     }
     MESSAGE(resumed << " resumed, " << refused << " refused, " << before << " not disturbed");
     CHECK(resumed > deeds / moment_stride / 2);

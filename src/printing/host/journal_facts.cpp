@@ -92,6 +92,16 @@ private:
             return input_error("journal record {} ({}): {}={:g} is below 0", r.number, r.kind, key, *value);
         return value;
     }
+    /// nullopt: the record does not say.
+    static Result<std::optional<bool>> flag(const JournalRecord& r, std::string_view key) {
+        if (r.find(key) == nullptr) return std::optional<bool>();
+        return r.whole(key).map([](long value) { return std::optional(value != 0); });
+    }
+    /// For the first journals, whose stops have no `halted`.
+    static bool tells_of_halt(const JournalRecord& r) {
+        const std::string* why = r.find("why");
+        return why != nullptr && (why->find("emergency stop") == 0 || why->find("halted") != std::string::npos);
+    }
     Status begin(const JournalRecord& r) {
         const std::string* format = r.find("format");  // the first journals had none
         if (format != nullptr && *format != "1")
@@ -118,7 +128,7 @@ private:
         facts_.base = *base;
         facts_.before_base = *before;
         facts_.boot = *boot;
-        facts_.stopped_short = facts_.halted = false;
+        facts_.stopped_short = facts_.halted = facts_.was_reset = false;
         facts_.go = GoFact{-1, 0, *base + 1, *state, 0};
         return {};
     }
@@ -207,9 +217,11 @@ private:
         const auto quick = r.whole("quick");
         if (!quick) return tl::unexpected(quick.error());
         facts_.stopped_short = facts_.stopped_short || *quick != 0;
-        const std::string* why = r.find("why");
-        facts_.halted =
-            why != nullptr && (why->find("emergency stop") == 0 || why->find("halted") != std::string::npos);
+        const auto halted = flag(r, "halted"), reset = flag(r, "reset");
+        if (!halted) return tl::unexpected(halted.error());
+        if (!reset) return tl::unexpected(reset.error());
+        facts_.was_reset = reset->value_or(false);
+        facts_.halted = halted->value_or(tells_of_halt(r));
         return {};
     }
 

@@ -57,6 +57,7 @@ struct JournalFacts {
     bool cancelled = false;      ///< for good
     bool moved = false;          ///< a command that may move the machine was about to be sent
     bool halted = false;         ///< the last session ended with a halted controller, which answers only after a reset
+    bool was_reset = false;      ///< the last session ended because the controller restarted: its position is lost
     bool stopped_short = false;  ///< motion was stopped midway (M410): the position is unknown
     std::map<std::size_t, LightFact> lights;            ///< by step of the job
     std::optional<std::size_t> last_light;              ///< step of the last exposure

@@ -244,3 +244,18 @@ TEST_CASE("an exposure of unknown length is named as people count layers, with i
     REQUIRE_FALSE(open);
     CHECK(open.error().message.starts_with("layer 1, rigid: an exposure of 2.5 s was in progress"));
 }
+
+TEST_CASE("a stop says whether the board is halted or was reset; of older journals the words tell") {
+    const auto stopped = [](JournalValues values) {
+        return facts_of(
+            {{1, "begin", {{"job", "a"}, {"digest", ""}, {"printer", "x"}}}, {2, "stop", std::move(values)}});
+    };
+    // The record says otherwise than its words.
+    CHECK(stopped({{"quick", "1"}, {"halted", "1"}, {"reset", "0"}, {"why", "x"}})->halted);
+    CHECK_FALSE(stopped({{"quick", "1"}, {"halted", "0"}, {"reset", "1"}, {"why", "the board is halted"}})->halted);
+    CHECK(stopped({{"quick", "1"}, {"halted", "0"}, {"reset", "1"}, {"why", "x"}})->was_reset);
+    CHECK(stopped({{"quick", "1"}, {"why", "emergency stop"}})->halted);
+    CHECK_FALSE(stopped({{"quick", "1"}, {"why", "the door is open"}})->halted);
+    CHECK_FALSE(stopped({{"quick", "1"}, {"why", "x"}})->was_reset);
+    CHECK_FALSE(stopped({{"quick", "1"}, {"halted", "yes"}, {"why", "x"}}));
+}

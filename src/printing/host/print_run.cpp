@@ -430,8 +430,12 @@ void PrintRun::make_safe(const Error& error) {
     Link& link = run_.machine.link();
     const bool emergency = run_.desk.stopped();
     const bool quick = emergency || !(link.was_reset() || link.wire_failed() || journal_failed_);
-    (void)note("stop", {{"quick", quick ? "1" : "0"}, {"why", error.message}});
-    if (emergency || link.was_reset() || link.wire_failed() || link.has_halted()) return;
+    const bool halted = emergency || link.has_halted();
+    (void)note("stop", {{"quick", quick ? "1" : "0"},
+                        {"halted", halted ? "1" : "0"},
+                        {"reset", link.was_reset() ? "1" : "0"},
+                        {"why", error.message}});
+    if (halted || link.was_reset() || link.wire_failed()) return;
     if (!journal_failed_) return link.stop(run_.script.stop_commands);
     // The journal cannot be written: what is in progress ends, and nothing else moves.
     for (const std::string& command : run_.script.stop_commands) (void)link.send(command);

@@ -198,6 +198,9 @@ Result<Ending> Control::Private::print_anew(Journal* journal) {
         const auto facts = facts_of(journal->records());
         if (!facts) return tl::unexpected(facts.error());
         if (is_interrupted(*facts)) {
+            if (Status way = check_way_on(*facts, script, setup.printer, setup.programs.resume); !way)
+                return input_error("{}: this job was interrupted and cannot be resumed: {}", job->journal.string(),
+                                   way.error().message);
             return input_error(
                 "{}: this job was interrupted; continue with --resume, or delete the journal to start over",
                 job->journal.string());

@@ -219,4 +219,16 @@ Result<Recovery> recovery_of(const JournalFacts& facts, const Script& script, co
     return recovery;
 }
 
+Status check_way_on(const JournalFacts& facts, const Script& script, const machine::Printer& printer,
+                    const std::function<Result<std::string>(const Recovery&)>& resume) {
+    if (!facts.was_reset && !facts.halted) return {};
+    constexpr long after_reset = 0;  // last line of a controller that has restarted
+    const auto standing = standing_of(facts, script, printer, after_reset, {});
+    if (!standing) return tl::unexpected(standing.error());
+    const auto recovery = recovery_of(facts, script, printer, *standing);
+    if (!recovery) return tl::unexpected(recovery.error());
+    const auto program = resume(*recovery);
+    return program ? Status{} : tl::unexpected(program.error());
+}
+
 }  // namespace pliant::host

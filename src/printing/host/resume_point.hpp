@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +48,11 @@ struct OpenLight {
 /// Errors: the journal refers to a step that the script does not have (another job).
 [[nodiscard]] Result<Recovery> recovery_of(const JournalFacts& facts, const Script& script,
                                            const machine::Printer& printer, const Standing& standing);
+
+/// Errors: the last session ended with a controller that has lost its position, or loses it by the reset that it needs,
+/// where `resume`, as in Programs, has no way on from there.
+[[nodiscard]] Status check_way_on(const JournalFacts& facts, const Script& script, const machine::Printer& printer,
+                                  const std::function<Result<std::string>(const Recovery&)>& resume);
 
 /// Whether the missing exposure is small enough to be ignored.
 [[nodiscard]] bool is_enough(double lit_s, double planned_s);

@@ -7,6 +7,8 @@
 
 #include "base/core/files.hpp"
 #include "printing/host/journal_facts.hpp"
+#include "printing/host/resume_point.hpp"
+#include "printing/operate/programs.hpp"
 
 namespace pliant::operate {
 namespace {
@@ -51,6 +53,16 @@ std::optional<long> interrupted_at(const std::filesystem::path& journal, const s
     if (!facts || !host::is_interrupted(*facts)) return {};
     if (facts->digest != digest || facts->printer != printer) return {};
     return parsed->records.back().number;
+}
+
+Status check_resumable(const ReadyJob& ready) {
+    const Result<std::string> text = read_file(ready.job.journal);
+    if (!text) return {};
+    const auto parsed = host::parse_journal(*text, ready.job.journal.string());
+    const auto facts = parsed ? host::facts_of(parsed->records) : tl::unexpected(parsed.error());
+    const auto script = host::read_script(ready.job.gcode);
+    if (!facts || !script) return {};
+    return host::check_way_on(*facts, *script, ready.printer, programs_of(ready.printer).resume);
 }
 
 Status expect_journal(const std::filesystem::path& journal, const std::string& job) {

@@ -27,6 +27,9 @@ struct PrintCall {
 [[nodiscard]] std::optional<long> interrupted_at(const std::filesystem::path& journal, const std::string& digest,
                                                  const std::string& printer);
 
+/// Errors: host::check_way_on() of that print; ok if the journal cannot be read.
+[[nodiscard]] Status check_resumable(const ReadyJob& ready);
+
 /// Errors: there is no such file.
 [[nodiscard]] Status expect_journal(const std::filesystem::path& journal, const std::string& job);
 

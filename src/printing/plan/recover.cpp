@@ -104,17 +104,18 @@ Result<std::string> resume_program(const Interrupted& from, const Printer& print
     if (from.on_hooks && printer.hooks.magnet.present())
         return failure(
             "the controller restarted while the carriage was on its way with a vat on its magnet, which has let it go "
-            "without power: put the vat into its slot by hand, pull the carriage out, and start the print anew");
+            "without power: put the vat into its slot by hand, pull the carriage out, delete the journal and start "
+            "the print anew");
     const bool reaches = from.state.fork_out() && !from.state.all_homed();
     if (printer.store() == Store::wall && (from.on_hooks || reaches))
         return failure(
             "the controller restarted while a vat was half-way on the hooks, or the retriever's fork in the wall: pull "
-            "the fork back and put every vat into its slot by hand, and start the print anew");
+            "the fork back and put every vat into its slot by hand, delete the journal and start the print anew");
     if (from.on_hooks)
         return failure(
             "the controller restarted while the tower stood half-way on the hooks: moving would tear the vat. "
             "Bring the tower by hand until the vat stands in its slot or hangs on the hooks, pull the "
-            "carriage out, and start the print anew");
+            "carriage out, delete the journal and start the print anew");
     const std::optional<int> wanted = from.finished ? std::nullopt : from.target.hooked_vat();
     Sequence s(printer);
     s.stand_at(from.state.position());
