@@ -166,6 +166,10 @@ void check_stations(Reader& root, const Printer& p) {
     for (const int station_um : p.table.stations_um) within(Axis::table, station_um, "a station");
     if (p.store() == Store::table) within(Axis::table, p.table.cleaning_um, "the cleaning station");
     within(Axis::platform, 0, "the floor of the vat");
+    const int highest_um = p.axis(Axis::platform).max_um;
+    if (p.platform.lift_um >= highest_um)
+        root.problem("platform.lift", fmt::format("is {:.3f} mm; the platform's travel ends at {:.3f} mm",
+                                                  p.platform.lift_um / 1000.0, highest_um / 1000.0));
     within(Axis::platform, p.clear_um(p.platform.build_height_um) + p.cleaning.stroke_z_um,
            "the tallest part, lifted clear of the vat for cleaning,");
     if (!p.has_carriage()) return;

@@ -130,6 +130,9 @@ void check_switch_commands(Reader& r, const Switch& s) {
         if (!switches) r.problem(key, "must be an M106, M107 or M42 command such as \"M106 P1 S255\"");
     }
     if (s.on.empty() != s.off.empty()) r.problem("on", "and \"off\" go together");
+    const auto on = parse_command(s.on), off = parse_command(s.off);
+    if (on && off && switched(s, *on) && switched(s, *off).value_or(true))
+        r.problem("off", fmt::format("\"{}\" does not switch off what \"{}\" switches on", s.off, s.on));
 }
 
 Switch read_switch(Reader r) {

@@ -64,7 +64,10 @@ TEST_CASE("mistakes in a magnet's table are named") {
          {"release = \"500 ms\"", "release = \"5 mm\"", "hooks.release"},
          {"force = \"60 N\"", "# force", "force: and vat_mass go together"},
          {"release = \"500 ms\"", "release = \"500 ms\"\ntravel = \"3 mm\"", "hooks.travel: belongs to hooks"},
-         {"M42 P11 S255", "M42 P12 S255", "is the pin of the emergency line"},
+         {"M42 P11 S255", "M42 P12 S255", "\"M42 P11 S0\" does not switch off what \"M42 P12 S255\" switches on"},
+         {"on = \"M42 P11 S255\"             # servo output of the RAMPS, to a transistor: off without "
+          "power\noff = \"M42 P11 S0\"",
+          "on = \"M42 P12 S255\"\noff = \"M42 P12 S0\"", "is the pin of the emergency line"},
          {"on = \"M42 P11 S255\"             # servo output of the RAMPS, to a transistor: off without "
           "power\noff = \"M42 P11 S0\"",
           "on = \"M106 P1 S255\"\noff = \"M107 P1\"", "is the output of pump"}});

@@ -73,6 +73,9 @@ TEST_CASE("mistakes in switches, door, fans and emergency line are named, with a
         const auto printer = parse_printer(replaced(text, from, to), "p.toml");
         return printer ? "" : printer.error().message;
     };
+    CHECK(holds(changed("off = \"M107 P1\"", "off = \"M106 P1 S255\""),
+                "\"M106 P1 S255\" does not switch off what \"M106 P1 S255\" switches on"));
+    CHECK(holds(changed("off = \"M107 P1\"", "off = \"M107 P2\""), "does not switch off"));
     CHECK(holds(changed(last, ""), "the tower homes to a switch at its min that is not listed"));
     const std::string relay = "signal = \"controller\"\npin = 12 ";
     CHECK(holds(changed(relay, "signal = \"dtr\"\n"), "device"));
