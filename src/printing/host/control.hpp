@@ -83,9 +83,6 @@ public:
     [[nodiscard]] Status clean(double seconds);
     /// The same as clean(), to fill the pump's lines.
     [[nodiscard]] Status prime(double seconds);
-    /// Exposes in the present position, homed or not and without a vat: for checking focus and dimensions. (A virtual
-    /// printer reports a fault before homing or without a vat.)
-    [[nodiscard]] Status expose_test(job::Image image, double seconds);
     /// Deliberately resets the controller by DTR; needs a serial line that has it.
     [[nodiscard]] Status reset_controller();
 

@@ -112,37 +112,4 @@ Status Control::prime(double seconds) {
     return clean(seconds);
 }
 
-Status Control::expose_test(job::Image image, double seconds) {
-    const machine::Printer& printer = state_->setup.printer;
-    if (!(seconds > 0 && seconds <= printer.limits.exposure_s))
-        return input_error("exposure of {:g} s: {} allows up to {:g} s", seconds, printer.name,
-                           printer.limits.exposure_s);
-    if (image.width_px != printer.projector.width_px || image.height_px != printer.projector.height_px)
-        return input_error("the image has {} x {} pixels, the projector {} x {}", image.width_px, image.height_px,
-                           printer.projector.width_px, printer.projector.height_px);
-    return state_->ask_for(State::working, only_when({State::idle}), [this, image = std::move(image), seconds] {
-        Private& s = *state_;
-        if (!s.machine) return s.desk.state(State::offline);
-        if (Status status = s.preflight(); !status) {
-            s.desk.event("error", status.error().message);
-            return s.desk.state(State::idle, status.error().message);
-        }
-        const double end_s = s.setup.clock.now() + seconds;
-        Status status = s.setup.projector.show_for(image, seconds);
-        s.desk.event("light", fmt::format("test, {:g} s", seconds));
-        while (status && s.setup.clock.now() < end_s) {
-            if (status = s.desk.watch(); !status) break;
-            if (status = s.machine->ask_for_door(); !status) break;
-            if (status = s.machine->link().listen_for(std::min(0.01, end_s - s.setup.clock.now()), false); !status)
-                break;
-            if (s.machine->door_open().value_or(false)) break;
-        }
-        const Status dark = s.setup.projector.black();
-        s.desk.event("dark", "test");
-        if (status) status = dark;
-        if (!status) return s.fail(status.error());
-        s.desk.state(State::idle);
-    });
-}
-
 }  // namespace pliant::host
