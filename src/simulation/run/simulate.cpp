@@ -141,6 +141,8 @@ private:
             if (std::string held = held_by_nothing(stepper_.model()); !held.empty())
                 result.warnings.push_back(std::move(held));
         }
+        if (std::string braked = braked_turns(program_, result.steps); !braked.empty())
+            result.warnings.push_back(std::move(braked));
         result.solve_s += watch.read_s();
         add_warnings(result);
     }

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "base/core/counted.hpp"
 
@@ -47,6 +49,13 @@ std::vector<bool> held_by_joints(const Model& model) {
         }
     }
     return held;
+}
+
+/// rad, at most half a turn.
+double angle_between(const ObjectState& before, const ObjectState& after) {
+    const double product =
+        std::inner_product(before.rotation.begin(), before.rotation.end(), after.rotation.begin(), 0.0);
+    return 2 * std::acos(std::min(1.0, std::fabs(product)));
 }
 
 }  // namespace
@@ -100,6 +109,30 @@ std::string closed_gap_text(const Model& model, const ClosedGap& gap) {
         "guide points {} and {} of cable \"{}\" have met: the gap between them is closed; without [contact] its flanks "
         "pass through each other",
         gap.segment + 1, gap.segment + 2, model.description().cables[gap.cable].name);
+}
+
+std::string braked_turns(const Program& program, const std::vector<Step>& steps) {
+    constexpr double noticeable = 0.1;  // rad a step, where a free spin loses about 1 % of its energy in a turn
+    if (!program.dynamics) return {};
+    const bool conserving = program.dynamics->integrator == Integrator::energy_conserving;
+    double largest = noticeable;
+    const ObjectState* fastest = nullptr;
+    for (std::size_t k = 1; k < steps.size(); ++k) {
+        for (std::size_t i = 0; i < steps[k].objects.size(); ++i) {
+            const ObjectState& object = steps[k].objects[i];
+            if (conserving && norm(object.force_N) == 0) continue;
+            const double turn = angle_between(steps[k - 1].objects[i], object) / steps[k].substeps;
+            if (turn <= largest) continue;
+            largest = turn;
+            fastest = &object;
+        }
+    }
+    if (fastest == nullptr) return {};
+    return fmt::format(
+        "object \"{}\" turns by up to {:.2g} rad in a step of time: above {:g} rad the time integration brakes what "
+        "rolls or spins; give a smaller program.time_step{}",
+        fastest->name, largest, noticeable,
+        conserving ? "" : ", or for what touches nothing program.integrator = \"energy-conserving\"");
 }
 
 void add_warnings(Trajectory& trajectory) {

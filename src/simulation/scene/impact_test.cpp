@@ -195,6 +195,22 @@ TEST_CASE("a freely spinning object keeps its energy, and its centre falls on a 
     CHECK(height(result.steps.back()) == near(605e-3 + T - 0.5 * g * T * T, {.absolute = 1e-6}));
 }
 
+TEST_CASE("a spin of over 0.1 rad a step is told where the time integration brakes it") {
+    const auto told = [](const std::string& program) {
+        const sim::Trajectory result = run_text(
+            impact_world("name = \"top\"\ngeometry = { box = [[-5, -10, 600], [5, 10, 640]] }\nmass = \"100 g\"\n"
+                         "angular_velocity = [0, 0, 30]\n",
+                         "duration = \"0.02 s\"\n" + program));
+        std::string told;
+        for (const std::string& warning : result.warnings)
+            if (warning.find("turns by up to") != std::string::npos) told += warning;
+        return told;
+    };
+    CHECK(told("time_step = \"5 ms\"\n").find("object \"top\" turns by up to 0.15 rad in a step of time") == 0);
+    CHECK(told("time_step = \"2 ms\"\n").empty());
+    CHECK(told("time_step = \"5 ms\"\nintegrator = \"energy-conserving\"\n").empty());
+}
+
 TEST_CASE("an object that rotates about a principal axis keeps its angular velocity, whatever the stiffest body is") {
     for (const char* integrator : {"bdf2", "energy-conserving"}) {
         for (const char* modulus : {"1 kPa", "1 MPa", "1 GPa"}) {
