@@ -13,7 +13,7 @@
 namespace pliant::robot {
 namespace {
 
-constexpr double distance_share = 1e-3;  // of the robot's size
+constexpr double distance_share = 1e-3;  // of the size of the robot or of the largest object
 constexpr double slip_share = 1e-2;      // of the distance
 constexpr double stiffness_share = 0.1;  // of the softest Young's modulus
 constexpr double chord_share = 0.1;      // of the distance: largest deviation of a round obstacle's triangles from its
@@ -37,6 +37,21 @@ Result<mesh::TriMesh> obstacle_surface(const Robot& robot, const ObstacleSpec& s
     Result<mesh::TriMesh> surface = shape_surface(robot, spec.shape, chord_share * distance_m);
     if (!surface) return surface;
     return mesh::scaled(std::move(*surface), robot.unit_m);
+}
+
+/// The diagonal of an object's bounding box as it is drawn, length units; 0 if its file cannot be read.
+double size_of(const ObjectSpec& spec) {
+    if (const auto* solid = std::get_if<mesh::Solid>(&spec.shape)) return mesh::bounds(*solid).diagonal();
+    const Result<mesh::TriMesh> surface = placed_file(std::get<SurfaceFile>(spec.shape));
+    return surface ? mesh::bounds(*surface).diagonal() : 0;
+}
+
+double usual_distance_m(const Robot& robot, const mesh::TetMesh& bodies) {
+    Box3 box;
+    for (const Vec3& p : bodies.points) box.add(p);
+    double size_m = box.diagonal();
+    for (const ObjectSpec& object : robot.objects) size_m = std::max(size_m, robot.unit_m * size_of(object));
+    return distance_share * size_m;
 }
 
 /// The surface at its initial position, metres, counter-clockwise seen from outside.
@@ -64,13 +79,11 @@ Result<mesh::TriMesh> object_surface(const Robot& robot, const ObjectSpec& spec,
 Result<std::optional<sim::ContactRules>> build_contact(const Robot& robot, const mesh::TetMesh& bodies) {
     const ContactSpec spec = robot.contact.value_or(ContactSpec{});
     if (!spec.self && robot.obstacles.empty() && robot.objects.empty()) return std::nullopt;
-    Box3 box;
-    for (const Vec3& p : bodies.points) box.add(p);
     sim::ContactRules rules;
     rules.surface = sim::contact::robot_surface(bodies);
     rules.settings.self = spec.self;
     rules.self_when_met = !robot.contact;
-    rules.settings.distance_m = spec.distance > 0 ? spec.distance * robot.unit_m : distance_share * box.diagonal();
+    rules.settings.distance_m = spec.distance > 0 ? spec.distance * robot.unit_m : usual_distance_m(robot, bodies);
     rules.settings.slip_m = spec.slip > 0 ? spec.slip * robot.unit_m : slip_share * rules.settings.distance_m;
     rules.settings.stiffness_Pa = spec.stiffness_Pa.value_or(stiffness_share * softest_Pa(robot));
     rules.settings.friction = spec.friction;
