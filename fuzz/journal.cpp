@@ -43,7 +43,7 @@ void go_on(const host::JournalText& text) {
                                     .value();
     auto facts = host::facts_of(text.records);
     if (!facts) return;
-    const auto open = host::close_open_light(*facts, nullptr, {1.0, false});
+    const auto open = host::close_open_light(*facts, nullptr, {1.0, false}, {"soft"});
     if (!open) return;
     for (const long last_line : {0L, facts->go ? facts->go->line + 2 : 5L}) {
         const auto standing = host::standing_of(*facts, script, tower(), last_line, {});
