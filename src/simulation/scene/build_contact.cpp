@@ -40,7 +40,7 @@ Result<mesh::TriMesh> obstacle_surface(const Robot& robot, const ObstacleSpec& s
 }
 
 /// The diagonal of an object's bounding box as it is drawn, length units; 0 if its file cannot be read.
-double size_of(const ObjectSpec& spec) {
+double drawn_size(const ObjectSpec& spec) {
     if (const auto* solid = std::get_if<mesh::Solid>(&spec.shape)) return mesh::bounds(*solid).diagonal();
     const Result<mesh::TriMesh> surface = placed_file(std::get<SurfaceFile>(spec.shape));
     return surface ? mesh::bounds(*surface).diagonal() : 0;
@@ -50,7 +50,7 @@ double usual_distance_m(const Robot& robot, const mesh::TetMesh& bodies) {
     Box3 box;
     for (const Vec3& p : bodies.points) box.add(p);
     double size_m = box.diagonal();
-    for (const ObjectSpec& object : robot.objects) size_m = std::max(size_m, robot.unit_m * size_of(object));
+    for (const ObjectSpec& object : robot.objects) size_m = std::max(size_m, robot.unit_m * drawn_size(object));
     return distance_share * size_m;
 }
 
