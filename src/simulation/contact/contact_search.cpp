@@ -85,7 +85,7 @@ std::vector<std::array<int, 2>> Contact::partners(const Pairs& pairs) const {
         const auto owner = [&](int node) {
             return obstacle_of_node_[node] >= 0 ? -obstacle_of_node_[node] - 1 : part_of(node);
         };
-        const auto [low, high] = std::minmax(owner(pair.nodes.front()), owner(pair.nodes.back()));
+        const auto [low, high] = std::minmax({owner(pair.nodes.front()), owner(pair.nodes.back())});
         all.push_back({low, high});
     }
     std::ranges::sort(all);

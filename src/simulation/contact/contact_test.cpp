@@ -613,3 +613,23 @@ TEST_CASE("an obstacle acts where it is drawn: the robot rests within a tenth of
         CHECK(apart == near(lowest, {.relative = 1e-9}));
     }
 }
+
+TEST_CASE("what touches what: every obstacle counts for itself") {
+    const SpringBody body = spring_box({0.003, 0, 0.003}, {0.01, 0.01, 0.01}, {2, 2, 2});
+    const Contact contact =
+        contact_of(body, usual, {{"floor", HalfSpace{{}, {0, 0, 1}}}, {"wall", HalfSpace{{}, {1, 0, 0}}}});
+    const auto partners_at = [&](double x_m, double z_m) {
+        Vector x = vector_of(contact.rest());
+        for (std::size_t i = 0; i < body.node_count(); ++i) {
+            x[static_cast<Eigen::Index>(3 * i)] += x_m - 0.003;
+            x[static_cast<Eigen::Index>(3 * i + 2)] += z_m - 0.003;
+        }
+        return contact.partners(contact.find(span(x)));
+    };
+    using Partners = std::vector<std::array<int, 2>>;
+    const double close_m = 0.5 * usual.distance_m;
+    CHECK(partners_at(0.003, 0.003).empty());
+    CHECK(partners_at(0.003, close_m) == Partners{{-1, 0}});
+    CHECK(partners_at(close_m, 0.003) == Partners{{-2, 0}});
+    CHECK(partners_at(close_m, close_m) == Partners{{-2, 0}, {-1, 0}});
+}

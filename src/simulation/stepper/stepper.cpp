@@ -370,11 +370,13 @@ int Stepper::touching_after(const RobotState& robot, const State& next, const Co
 }
 
 /// Things that touch use formulas that dissipate unresolved motion, as in an impact. The step in which that begins, and
-/// the next, do not use earlier states.
+/// the two after it, do not use earlier states: the first may end just where the surfaces meet, so that only the second
+/// takes the velocity away, and BDF2 looks back two steps.
 Scheme Stepper::scheme(const RobotState& robot, const Controls& controls) const {
-    if (robot.history.touching == 1) return Scheme::euler;
+    constexpr int steps_of_impact = 3;
+    if (robot.history.touching > 0 && robot.history.touching < steps_of_impact) return Scheme::euler;
     if (!is_adaptive() && options_.dynamics->integrator == Integrator::bdf2) return Scheme::even;
-    if (robot.history.touching > 1 || options_.dynamics->integrator == Integrator::bdf2) return Scheme::bdf2;
+    if (robot.history.touching > 0 || options_.dynamics->integrator == Integrator::bdf2) return Scheme::bdf2;
     // A prescribed length, volume or angle refers to the end of the step, not to the mean; a damped joint, to its loss
     // by then.
     const bool prescribed =
