@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "simulation/contact/contact.hpp"
 #include "simulation/solver/line_search.hpp"
 
 namespace pliant::sim {
@@ -33,6 +34,14 @@ struct Misfit {
         return out + fmt::format(", tolerance {:.2g}", tolerance);
     }
 };
+
+/// What lets sliding contact settle.
+std::string remedy(const Equilibrium& system) {
+    const contact::Contact* contact = system.model().contact(true);
+    if (!system.has_friction() || contact == nullptr) return {};
+    return fmt::format(". A longer contact.slip (here {:.3g} mm) or shorter steps let it settle",
+                       1e3 * contact->settings().slip_m);
+}
 
 }  // namespace
 
@@ -79,7 +88,7 @@ StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, con
             std::clamp(share_of_misfit * misfit.residual, settings.tolerance, first_tolerance * settings.tolerance);
         if (round < rounds && !rounds_are_vain(misfits, rounds, loose_residual * settings.tolerance)) continue;
         total.converged = total.loose = misfit.within(settings.tolerance, loose_residual, loose_cable_length);
-        total.reason = misfit.text(settings.tolerance);
+        total.reason = misfit.text(settings.tolerance) + remedy(system);
         break;
     }
     return total;
