@@ -213,6 +213,7 @@ void Elements::weigh(const Description& description) {
 /// Adds a quarter of an object's mass at each of its nodes, and the point masses.
 void Elements::add_lumps(const Description& description) {
     for (const FreeObject& object : description.objects) {
+        object_nodes_.push_back(object.nodes);
         for (const int node : object.nodes) lumps_.push_back({{node}, {1.0}, object.mass_kg / 4});
     }
     for (const PointMass& mass : description.masses)

@@ -1,6 +1,7 @@
 // The elastic body: integration points, forces, energy, tangent.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -87,6 +88,8 @@ public:
 
     /// (n) integral of density times N_a, kg: the nodal masses for gravity.
     [[nodiscard]] const std::vector<double>& node_mass_kg() const { return node_mass_; }
+    /// The four nodes of each rigid object, with a quarter of its mass each.
+    [[nodiscard]] const std::vector<std::array<int, 4>>& object_nodes() const { return object_nodes_; }
     [[nodiscard]] bool has_energy() const { return has_energy_; }
 
     /// Deformation gradients at the integration points of tet t and their volumes, times the weight of the tet.
@@ -180,6 +183,7 @@ private:
         double mass_kg = 0;
     };
     std::vector<Lump> lumps_;
+    std::vector<std::array<int, 4>> object_nodes_;
     std::vector<material::Law> laws_;
     NodeSums sums_;
     mutable ArrayPool<double> scratch_;  ///< partial sums of pieces and runs

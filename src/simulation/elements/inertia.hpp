@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/linalg/sparse.hpp"
+#include "simulation/elements/free_rotation.hpp"
 #include "simulation/parts/robot_names.hpp"
 
 namespace pliant::sim {
@@ -52,6 +53,16 @@ struct StiffnessMatrix {
 /// Source: Hairer and Wanner, Solving Ordinary Differential Equations II, chapter III; for variable steps Hairer,
 /// Norsett and Wanner I, III.5.
 ///
+/// Both would brake the rotation of rigid objects, since their nodes move on arcs. For the nodes of an object these
+/// formulas therefore apply to the deviation from the motion that it would have from x_n and v_n without a torque
+/// (FreeRotation; the centre of mass moves uniformly in it, which the formulas render exactly):
+///     v = c (x - p) + d_v      d_v = v° - c (x° - p°)
+///     a = c (v - q) + d_a      d_a = a° - c (v° - q°)
+/// where x°, v° and a° are those of the free motion at the end, and p° and q° are formed from it, backwards in time
+/// too. This shifts p by -d_v/c and x~ by -d_v/c - d_a/c^2. A free object then follows its free motion, and forces have
+/// their effect with the order and the damping of the formulas (defect correction: Stetter 1978, "The defect correction
+/// principle and discretization methods").
+///
 /// The conserving step has  x - x_n = h/2 (v_n + v)  and  M (v - v_n)/h = - mean of the forces on the straight path
 /// from x_n to x, so that the sum of kinetic and potential energy is conserved (Harten, Lax and van Leer 1983; Quispel
 /// and McLaren 2008, "A new class of energy-preserving numerical integration methods"). Each force evaluates its own
@@ -90,8 +101,8 @@ public:
     }
     [[nodiscard]] Scheme scheme() const { return scheme_; }
     /// (3n) estimated error of a step that ends at x: its difference from extrapolating the last two states, times the
-    /// factor from theory (Gresho, Griffiths and Silvester 2008, "Adaptive time-stepping for incompressible flow"). At
-    /// the start of a motion it is too large.
+    /// factor from theory (Gresho, Griffiths and Silvester 2008, "Adaptive time-stepping for incompressible flow"); for
+    /// objects that of their deviation from the free motion. At the start of a motion it is too large.
     [[nodiscard]] Eigen::VectorXd error(const Eigen::VectorXd& x) const;
 
     /// Energy of inertia and damping at x, J; forces (3n) += its gradient.
@@ -128,32 +139,56 @@ public:
     [[nodiscard]] History start_weights(const Eigen::VectorXd& force_weights,
                                         const Eigen::VectorXd& velocity_weights) const;
 
-    /// The same step from another history, with the same damping stiffness. Force and velocity are linear in x and the
-    /// history together, so a change of the history gives their change.
-    [[nodiscard]] Inertia from(History history) const {
-        return {*elements_, *free_index_, std::move(history), dt_, damping_, stiffness_, scheme_};
-    }
+    /// Derivative of the step with respect to its history, times a change of it (dt_before and is_still are not read):
+    /// force and velocity of the result, with the change of x, are the changes of this step's. The stiffness used for
+    /// damping is held fixed.
+    [[nodiscard]] Inertia change(History by) const;
 
 private:
     [[nodiscard]] Eigen::VectorXd damping_force(const Eigen::VectorXd& motion) const;
     [[nodiscard]] Eigen::VectorXd off(const Eigen::VectorXd& x) const;
+    void set_scheme();
     void set_even();
     void set_uneven();
     void set_conserving();
+
+    /// An object in its free motion.
+    struct Turning {
+        std::array<int, 4> nodes;
+        FreeRotation motion;
+    };
+    /// d_v and d_a of an object, or their changes.
+    struct Defect {
+        FreeRotation::Nodes v, a;
+    };
+    [[nodiscard]] std::vector<Turning> turning_objects() const;
+    [[nodiscard]] Defect defect(const Turning& object) const;
+    [[nodiscard]] Defect defect_change(const Turning& object, const FreeRotation::Nodes& dx,
+                                       const FreeRotation::Nodes& dv) const;
+    [[nodiscard]] Defect defect_of(const FreeRotation::Motion& before, const FreeRotation::Motion& now,
+                                   const FreeRotation::Motion& after) const;
+    void shift(const Turning& object, const Defect& by);
+    void add_defect_weights(const Eigen::VectorXd& by_v, const Eigen::VectorXd& by_a, History& weights) const;
+    template <class Vectors>
+    [[nodiscard]] Vectors error_from(const Vectors& x_end, const Vectors& v_end, const Vectors& x, const Vectors& v,
+                                     const Vectors& v_before) const;
 
     const Elements* elements_;
     const std::vector<int>* free_index_;
     History start_;
     double dt_;
     Scheme scheme_;
-    bool even_ = false;      ///< BDF2 with constant step length
-    double rate_ = 0;        ///< c
-    double mass_rate_ = 0;   ///< factor of the mass: c^2, or 2/h^2
-    double mass_entry_ = 0;  ///< factor of the mass with its damping
-    Eigen::VectorXd from_;   ///< p
-    Eigen::VectorXd coast_;  ///< x~
+    bool even_ = false;        ///< BDF2 with constant step length
+    double share_now_ = 1;     ///< of x_n in p and of v_n in q
+    double share_before_ = 0;  ///< of x_{n-1} and v_{n-1}
+    double rate_ = 0;          ///< c
+    double mass_rate_ = 0;     ///< factor of the mass: c^2, or 2/h^2
+    double mass_entry_ = 0;    ///< factor of the mass with its damping
+    Eigen::VectorXd from_;     ///< p, shifted for objects
+    Eigen::VectorXd coast_;    ///< x~, likewise
     Damping damping_;
     std::shared_ptr<const StiffnessMatrix> stiffness_;
+    std::vector<Turning> turning_;  ///< empty for a tether and a conserving step
 };
 
 }  // namespace pliant::sim

@@ -149,7 +149,7 @@ private:
         VectorXd force = VectorXd::Zero(sim::force_size(at.system()));
         if (at.controls().inertia) {
             VectorXd inertia = VectorXd::Zero(h.x.size());
-            (void)from(at, unknown).evaluate(VectorXd::Zero(h.x.size()), inertia);
+            (void)at.controls().inertia->change(h).evaluate(VectorXd::Zero(h.x.size()), inertia);
             if (const auto damped = sim::damped_step(at))
                 sim::add_damping_place_product(*damped, at.controls().inertia->damping_place().of(h), inertia);
             force.head(h.x.size()) += inertia;
@@ -215,16 +215,10 @@ private:
         keep_slips(at, unknown, x);
         sim::History& h = by[unknown];
         VectorXd v = h.v;
-        if (at.controls().inertia && !at.controls().inertia->is_tether()) v = from(at, unknown).velocity(x);
+        if (at.controls().inertia && !at.controls().inertia->is_tether())
+            v = at.controls().inertia->change(h).velocity(x);
         h.x_before = std::exchange(h.x, x);
         h.v_before = std::exchange(h.v, std::move(v));
-    }
-
-    [[nodiscard]] sim::Inertia from(const sim::Linearisation& at, std::size_t unknown) const {
-        sim::History history = by[unknown];
-        history.dt_before = at.controls().inertia->start().dt_before;
-        history.is_still = at.controls().inertia->is_tether();
-        return at.controls().inertia->from(std::move(history));
     }
 
     std::shared_ptr<const sim::contact::Friction> friction_{};  ///< of the current piece
