@@ -112,15 +112,14 @@ std::string closed_gap_text(const Model& model, const ClosedGap& gap) {
 }
 
 std::string braked_turns(const Program& program, const std::vector<Step>& steps) {
-    constexpr double noticeable = 0.1;  // rad a step, where a free spin loses about 1 % of its energy in a turn
+    constexpr double noticeable = 0.3;  // rad a step, where a ball that rolls down a slope comes some 2 % too short
     if (!program.dynamics) return {};
-    const bool conserving = program.dynamics->integrator == Integrator::energy_conserving;
     double largest = noticeable;
     const ObjectState* fastest = nullptr;
     for (std::size_t k = 1; k < steps.size(); ++k) {
         for (std::size_t i = 0; i < steps[k].objects.size(); ++i) {
             const ObjectState& object = steps[k].objects[i];
-            if (conserving && norm(object.force_N) == 0) continue;
+            if (norm(object.force_N) == 0) continue;
             const double turn = angle_between(steps[k - 1].objects[i], object) / steps[k].substeps;
             if (turn <= largest) continue;
             largest = turn;
@@ -129,10 +128,9 @@ std::string braked_turns(const Program& program, const std::vector<Step>& steps)
     }
     if (fastest == nullptr) return {};
     return fmt::format(
-        "object \"{}\" turns by up to {:.2g} rad in a step of time: above {:g} rad the time integration brakes what "
-        "rolls or spins; give a smaller program.time_step{}",
-        fastest->name, largest, noticeable,
-        conserving ? "" : ", or for what touches nothing program.integrator = \"energy-conserving\"");
+        "object \"{}\" touches something and turns by up to {:.2g} rad in a step of time: above {:g} rad the effect of "
+        "contact on what rolls is noticeably too small; give a smaller program.time_step",
+        fastest->name, largest, noticeable);
 }
 
 void add_warnings(Trajectory& trajectory) {

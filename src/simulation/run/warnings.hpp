@@ -28,8 +28,8 @@ struct ClosedGap {
 /// Explanation for people.
 [[nodiscard]] std::string closed_gap_text(const Model& model, const ClosedGap& gap);
 
-/// Names the object that turns the most in a step of a motion in time, where that is so much that the time integration
-/// brakes it; empty if none does.
+/// Names the object that turns the most in a step of a motion in time while it touches something, where that is so much
+/// that the time integration renders the effect of contact badly; empty if none does.
 [[nodiscard]] std::string braked_turns(const Program& program, const std::vector<Step>& steps);
 
 /// Adds warnings about the steps to those of the trajectory: each kind once, with the number of the first step and, for

@@ -214,6 +214,7 @@ TEST_CASE("what spins or tumbles freely follows its free motion in steps of any 
     const auto& q = top.steps.back().objects[0].rotation;
     CHECK(std::remainder(2 * std::atan2(q[3], q[0]) - 9, 2 * std::numbers::pi) == near(0, {.absolute = 1e-5}));
     CHECK(spin_energy(top) == near(0.5 * 0.1 / 12 * (0.01 * 0.01 + 0.02 * 0.02) * 900, {.relative = 1e-5}));
+    CHECK(top.warnings.empty());
     const sim::Trajectory fine = run("[2, 25, 3]", "2.5 ms");
     for (const char* more : {"", "time_tolerance = \"1 um\"\n"}) {
         const sim::Trajectory coarse = run("[2, 25, 3]", "15 ms", more);
@@ -230,6 +231,8 @@ TEST_CASE("a ball that rolls by half a radian a step rolls on") {
                      "velocity = [0.5, 0, 0]\nangular_velocity = [0, 50, 0]\n",
                      "duration = \"0.6 s\"\ntime_step = \"10 ms\"\n", 1));
     CHECK(result.steps.back().objects[0].position_m.x == near(0.3, {.relative = 0.02}));
+    REQUIRE(result.warnings.size() == 1);
+    CHECK(result.warnings[0].find("object \"ball\" touches something and turns by up to 0.5") == 0);
 }
 
 TEST_CASE("an object that rotates about a principal axis keeps its angular velocity, whatever the stiffest body is") {
@@ -245,9 +248,9 @@ TEST_CASE("an object that rotates about a principal axis keeps its angular veloc
             const sim::Step& last = result.steps.back();
             const bool conserves = std::string_view(integrator) == "energy-conserving";
             const auto& q = last.objects[0].rotation;
-            CHECK(2 * std::atan2(q[3], q[0]) == near(3, {.relative = conserves ? 1e-3 : 1e-5}));
+            CHECK(2 * std::atan2(q[3], q[0]) == near(3, {.relative = conserves ? 1e-3 : 2e-4}));
             CHECK(last.kinetic_energy_J ==
-                  near(0.5 * 0.1 / 12 * (0.01 * 0.01 + 0.02 * 0.02) * 100, {.relative = conserves ? 1e-3 : 1e-5}));
+                  near(0.5 * 0.1 / 12 * (0.01 * 0.01 + 0.02 * 0.02) * 100, {.relative = conserves ? 1e-3 : 2e-4}));
         }
     }
 }
