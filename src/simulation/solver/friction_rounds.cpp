@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "simulation/contact/contact.hpp"
 #include "simulation/solver/line_search.hpp"
 
 namespace pliant::sim {
