@@ -44,8 +44,7 @@ Status check_near(const Robot& robot, const sim::Model& model, const sim::Goal& 
             if (norm(at[k] - 0.5 * (box.low + box.high)) <= farthest * box.diagonal()) continue;
             return input_error(
                 "{}: goal \"{}\": its point [{:.4g}, {:.4g}, {:.4g}] is over a million times as far away as the robot "
-                "is "
-                "large; a point in the same direction, but nearer, asks for the same",
+                "is large; a point in the same direction, but nearer, asks for the same",
                 robot.file.string(), goal.name, at[k].x / robot.unit_m, at[k].y / robot.unit_m, at[k].z / robot.unit_m);
         }
     }
