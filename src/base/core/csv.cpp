@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/core/letters.hpp"
+#include "base/core/parse_all.hpp"
 
 namespace pliant {
 namespace {
@@ -74,12 +74,8 @@ Result<std::string_view> CsvTable::cell(const CsvRow& row, std::size_t column) c
 Result<double> CsvTable::number(const CsvRow& row, std::size_t column, std::string_view what) const {
     const auto text = cell(row, column);
     if (!text) return tl::unexpected(text.error());
-    const char* first = text->data();
-    const char* last = first + text->size();
-    if (last - first > 1 && *first == '+' && first[1] != '-') ++first;
     double value = 0;
-    const auto [end, code] = std::from_chars(first, last, value);
-    if (code == std::errc() && end == last && std::isfinite(value)) {
+    if (parse_all(without_plus(*text), value) && std::isfinite(value)) {
         if (std::fabs(value) <= largest_number) return value;
         return input_error_at(file, row.line, "{} \"{}\" is too large", what, text->substr(0, 40));
     }

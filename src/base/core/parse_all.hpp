@@ -14,4 +14,11 @@ template <class Number, class... Base>
     return code == std::errc() && end == text.data() + text.size() && !text.empty();
 }
 
+/// A number without the plus sign that people write before it and std::from_chars does not read. That of "+-1" stays:
+/// it is no number.
+[[nodiscard]] constexpr std::string_view without_plus(std::string_view number) {
+    const bool signed_once = number.size() > 1 && number[0] == '+' && number[1] != '-';
+    return signed_once ? number.substr(1) : number;
+}
+
 }  // namespace pliant

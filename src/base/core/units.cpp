@@ -6,6 +6,8 @@
 #include <numbers>
 #include <span>
 
+#include "base/core/parse_all.hpp"
+
 namespace pliant {
 namespace {
 
@@ -131,9 +133,8 @@ Result<double> unit_factor(std::string_view unit, Dimension dimension) {
 
 Result<double> parse_quantity(std::string_view text, Dimension dimension) {
     const std::string_view trimmed = trim(text);
-    const char* first = trimmed.data();
-    const char* last = first + trimmed.size();
-    if (last - first > 1 && *first == '+' && first[1] != '-') ++first;
+    const char* first = without_plus(trimmed).data();
+    const char* last = trimmed.data() + trimmed.size();
     double value = 0;
     const auto [end, code] = std::from_chars(first, last, value);
     if (code != std::errc() || !std::isfinite(value)) {

@@ -64,8 +64,7 @@ std::string fit_text(const Fit& fit) {
     if (const auto modulus = modulus_of_material(fit))
         text += fmt::format(
             "  youngs_modulus is that of the incompressible fit, 3 mu; the material below has 2 mu (1 + "
-            "poisson_ratio), "
-            "{}\n",
+            "poisson_ratio), {}\n",
             pressure(*modulus));
     for (const std::string& warning : fit.warnings) text += "  warning: " + warning + "\n";
     return text;
