@@ -22,6 +22,9 @@ pkg_check_modules(sdl2 REQUIRED IMPORTED_TARGET sdl2)
 pkg_check_modules(libdeflate REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(nettle REQUIRED IMPORTED_TARGET nettle)
 pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)
+add_library(pliant_libzip_headers INTERFACE) # the library itself is loaded when the first archive is read
+target_include_directories(pliant_libzip_headers SYSTEM INTERFACE ${libzip_INCLUDE_DIRS})
+file(READ_SYMLINK ${pkgcfg_lib_libzip_zip} pliant_libzip_name) # libzip.so.4 of libzip.so
 pkg_check_modules(pugixml REQUIRED IMPORTED_TARGET pugixml)
 
 if(PLIANT_TESTS)

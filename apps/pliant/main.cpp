@@ -80,18 +80,57 @@ std::string unknown_option(const CLI::App& command) {
                                        : "did you mean \"" + nearest + "\"?");
 }
 
-void add_commands(CLI::App& app, int& status) {
+struct Command {
+    std::string_view name;
+    pliant::app::AddCommand add;
+    bool needs_all = false;  ///< it reads what the other commands are
+};
+
+/// In the order of the help.
+constexpr std::array<Command, 23> commands = [] {
     using namespace pliant::app;
+    return std::to_array<Command>({{"new", add_new},
+                                   {"simulate", add_simulate},
+                                   {"inverse", add_inverse},
+                                   {"workspace", add_workspace},
+                                   {"reduce", add_reduce},
+                                   {"mesh", add_mesh},
+                                   {"slice", add_slice},
+                                   {"plan", add_plan},
+                                   {"export", add_export},
+                                   {"print", add_print},
+                                   {"twin", add_twin},
+                                   {"firmware", add_firmware},
+                                   {"project", add_project},
+                                   {"compare-printers", add_compare_printers},
+                                   {"check", add_check},
+                                   {"materials", add_materials},
+                                   {"calibrate", add_calibrate},
+                                   {"identify", add_identify},
+                                   {"study", add_study},
+                                   {"studio", add_studio},
+                                   {"help", add_help, true},
+                                   {"version", add_version},
+                                   {"completion", add_completion, true}});
+}();
+
+/// The commands that have to be known for a command line: one that begins with a command needs no other. Registering
+/// all of them, with their options, takes longer than the rest of a short run.
+std::vector<Command> needed(const std::vector<std::string>& words) {
+    const std::string first = words.empty() ? "" : words.front();
+    if (first == "--version") return {};
+    const auto given =
+        std::find_if(commands.begin(), commands.end(), [&](const Command& command) { return command.name == first; });
+    if (given == commands.end() || given->needs_all) return {commands.begin(), commands.end()};
+    return {*given};
+}
+
+void add_commands(CLI::App& app, const std::vector<Command>& known, int& status) {
     app.set_version_flag("--version", std::string(PLIANT_VERSION));
     app.require_subcommand(1);
     app.footer(
         "Example: pliant simulate examples/cable_gripper/gripper.toml -o out\nEvery command has its own --help.");
-    for (const AddCommand add :
-         {add_new,     add_simulate,  add_inverse,   add_workspace, add_reduce,   add_mesh,    add_slice,
-          add_plan,    add_export,    add_print,     add_twin,      add_firmware, add_project, add_compare_printers,
-          add_check,   add_materials, add_calibrate, add_identify,  add_study,    add_studio,  add_help,
-          add_version, add_completion})
-        add(app, status);
+    for (const Command& command : known) command.add(app, status);
 }
 
 int refuse_output(const std::string& reason) {
@@ -112,7 +151,7 @@ constexpr const char* about = "Pliant simulates multi-material soft robots and p
 int pliant::app::run_program(const std::vector<std::string>& words) {
     CLI::App app(about, "pliant");
     int status = exit_done;
-    add_commands(app, status);
+    add_commands(app, needed(words), status);
     try {
         app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     } catch (const CLI::ParseError& error) {
@@ -137,7 +176,7 @@ std::vector<std::string> pliant::app::commands_of_studies() {
     constexpr std::array<std::string_view, 5> others{"study", "studio", "print", "twin", "project"};
     CLI::App app(about, "pliant");
     int status = exit_done;
-    add_commands(app, status);
+    add_commands(app, {commands.begin(), commands.end()}, status);
     std::vector<std::string> names;
     const auto all = [](const CLI::App*) { return true; };
     for (const CLI::App* command : app.get_subcommands(all)) {

@@ -1,22 +1,26 @@
 #include "base/zip/zip_file.hpp"
 
-#include <zip.h>
-
 #include <algorithm>
+
+#include "base/zip/zip_library.hpp"
 
 namespace pliant {
 namespace {
 
+const ZipLibrary& libzip() {
+    return ZipLibrary::instance();
+}
+
 struct Discard {
-    void operator()(zip_t* archive) const { zip_discard(archive); }
+    void operator()(zip_t* archive) const { libzip().discard(archive); }
 };
 using Handle = std::unique_ptr<zip_t, Discard>;
 
 std::string text_of(int code) {
     zip_error_t error;
-    zip_error_init_with_code(&error, code);
-    std::string text = zip_error_strerror(&error);
-    zip_error_fini(&error);
+    libzip().error_init_with_code(&error, code);
+    std::string text = libzip().error_strerror(&error);
+    libzip().error_fini(&error);
     return text;
 }
 
@@ -41,30 +45,31 @@ Result<ZipReader> ZipReader::open(const std::filesystem::path& path) {
     if (!std::filesystem::exists(status)) return input_error("{}: no such file", path.string());
     if (!std::filesystem::is_regular_file(status)) return input_error("{}: is not a regular file", path.string());
     const std::uint64_t bytes = std::filesystem::file_size(path, error);
+    if (!libzip().is_there()) return failure("{}: the library {} is not installed", path.string(), ZipLibrary::name());
     int code = 0;
-    Handle archive(zip_open(path.c_str(), ZIP_RDONLY, &code));
+    Handle archive(libzip().open(path.c_str(), ZIP_RDONLY, &code));
     if (!archive) return input_error("{}: {}", path.string(), text_of(code));
     return ZipReader(std::make_unique<State>(State{path.string(), std::move(archive), bytes}));
 }
 
 std::uint64_t ZipReader::entry_count() const {
-    return static_cast<std::uint64_t>(zip_get_num_entries(state_->archive.get(), 0));
+    return static_cast<std::uint64_t>(libzip().get_num_entries(state_->archive.get(), 0));
 }
 
 std::string ZipReader::name(std::uint64_t index) const {
-    const char* name = zip_get_name(state_->archive.get(), index, ZIP_FL_ENC_GUESS);
+    const char* name = libzip().get_name(state_->archive.get(), index, ZIP_FL_ENC_GUESS);
     return name == nullptr ? std::string() : std::string(name);
 }
 
 bool ZipReader::has(const std::string& name) const {
-    return zip_name_locate(state_->archive.get(), name.c_str(), 0) >= 0;
+    return libzip().name_locate(state_->archive.get(), name.c_str(), 0) >= 0;
 }
 
 /// The stated size of an entry, after checking that its compressed bytes could hold it.
 Result<std::uint64_t> ZipReader::checked_size(const std::string& name) const {
     zip_stat_t stat;
-    zip_stat_init(&stat);
-    if (zip_stat(state_->archive.get(), name.c_str(), 0, &stat) != 0)
+    libzip().stat_init(&stat);
+    if (libzip().stat(state_->archive.get(), name.c_str(), 0, &stat) != 0)
         return input_error("{}: has no entry '{}'", state_->path, name);
     constexpr zip_uint64_t needed =
         ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE | ZIP_STAT_COMP_METHOD | ZIP_STAT_ENCRYPTION_METHOD;
@@ -78,21 +83,21 @@ Result<std::uint64_t> ZipReader::checked_size(const std::string& name) const {
 }
 
 Result<std::string> ZipReader::read_bytes(const std::string& name, std::uint64_t count, bool whole) const {
-    const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(zip_fopen(state_->archive.get(), name.c_str(), 0),
-                                                                 &zip_fclose);
-    if (!file) return input_error("{}: {}: {}", state_->path, name, zip_strerror(state_->archive.get()));
+    const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(libzip().fopen(state_->archive.get(), name.c_str(), 0),
+                                                                 libzip().fclose);
+    if (!file) return input_error("{}: {}: {}", state_->path, name, libzip().strerror(state_->archive.get()));
     std::string bytes(count, '\0');
     std::uint64_t done = 0;
     while (done < count) {
-        const zip_int64_t got = zip_fread(file.get(), bytes.data() + done, count - done);
+        const zip_int64_t got = libzip().fread(file.get(), bytes.data() + done, count - done);
         if (got <= 0)
             return input_error("{}: {}: {}", state_->path, name,
-                               got < 0 ? zip_file_strerror(file.get()) : "is cut short");
+                               got < 0 ? libzip().file_strerror(file.get()) : "is cut short");
         done += static_cast<std::uint64_t>(got);
     }
     // Reading past the end makes libzip verify the checksum.
     char beyond = 0;
-    if (whole && zip_fread(file.get(), &beyond, 1) != 0)
+    if (whole && libzip().fread(file.get(), &beyond, 1) != 0)
         return input_error("{}: {}: damaged (wrong checksum or length)", state_->path, name);
     return bytes;
 }

@@ -34,6 +34,7 @@ private:
 
 class ZipReader {
 public:
+    /// Errors: missing; not a regular file; not a zip archive; libzip is not installed.
     [[nodiscard]] static Result<ZipReader> open(const std::filesystem::path& path);
     ZipReader(ZipReader&&) noexcept;
     ZipReader& operator=(ZipReader&&) noexcept;

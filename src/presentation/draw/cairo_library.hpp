@@ -3,7 +3,7 @@
 
 #include <cairo.h>
 
-#include "presentation/draw/loaded_library.hpp"
+#include "base/core/loaded_library.hpp"
 
 namespace pliant::report {
 

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-namespace pliant::report {
+namespace pliant {
 
 /// Either all functions that were looked up are present, or the library counts as missing. Once loaded the library
 /// stays in the process, so that further objects cost nothing.
@@ -28,4 +28,4 @@ private:
     std::unique_ptr<void, Close> handle_;
 };
 
-}  // namespace pliant::report
+}  // namespace pliant

@@ -1,8 +1,8 @@
-#include "presentation/draw/loaded_library.hpp"
+#include "base/core/loaded_library.hpp"
 
 #include <dlfcn.h>
 
-namespace pliant::report {
+namespace pliant {
 
 LoadedLibrary::LoadedLibrary(const char* file_name)
     : handle_(dlopen(file_name, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE)) {}
@@ -17,4 +17,4 @@ void LoadedLibrary::Close::operator()(void* library) const {
     dlclose(library);
 }
 
-}  // namespace pliant::report
+}  // namespace pliant
