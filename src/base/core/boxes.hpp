@@ -10,6 +10,13 @@
 
 namespace pliant {
 
+/// The smallest box that holds all points; empty without any.
+[[nodiscard]] inline Box3 bounds_of(std::span<const Vec3> points) {
+    Box3 box;
+    for (const Vec3& p : points) box.add(p);
+    return box;
+}
+
 /// Whether two boxes overlap or touch, one of them widened by `margin` on all sides.
 [[nodiscard]] inline bool boxes_meet(const Box3& a, const Box3& b, double margin = 0) {
     for (std::size_t k = 0; k < 3; ++k) {

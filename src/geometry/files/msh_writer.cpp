@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstring>
 
+#include "base/core/boxes.hpp"
 #include "geometry/files/mid_edge_order.hpp"
 #include "geometry/files/tet_writer.hpp"
 
@@ -82,8 +83,7 @@ private:
     }
 
     void add_entities() {
-        Box3 box;
-        for (const Vec3& p : mesh_.points) box.add(p);
+        const Box3 box = bounds_of(mesh_.points);
         out_ += "$Entities\n";
         for (int dimension = 0; dimension < 3; ++dimension) size(0);
         size(mesh_.region_names.size());

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "base/core/boxes.hpp"
 #include "base/core/counted.hpp"
 #include "geometry/mesh/curved_tets.hpp"
 
@@ -105,7 +106,7 @@ MeshReport report_on(const TetMesh& mesh) {
     report.order = mesh.order;
     report.points = mesh.points.size();
     report.tets = mesh.tet_count();
-    for (const Vec3& p : mesh.points) report.box.add(p);
+    report.box = bounds_of(mesh.points);
     report.notes = mesh.notes;
     if (const auto pair = overlapping_tets(mesh)) report.notes.push_back(overlap_text(*pair));
     add_regions(mesh, report);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/core/boxes.hpp"
 #include "geometry/mesh/curved_point.hpp"
 #include "geometry/mesh/nearest_in_simplex.hpp"
 
@@ -29,7 +30,7 @@ double distance_to(const Box3& box, const Vec3& p) {
 }  // namespace
 
 TetLocator::TetLocator(const TetMesh& mesh) : mesh_(&mesh), curved_(mesh.tet_count()) {
-    for (const Vec3& p : mesh.points) box_.add(p);
+    box_ = pliant::bounds_of(mesh.points);
     for (std::size_t t = 0; t < curved_.size(); ++t) curved_[t] = is_curved(mesh, t, 1e-12 * box_.diagonal());
     const Vec3 size = box_.size();
     // About two tets per cell: short lists, and a grid no larger than the mesh.

@@ -1,5 +1,7 @@
 #include "geometry/mesh/tri_mesh.hpp"
 
+#include "base/core/boxes.hpp"
+
 namespace pliant::mesh {
 
 double signed_volume(const TriMesh& mesh) {
@@ -13,8 +15,7 @@ double signed_volume(const TriMesh& mesh) {
 }
 
 Box3 bounds(const TriMesh& mesh) {
-    Box3 box;
-    for (const Vec3& p : mesh.points) box.add(p);
+    const Box3 box = bounds_of(mesh.points);
     return box;
 }
 

@@ -1,5 +1,7 @@
 #include "geometry/mesher/mesher.hpp"
 
+#include <algorithm>
+
 #include "geometry/mesher/mesh_worker.hpp"
 #include "geometry/mesher/notches.hpp"
 #include "geometry/mesher/packing.hpp"
@@ -51,6 +53,16 @@ Status check_near(std::span<const BodyGeometry> bodies) {
 Box3 bounds(const BodyGeometry& body) {
     const auto* solid = std::get_if<Solid>(&body.shape);
     return solid != nullptr ? bounds(*solid) : bounds(std::get<TriMesh>(body.shape));
+}
+
+double longest_side(std::span<const BodyGeometry> bodies) {
+    Box3 box;
+    for (const BodyGeometry& body : bodies) {
+        const Box3 own = bounds(body);
+        box.add(own.low);
+        box.add(own.high);
+    }
+    return std::max({box.size().x, box.size().y, box.size().z});
 }
 
 Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings, Progress& progress) {

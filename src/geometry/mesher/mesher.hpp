@@ -22,6 +22,8 @@ struct BodyGeometry {
 };
 
 [[nodiscard]] Box3 bounds(const BodyGeometry& body);
+/// Of the box around all bodies.
+[[nodiscard]] double longest_side(std::span<const BodyGeometry> bodies);
 
 struct MeshSettings {
     double size = 0;              ///< target edge length, positive

@@ -32,8 +32,7 @@ struct Part {
 /// True if a node of `one` is in `other` or within `margin` of it; `body` is then the region there.
 bool reaches_into(const TetMesh& one, const TetMesh& other, double margin, int& body) {
     const TetLocator locator(other);
-    Box3 box;
-    for (const Vec3& p : other.points) box.add(p);
+    const Box3 box = bounds_of(other.points);
     for (const Vec3& p : one.points) {
         if (!box.contains(p, margin)) continue;
         const auto found = locator.locate(p);

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <optional>
 
+#include "base/core/boxes.hpp"
 #include "geometry/mesh/triangle_corners.hpp"
 #include "geometry/mesh/triangle_tree.hpp"
 
@@ -225,8 +226,7 @@ std::optional<Notch> notch_at(const TriangleTree& tree, const EdgeTriangles& edg
     if (left.points.empty() || entered.points.empty()) return std::nullopt;
     std::vector<Vec3> points = left.points;
     points.insert(points.end(), entered.points.begin(), entered.points.end());
-    Box3 box;
-    for (const Vec3& p : points) box.add(p);
+    const Box3 box = bounds_of(points);
     const double size = box.diagonal();
     const double away = 0.05 * width;  // more than the distance of a round wall from its chords
     std::vector<Plane> planes = hull_planes(points, size);

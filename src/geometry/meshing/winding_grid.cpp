@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/core/boxes.hpp"
 #include "geometry/mesh/triangle_corners.hpp"
 #include "geometry/repair/surface_seams.hpp"
 
@@ -19,8 +20,7 @@ constexpr std::size_t crowd = 48;
 constexpr double longest_border = 0.25;
 
 Box3 box_of(const Corners& t) {
-    Box3 box;
-    for (const Vec3& p : t) box.add(p);
+    const Box3 box = bounds_of(t);
     return box;
 }
 

@@ -26,7 +26,7 @@ Piece piece_of(const TetMesh& mesh, int region) {
     keep[static_cast<std::size_t>(region)] = true;
     Extract extract = extract_regions(mesh, keep);
     Piece piece{std::move(extract.mesh), {}, std::move(extract.node), region_faces(mesh, region)};
-    for (const Vec3& p : piece.mesh.points) piece.box.add(p);
+    piece.box = bounds_of(piece.mesh.points);
     return piece;
 }
 

@@ -33,10 +33,7 @@ PrintPlan plan_of(const plan::Plan& plan) {
                   {},
                   plan.warnings};
     for (const plan::VatUse& vat : plan.vats) {
-        out.vats.push_back({vat.slot, vat.resin, vat.resin_ml, vat.refill, {}});
-        for (const plan::RefillBefore& refill : plan.refills) {
-            if (refill.slot == vat.slot) out.vats.back().refills.push_back(refill.layer);
-        }
+        out.vats.push_back({vat.slot, vat.resin, vat.resin_ml, vat.refill, plan.refills_of(vat.slot)});
     }
     return out;
 }

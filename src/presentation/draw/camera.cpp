@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/core/boxes.hpp"
+
 namespace pliant::report {
 namespace {
 
@@ -12,8 +14,7 @@ constexpr double half_field = 0.22;  // tangent of half the vertical field of vi
 
 /// The axis along which the view shows most: least motion, then least extent. A tie goes to Y, then X, then Z.
 std::size_t view_axis(std::span<const Vec3> rest, std::span<const std::span<const Vec3>> others) {
-    Box3 box;
-    for (const Vec3& p : rest) box.add(p);
+    const Box3 box = bounds_of(rest);
     Vec3 motion;
     for (const auto& positions : others) {
         for (std::size_t i = 0; i < rest.size(); ++i) {

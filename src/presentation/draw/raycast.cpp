@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "base/core/boxes.hpp"
 #include "base/core/parallel.hpp"
 #include "presentation/draw/embree_scene.hpp"
 #include "presentation/draw/lighting.hpp"
@@ -133,8 +134,7 @@ private:
     };
 
     static double reach_of(const Scene& scene) {
-        Box3 box;
-        for (const Vec3& p : scene.body.positions) box.add(p);
+        const Box3 box = bounds_of(scene.body.positions);
         return std::max(1e-9, box.diagonal());
     }
 

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <array>
 
+#include "base/core/boxes.hpp"
+
 namespace pliant::report {
 namespace {
 
 constexpr std::array<double, 4> panel_margins = {0.06, 0.06, 0.10, 0.17};  // the top margin holds the caption
 
 double mean_depth(const Camera& camera, std::span<const Vec3> points) {
-    Box3 box;
-    for (const Vec3& p : points) box.add(p);
-    return camera.project(box.center())[2];
+    return camera.project(bounds_of(points).center())[2];
 }
 
 }  // namespace

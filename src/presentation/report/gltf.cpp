@@ -5,6 +5,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/core/boxes.hpp"
 #include "base/core/json.hpp"
 #include "presentation/draw/tube.hpp"
 
@@ -332,9 +333,7 @@ std::vector<std::size_t> thinned_steps(std::size_t count, std::size_t limit) {
 }
 
 double drawn_cable_radius(const Simulation& s) {
-    Box3 box;
-    for (const Vec3& p : s.mesh.points) box.add(p);
-    return 0.006 * box.diagonal();
+    return 0.006 * bounds_of(s.mesh.points).diagonal();
 }
 
 std::string robot_glb(const Simulation& s, const Surface& surface, std::size_t target_limit, double animation_s) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/core/boxes.hpp"
 #include "base/core/counted.hpp"
 #include "presentation/draw/canvas.hpp"
 #include "presentation/draw/gif.hpp"
@@ -62,7 +63,7 @@ public:
         const std::vector<std::span<const Vec3>> moved(clouds.begin() + 1, clouds.end());
         view_ = choice.towards_eye ? view_from(*choice.towards_eye) : choose_view(clouds.front(), moved);
         for (const auto& cloud : clouds) points_.insert(points_.end(), cloud.begin(), cloud.end());
-        for (const Vec3& p : points_) box_.add(p);
+        box_ = bounds_of(points_);
         floor_z_m_ = box_.low.z;
         for (const std::size_t step : steps) add_cable_points(step);
         for (const MeasuredPath& path : s.measured)

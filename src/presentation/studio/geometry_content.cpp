@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/core/boxes.hpp"
 #include "base/core/counted.hpp"
 #include "geometry/mesher/step_file.hpp"
 #include "geometry/open/open_geometry.hpp"
@@ -10,8 +11,7 @@ namespace pliant::studio {
 namespace {
 
 Box3 box_of(const std::vector<Vec3>& points) {
-    Box3 box;
-    for (const Vec3& p : points) box.add(p);
+    const Box3 box = bounds_of(points);
     return box;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "base/core/boxes.hpp"
 #include "base/core/json.hpp"
 #include "presentation/studio/actuator_drive.hpp"
 #include "presentation/studio/dumped.hpp"
@@ -32,9 +33,7 @@ constexpr double quick_s = 0.05;                    // per increment: fast enoug
 constexpr double slow_s = 0.15;
 
 double diagonal(const std::vector<Vec3>& points) {
-    Box3 box;
-    for (const Vec3& p : points) box.add(p);
-    return box.diagonal();
+    return bounds_of(points).diagonal();
 }
 
 /// Only the last value of an actuator counts.

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/core/boxes.hpp"
 #include "presentation/draw/camera.hpp"
 #include "presentation/draw/canvas.hpp"
 #include "presentation/draw/raycast.hpp"
@@ -88,8 +89,7 @@ Result<std::string> draw_robot(const std::string& text, const std::filesystem::p
         seen.insert(seen.end(), points.begin(), points.end());
         scene.cables.push_back({std::move(points)});
     }
-    Box3 box;
-    for (const Vec3& p : drawn->surface.points) box.add(p);
+    const Box3 box = bounds_of(drawn->surface.points);
     scene.floor_z_m = box.low.z;
     scene.cable_radius_m = 0.006 * box.diagonal();
     if (style.backdrop) std::tie(scene.backdrop_top, scene.backdrop_bottom) = *style.backdrop;

@@ -191,6 +191,14 @@ void warn_of_curves(const job::Manifest& job, const Printer& printer, Plan& plan
 
 }  // namespace
 
+std::vector<int> Plan::refills_of(int slot) const {
+    std::vector<int> found;
+    for (const RefillBefore& refill : refills) {
+        if (refill.slot == slot) found.push_back(refill.layer);
+    }
+    return found;
+}
+
 Result<Plan> make_plan(const job::Manifest& job, const Printer& printer, OrderRule rule) {
     if (Status status = check_job(job, printer); !status) return tl::unexpected(status.error());
     auto assignment = assign_vats(job, printer);

@@ -63,6 +63,9 @@ struct Plan {
     std::vector<std::string> warnings;
     double brushed_ml = 0;  ///< resin that brushes wipe off the part, back into its vats
     SolutionUse solution;
+
+    /// The layers before which the vat in this slot is refilled.
+    [[nodiscard]] std::vector<int> refills_of(int slot) const;
 };
 
 /// Plans `job` for `printer`. Each resin uses the vat that holds it. A resin that no vat holds is an error or, if the

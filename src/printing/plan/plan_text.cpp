@@ -71,9 +71,7 @@ Json layers_json(const Plan& plan) {
 
 Json refills_json(const Plan& plan, int slot) {
     Json refills = Json::array();
-    for (const RefillBefore& refill : plan.refills) {
-        if (refill.slot == slot) refills.push_back({{"layer", refill.layer}});
-    }
+    for (const int layer : plan.refills_of(slot)) refills.push_back({{"layer", layer}});
     return refills;
 }
 
@@ -171,10 +169,8 @@ std::vector<std::string> vat_lines(const Plan& plan) {
     for (const VatUse& use : plan.vats) {
         std::string line = fmt::format("slot {}: {}, {:.1f} ml", use.slot, use.resin, use.resin_ml);
         if (use.refill) line += ", to be filled in: the printer file has another resin there, or none";
-        const auto refills = std::count_if(plan.refills.begin(), plan.refills.end(),
-                                           [&](const RefillBefore& refill) { return refill.slot == use.slot; });
-        if (refills > 0)
-            line += fmt::format(", refilled {} during the print", counted(static_cast<std::size_t>(refills), "time"));
+        const std::size_t refills = plan.refills_of(use.slot).size();
+        if (refills > 0) line += fmt::format(", refilled {} during the print", counted(refills, "time"));
         lines.push_back(std::move(line));
     }
     return lines;

@@ -9,6 +9,7 @@
 #include "geometry/mesher/mesher.hpp"
 #include "geometry/mesher/step_file.hpp"
 #include "geometry/open/open_geometry.hpp"
+#include "robot/bodies/body_notes.hpp"
 #include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
 

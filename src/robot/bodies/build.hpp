@@ -30,7 +30,4 @@ struct BodySurface {
 /// One for every body, in order, without the air of chambers and gaps. Errors name the body and its line.
 [[nodiscard]] Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& progress);
 
-/// Notes on drawn bodies that overlap, in the words of build_mesh().
-[[nodiscard]] std::vector<std::string> overlap_notes(const Robot& robot, const Progress& progress);
-
 }  // namespace pliant::robot

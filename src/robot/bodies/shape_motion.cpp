@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/core/boxes.hpp"
 #include "base/linalg/dense.hpp"
 #include "geometry/shapes/surface_pieces.hpp"
 #include "robot/description/regions.hpp"
@@ -81,7 +82,7 @@ public:
           step_(around.step),
           from_file_(has_file_geometry(robot)),
           bodies_(robot.bodies.size()) {
-        for (const Vec3& p : mesh.points) box_.add(p);
+        box_ = bounds_of(mesh.points);
     }
 
     [[nodiscard]] Result<std::vector<Vec3>> find() {

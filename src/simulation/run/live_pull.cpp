@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "base/core/boxes.hpp"
 #include "base/linalg/vectors.hpp"
 
 namespace pliant::sim {
@@ -20,9 +21,7 @@ bool same_point(const Attachment& a, const Attachment& b) {
 
 PullSpring::PullSpring(const Equilibrium& system, const FactoredLaplacian& laplacian)
     : system_(system), laplacian_(laplacian) {
-    Box3 box;
-    for (const Vec3& p : system.model().mesh().points) box.add(p);
-    size_m_ = box.diagonal();
+    size_m_ = bounds_of(system.model().mesh().points).diagonal();
 }
 
 bool PullSpring::take_up(const Pull& pull, const RobotState& robot) {

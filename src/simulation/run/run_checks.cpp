@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "base/core/boxes.hpp"
 #include "simulation/run/left_open.hpp"
 #include "simulation/run/warnings.hpp"
 #include "simulation/solver/pressure_limit.hpp"
@@ -29,9 +30,7 @@ RunChecks::RunChecks(Stepper& stepper, const Program& program, const RobotState&
       program_(program),
       stability_(stepper.system(), stepper.laplacian()) {
     state_.reported = rest.now;
-    Box3 box;
-    for (const Vec3& p : stepper.model().mesh().points) box.add(p);
-    size_ = box.diagonal();
+    size_ = bounds_of(stepper.model().mesh().points).diagonal();
 }
 
 void RunChecks::after_step(RobotState& robot, Step& step, StepReport& report, std::vector<std::string>& warnings,

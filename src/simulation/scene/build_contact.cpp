@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "base/core/boxes.hpp"
 #include "geometry/files/surface_file.hpp"
 #include "geometry/mesh/mass_properties.hpp"
 #include "geometry/mesher/mesher.hpp"
@@ -47,9 +48,7 @@ double drawn_size(const ObjectSpec& spec) {
 }
 
 double usual_distance_m(const Robot& robot, const mesh::TetMesh& bodies) {
-    Box3 box;
-    for (const Vec3& p : bodies.points) box.add(p);
-    double size_m = box.diagonal();
+    double size_m = bounds_of(bodies.points).diagonal();
     for (const ObjectSpec& object : robot.objects) size_m = std::max(size_m, robot.unit_m * drawn_size(object));
     return distance_share * size_m;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/core/boxes.hpp"
+
 namespace pliant::robot {
 namespace {
 
@@ -32,16 +34,15 @@ sim::Goal tied(const Robot& robot, const sim::Model& model, const GoalSpec& spec
 }
 
 /// Farther away rounding hides which inputs come nearer.
-constexpr double farthest = 1e6;  // times the robot's size
+constexpr double far_sizes = 1e6;  // times the robot's size
 
 Status check_near(const Robot& robot, const sim::Model& model, const sim::Goal& goal) {
     if (goal.kind != GoalSpec::Kind::position && goal.kind != GoalSpec::Kind::plane) return {};
-    Box3 box;
-    for (const Vec3& p : model.mesh().points) box.add(p);
+    const Box3 box = bounds_of(model.mesh().points);
     for (const std::vector<Vec3>& at : goal.wanted) {
         const std::size_t points = goal.kind == GoalSpec::Kind::plane ? 1 : at.size();
         for (std::size_t k = 0; k < points; ++k) {
-            if (norm(at[k] - 0.5 * (box.low + box.high)) <= farthest * box.diagonal()) continue;
+            if (norm(at[k] - 0.5 * (box.low + box.high)) <= far_sizes * box.diagonal()) continue;
             return input_error(
                 "{}: goal \"{}\": its point [{:.4g}, {:.4g}, {:.4g}] is over a million times as far away as the robot "
                 "is large; a point in the same direction, but nearer, asks for the same",

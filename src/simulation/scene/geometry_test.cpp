@@ -13,6 +13,7 @@
 #include "base/core/test_variable.hpp"
 #include "base/zip/zip_file.hpp"
 #include "geometry/files/surface_file.hpp"
+#include "robot/bodies/body_notes.hpp"
 #include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/scene/build_model.hpp"

@@ -64,9 +64,9 @@ mesh::TetMesh tets_of_bodies(const Robot& robot, const mesh::TetMesh& all) {
 ModelDraft::ModelDraft(const Robot& the_robot, mesh::TetMesh mesh) : robot(the_robot), whole(std::move(mesh)) {
     std::vector<bool> keep;
     for (const Region& region : regions_of(robot)) keep.push_back(region.has_elements);
-    mesh::Extract kept = mesh::extract_regions(whole, keep);
-    description.mesh = std::move(kept.mesh);
-    node_of_whole = std::move(kept.node);
+    mesh::Extract extract = mesh::extract_regions(whole, keep);
+    description.mesh = std::move(extract.mesh);
+    node_of_whole = std::move(extract.node);
     for (const GapSpec& gap : robot.gaps) {
         if (std::holds_alternative<CrossedNotches>(gap.space))
             notches = part_notches(description.mesh, kept_region(region_of(Region::Use::gap, gap.name)));
@@ -126,9 +126,9 @@ std::size_t ModelDraft::region_of(Region::Use use, std::string_view name) const 
 
 int ModelDraft::kept_region(std::size_t region) const {
     const auto regions = regions_of(robot);
-    int kept = 0;
-    for (std::size_t r = 0; r < region; ++r) kept += regions[r].has_elements ? 1 : 0;
-    return kept;
+    int before = 0;
+    for (std::size_t r = 0; r < region; ++r) before += regions[r].has_elements ? 1 : 0;
+    return before;
 }
 
 std::vector<int> ModelDraft::regions_of_gap(const GapSpec& gap) const {

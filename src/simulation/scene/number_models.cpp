@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/core/boxes.hpp"
 #include "robot/bodies/shape_motion.hpp"
 #include "simulation/scene/build_description.hpp"
 #include "simulation/scene/build_model.hpp"
@@ -42,9 +43,7 @@ double fastest(const std::vector<Vec3>& motion) {
 }
 
 double size_of(const mesh::TetMesh& mesh) {
-    Box3 box;
-    for (const Vec3& p : mesh.points) box.add(p);
-    return box.diagonal();
+    return bounds_of(mesh.points).diagonal();
 }
 
 /// Checks that what must not differ is equal.

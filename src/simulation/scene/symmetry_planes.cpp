@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/core/boxes.hpp"
+
 namespace pliant::robot {
 namespace {
 
 constexpr double flat = 1e-6;  // of the robot's diagonal, or of a force
 
 double diagonal(const sim::Description& description) {
-    Box3 box;
-    for (const Vec3& p : description.mesh.points) box.add(p);
-    return box.diagonal();
+    return bounds_of(description.mesh.points).diagonal();
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/core/boxes.hpp"
 #include "simulation/elements/elements.hpp"
 #include "simulation/solver/friction_rounds.hpp"
 #include "simulation/stepper/prediction.hpp"
@@ -41,9 +42,7 @@ bool is_hopeless(const Model& model, const StepperOptions& options, int in_vain)
 /// Time step for which a force of a thousandth of the weight moves the resting robot by its own size.
 double tether_dt_s(const Model& model) {
     constexpr double share = 1e-3, g_m_s2 = 9.81;
-    Box3 box;
-    for (const Vec3& p : model.mesh().points) box.add(p);
-    return std::sqrt(box.diagonal() / (share * g_m_s2));
+    return std::sqrt(bounds_of(model.mesh().points).diagonal() / (share * g_m_s2));
 }
 
 /// Measures the past states along a new path on which the last of them is at `last` and the present one at 0. States
