@@ -232,7 +232,8 @@ private:
     [[nodiscard]] std::string part_name(int part) const;
     [[nodiscard]] std::optional<Crossing> first_crossing(std::span<const double> x, bool self, bool at_rest) const;
     [[nodiscard]] bool edge_and_triangle_belong_together(std::span<const int, 5> nodes) const;
-    [[nodiscard]] Pair make_pair(bool edges, std::span<const int> nodes, double reach_m, double area_m2) const;
+    [[nodiscard]] Pair make_pair(bool edges, std::span<const int> nodes, double reach_m, double area_m2,
+                                 std::int64_t flat_face) const;
     [[nodiscard]] Pairs search_pairs(std::span<const double> x) const;
     /// `within_m`: 0 stands for the reach of each pair.
     void find_planes(std::span<const double> x, double within_m, Pairs& pairs) const;

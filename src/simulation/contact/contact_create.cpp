@@ -125,7 +125,8 @@ void Contact::make_sides(const Surface& robot) {
     std::vector<std::vector<std::array<int, 3>>> triangles(1 + rigid_.size());
     for (const auto& t : robot.triangles) triangles[static_cast<std::size_t>(part_of(t[0]))].push_back(t);
     robot_ = make_side(rigid_.empty() ? robot : make_surface(triangles[0]), rest_);
-    for (std::size_t k = 1; k < triangles.size(); ++k) parts_.push_back(make_side(make_surface(triangles[k]), rest_));
+    for (std::size_t k = 1; k < triangles.size(); ++k)
+        parts_.push_back(make_side(make_rigid_surface(triangles[k], rest_), rest_));
 }
 
 void Contact::number_parts(std::vector<RigidPart> rigid) {
@@ -175,7 +176,7 @@ void Contact::add_obstacles() {
         if (!part_of_node_.empty()) part_of_node_.insert(part_of_node_.end(), points.size(), 0);
     }
     first_node_.push_back(node_count());
-    others_ = make_side(make_surface(triangles), rest_);
+    others_ = make_side(make_rigid_surface(triangles, rest_), rest_);
 }
 
 }  // namespace pliant::sim::contact

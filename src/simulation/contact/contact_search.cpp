@@ -2,6 +2,7 @@
 #include "simulation/contact/contact_search.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 namespace pliant::sim::contact {
@@ -9,6 +10,28 @@ namespace {
 
 /// After this many calls at nearby states it pays to cache what is near.
 constexpr int settled_calls = 2;
+
+/// Of a point and the triangles of a flat face the nearest pair alone, the first of several.
+Pairs once_per_face(Pairs pairs, std::span<const double> x) {
+    struct Closest {
+        std::size_t pair;
+        double distance_m;
+    };
+    std::map<std::pair<std::int64_t, int>, Closest> closest;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        if (pairs[k].flat_face < 0) continue;
+        const double apart = distance(pairs[k], stencil_at(pairs[k].nodes, x));
+        const auto [at, is_new] = closest.try_emplace({pairs[k].flat_face, pairs[k].nodes[0]}, Closest{k, apart});
+        if (!is_new && apart < at->second.distance_m) at->second = {k, apart};
+    }
+    if (closest.empty()) return pairs;
+    Pairs kept;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        if (pairs[k].flat_face < 0 || closest.at({pairs[k].flat_face, pairs[k].nodes[0]}).pair == k)
+            kept.push_back(pairs[k]);
+    }
+    return kept;
+}
 
 }  // namespace
 
@@ -53,7 +76,7 @@ Pairs Contact::search_pairs(std::span<const double> x) const {
         const double apart = std::sqrt(c.squared_distance(rest_));
         const double reach = this->reach(obstacle_of(c.nodes), apart);
         if (squared < reach * reach && !left_out(c.first_nodes(), c.second_nodes(), apart))
-            found.push_back(make_pair(c.features() == Features::edge_edge, c.nodes, reach, c.area_m2));
+            found.push_back(make_pair(c.features() == Features::edge_edge, c.nodes, reach, c.area_m2, c.flat_face));
     };
     const auto known = nearby(x, {});
     const std::vector<Pairs> pieces =
@@ -61,7 +84,7 @@ Pairs Contact::search_pairs(std::span<const double> x) const {
               : Search(*this, x, {}, most, Search::What::pairs, settings_.self).run(Pairs{}, consider);
     Pairs pairs;
     for (const Pairs& piece : pieces) pairs.insert(pairs.end(), piece.begin(), piece.end());
-    return pairs;
+    return once_per_face(std::move(pairs), x);
 }
 
 Pairs Contact::find_near(std::span<const double> x, double within_m) const {
@@ -70,11 +93,12 @@ Pairs Contact::find_near(std::span<const double> x, double within_m) const {
         const double apart = std::sqrt(c.squared_distance(rest_));
         if (left_out(c.first_nodes(), c.second_nodes(), apart)) return;
         const double reach = this->reach(obstacle_of(c.nodes), apart);
-        found.push_back(make_pair(c.features() == Features::edge_edge, c.nodes, reach, c.area_m2));
+        found.push_back(make_pair(c.features() == Features::edge_edge, c.nodes, reach, c.area_m2, c.flat_face));
     };
     const Search search(*this, x, {}, within_m, Search::What::pairs, settings_.self);
     Pairs pairs;
     for (const Pairs& piece : search.run(Pairs{}, consider)) pairs.insert(pairs.end(), piece.begin(), piece.end());
+    pairs = once_per_face(std::move(pairs), x);
     find_planes(x, within_m, pairs);
     return pairs;
 }
@@ -115,8 +139,10 @@ bool Contact::are_joined(std::span<const int> first, std::span<const int> second
     });
 }
 
-Pair Contact::make_pair(bool edges, std::span<const int> nodes, double reach_m, double area_m2) const {
+Pair Contact::make_pair(bool edges, std::span<const int> nodes, double reach_m, double area_m2,
+                        std::int64_t flat_face) const {
     Pair pair;
+    pair.flat_face = flat_face;
     pair.kind = edges ? PairKind::edge_edge : PairKind::point_triangle;
     std::copy_n(nodes.begin(), 4, pair.nodes.begin());
     pair.obstacle = obstacle_of(nodes);

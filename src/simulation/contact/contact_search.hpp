@@ -91,8 +91,9 @@ public:
     /// Two features; for the first two kinds without a common node.
     struct Candidate {
         Kind kind = Kind::point_triangle;
-        std::array<int, 5> nodes{};  ///< 4 for the first two kinds
-        double area_m2 = 0;          ///< of the smaller feature
+        std::array<int, 5> nodes{};   ///< 4 for the first two kinds
+        double area_m2 = 0;           ///< of the smaller feature
+        std::int64_t flat_face = -1;  ///< as in Surface; point_triangle alone
 
         [[nodiscard]] Features features() const {
             return kind == Kind::edge_edge ? Features::edge_edge : Features::point_triangle;
@@ -217,7 +218,7 @@ private:
                 const auto& t = b.triangles[j];
                 if (p == t[0] || p == t[1] || p == t[2]) return;
                 const double area = std::min(f.first_side->areas.points[i], f.second_side->areas.triangles[j]);
-                visit(Candidate{f.kind, {p, t[0], t[1], t[2], -1}, area});
+                visit(Candidate{f.kind, {p, t[0], t[1], t[2], -1}, area, b.flat_face.empty() ? -1 : b.flat_face[j]});
                 return;
             }
             case Kind::edge_edge: {

@@ -6,6 +6,7 @@
 // pressure at a given share of the reach, about 4 κ at half of it, independent of mesh and reach.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "simulation/contact/distance.hpp"
@@ -24,6 +25,7 @@ struct Pair {
     double parallel_m4 = 0;   ///< edge_edge: squared cross product below which the mollifier acts
     Vec3 normal;              ///< point_plane: unit vector out of the half-space
     bool robot_first = true;  ///< the robot's nodes come first (point_triangle against an obstacle may be either)
+    std::int64_t flat_face = -1;  ///< point_triangle: the flat face of the triangle, as in Surface
 
     /// Number of distinct `nodes`.
     [[nodiscard]] int node_count() const { return kind == PairKind::point_plane ? 2 : 4; }

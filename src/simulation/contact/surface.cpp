@@ -1,6 +1,10 @@
 #include "simulation/contact/surface.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/core/disjoint_sets.hpp"
 
 namespace pliant::sim::contact {
 
@@ -22,6 +26,16 @@ std::array<int, 2> edge_of(const std::array<int, 3>& t, int k) {
     return {low, high};
 }
 
+/// Two triangles with a common edge lie in one plane, on both sides of the edge. `opposite`: their third corners.
+bool is_flat(const std::array<int, 2>& edge, const std::array<int, 2>& opposite, std::span<const double> positions) {
+    constexpr double flat = 1e-6;  // sine of the angle: a hundred times that of coordinates of 32 bits
+    const Vec3 a = node_at(positions, edge[0]), u = node_at(positions, edge[1]) - a;
+    const Vec3 one = cross(u, node_at(positions, opposite[0]) - a),
+               other = cross(u, node_at(positions, opposite[1]) - a);
+    const double scale = norm(one) * norm(other);
+    return dot(one, other) < 0 && norm(cross(one, other)) <= flat * scale;
+}
+
 }  // namespace
 
 Surface make_surface(std::span<const std::array<int, 3>> triangles) {
@@ -34,6 +48,34 @@ Surface make_surface(std::span<const std::array<int, 3>> triangles) {
         }
     sort_unique(surface.points);
     sort_unique(surface.edges);
+    return surface;
+}
+
+Surface make_rigid_surface(std::span<const std::array<int, 3>> triangles, std::span<const double> positions) {
+    struct Side {
+        int triangle, opposite;
+    };
+    std::map<std::array<int, 2>, std::vector<Side>> sides;
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k)
+            sides[edge_of(triangles[t], k)].push_back({static_cast<int>(t), triangles[t][(k + 2) % 3]});
+    std::erase_if(sides, [&](const auto& item) {
+        const auto& [edge, at] = item;
+        return at.size() != 2 || !is_flat(edge, {at[0].opposite, at[1].opposite}, positions);
+    });
+    DisjointSets faces(triangles.size());
+    for (const auto& [edge, at] : sides) faces.join(at[0].triangle, at[1].triangle);
+
+    Surface surface = make_surface(triangles);
+    std::erase_if(surface.edges, [&](const std::array<int, 2>& edge) { return sides.contains(edge); });
+    std::vector<std::int64_t> name(triangles.size(), -1);
+    const auto nodes = static_cast<std::int64_t>(positions.size() / 3);
+    for (const auto& [edge, at] : sides) {
+        std::int64_t& first = name[static_cast<std::size_t>(faces.find(at[0].triangle))];
+        if (first < 0) first = edge[0] * nodes + edge[1];
+    }
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+        surface.flat_face.push_back(name[static_cast<std::size_t>(faces.find(static_cast<int>(t)))]);
     return surface;
 }
 
@@ -59,11 +101,18 @@ SurfaceAreas surface_areas(const Surface& surface, std::span<const double> posit
         const Vec3 a = node_at(positions, t[0]), b = node_at(positions, t[1]), c = node_at(positions, t[2]);
         const double share = norm(cross(b - a, c - a)) / 6;
         areas.triangles.push_back(3 * share);
+        std::vector<std::size_t> edges;
         for (int k = 0; k < 3; ++k) {
             areas.points[index_of(surface.points, t[k])] += share;
-            areas.edges[index_of(surface.edges, edge_of(t, k))] += share;
+            const std::size_t edge = index_of(surface.edges, edge_of(t, k));
+            if (edge < surface.edges.size() && surface.edges[edge] == edge_of(t, k)) edges.push_back(edge);
         }
+        for (const std::size_t edge : edges) areas.edges[edge] += 3 * share / static_cast<double>(edges.size());
     }
+    std::map<std::int64_t, double> whole;
+    for (std::size_t t = 0; t < surface.flat_face.size(); ++t) whole[surface.flat_face[t]] += areas.triangles[t];
+    for (std::size_t t = 0; t < surface.flat_face.size(); ++t)
+        if (surface.flat_face[t] >= 0) areas.triangles[t] = whole[surface.flat_face[t]];
     return areas;
 }
 

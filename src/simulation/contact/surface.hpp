@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,23 +10,35 @@
 
 namespace pliant::sim::contact {
 
-/// Indices of nodes; every edge once, edges and points ascending.
+/// Indices of nodes; every edge at most once, edges and points ascending.
 struct Surface {
     std::vector<std::array<int, 3>> triangles;  ///< (m, 3)
     std::vector<std::array<int, 2>> edges;      ///< (e, 2), the smaller node first
     std::vector<int> points;                    ///< (p)
+    /// (m) the flat face of which a triangle is a part, named after an edge inside it: the smaller node times the
+    /// number of nodes, plus the other one; -1: it is a face by itself. Empty: all are.
+    std::vector<std::int64_t> flat_face{};
 };
 
 [[nodiscard]] Surface make_surface(std::span<const std::array<int, 3>> triangles);
 
+/// The surface of something rigid, whose flat faces act as a whole, however they are divided into triangles: without
+/// the edges inside them, since an edge of something else is nearest to a flat face at one of its own ends or at the
+/// face's boundary. These edges would push things sideways and turn them: a point near one of them has two triangles in
+/// reach, and what is left of a pair of nearly parallel edges (the mollifier) depends on the angle between them.
+/// `positions`: (3 nodes) metres.
+[[nodiscard]] Surface make_rigid_surface(std::span<const std::array<int, 3>> triangles,
+                                         std::span<const double> positions);
+
 /// The boundary of a robot: its faces, those of quadratic tets in four flat triangles each.
 [[nodiscard]] Surface robot_surface(const mesh::TetMesh& mesh);
 
-/// Areas in m². Points and edges represent a third of each adjacent triangle; each list sums to the whole area.
+/// Areas in m². Points represent a third of each adjacent triangle, edges an equal share; both lists sum to the whole
+/// area, that of edges to the area of the triangles that have any. A triangle of a flat face represents all of it.
 struct SurfaceAreas {
     std::vector<double> points;     ///< (p), in the order of Surface::points
     std::vector<double> edges;      ///< (e)
-    std::vector<double> triangles;  ///< (m)
+    std::vector<double> triangles;  ///< (m); without flat faces they sum to the whole area
 };
 /// `positions`: (3 nodes) metres.
 [[nodiscard]] SurfaceAreas surface_areas(const Surface& surface, std::span<const double> positions);

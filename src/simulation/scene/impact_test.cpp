@@ -225,6 +225,37 @@ TEST_CASE("what spins or tumbles freely follows its free motion in steps of any 
     }
 }
 
+TEST_CASE("a torque turns an object as fast as it should, in steps of any length") {
+    for (const char* step : {"2.5 ms", "10 ms", "20 ms"}) {
+        std::string text = impact_world(
+            "name = \"wheel\"\ngeometry = { box = [[0, 0, 100], [20, 20, 120]] }\nmass = \"100 g\"\n"
+            "[[load]]\nname = \"drive\"\nobject = \"wheel\"\ntorque = [\"0 N mm\", \"0 N mm\", \"0.5 N mm\"]\n",
+            fmt::format("duration = \"1 s\"\ntolerance = 1e-8\ntime_step = \"{}\"\n"
+                        "[[program.key]]\ntime = \"0.001 ms\"\ndrive = 1\n",
+                        step));
+        text = test::replaced(text, "gravity = [0, 0, -9.81]\n", "");
+        const sim::Trajectory result = run_text(text);
+        const double inertia = 0.1 * 0.02 * 0.02 / 6,
+                     speed = 0.5e-3 / inertia;  // after 1 s: 75 rad/s, 358 turns a minute
+        CHECK(result.steps.back().kinetic_energy_J == near(0.5 * inertia * speed * speed, {.relative = 1e-3}));
+        CHECK(result.warnings.empty());
+    }
+}
+
+TEST_CASE("a frictionless table does not turn or shift what lands on it") {
+    std::string text =
+        impact_world("name = \"cube\"\ngeometry = { box = [[0, 0, 0.5], [20, 20, 20.5]] }\nmass = \"50 g\"\n",
+                     "duration = \"1 s\"\ntime_step = \"10 ms\"\n");
+    // Its diagonals lie along those of the cube.
+    text = test::replaced(text, "plane = { point = [0, 0, 0], normal = [0, 0, 1] }\nfriction",
+                          "geometry = { box = [[-40, -40, -10], [60, 60, 0]] }\nfriction");
+    const sim::Trajectory result = run_text(text);
+    const auto& cube = result.steps.back().objects[0];
+    CHECK(2 * std::atan2(cube.rotation[3], cube.rotation[0]) == near(0, {.absolute = 1e-6}));
+    CHECK(cube.position_m.x == near(10e-3, {.absolute = 1e-7}));
+    CHECK(cube.position_m.y == near(10e-3, {.absolute = 1e-7}));
+}
+
 TEST_CASE("a ball that rolls by half a radian a step rolls on") {
     const sim::Trajectory result = run_text(
         impact_world("name = \"ball\"\ngeometry = { sphere = { center = [0, 0, 10], radius = 10 } }\nmass = \"4 g\"\n"
