@@ -285,6 +285,53 @@ TEST_CASE("a suspended print parks the machine, and resumes from the same place"
     }
 }
 
+namespace {
+
+/// Suspends a print half-way; its host then idles for ten minutes, asking for the switches.
+void suspend_and_idle(ControlBench& b) {
+    constexpr double idle_s = 600;
+    Operator person(b, completion_above(0.5), [&] { CHECK(b.control->suspend()); });
+    b.start();
+    REQUIRE(b.snapshot().can_resume);
+    const double until_s = b.twin->now() + idle_s;
+    b.life->at_look = [&b, until_s] {
+        if (b.twin->now() > until_s) throw Killed();
+    };
+    CHECK_THROWS_AS(b.control->serve(), Killed);
+    b.life->at_look = {};
+}
+
+}  // namespace
+
+TEST_CASE("a suspended print resumes however long its host has idled, there or on another host") {
+    for (const auto release : both_releases) {
+        for (const bool same_host : {true, false}) {
+            CAPTURE(same_host);
+            ControlBench b(options_of(release));
+            suspend_and_idle(b);
+            if (!same_host) b.new_host();
+            b.must_finish({true, {}});
+            CHECK(b.lights() == 10);
+        }
+    }
+}
+
+TEST_CASE("another program that uses the controller while its host idles is found, by either host") {
+    for (const char* other : {"M110 N500\n", "M110 N90000000\n"}) {
+        for (const bool same_host : {true, false}) {
+            CAPTURE(same_host);
+            ControlBench b;
+            suspend_and_idle(b);
+            b.twin->receive(other);
+            b.twin->advance_to(b.twin->now() + 30);
+            if (!same_host) b.new_host();
+            b.start({true, {}});
+            CHECK(b.last_error().find("another program has used") != std::string::npos);
+            b.must_finish({true, {std::nullopt, true}});
+        }
+    }
+}
+
 TEST_CASE("an interrupted print can be cancelled for good") {
     ControlBench b;
     b.must_die(300);

@@ -249,6 +249,7 @@ void Control::serve() {
             }
         }
         Status status = s.desk.watch();
+        if (status) status = s.keep_line_numbers();
         if (status) status = s.machine->ask_for_switches();
         if (status) status = s.machine->link().listen_for(idle_listen_s);
         if (!status)
