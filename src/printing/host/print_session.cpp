@@ -118,6 +118,7 @@ void Control::Private::close() {
         s.door_open.reset();
         s.switches.clear();
         s.slot = 0;
+        s.pump = false;
     });
 }
 
@@ -309,10 +310,12 @@ void Control::Private::do_start(const StartOptions& options, bool abandon) {
     desk.clear_stop();
     desk.update([&](Snapshot& s) {
         s.failed = s.finished = false;
-        if (options.resume) return;
+        s.begun_s.reset();
+        s.seconds_done = 0;
+        if (options.resume || s.can_resume) return;  // without `resume` it is refused, and still waits
         s.layer = s.material = -1;
         s.image.clear();
-        s.completion = s.seconds_done = 0;
+        s.completion = s.lit_s = s.exposure_s = 0;
         s.seconds_left = times.back();
         s.exposures_s.assign(s.exposures_s.size(), 0);
     });
