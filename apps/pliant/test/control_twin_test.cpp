@@ -285,6 +285,147 @@ TEST_CASE("a suspended print parks the machine, and resumes from the same place"
     }
 }
 
+TEST_CASE("a print that has resumed no longer says that it resumes, and tells at once where it was") {
+    ControlBench b;
+    Operator person(b, lit_on_layer(2), [&] { CHECK(b.control->suspend()); });
+    b.start();
+    b.new_host();
+    std::string first, lit;
+    std::optional<int> layer;
+    b.life->at_look = [&] {
+        const Snapshot s = b.snapshot();
+        if (first.empty()) first = s.message;
+        if (s.state == State::printing && !first.empty() && !layer) layer = s.layer;
+        if (s.lit) lit += s.message;
+    };
+    b.must_finish({true, {}});
+    CHECK(first.starts_with("resuming: "));
+    CHECK(lit.empty());
+    CHECK(layer == 2);
+}
+
+TEST_CASE("in a pause before an exposure the image is still the last one shown, and its time that of all its pieces") {
+    ControlBench b;
+    std::string before, paused;
+    double lit_s = 0;
+    b.life->at_look = [&] {
+        const Snapshot s = b.snapshot();
+        if (s.state == State::paused) {
+            paused = s.image;
+            lit_s = s.lit_s;
+            (void)b.control->resume();
+        }
+        if (s.lit && s.layer == 2) before = s.image;
+        if (!s.lit && s.layer == 3 && paused.empty()) (void)b.control->pause(PauseWhen::now);
+    };
+    b.start();
+    CHECK(b.snapshot().finished);
+    CHECK_FALSE(before.empty());
+    CHECK(paused == before);
+    CHECK(lit_s == near(2.5, {.relative = 0.01}));
+
+    ControlBench pieces;
+    Operator person(pieces, lit_on_layer(4, 1), [&] { CHECK(pieces.control->pause(PauseWhen::now)); });
+    pieces.start();
+    CHECK(person.pauses == 1);
+    CHECK(pieces.snapshot().lit_s == near(2.5, {.relative = 0.01}));
+}
+
+TEST_CASE("after a print was resumed, a layer that had begun gets no changes, and resin is not asked for again") {
+    ControlBench b;
+    b.refills = {{3, 1, "refill the vat of slot 1 with x"}};
+    b.new_host();
+    std::vector<std::string> prompts;
+    bool suspended = false, was_paused = false;
+    const auto answer = [&](const Snapshot& s) {
+        const bool paused = s.state == State::paused;
+        if (paused && !std::exchange(was_paused, true) && b.control->resume()) prompts.push_back(s.prompt);
+        was_paused = paused;
+    };
+    b.life->at_look = [&] {
+        const Snapshot s = b.snapshot();
+        answer(s);
+        if (s.lit && s.layer == 3 && s.material == 0 && !std::exchange(suspended, true)) CHECK(b.control->suspend());
+    };
+    b.start();
+    REQUIRE(b.snapshot().can_resume);
+    REQUIRE(prompts.size() == 1);
+    b.new_host();
+    bool asked = false;
+    b.life->at_look = [&] {
+        answer(b.snapshot());
+        if (b.snapshot().state != State::printing || std::exchange(asked, true)) return;
+        CHECK(b.control->set_exposure(1, 3.5));
+    };
+    b.start({true, {}});
+    INFO(b.last_error());
+    CHECK(b.snapshot().finished);
+    CHECK(prompts.size() == 1);
+    CHECK(has_event(b, "log", "from layer 5 on, rigid is exposed for 3.5 s"));
+    CHECK(b.twin->cured().layers()[3].vats[1].lit[0].seconds == near(2.5, {.relative = 0.01}));
+    CHECK(b.twin->cured().layers()[4].vats[1].lit[0].seconds == near(3.5, {.relative = 0.01}));
+}
+
+TEST_CASE("a start that is refused because a print waits does not lose what it had come to") {
+    ControlBench b;
+    Operator person(b, lit_on_layer(2), [&] { CHECK(b.control->suspend()); });
+    b.start();
+    const Snapshot waits = b.snapshot();
+    b.life->at_look = {};
+    b.start();
+    CHECK(b.last_error().find("--resume") != std::string::npos);
+    CHECK(b.snapshot().layer == waits.layer);
+    CHECK(b.snapshot().completion == waits.completion);
+    b.must_finish({true, {}});
+}
+
+namespace {
+
+/// Suspends a print half-way; its host then idles for ten minutes, asking for the switches.
+void suspend_and_idle(ControlBench& b) {
+    constexpr double idle_s = 600;
+    Operator person(b, completion_above(0.5), [&] { CHECK(b.control->suspend()); });
+    b.start();
+    REQUIRE(b.snapshot().can_resume);
+    const double until_s = b.twin->now() + idle_s;
+    b.life->at_look = [&b, until_s] {
+        if (b.twin->now() > until_s) throw Killed();
+    };
+    CHECK_THROWS_AS(b.control->serve(), Killed);
+    b.life->at_look = {};
+}
+
+}  // namespace
+
+TEST_CASE("a suspended print resumes however long its host has idled, there or on another host") {
+    for (const auto release : both_releases) {
+        for (const bool same_host : {true, false}) {
+            CAPTURE(same_host);
+            ControlBench b(options_of(release));
+            suspend_and_idle(b);
+            if (!same_host) b.new_host();
+            b.must_finish({true, {}});
+            CHECK(b.lights() == 10);
+        }
+    }
+}
+
+TEST_CASE("another program that uses the controller while its host idles is found, by either host") {
+    for (const char* other : {"M110 N500\n", "M110 N90000000\n"}) {
+        for (const bool same_host : {true, false}) {
+            CAPTURE(same_host);
+            ControlBench b;
+            suspend_and_idle(b);
+            b.twin->receive(other);
+            b.twin->advance_to(b.twin->now() + 30);
+            if (!same_host) b.new_host();
+            b.start({true, {}});
+            CHECK(b.last_error().find("another program has used") != std::string::npos);
+            b.must_finish({true, {std::nullopt, true}});
+        }
+    }
+}
+
 TEST_CASE("an interrupted print can be cancelled for good") {
     ControlBench b;
     b.must_die(300);

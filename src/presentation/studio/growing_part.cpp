@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
+#include <optional>
 
 #include "base/core/files.hpp"
 #include "presentation/scene/packet.hpp"
@@ -47,6 +49,7 @@ void GrowingPart::clear() {
     revisions_before_ = revision() + 1;
     part_ = empty_;
     seen_ = 0;
+    lights_seen_.clear();
     grown_ = true;
 }
 
@@ -65,25 +68,41 @@ void GrowingPart::recall(const std::filesystem::path& journal) {
     for (const auto& [step, light] : facts->lights) exposed({light.layer, light.material, light.lit_s, light.complete});
 }
 
+/// Adds what is new of the layer after those that have been seen: of a vat all at once, or further exposures of it.
+void GrowingPart::add_cured(const twin::CuredLayer& layer) {
+    const int bottom_um = layer.top_um - layer.thickness_um;
+    lights_seen_.resize(material_of_vat_.size());
+    for (const twin::VatLayer& vat : layer.vats) {
+        const auto index = static_cast<std::size_t>(vat.vat);
+        std::size_t& seen = lights_seen_[index];
+        if (seen == 0) part_.add(bottom_um, layer.top_um, material_of_vat_[index], vat.runs);
+        for (std::size_t k = seen; seen > 0 && k < vat.lit.size(); ++k)
+            part_.add(bottom_um, layer.top_um, material_of_vat_[index], vat.lit[k].light);
+        seen = vat.lit.size();
+    }
+}
+
 void GrowingPart::look_at(PacedTwin& twin, bool is_over) {
     const std::lock_guard lock(mutex_);
     cured_ = true;
     std::vector<twin::CuredLayer> fresh;
+    std::optional<twin::CuredLayer> growing;
+    const std::size_t lights = std::accumulate(lights_seen_.begin(), lights_seen_.end(), std::size_t{0});
     twin.with([&](twin::Twin& t) {
         if (is_over) (void)t.cured();
         const auto& layers = t.closed_layers();
-        if (layers.size() <= seen_) return;
-        const auto first = layers.begin() + static_cast<std::ptrdiff_t>(seen_);
-        const auto count = std::min(layers.size() - seen_, most_at_once);
-        fresh.assign(first, first + static_cast<std::ptrdiff_t>(count));
+        const auto first = layers.begin() + static_cast<std::ptrdiff_t>(std::min(seen_, layers.size()));
+        const auto count = std::min<std::ptrdiff_t>(layers.end() - first, most_at_once);
+        fresh.assign(first, first + count);
+        if (first + count == layers.end() && t.open_lights() > (fresh.empty() ? lights : 0)) growing = t.open_layer();
     });
     for (const twin::CuredLayer& layer : fresh) {
-        for (const twin::VatLayer& vat : layer.vats)
-            part_.add(layer.top_um - layer.thickness_um, layer.top_um,
-                      material_of_vat_[static_cast<std::size_t>(vat.vat)], vat.runs);
+        add_cured(layer);
+        lights_seen_.clear();
     }
+    if (growing) add_cured(*growing);
     seen_ += fresh.size();
-    grown_ = grown_ || !fresh.empty();
+    grown_ = grown_ || !fresh.empty() || growing;
 }
 
 /// Precondition: archive_mutex_ is held.

@@ -29,7 +29,7 @@ public:
     void exposed(const host::Given& given);
     /// Recalls what an interrupted print has already exposed, from its journal. An unreadable journal is ignored.
     void recall(const std::filesystem::path& journal);
-    /// Updates what has cured; `is_over`: no more exposures follow, the last layer is complete.
+    /// Updates what has cured, exposure by exposure; `is_over`: no more exposures follow, the last layer is complete.
     void look_at(PacedTwin& twin, bool is_over);
     /// One image of the job, PNG. Errors: there is none.
     [[nodiscard]] Result<std::string> image(int layer, int material);
@@ -43,6 +43,7 @@ public:
 
 private:
     void take_exposed();
+    void add_cured(const twin::CuredLayer& layer);
     [[nodiscard]] Result<job::Archive*> archive();
     [[nodiscard]] int revision() const { return revisions_before_ + part_.revision(); }
 
@@ -58,9 +59,10 @@ private:
     mutable std::mutex mutex_;
     const twin::CoarsePart empty_;
     twin::CoarsePart part_;
-    bool cured_ = false;        ///< else exposed
-    std::size_t seen_ = 0;      ///< layers of the twin's block
-    int revisions_before_ = 0;  ///< revisions used by earlier parts: numbers are never reused
+    bool cured_ = false;                    ///< else exposed
+    std::size_t seen_ = 0;                  ///< closed layers of the twin's block
+    std::vector<std::size_t> lights_seen_;  ///< of the layer after them, by vat
+    int revisions_before_ = 0;              ///< revisions used by earlier parts: numbers are never reused
     bool grown_ = false;
 };
 

@@ -102,12 +102,19 @@ bool is_over(const std::filesystem::path& path) {
     return facts && (facts->ended || facts->cancelled);
 }
 
-/// The command of a request to the host's control, "" if it has none.
-std::string command_of(std::string_view body) {
+/// A request to the host's control.
+struct Asked {
+    std::string command, action;  ///< "" if it has none
+    bool resume = false;
+};
+
+Asked read_asked(std::string_view body) {
     const Json json = parse_json(body);
-    return json.is_object() && json.contains("command") && json["command"].is_string()
-               ? json["command"].get<std::string>()
-               : "";
+    if (!json.is_object()) return {};
+    const auto text = [&](const char* key) {
+        return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
+    };
+    return {text("command"), text("action"), json.contains("resume") && json["resume"] == true};
 }
 
 }  // namespace
@@ -444,15 +451,15 @@ host::ApiAnswer PrintSession::ask(std::string_view method, std::string_view path
     if (method == "POST" && path == "/api/job") {
         // If two pages start at once, the second must not clear what the first has begun.
         const std::lock_guard one_at_a_time(orders_);
-        const std::string command = command_of(body);
+        const auto [command, action, resume] = read_asked(body);
         const host::Snapshot now = machine->control.snapshot();
         if (command == "start" && now.door_open.value_or(false))
             return {409, R"({"error":"the door is open: close it, then start"})"};
-        if (command == "start" && machine->is_free() && now.state != host::State::connecting) {
+        if (command == "start" && !resume && machine->is_free() && now.state != host::State::connecting) {
             prepare_start(*machine);
             if (machine->keeps_journal && is_over(machine->ready.job.journal)) keep_journal(machine->ready.job.journal);
         }
-        if (command == "resume") pour(*machine);
+        if (command == "resume" || (command == "pause" && action != "pause")) pour(*machine);
         return host::handle_api(machine->control, method, path, body);
     }
     return host::handle_api(machine->control, method, path, body);

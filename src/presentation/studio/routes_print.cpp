@@ -141,8 +141,7 @@ Response forward(Studio& studio, const Request& request) {
     if (const auto more = request.parts.find("more"); more != request.parts.end()) path += "/" + more->second;
     host::ApiAnswer answer = studio.print().ask(request.method, path, request.body);
     if (path == "/api/job" && answer.status < 300 && request.method == "POST") leave_queue(studio, request.body);
-    return {answer.status == 204 ? 200 : answer.status, "application/json",
-            answer.json.empty() ? "{}" : std::move(answer.json)};
+    return {answer.status, "application/json", std::move(answer.json)};
 }
 
 }  // namespace

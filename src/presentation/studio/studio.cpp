@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::size_t most_undo = 200;
 constexpr std::string_view first_example = "cable_gripper";
+constexpr std::string_view host_path = "/api/print/host/";  // its interface has statuses of its own
 
 std::string document_event(const Studio::Document& d) {
     const nlohmann::json json = {{"type", "document"},
@@ -308,7 +309,7 @@ Response Studio::handle(const Request& request) {
         if (route.steers && !hub_.may_steer(request.page))
             return error_response(423, "another page has control; request control first");
         if (route.takes == "application/json" && !request.body.empty() && !is_object(request.body))
-            return error_response(422, "a JSON object is needed");
+            return error_response(request.path.starts_with(host_path) ? 400 : 422, "a JSON object is needed");
         return route.answer(*this, asked);
     }
     return known ? error_response(405, "method not allowed") : error_response(404, "not found");

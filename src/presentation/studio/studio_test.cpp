@@ -159,6 +159,8 @@ TEST_CASE("a robot is opened, bent, edited, undone and saved") {
     CHECK(ask(studio, "POST", "/api/robot/redo", "", "first_page").status == 200);
     CHECK(ask(studio, "GET", "/api/robot").body == stiffer);
     CHECK(ask(studio, "POST", "/api/robot/save", R"({"name":"../evil.toml"})", "first_page").status == 422);
+    CHECK(ask(studio, "POST", "/api/robot/save", "{", "first_page").status == 422);
+    CHECK(ask(studio, "POST", "/api/print/host/job", "{", "first_page").status == 400);  // the host's own statuses
     CHECK_FALSE(fs::exists(project.base / "evil.toml"));
     CHECK(ask(studio, "POST", "/api/robot/save", R"({"name":"copy.toml"})", "first_page").status == 200);
     CHECK(fs::exists(project.base / "project" / "copy.toml"));

@@ -76,7 +76,12 @@ Status Control::Private::ask_for(std::optional<State> next, const std::function<
     return {};
 }
 
-Control::Control(ControlSetup setup) : state_(std::make_unique<Private>(std::move(setup))) {}
+Control::Control(ControlSetup setup) : state_(std::make_unique<Private>(std::move(setup))) {
+    state_->desk.update([&](Snapshot& s) {
+        for (const machine::Axis axis : machine::all_axes)
+            s.has_axis[static_cast<std::size_t>(axis)] = state_->setup.printer.axis(axis).present();
+    });
+}
 
 Control::~Control() = default;
 
@@ -106,8 +111,9 @@ Status Control::load(PrintJob job) {
                 s.layers = state_->job->layers;
                 s.layer = s.material = -1;
                 s.image.clear();
-                s.completion = s.seconds_done = 0;
-                s.seconds_left = state_->times.back();
+                s.begun_s.reset();
+                s.completion = s.seconds_done = s.lit_s = s.exposure_s = 0;
+                s.seconds_left = s.seconds_planned = state_->times.back();
                 s.finished = s.failed = false;
                 s.exposures_s.assign(state_->job->materials.size(), 0);
             });
@@ -249,6 +255,7 @@ void Control::serve() {
             }
         }
         Status status = s.desk.watch();
+        if (status) status = s.keep_line_numbers();
         if (status) status = s.machine->ask_for_switches();
         if (status) status = s.machine->link().listen_for(idle_listen_s);
         if (!status)

@@ -40,7 +40,7 @@ json or_null(bool known, json value) {
 
 json job_json(const Snapshot& s) {
     return {{"file", {{"name", or_null(!s.job.empty(), s.job)}}},
-            {"estimatedPrintTime", or_null(!s.job.empty(), s.seconds_done + s.seconds_left)},
+            {"estimatedPrintTime", or_null(!s.job.empty(), s.seconds_planned)},
             {"layers", s.layers},
             {"canResume", s.can_resume}};
 }
@@ -66,6 +66,7 @@ json machine_json(const Snapshot& s) {
     json axes = json::object();
     for (const Axis axis : machine::all_axes) {
         const auto index = static_cast<std::size_t>(axis);
+        if (!s.has_axis[index]) continue;
         axes[std::string(machine::axis_name(axis))] = {{"position", s.position[axis] / 1000.0},
                                                        {"homed", s.homed[index]}};
     }

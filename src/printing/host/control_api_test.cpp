@@ -112,6 +112,8 @@ TEST_CASE("connect, look, start: the answers follow OctoPrint's API") {
     CHECK(job["progress"]["completion"] == 0);
     CHECK(job["job"]["layers"] == 7);
     CHECK(job["progress"]["printTimeLeft"].get<double>() > 10);
+    const double planned_s = job["job"]["estimatedPrintTime"];
+    CHECK(planned_s == job["progress"]["printTimeLeft"]);
     CHECK(b.post("/api/job", {{"command", "start"}}).status == 204);
     CHECK(b.get("/api/job")["state"] == "Printing");
     CHECK(b.post("/api/job", {{"command", "start"}}).status == 409);
@@ -120,7 +122,9 @@ TEST_CASE("connect, look, start: the answers follow OctoPrint's API") {
     CHECK(job["state"] == "Operational");
     CHECK(job["progress"]["finished"] == true);
     CHECK(job["progress"]["completion"] == 100);
+    CHECK(job["job"]["estimatedPrintTime"] == planned_s);  // whatever time it took
     CHECK(b.get("/api/printer")["machine"]["axes"]["platform"]["position"] == 300);
+    CHECK(b.get("/api/printer")["machine"]["axes"].size() == 3);  // a tower has no table
 }
 
 TEST_CASE("the feed gives the history, then what is new, each event once") {

@@ -53,11 +53,15 @@ struct Control::Private {
     // Working thread only:
     std::unique_ptr<Machine> machine;
     bool touched = false;  ///< something was sent to the controller since the last start
-    long last_line = 0;    ///< of the controller when the wire was opened
-    /// The same, if only line numbers and queries have been sent since: connecting first and resuming later then proves
-    /// as much as resuming at once.
+    /// Of the controller when the wire was opened, or before this host only asked questions.
+    long last_line = 0;
+    long sent_line = 0;  ///< the last one of the link before the present one
+    long wire_line = 0;  ///< of the controller when the wire was opened, its questions included
+    /// `last_line`, if only line numbers and queries have been sent since: connecting first, or idling, and resuming
+    /// later then proves as much as resuming at once.
     std::optional<long> untouched_line;
-    long last_base = 0;          ///< of our previous session
+    bool all_done = false;  ///< and the controller has carried out everything that the journal names up to that line
+    long last_base = 0;     ///< of our previous session
     bool may_be_halted = false;  ///< the controller was halted when last heard
     std::optional<PrintJob> job;
     Script script;
@@ -73,6 +77,11 @@ struct Control::Private {
 
     [[nodiscard]] Status open_wire();
     [[nodiscard]] Status open();
+    void renew_machine(const LinkOptions& options);
+    void hear_machine();
+    [[nodiscard]] Status find_last_line();
+    [[nodiscard]] Status keep_line_numbers();
+    void forget_line();
     [[nodiscard]] Status new_session(Journal* journal, const JournalFacts& facts, const Standing& standing);
     void close();
     void do_connect();

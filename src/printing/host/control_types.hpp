@@ -147,18 +147,20 @@ struct Snapshot {
     int layer = -1;           ///< from 0; -1: none yet
     int layers = 0;
     int material = -1;  ///< of the current or last exposure
-    std::string image;  ///< entry of the job's archive
+    std::string image;  ///< entry of the job's archive that is or was last shown
     bool lit = false;
-    double lit_s = 0;                 ///< time since this exposure began
+    double lit_s = 0;                 ///< of this exposure so far, or of the last one, all its pieces together
     double exposure_s = 0;            ///< planned duration of this exposure
     double completion = 0;            ///< fraction of the print's time, 0 to 1
     double seconds_done = 0;          ///< since the print began, pauses included
     std::optional<double> begun_s;    ///< start of the print on the devices' clock; nullopt: none has begun
     double seconds_left = 0;          ///< as planned
+    double seconds_planned = 0;       ///< of the whole job, without pauses
     std::vector<double> exposures_s;  ///< by material; 0 if unchanged
     machine::Position position;       ///< after the last command
     std::array<bool, machine::axis_count> homed{};
-    int slot = 0;  ///< of the vat in use; 0: none
+    std::array<bool, machine::axis_count> has_axis{};  ///< whether the machine has it at all
+    int slot = 0;                                      ///< of the vat in use; 0: none
     bool pump = false;
     std::optional<bool> door_open;                 ///< nullopt: unknown, or the machine has no door switch
     std::vector<machine::SwitchReading> switches;  ///< limit switches listed in the printer file, last known states

@@ -59,6 +59,7 @@ Status Desk::ask(std::optional<State> next, const std::function<Status(const Sna
         skips_.clear();
     }
     snapshot_.state = *next;
+    snapshot_.message.clear();  // of the state before
     return {};
 }
 

@@ -52,7 +52,7 @@ Status Control::Private::by_hand(std::function<Result<std::string>(const machine
         [this, one_move, program = std::move(program)] {
             if (!machine) return desk.state(State::offline);
             const auto text = program(machine->state());
-            untouched_line.reset();
+            forget_line();
             Status status =
                 text ? (one_move ? run_one_move(*text) : machine->run(*text)) : tl::unexpected(text.error());
             show_machine();

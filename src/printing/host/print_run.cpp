@@ -50,7 +50,9 @@ PrintRun::PrintRun(const RunSetup& run, JournalFacts facts)
                 s.exposures_s[static_cast<std::size_t>(change.material)] = change.seconds;
         }
     });
-    reach(next_light(facts_, run_.script));
+    const std::size_t next = next_light(facts_, run_.script);
+    reach(next);
+    recall_layer(next);
     run_.machine.link().set_watch([this] {
         show_progress();
         return run_.desk.watch();
@@ -81,6 +83,7 @@ Result<Ending> PrintRun::resume(const Recovery& recovery) {
     const bool there = run_.machine.state().position()[Axis::platform] == recovery.target.position()[Axis::platform] &&
                        run_.machine.state().hooked_vat() == recovery.target.hooked_vat();
     if (!there) return failure("the program for resuming does not end where the next exposure begins");
+    run_.desk.update([](Snapshot& s) { s.message.clear(); });  // it has resumed
     return steps_from(next_light(facts_, run_.script));
 }
 
@@ -92,6 +95,19 @@ Result<Ending> PrintRun::abandon(const Recovery& recovery) {
     if (Status status = run_.machine.run(*program); !status) return tl::unexpected(status.error());
     if (Status status = note("cancel", {}); !status) return tl::unexpected(status.error());
     return Ending::cancelled;
+}
+
+/// What the print had come to before it was interrupted: a layer that has begun gets no more changes, and nothing is
+/// asked for before it again. `next`: step of the next exposure.
+void PrintRun::recall_layer(std::size_t next) {
+    if (!facts_.last_light) return;
+    const LightFact& last = facts_.lights.at(*facts_.last_light);
+    layer_ = last.layer;
+    hooked_layer_ = next_layer(next) == layer_ ? layer_ - 1 : layer_;
+    run_.desk.update([&](Snapshot& s) {
+        s.layer = last.layer;
+        s.material = last.material;
+    });
 }
 
 /// The machine has done everything before step `step`.
@@ -136,12 +152,11 @@ bool PrintRun::skipped(int layer) const {
 
 Status PrintRun::expose(std::size_t step) {
     const machine::Expose& light = *run_.script.light(step);
-    if (light.layer != layer_) run_.desk.event("layer", fmt::format("{}", light.layer + 1));
-    layer_ = light.layer;
+    if (light.layer != told_layer_) run_.desk.event("layer", fmt::format("{}", light.layer + 1));
+    layer_ = told_layer_ = light.layer;
     run_.desk.update([&](Snapshot& s) {
         s.layer = light.layer;
         s.material = light.material;
-        s.image = light.image;
     });
     const auto [found, is_new] = facts_.lights.try_emplace(step);
     LightFact& fact = found->second;
@@ -157,13 +172,13 @@ Status PrintRun::expose(std::size_t step) {
     while (!fact.complete) {
         if (Status status = run_.machine.rest_in_place(); !status) return status;
         if (Status status = serve_wishes(step); !status) return status;
-        if (Status status = shine(step, *image, fact); !status) return status;
+        if (Status status = shine(step, *image, light.image, fact); !status) return status;
     }
     return {};
 }
 
 /// One piece of an exposure: all of its remaining time, unless it is interrupted.
-Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fact) {
+Status PrintRun::shine(std::size_t step, const job::Image& image, const std::string& entry, LightFact& fact) {
     if (Status status = run_.machine.light_on(); !status) return status;
     const double left_s = fact.planned_s - fact.lit_s;
     const double noted_s = clock_.now();
@@ -196,10 +211,12 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
                                          material_text(run_.job.materials, fact.material), left_s));
     run_.desk.update([&](Snapshot& s) {
         s.lit = true;
+        s.image = entry;
+        s.lit_s = fact.lit_s;
         s.exposure_s = fact.planned_s;
     });
     bool whole = false;
-    if (status) status = burn(start_s + left_s, whole);
+    if (status) status = burn(start_s + left_s, fact.lit_s, whole);
     double on_s = 0;
     Status dark;
     if (whole) {
@@ -213,8 +230,11 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
     if (!dark) (void)projector_.black();
     run_.machine.light_off();
     if (run_.setup.guard != nullptr) run_.setup.guard->dark(clock_.now());
-    run_.desk.update([](Snapshot& s) { s.lit = false; });
     fact.lit_s += on_s;
+    run_.desk.update([&](Snapshot& s) {
+        s.lit = false;
+        s.lit_s = fact.lit_s;
+    });
     fact.complete = whole || is_enough(fact.lit_s, fact.planned_s);
     run_.desk.event("dark", fmt::format("{:.3f} s", on_s));
     const Status noted = note("dark", {{"light", fmt::format("{}", fact.open_light)},
@@ -228,13 +248,14 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, LightFact& fac
     return noted;
 }
 
-/// Waits while listening to the wire. `whole`: whether the exposure reached its end.
-Status PrintRun::burn(double until_s, bool& whole) {
+/// Waits while listening to the wire. `before_s`: what has been exposed already; `whole`: whether the exposure reached
+/// its end.
+Status PrintRun::burn(double until_s, double before_s, bool& whole) {
     const double start_s = clock_.now();
     for (double now_s = start_s; now_s < until_s; now_s = clock_.now()) {
         const Wishes wishes = run_.desk.wishes();
         if (wishes.pause_now || wishes.cancel || wishes.suspend || door_is_open()) return {};
-        run_.desk.update([&](Snapshot& s) { s.lit_s = now_s - start_s; });
+        run_.desk.update([&](Snapshot& s) { s.lit_s = before_s + now_s - start_s; });
         if (until_s - now_s > last_stretch_s) {
             if (Status status = run_.machine.ask_for_door(); !status) return status;
         }

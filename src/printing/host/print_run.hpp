@@ -52,8 +52,9 @@ public:
 private:
     [[nodiscard]] Result<Ending> steps_from(std::size_t step);
     [[nodiscard]] Status expose(std::size_t step);
-    [[nodiscard]] Status shine(std::size_t step, const job::Image& image, LightFact& fact);
-    [[nodiscard]] Status burn(double until_s, bool& whole);
+    /// `entry`: the image's name in the job.
+    [[nodiscard]] Status shine(std::size_t step, const job::Image& image, const std::string& entry, LightFact& fact);
+    [[nodiscard]] Status burn(double until_s, double before_s, bool& whole);
     [[nodiscard]] Status serve_wishes(std::size_t step);
     [[nodiscard]] Status between_layers(std::size_t step);
     [[nodiscard]] Status keep_changes();
@@ -74,6 +75,7 @@ private:
     [[nodiscard]] bool wants_to_end() const;
     void show_progress();
     void reach(std::size_t step);
+    void recall_layer(std::size_t next);
 
     RunSetup run_;
     JournalFacts facts_;
@@ -84,7 +86,8 @@ private:
     // Planned seconds of the job: reached for certain (and when), sent, shown.
     double reached_s_ = 0, reached_at_s_ = 0, sent_s_ = 0, done_s_ = 0;
     bool waits_ = false;       ///< waiting for resume(), which does not count as time of the job
-    int layer_ = -1;           ///< of the last exposure
+    int layer_ = -1;           ///< of the last exposure, also before this print was resumed
+    int told_layer_ = -1;      ///< of the last event "layer"
     int hooked_layer_ = -1;    ///< last layer for which after_layer was called
     int refilled_layer_ = -1;  ///< last layer before which a refill was requested
     long last_record_ = 0;

@@ -42,14 +42,26 @@ Status Control::Private::open() {
     if (may_be_halted) options.most_connects = std::min(options.most_connects, connects_to_halted);
     if (machine) {
         machine->link().set_watch(nullptr);
-        auto fresh = std::make_unique<Machine>(*wire, setup.clock, setup.printer, options);
-        fresh->stand(machine->state());
-        fresh->link().expect_no_start();
-        machine = std::move(fresh);
+        renew_machine(options);
     } else {
         if (Status status = open_wire(); !status) return status;
         machine = std::make_unique<Machine>(*wire, setup.clock, setup.printer, options);
+        forget_line();
     }
+    hear_machine();
+    return find_last_line();
+}
+
+/// A new link on the same wire; the machine stands where it stood.
+void Control::Private::renew_machine(const LinkOptions& options) {
+    sent_line = machine->link().next_number() - 1;
+    auto fresh = std::make_unique<Machine>(*wire, setup.clock, setup.printer, options);
+    fresh->stand(machine->state());
+    fresh->link().expect_no_start();
+    machine = std::move(fresh);
+}
+
+void Control::Private::hear_machine() {
     machine->link().set_watch([this] { return desk.watch(); });
     machine->link().set_listener([this](std::string_view line) {
         machine->hear(line);
@@ -57,17 +69,45 @@ Status Control::Private::open() {
             if (line.substr(0, told.size()) == told) desk.event("log", std::string(line));
         }
     });
+}
+
+/// The line numbers that this host has used itself since are no trace of another program: then the controller's last
+/// line is the last one that this host has sent.
+Status Control::Private::find_last_line() {
     const auto last = machine->link().last_line();
     if (!last) return tl::unexpected(last.error());
     may_be_halted = false;
-    last_line = machine->link().has_started() ? 0 : untouched_line.value_or(*last);
+    const bool started = machine->link().has_started();
+    const bool ours = untouched_line && !started && *last == sent_line;
+    wire_line = started ? 0 : *last;
+    last_line = ours ? *untouched_line : wire_line;
+    all_done = all_done && ours;
     untouched_line = last_line;
     return {};
 }
 
+void Control::Private::forget_line() {
+    untouched_line.reset();
+    all_done = false;
+}
+
+/// An idle machine is asked for its switches. While a print waits to be resumed, these questions must not lead the line
+/// numbers beyond what its journal proves, also to another host: after some of them the numbers begin again.
+Status Control::Private::keep_line_numbers() {
+    constexpr long most_asked = 60;  // lines
+    if (!all_done || !untouched_line || *untouched_line <= 0) return {};
+    if (machine->link().next_number() - 1 - *untouched_line <= most_asked) return {};
+    machine->link().set_watch(nullptr);
+    renew_machine(setup.link);
+    hear_machine();
+    if (Status status = find_last_line(); !status) return status;
+    if (last_line == 0) return failure("the printer restarted: its position is lost");
+    return machine->connect(last_line);
+}
+
 void Control::Private::close() {
     machine.reset();
-    untouched_line.reset();
+    forget_line();
     {
         const std::scoped_lock lock(mutex);
         wire.reset();
@@ -78,6 +118,7 @@ void Control::Private::close() {
         s.door_open.reset();
         s.switches.clear();
         s.slot = 0;
+        s.pump = false;
     });
 }
 
@@ -160,7 +201,7 @@ Status Control::Private::new_session(Journal* journal, const JournalFacts& facts
     if (journal != nullptr) {
         const auto noted =
             journal->append("session", {{"base", fmt::format("{}", base)},
-                                        {"before", fmt::format("{}", last_line > 0 ? last_line : -1)},
+                                        {"before", fmt::format("{}", wire_line > 0 ? wire_line : -1)},
                                         {"boot", setup.clock_name ? *setup.clock_name : boot_name().value_or("")},
                                         {"state", write_state(standing.state.state())}});
         if (!noted) return tl::unexpected(noted.error());
@@ -168,7 +209,7 @@ Status Control::Private::new_session(Journal* journal, const JournalFacts& facts
     if (Status status = machine->connect(base); !status) return status;
     note_firmware();
     machine->keep(journal);
-    untouched_line.reset();
+    forget_line();
     return {};
 }
 
@@ -269,10 +310,12 @@ void Control::Private::do_start(const StartOptions& options, bool abandon) {
     desk.clear_stop();
     desk.update([&](Snapshot& s) {
         s.failed = s.finished = false;
-        if (options.resume) return;
+        s.begun_s.reset();
+        s.seconds_done = 0;
+        if (options.resume || s.can_resume) return;  // without `resume` it is refused, and still waits
         s.layer = s.material = -1;
         s.image.clear();
-        s.completion = s.seconds_done = 0;
+        s.completion = s.lit_s = s.exposure_s = 0;
         s.seconds_left = times.back();
         s.exposures_s.assign(s.exposures_s.size(), 0);
     });
@@ -301,6 +344,10 @@ void Control::Private::finish(const Result<Ending>& ending) {
     if (!ending) return fail(ending.error());
     show_machine();
     machine->keep(nullptr);
+    if (*ending == Ending::suspended || *ending == Ending::left) {
+        untouched_line = machine->link().next_number() - 1;
+        all_done = true;
+    }
     desk.update([&](Snapshot& s) {
         s.finished = *ending == Ending::finished;
         s.lit = false;

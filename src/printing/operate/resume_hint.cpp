@@ -1,10 +1,13 @@
 #include "printing/operate/resume_hint.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 
 #include <algorithm>
 #include <string_view>
 
+#include "base/core/file_handle.hpp"
 #include "base/core/files.hpp"
 #include "printing/host/journal_facts.hpp"
 #include "printing/host/resume_point.hpp"
@@ -23,6 +26,12 @@ std::string shell_word(const std::string& text) {
     std::string word = "'";
     for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
     return word + "'";
+}
+
+/// Whether a host prints with this journal at the moment.
+bool is_in_use(const std::filesystem::path& journal) {
+    const FileHandle file(::open(journal.c_str(), O_RDONLY | O_CLOEXEC));
+    return file.is_open() && ::flock(file.number(), LOCK_SH | LOCK_NB) != 0;
 }
 
 }  // namespace
@@ -46,7 +55,7 @@ std::string resume_command(const PrintCall& call) {
 std::optional<long> interrupted_at(const std::filesystem::path& journal, const std::string& digest,
                                    const std::string& printer) {
     const Result<std::string> text = read_file(journal);
-    if (!text) return {};
+    if (!text || is_in_use(journal)) return {};
     const auto parsed = host::parse_journal(*text, journal.string());
     if (!parsed || parsed->records.empty()) return {};
     const auto facts = host::facts_of(parsed->records);

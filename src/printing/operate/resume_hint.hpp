@@ -23,7 +23,7 @@ struct PrintCall {
 [[nodiscard]] std::string resume_command(const PrintCall& call);
 
 /// Number of the last record of a journal that belongs to this job on this printer and holds an interrupted print;
-/// nothing otherwise. Opens no file that is not there.
+/// nothing otherwise, and nothing while a host prints with it. Opens no file that is not there.
 [[nodiscard]] std::optional<long> interrupted_at(const std::filesystem::path& journal, const std::string& digest,
                                                  const std::string& printer);
 

@@ -37,6 +37,12 @@ TEST_CASE("a journal can be resumed only if it is of this job and printer, and i
     CHECK(interrupted_at(path, "12", "tower") == 2);
     CHECK_FALSE(interrupted_at(path, "13", "tower"));
     CHECK_FALSE(interrupted_at(path, "12", "wall"));
+    {
+        const auto other_host = host::Journal::open(path, false);
+        REQUIRE(other_host);
+        CHECK_FALSE(interrupted_at(path, "12", "tower"));  // it is being printed
+    }
+    CHECK(interrupted_at(path, "12", "tower") == 2);
     REQUIRE(write_file(path, begin + light + host::write_record(3, "end", {})));
     CHECK_FALSE(interrupted_at(path, "12", "tower"));
 }

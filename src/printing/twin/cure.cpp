@@ -167,9 +167,8 @@ void Cure::count_double(const OpenLayer& layer) {
     }
 }
 
-void Cure::finish() {
-    give_up_faint();
-    if (!open_) return;
+std::optional<CuredLayer> Cure::open_layer() const {
+    if (!open_) return std::nullopt;
     CuredLayer layer{open_->top_um, open_->thickness_um, {}};
     for (std::size_t vat = 0; vat < open_->lit.size(); ++vat) {
         if (open_->lit[vat].empty()) continue;
@@ -177,9 +176,22 @@ void Cure::finish() {
         for (const Lit& lit : open_->lit[vat]) lights.push_back(lit.light);
         layer.vats.push_back({static_cast<int>(vat), sum_of(lights, printer_->projector.width_px), open_->lit[vat]});
     }
+    return layer;
+}
+
+std::size_t Cure::open_lights() const {
+    std::size_t lights = 0;
+    for (std::size_t vat = 0; open_ && vat < open_->lit.size(); ++vat) lights += open_->lit[vat].size();
+    return lights;
+}
+
+void Cure::finish() {
+    give_up_faint();
+    std::optional<CuredLayer> layer = open_layer();
+    if (!layer) return;
     count_double(*open_);
-    top_um_ = layer.top_um;
-    layers_.push_back(std::move(layer));
+    top_um_ = layer->top_um;
+    layers_.push_back(std::move(*layer));
     open_.reset();
 }
 

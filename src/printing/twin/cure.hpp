@@ -70,6 +70,10 @@ public:
     void set_level_ml(int vat, double ml) { left_ml_[static_cast<std::size_t>(vat)] = ml; }
 
     [[nodiscard]] const std::vector<CuredLayer>& layers() const { return layers_; }
+    /// The layer after these as far as it has cured, without closing it; nullopt: none has begun.
+    [[nodiscard]] std::optional<CuredLayer> open_layer() const;
+    /// Number of different exposures that it has had.
+    [[nodiscard]] std::size_t open_lights() const;
     [[nodiscard]] const std::vector<double>& left_ml() const { return left_ml_; }  ///< by vat
     [[nodiscard]] long pixels_lit_twice() const { return pixels_lit_twice_; }
     /// Volume cured below undersides that no image asks for, and its maximum depth; by vat. Up to finish().

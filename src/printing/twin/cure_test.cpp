@@ -47,6 +47,30 @@ TEST_CASE("an exposure cures the gap under the platform, in runs of equal pixels
     CHECK(cure.faults().empty());
 }
 
+TEST_CASE("the layer that still grows can be seen without closing it") {
+    const auto printer = small();
+    Cure cure(printer);
+    CHECK_FALSE(cure.open_layer());
+    cure.expose(left, 0, 2, 50);
+    CHECK(cure.layers().empty());
+    REQUIRE(cure.open_layer());
+    CHECK(cure.open_layer()->top_um == 50);
+    CHECK(cure.open_layer()->vats.size() == 1);
+    cure.expose(left, 0, 1, 50);  // continues it
+    CHECK(cure.open_lights() == 1);
+    cure.expose(right, 1, 2, 50);
+    CHECK(cure.open_lights() == 2);
+    CHECK(cure.open_layer()->vats[1].runs == runs_of(right));
+    cure.expose(left, 0, 2, 100);
+    REQUIRE(cure.layers().size() == 1);
+    CHECK(cure.layers()[0].vats.size() == 2);
+    CHECK(cure.open_lights() == 1);
+    cure.finish();
+    CHECK(cure.layers().size() == 2);
+    CHECK(cure.open_lights() == 0);
+    CHECK_FALSE(cure.open_layer());
+}
+
 TEST_CASE("below the critical share of the exposure nothing cures; at it a layer does") {
     const auto printer = small();
     for (const double seconds : {1.59, 1.6}) {

@@ -131,6 +131,9 @@ public:
     [[nodiscard]] const Cure& cured();
     /// Its layers that are closed already, while it still grows.
     [[nodiscard]] const std::vector<CuredLayer>& closed_layers() const { return cure_.layers(); }
+    /// The layer after them, see Cure.
+    [[nodiscard]] std::optional<CuredLayer> open_layer() const { return cure_.open_layer(); }
+    [[nodiscard]] std::size_t open_lights() const { return cure_.open_lights(); }
     [[nodiscard]] const Fluids& fluids() const { return fluids_; }
     /// One entry for each vat of each layer, in the order of printing.
     [[nodiscard]] const std::vector<Contamination>& contamination() const { return contamination_; }

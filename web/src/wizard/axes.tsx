@@ -72,7 +72,7 @@ function Connect() {
   );
 }
 
-/// All axes that this machine has: the controller knows of more.
+/// All axes that this machine has.
 const homed = () => connected() && Object.keys(info.value!.machine!.axes).every((name) => now.value!.machine.axes[name]?.homed);
 
 function State() {
