@@ -367,7 +367,8 @@ class Model:
     # ---- derivatives
 
     def linearise(self, state: State) -> Linearisation:
-        """First-order response of an equilibrium to small changes; exact derivatives."""
+        """First-order response of an equilibrium to small changes; exact derivatives. In a motion in time they are those
+        of the last step alone: the state before it is held constant."""
         from .linearisation import Linearisation
 
         return Linearisation(self._own(state))
@@ -377,7 +378,8 @@ class Model:
         unit of the control.
 
         One linear solve for each control, all with one factorisation. The length of a slack cable has no effect: at
-        rest the derivative is zero. Start from a slightly pulled cable, at 0.98 of its length for example.
+        rest the derivative is zero. Start from a slightly pulled cable, at 0.98 of its length for example. In a motion
+        in time it is the derivative of the last step alone: see :meth:`grad`.
 
         Args:
             state: a state returned by a step.
@@ -400,6 +402,9 @@ class Model:
         The function is given by its own derivatives with respect to positions (nodes, 3), tensions (cables,), pressures
         (chambers,) and the positions of markers, ``{"tip": [0, 0, 1]}``; those left out are zero. With `guide_points`
         it is also differentiated with respect to the guide points of cables and springs.
+
+        In a motion in time these are derivatives of the last step alone: the state before it is held constant, also
+        where a parameter acted on it. :func:`pliant.gradient` differentiates the whole motion.
 
         Lagged quantities are held constant: see :func:`pliant.gradient`. The derivative with respect to the length of a
         slack cable is zero: see :meth:`jacobian`.
