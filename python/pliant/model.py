@@ -303,7 +303,8 @@ class Model:
 
         The inputs are ramped linearly from those of the state, in as many substeps as needed. A motion in time
         (``program.time_step``) is integrated up to `time`, which must be later than the time of the state, in equal
-        time steps no longer than ``program.time_step``; at the same time, up to rounding, nothing moves.
+        time steps no longer than ``program.time_step``, or than those of the program where they were made longer to
+        divide its duration; at the same time, up to rounding, nothing moves.
 
         Args:
             state: changed in place; :meth:`State.copy` keeps the state before.

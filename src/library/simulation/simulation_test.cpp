@@ -2,6 +2,7 @@
 #include "pliant/simulation.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -124,6 +125,24 @@ TEST_CASE("a quantity needs a unit that fits") {
     CHECK_THROWS_WITH_AS((void)quantity("4", "m"), "\"4\" has no unit; write a length such as \"2.5 mm\"", Failure);
     CHECK_THROWS_WITH_AS((void)quantity("4 mm", "J"),
                          "there is no unit \"J\" here; write m, s, N, Pa, m^3, kg/m^3 or N/m", Failure);
+}
+
+TEST_CASE("a step in time as long as the file's time_step is one, also where the program's divide its duration") {
+    // 143 steps of 6.993 ms, and 3 of 0.333 s
+    for (const auto& [step_s, duration] : {std::pair{0.007, "1 s"}, {0.3, "1 s"}, {0.005, "1 s"}}) {
+        const Model model(
+            bar(fmt::format("program = {{ duration = \"{}\", time_step = \"{} s\" }}\n", duration, step_s)));
+        Stepper stepper(model);
+        State state = stepper.rest();
+        for (int k = 0; k < 20; ++k) {
+            Inputs inputs = state.inputs();
+            inputs.time += step_s;
+            CHECK(stepper.step(state, inputs).pieces == 1);
+        }
+        Inputs inputs = state.inputs();
+        inputs.time += 2 * step_s;
+        CHECK(stepper.step(state, inputs).pieces == 2);
+    }
 }
 
 TEST_CASE("a mesh made by a program takes the place of a file") {
