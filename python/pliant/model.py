@@ -323,7 +323,7 @@ class Model:
         own = self._own(state)._state
         if progress is not None:
             _check.progress(progress)
-        if isinstance(controls, np.ndarray) and controls.dtype == np.float64 and controls.ndim == 1:
+        if type(controls) is np.ndarray and controls.dtype == np.float64 and controls.ndim == 1:
             when = None if time is None else _check.number(time, "time")
             return self._engine.step_values(own, controls, when, progress)
         return self._engine.step(own, self.inputs(controls, state, time=time)._tuple(), progress)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _check
-from ..batch import Batch
+from ..batch import MOST_ROBOTS, Batch
 from ..errors import InputError
 from .base import Episode, FloatArray, Half, RobotEnv
 from .spaces import box
@@ -37,8 +37,8 @@ class Vector:
         if not (isinstance(task, type) and issubclass(task, RobotEnv)):
             raise TypeError("task must be a class of environments, as pliant.envs.Reach")
         self.num_envs = _check.integer(count, "count")
-        if self.num_envs < 1:
-            raise InputError(f"count is {count}; it must be at least 1")
+        if not 1 <= self.num_envs <= MOST_ROBOTS:
+            raise InputError(f"count is {count}; 1 to {MOST_ROBOTS:,} environments are possible")
         model = arguments.pop("model", None) or task.make_model()
         self.envs = [task(model=model, **arguments) for _ in range(self.num_envs)]
         self._batch = Batch(model, self.num_envs, threads=threads)
