@@ -48,7 +48,7 @@ struct Waypoint {
     std::vector<GoalResult> goals;    ///< in the order of the robot file
     std::vector<double> inputs;       ///< (InverseResult::inputs()) value of each, in its SteeredInput::unit;
                                       ///< InverseResult::inputs_at() gives them to a Stepper
-    std::vector<std::string> limits;  ///< if not reached: the limits that prevent it, or that it was cancelled
+    std::vector<std::string> limits;  ///< why it is not reached, one sentence each; empty if it is
     StepResult result;                ///< of the equilibrium
     Observation observed;             ///< measurable quantities of the state
     std::vector<Point> positions;     ///< (nodes) m

@@ -78,6 +78,10 @@ struct Measure {
 /// Lagged quantities are held constant as found at the state: the normal forces and tangents of contact friction, and
 /// the tension shares of cables with friction. Where contacts slide, or such cables move in their guides, a derivative
 /// is therefore not that of the next step, which computes them again.
+///
+/// In a motion in time the equations are those of the last step: the state before it is held constant, its positions
+/// and velocities, also in derivatives by a parameter that acted on it. gradient() of pliant/gradient.hpp
+/// differentiates the whole motion.
 class PLIANT_API Linearisation {
 public:
     /// Linearises at a state returned by a Stepper.

@@ -312,8 +312,9 @@ public:
     [[nodiscard]] Inputs program(double time) const;
     /// Solves for equilibrium at `inputs` and stores the new state in `state`. The inputs are ramped linearly from
     /// those of the state, in as many substeps as needed. A motion in time is integrated up to `inputs.time`, which
-    /// must be later than the time of the state, in equal time steps no longer than the program's; at the same time, up
-    /// to rounding, nothing moves. A step that finds no equilibrium is not a Failure: the result says so, and `state`
+    /// must be later than the time of the state, in equal time steps no longer than `program.time_step`, or than those
+    /// of the program where they were made longer to divide its duration; at the same time, up to rounding, nothing
+    /// moves. A step that finds no equilibrium is not a Failure: the result says so, and `state`
     /// is as far as the solver got. The Watch is told the share of the way that is done.
     /// @throws Failure of kind `input`, with `state` unchanged, if the state belongs to another model, the number of
     /// drives differs from that of the cables and chambers, a value is not possible, or a motion in time does not lead

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "arrays.hpp"
+#include "interpreter.hpp"
 #include "parts.hpp"
 #include "pliant/linearisation.hpp"
 #include "values.hpp"
@@ -27,7 +28,7 @@ struct Many {
     auto alone(const Use& use) {
         if (owner_ == std::this_thread::get_id())
             throw Failure(Failure::Kind::input, "the batch is at work: its progress cannot use it");
-        const py::gil_scoped_release unlocked;
+        const Unlocked unlocked;
         const std::lock_guard lock(mutex_);
         owner_ = std::this_thread::get_id();
         const Leave leave{owner_};
@@ -101,7 +102,7 @@ void add_batch(py::module_& module) {
                          std::optional<int> iteration_limit, int threads) {
             std::vector<Model> all;
             for (const Model* model : models) all.push_back(there(model));
-            const py::gil_scoped_release unlocked;
+            const Unlocked unlocked;
             return std::make_unique<Many>(all, StepOptions{tolerance, iteration_limit}, threads);
         }))
         .def_property_readonly("size", [](const Many& many) { return many.batch.size(); })

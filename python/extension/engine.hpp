@@ -15,7 +15,7 @@ public:
     explicit Engine(const Model& model);
 
     [[nodiscard]] const Model& model() const { return model_; }
-    /// Calls `use` with a stepper that nothing else uses meanwhile. Releases the interpreter's lock.
+    /// Calls `use` with a stepper that nothing else uses meanwhile.
     template <class Use>
     auto with(const Use& use) {
         Borrowed borrowed(*this);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "arrays.hpp"
+#include "interpreter.hpp"
 #include "measures.hpp"
 #include "parts.hpp"
 #include "pliant/gradient.hpp"
@@ -24,7 +25,7 @@ template <class Make>
 auto watched(py::object progress, const Make& make) {
     Watcher watcher(std::move(progress));
     const Watch watch = watcher.watch();
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     return make(watch);
 }
 
@@ -133,7 +134,7 @@ void add_identification(py::module_& module) {
         .def("changes", &Identification::changes)
         .def("text", &Identification::text)
         .def("json", &Identification::json)
-        .def("write", &Identification::write, py::call_guard<py::gil_scoped_release>());
+        .def("write", &Identification::write, py::call_guard<Unlocked>());
     module.def("identify", [](const Robot& robot, const std::vector<std::string>& unknowns, const std::string& csv,
                               const std::string& file, const std::string& judge, const std::optional<Mesh>& mesh,
                               py::object progress) {
@@ -150,10 +151,11 @@ public:
     Judge(py::object judge, Watcher& watcher) : judge_(std::move(judge)), watcher_(watcher) {}
 
     Judgement operator()(int step, std::span<const double> values) const {
-        const py::gil_scoped_acquire lock;
+        const Locked locked;
         try {
             const py::array_t<double> numbers(static_cast<py::ssize_t>(values.size()), values.data());
-            const auto [value, slopes] = judge_(step, numbers).cast<std::pair<double, std::vector<double>>>();
+            const py::object judged = call(judge_, py::make_tuple(step, numbers));
+            const auto [value, slopes] = judged.cast<std::pair<double, std::vector<double>>>();
             return {value, slopes};
         } catch (const py::error_already_set& error) {
             watcher_.remember(error);
@@ -192,7 +194,7 @@ py::dict program_gradient(const Model& model, const std::vector<MeasureTuple>& m
     const GradientOptions options{rest_positions, guide_points, tets, std::move(numbers), kept};
     std::optional<ProgramGradient> found;
     try {
-        const py::gil_scoped_release unlocked;
+        const Unlocked unlocked;
         found.emplace(gradient(model, objective, options, watch));
     } catch (const Failure&) {
         watcher.rethrow();

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "arrays.hpp"
+#include "interpreter.hpp"
 #include "measures.hpp"
 #include "parts.hpp"
 #include "values.hpp"
@@ -22,7 +23,7 @@ struct Shared {
 
 template <class Use>
 auto locked(Shared& shared, const Use& use) {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     const std::lock_guard lock(shared.mutex);
     return use(shared.at);
 }
@@ -92,7 +93,7 @@ py::array jacobian(Shared& shared, const std::vector<std::size_t>& markers, cons
 
 void add_linearisation(py::module_& module) {
     py::class_<Shared>(module, "Linearisation")
-        .def(py::init<const State&>(), py::call_guard<py::gil_scoped_release>())
+        .def(py::init<const State&>(), py::call_guard<Unlocked>())
         .def_property_readonly("size", [](const Shared& shared) { return shared.at.size(); })
         .def("multiply", &product<&Linearisation::multiply>)
         .def("multiply_transposed", &product<&Linearisation::multiply_transposed>)

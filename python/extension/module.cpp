@@ -1,8 +1,10 @@
+#include "interpreter.hpp"
 #include "parts.hpp"
 
 PYBIND11_MODULE(_pliant, module) {
     using namespace pliant::python;
     module.doc() = "What the module pliant is made with; use that.";
+    add_ending(module);
     add_failures(module);
     add_robot(module);
     add_steps(module);

@@ -5,6 +5,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "arrays.hpp"
+#include "interpreter.hpp"
 #include "parts.hpp"
 #include "watcher.hpp"
 
@@ -32,7 +33,7 @@ py::dict slice(std::vector<std::string> inputs, const std::filesystem::path& pri
     const Watch watch = watcher.watch();
     PrintPlan plan;
     {
-        const py::gil_scoped_release unlocked;
+        const Unlocked unlocked;
         plan = slice_job(options, job, watch);
     }
     return plan_dict(plan);
@@ -41,7 +42,7 @@ py::dict slice(std::vector<std::string> inputs, const std::filesystem::path& pri
 py::dict plan(const std::filesystem::path& job) {
     PrintPlan plan;
     {
-        const py::gil_scoped_release unlocked;
+        const Unlocked unlocked;
         plan = plan_job(job);
     }
     return plan_dict(plan);
@@ -64,7 +65,7 @@ py::dict print_job(const std::filesystem::path& job, bool block, py::object prog
     const Watch watch = watcher.watch();
     VirtualPrint print;
     {
-        const py::gil_scoped_release unlocked;
+        const Unlocked unlocked;
         print = print_virtually(job, watch, {block});
     }
     return py::dict("passed"_a = print.passed, "reasons"_a = print.reasons, "seconds"_a = print.seconds,
@@ -77,7 +78,7 @@ py::dict print_job(const std::filesystem::path& job, bool block, py::object prog
 void add_printing(py::module_& module) {
     module.def("slice", &slice);
     module.def("plan", &plan);
-    module.def("check", &check_job, py::call_guard<py::gil_scoped_release>());
+    module.def("check", &check_job, py::call_guard<Unlocked>());
     module.def("print_virtually", &print_job);
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "arrays.hpp"
+#include "interpreter.hpp"
 #include "parts.hpp"
 #include "values.hpp"
 #include "watcher.hpp"
@@ -27,9 +28,9 @@ ProgramResult run_program(const Model& model, py::object on_step, const std::fil
     RunOptions options;
     if (!on_step.is_none()) {
         options.on_step = [&](const ProgramStep& step) {
-            const py::gil_scoped_acquire lock;
+            const Locked locked;
             try {
-                on_step(tuple_of_step(step));
+                (void)call(on_step, py::make_tuple(tuple_of_step(step)));
             } catch (const py::error_already_set& error) {
                 watcher.remember(error);
             }
@@ -42,7 +43,7 @@ ProgramResult run_program(const Model& model, py::object on_step, const std::fil
     const Watch watch = watcher.watch();
     std::optional<ProgramResult> result;
     {
-        const py::gil_scoped_release unlocked;
+        const Unlocked unlocked;
         result.emplace(run(model, options, watch));
     }
     watcher.rethrow();
@@ -65,7 +66,7 @@ bool write(ProgramResult& result, const std::filesystem::path& folder, const std
     options.towards_eye = towards_eye;
     Watcher watcher(std::move(progress));
     const Watch watch = watcher.watch();
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     return result.write(folder, options, watch);
 }
 

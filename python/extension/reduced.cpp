@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "arrays.hpp"
+#include "interpreter.hpp"
 #include "parts.hpp"
 #include "values.hpp"
 #include "watcher.hpp"
@@ -23,7 +24,7 @@ public:
     /// Without the interpreter's lock.
     template <class Use>
     auto with(const Use& use) {
-        const py::gil_scoped_release unlocked;
+        const Unlocked unlocked;
         const std::lock_guard lock(mutex_);
         return use(stepper_);
     }
@@ -38,7 +39,7 @@ std::unique_ptr<ReducedEngine> reduce_model(const Model& model, int samples, dou
                                             int most_modes, py::object progress) {
     Watcher watcher(std::move(progress));
     const Watch watch = watcher.watch();
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     return std::make_unique<ReducedEngine>(reduce(model, {samples, basis_error, force_error, most_modes}, watch));
 }
 
@@ -68,7 +69,7 @@ py::list check(const ReducedEngine& engine, int count, py::object progress) {
     const Watch watch = watcher.watch();
     std::vector<ReductionCheck> checks;
     {
-        const py::gil_scoped_release unlocked;
+        const Unlocked unlocked;
         checks = check_reduction(engine.model(), count, watch);
     }
     py::list list;
@@ -109,12 +110,12 @@ void add_reduced(py::module_& module) {
         .def("exact", &exact)
         .def("check", &check)
         .def("save", [](const ReducedEngine& engine, const std::filesystem::path& file) {
-            const py::gil_scoped_release unlocked;
+            const Unlocked unlocked;
             engine.model().save(file);
         });
     module.def("reduce", &reduce_model);
     module.def("load_reduced", [](const Model& model, const std::filesystem::path& file) {
-        const py::gil_scoped_release unlocked;
+        const Unlocked unlocked;
         return std::make_unique<ReducedEngine>(ReducedModel::load(model, file));
     });
 }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "arrays.hpp"
+#include "interpreter.hpp"
 #include "parts.hpp"
 #include "pliant/simulation.hpp"
 #include "values.hpp"
@@ -17,13 +18,13 @@ Model meshed(const Robot& robot, py::object progress, std::optional<double> tole
              std::optional<int> iteration_limit) {
     Watcher watcher(std::move(progress));
     const Watch watch = watcher.watch();
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     return Model(robot, StepOptions{tolerance, iteration_limit}, watch);
 }
 
 Model on_mesh(const Robot& robot, const Mesh& mesh, std::optional<double> tolerance,
               std::optional<int> iteration_limit) {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     return Model(robot, mesh, StepOptions{tolerance, iteration_limit});
 }
 
@@ -51,8 +52,8 @@ py::array positions(const State& state) {
 
 void add_robot(py::module_& module) {
     py::class_<Robot>(module, "Robot")
-        .def_static("load", &Robot::load, py::call_guard<py::gil_scoped_release>())
-        .def_static("parse", &Robot::parse, py::call_guard<py::gil_scoped_release>())
+        .def_static("load", &Robot::load, py::call_guard<Unlocked>())
+        .def_static("parse", &Robot::parse, py::call_guard<Unlocked>())
         .def_property_readonly("name", &Robot::name)
         .def_property_readonly("duration", &Robot::duration)
         .def_property_readonly("steps", &Robot::steps)
@@ -83,16 +84,16 @@ void add_robot(py::module_& module) {
         .def_property_readonly("cables", &Model::cables)
         .def_property_readonly("chambers", &Model::chambers)
         .def_property_readonly("markers", &Model::markers)
-        .def("warnings", &Model::warnings, py::call_guard<py::gil_scoped_release>());
+        .def("warnings", &Model::warnings, py::call_guard<Unlocked>());
     py::class_<State>(module, "State")
         .def(py::init<const State&>())
         .def("positions", &positions)
         .def("velocities", [](const State& state) { return array_of(state.velocities()); })
         .def("inputs", [](const State& state) { return tuple_of(state.inputs()); })
         .def("bytes", [](const State& state) { return py::bytes(state.bytes()); })
-        .def("save", &State::save, py::call_guard<py::gil_scoped_release>())
+        .def("save", &State::save, py::call_guard<Unlocked>())
         .def(
-            "equals", [](const State& a, const State& b) { return a == b; }, py::call_guard<py::gil_scoped_release>());
+            "equals", [](const State& a, const State& b) { return a == b; }, py::call_guard<Unlocked>());
 }
 
 }  // namespace pliant::python

@@ -8,6 +8,7 @@
 
 #include "arrays.hpp"
 #include "engine.hpp"
+#include "interpreter.hpp"
 #include "parts.hpp"
 #include "values.hpp"
 #include "watcher.hpp"
@@ -23,7 +24,7 @@ StepResult step(Engine& engine, State& state, const Inputs& inputs, py::object p
     StepResult result;
     std::exception_ptr thrown;
     {
-        const py::gil_scoped_release unlocked;
+        const Unlocked unlocked;
         try {
             result = engine.with([&](Stepper& stepper) { return stepper.step(next, inputs, watch); });
         } catch (...) {
@@ -56,7 +57,7 @@ StepResult step_values(Engine& engine, State& state, const Numbers& values, std:
 template <class Result>
 Result unlocked(Engine& engine, Result (*use)(Stepper&, const State&), const State& state) {
     const State same = state;
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     return engine.with([&](Stepper& stepper) { return use(stepper, same); });
 }
 
@@ -124,7 +125,7 @@ void add_step_result(py::module_& module) {
 void add_steps(py::module_& module) {
     add_step_result(module);
     py::class_<Engine>(module, "Engine")
-        .def(py::init<const Model&>(), py::call_guard<py::gil_scoped_release>())
+        .def(py::init<const Model&>(), py::call_guard<Unlocked>())
         .def("rest", [](Engine& engine) { return engine.with([](Stepper& stepper) { return stepper.rest(); }); })
         .def("program",
              [](Engine& engine, double time) {
@@ -147,11 +148,11 @@ void add_steps(py::module_& module) {
         .def("state_from",
              [](Engine& engine, const py::bytes& bytes) {
                  const std::string text = bytes;
-                 const py::gil_scoped_release unlocked;
+                 const Unlocked unlocked;
                  return engine.with([&](Stepper& stepper) { return stepper.state_from(text); });
              })
         .def("load", [](Engine& engine, const std::filesystem::path& file) {
-            const py::gil_scoped_release unlocked;
+            const Unlocked unlocked;
             return engine.with([&](Stepper& stepper) { return stepper.load(file); });
         });
 }

@@ -3,6 +3,8 @@
 #include <string>
 #include <utility>
 
+#include "interpreter.hpp"
+
 namespace pliant::python {
 namespace {
 
@@ -28,11 +30,12 @@ bool Watcher::ask(std::string_view stage, double share) {
     const Clock::time_point now = Clock::now();
     if (now < next_ && !thrown_) return true;
     next_ = now + interval;
-    const py::gil_scoped_acquire lock;
+    if (python_ends()) return false;
+    const Locked locked;
     rethrow();
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (progress_.is_none()) return true;
-    return !is_false(progress_(std::string(stage), share));
+    return !is_false(call(progress_, py::make_tuple(std::string(stage), share)));
 }
 
 }  // namespace pliant::python

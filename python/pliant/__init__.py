@@ -99,6 +99,11 @@ else:  # a type checker would take every name for known
             found = getattr(import_module("." + _FILE_OF[name], __name__), name)
             globals()[name] = found
             return found
+        if name == "torch":
+            try:
+                return import_module(".torch", __name__)
+            except ImportError as error:  # so that hasattr() and help() pass over it
+                raise AttributeError(str(error)) from error
         if name in _FILES:
             return import_module("." + name, __name__)
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

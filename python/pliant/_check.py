@@ -172,6 +172,8 @@ def texts(value: Any, what: str) -> list[str]:
 
 
 def _array(value: Any, what: str) -> AnyArray:
+    if isinstance(value, np.ma.MaskedArray) and np.any(value.mask):
+        raise InputError(f"{what} has masked entries; give a number for each, as .filled(0) does")
     try:
         array = np.asarray(value)
     except (ValueError, TypeError):

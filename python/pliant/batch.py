@@ -14,6 +14,9 @@ from .errors import InputError
 from .model import Model, State
 from .results import Observation, observation
 
+#: Of a batch: each has a solver of its own.
+MOST_ROBOTS = 100_000
+
 
 class Batch(NotPickled):
     """Steps many robots in parallel, on all cores and without the interpreter's lock.
@@ -49,8 +52,8 @@ class Batch(NotPickled):
     ) -> None:
         if isinstance(models, Model):
             robots = 1 if count is None else _check.integer(count, "count")
-            if robots < 0:
-                raise InputError(f"count is {robots}; it must not be negative")
+            if not 0 <= robots <= MOST_ROBOTS:
+                raise InputError(f"count is {robots}; a batch has 0 to {MOST_ROBOTS:,} robots")
             self.models = (models,) * robots
         elif not isinstance(models, Iterable):
             raise TypeError(f"models must be a pliant.Model or several, not {type(models).__name__}")

@@ -47,14 +47,29 @@ class Inputs(Mapping[str, Drive]):
     names: tuple[str, ...]
     #: Program time, which drives supports, loads, gravity and obstacles.
     time: float
+    _by: list[str]
+    _values: list[float]
 
     def __init__(self, names: tuple[str, ...], time: float, by: Sequence[str], values: Sequence[float]) -> None:
-        self.names = tuple(_check.texts(names, "the names of drives"))
-        self.time = _check.number(time, "time")
-        self._by = _check.texts(by, "the kinds of drives")
-        self._values = _check.numbers(values, "the values of drives", (len(self._by),)).tolist()
-        if len(self.names) != len(self._by):
-            raise InputError(f"{len(self._by)} drives for {len(self.names)} cables and chambers")
+        kinds = _check.texts(by, "the kinds of drives")
+        self._set(
+            tuple(_check.texts(names, "the names of drives")),
+            _check.number(time, "time"),
+            kinds,
+            _check.numbers(values, "the values of drives", (len(kinds),)).tolist(),
+        )
+        if len(self.names) != len(kinds):
+            raise InputError(f"{len(kinds)} drives for {len(self.names)} cables and chambers")
+
+    def _set(self, names: tuple[str, ...], time: float, by: list[str], values: list[float]) -> None:
+        for name, value in zip(Inputs.__slots__, (names, time, by, values)):
+            object.__setattr__(self, name, value)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"inputs do not change: {name} cannot be set; model.inputs(...) makes others")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"inputs do not change: {name} cannot be deleted")
 
     @property
     def values_SI(self) -> Array:
@@ -95,8 +110,7 @@ class Inputs(Mapping[str, Drive]):
     def _known(cls, names: tuple[str, ...], time: float, by: Sequence[str], values: Sequence[float]) -> Inputs:
         """Without a look: they come from the library."""
         inputs = cls.__new__(cls)
-        inputs.names, inputs.time = names, time
-        inputs._by, inputs._values = list(by), list(values)
+        inputs._set(names, time, list(by), list(values))
         return inputs
 
     def _tuple(self) -> tuple[float, list[str], list[float]]:

@@ -64,7 +64,8 @@ class Measure(NamedTuple):
     of: str
     #: what it is measured on, as in the robot file
     name: str = ""
-    #: (3,) of a marker, reaction or contact force; not zero, need not be normalised
+    #: (3,) of a marker, reaction or contact force; not zero. The value is the dot product with it: value and gradient
+    #: scale with its length
     direction: Union[Sequence[float], AnyArray] = (0.0, 0.0, 0.0)
 
     def _tuple(self) -> tuple[str, str, list[float]]:
@@ -112,6 +113,10 @@ class Linearisation(NotPickled):
     The unknowns z are the coordinates of the unconstrained nodes, three for each, followed by the multipliers that are
     not prescribed: cable tensions and minus the chamber pressures. The first solve factorises the matrix, which is then
     kept. Threads may share a Linearisation; one at a time uses it.
+
+    In a motion in time the equations are those of the last step: the state before it is held constant, its positions
+    and velocities, also in derivatives with respect to a parameter that acted on it. :func:`pliant.gradient`
+    differentiates the whole motion. Other quantities that are held constant: see there.
 
     Args:
         state: a state returned by a step; a copy is kept.
@@ -215,9 +220,13 @@ class Linearisation(NotPickled):
         return self._at.value(_check.instance(measure, Measure, "measure")._tuple())
 
     def gradient_of(self, measure: Measure, *, guide_points: bool = False) -> Gradient:
-        """Gradient of a measure, by one transposed solve. Unlike in :meth:`gradient`, the explicit dependence of the
-        measure on a parameter is included; and for derivatives with respect to the rest shape and guide points, lengths
-        and volumes prescribed as ratios change with their rest values."""
+        """Gradient of a measure, by one transposed solve.
+
+        It differs from :meth:`gradient` in two ways. A parameter that the measure itself depends on counts with that
+        too. And where the rest shape or a guide point changes, prescribed lengths and volumes change with their rest
+        values: by the same amount where the target in the robot file is `shortening` or `volume_change`, otherwise in
+        proportion.
+        """
         wanted = _check.instance(measure, Measure, "measure")._tuple()
         return self._gradient(*self._at.gradient_of(wanted, bool(guide_points)))
 

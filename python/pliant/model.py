@@ -303,7 +303,8 @@ class Model:
 
         The inputs are ramped linearly from those of the state, in as many substeps as needed. A motion in time
         (``program.time_step``) is integrated up to `time`, which must be later than the time of the state, in equal
-        time steps no longer than ``program.time_step``; at the same time, up to rounding, nothing moves.
+        time steps no longer than ``program.time_step``, or than those of the program where they were made longer to
+        divide its duration; at the same time, up to rounding, nothing moves.
 
         Args:
             state: changed in place; :meth:`State.copy` keeps the state before.
@@ -322,7 +323,7 @@ class Model:
         own = self._own(state)._state
         if progress is not None:
             _check.progress(progress)
-        if isinstance(controls, np.ndarray) and controls.dtype == np.float64 and controls.ndim == 1:
+        if type(controls) is np.ndarray and controls.dtype == np.float64 and controls.ndim == 1:
             when = None if time is None else _check.number(time, "time")
             return self._engine.step_values(own, controls, when, progress)
         return self._engine.step(own, self.inputs(controls, state, time=time)._tuple(), progress)
@@ -367,7 +368,8 @@ class Model:
     # ---- derivatives
 
     def linearise(self, state: State) -> Linearisation:
-        """First-order response of an equilibrium to small changes; exact derivatives."""
+        """First-order response of an equilibrium to small changes; exact derivatives. In a motion in time they are those
+        of the last step alone: the state before it is held constant."""
         from .linearisation import Linearisation
 
         return Linearisation(self._own(state))
@@ -377,7 +379,8 @@ class Model:
         unit of the control.
 
         One linear solve for each control, all with one factorisation. The length of a slack cable has no effect: at
-        rest the derivative is zero. Start from a slightly pulled cable, at 0.98 of its length for example.
+        rest the derivative is zero. Start from a slightly pulled cable, at 0.98 of its length for example. In a motion
+        in time it is the derivative of the last step alone: see :meth:`grad`.
 
         Args:
             state: a state returned by a step.
@@ -400,6 +403,9 @@ class Model:
         The function is given by its own derivatives with respect to positions (nodes, 3), tensions (cables,), pressures
         (chambers,) and the positions of markers, ``{"tip": [0, 0, 1]}``; those left out are zero. With `guide_points`
         it is also differentiated with respect to the guide points of cables and springs.
+
+        In a motion in time these are derivatives of the last step alone: the state before it is held constant, also
+        where a parameter acted on it. :func:`pliant.gradient` differentiates the whole motion.
 
         Lagged quantities are held constant: see :func:`pliant.gradient`. The derivative with respect to the length of a
         slack cable is zero: see :meth:`jacobian`.

@@ -56,8 +56,9 @@ class ProgramGradient(Value):
     #: (parameters,)
     by_parameters: Array
     #: (nodes, 3) with respect to the rest positions of the nodes, if requested; otherwise (0, 3). Markers, guide
-    #: points, springs and masses move along with the mesh; lengths and volumes prescribed as ratios change with their
-    #: rest values
+    #: points, springs and masses move along with the mesh; prescribed lengths and volumes change
+    #: with their rest values: by the same amount where the target in the robot file is `shortening` or
+    #: `volume_change`, otherwise in proportion
     by_rest_positions: Array
     #: of cables, then of springs; if requested
     guide_points: list[GuidePoint]

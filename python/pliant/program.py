@@ -157,7 +157,7 @@ class ProgramResult(NotPickled):
         return (self[k] for k in range(len(self)))
 
     def __repr__(self) -> str:
-        end = "" if self.converged else f", stopped: {self.message}"
+        end = "" if self.converged else f", {self.message}"
         return f"<pliant.ProgramResult of {self.model.robot.name!r}: {len(self)} steps{end}>"
 
 

@@ -72,7 +72,8 @@ class Waypoint(Value):
     goals: list[GoalResult]
     #: values of the inputs by name, in the SI units of their targets
     inputs: dict[str, float]
-    #: limits that keep it from its goals, one sentence each; empty if it is reached
+    #: why it is not reached, one sentence each: limits of actuators, goals in other directions than the actuators move
+    #: the robot in, or that the search was cancelled; empty if it is reached
     limits: list[str]
     #: result of the solver
     result: StepResult

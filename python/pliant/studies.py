@@ -76,6 +76,9 @@ class StudyResult(Value):
     def load(cls, folder: Union[str, os.PathLike[str]]) -> StudyResult:
         """Reads the folder of a study that was run from Python or on the command line."""
         path = _check.path(folder, "folder")
+        for name in ("summary.json", "results.npz"):
+            if not (path / name).is_file():
+                raise InputError(f"{path}: is no folder of a study that has ended: it has no {name}", str(path))
         try:
             summary = json.loads((path / "summary.json").read_text(encoding="utf-8"))
             with np.load(path / "results.npz") as arrays:

@@ -138,3 +138,38 @@ def test_the_module_is_imported_quickly():
         for _ in range(5)
     ]
     assert min(times) < 0.3  # 0.1 on a machine that has nothing else to do: bench/python.py measures it
+
+
+AT_EXIT = """
+import sys, threading, time
+sys.path.insert(0, sys.argv[1])
+from robots import BAR
+import pliant
+
+model = pliant.Model(pliant.Robot({**BAR, "mesh": {"order": 1, "size": "3 mm"}, "program": {"steps": 400}}))
+batch = pliant.Batch(model, 4)
+work = {
+    "step": lambda: model.step(model.rest(), {"flexor": {"shortening": "20 mm"}}),
+    "batch": lambda: batch.step(batch.rest(), [{"flexor": {"shortening": "20 mm"}}] * 4),
+    "run": lambda: model.run(on_step=lambda step: time.sleep(0.001), progress=lambda stage, share: True),
+}[sys.argv[2]]
+begun = threading.Event()
+
+def always():
+    while True:
+        begun.set()
+        work()
+
+for _ in range(2):
+    threading.Thread(target=always, daemon=True).start()
+begun.wait()
+time.sleep(float(sys.argv[3]))
+"""
+
+
+@pytest.mark.parametrize("work", ["step", "batch", "run"])
+def test_python_ends_while_daemon_threads_are_at_work(work):
+    for wait in (0.05, 0.1, 0.2):
+        command = [sys.executable, "-c", AT_EXIT, os.path.dirname(__file__), work, str(wait)]
+        ended = subprocess.run(command, capture_output=True, text=True, timeout=60)
+        assert (ended.returncode, ended.stderr) == (0, "")

@@ -96,6 +96,24 @@ def test_a_finished_episode_is_reset():
     assert infos["steps"].tolist() == [0, 0]
 
 
+def test_infos_of_many_environments_are_arrays_of_their_own_kind():
+    class Told(Reach):
+        def _info(self, seen):
+            return {**super()._info(seen), "text": "a", "mixed": True if self is many.envs[0] else 1.5}
+
+    many = Vector(Told, 3)
+    many.reset(seed=0)
+    infos = many.step(np.zeros((3, 3)))[4]
+    kinds = {"steps": np.int64, "distance_m": np.float64, "is_success": np.bool_, "text": object, "mixed": object}
+    for key, kind in kinds.items():
+        assert infos[key].dtype == kind and infos["_" + key].dtype == np.bool_, key
+    assert (~infos["is_success"]).all() and np.isfinite(np.log(infos["distance_m"])).all()
+    many.envs[1].max_steps = 2
+    infos = many.step(np.zeros((3, 3)))[4]
+    assert infos["distance_m"].dtype == np.float64 and infos["_distance_m"].tolist() == [True, False, True]
+    assert infos["is_success"].dtype == np.bool_ and infos["distance_m"][1] == 0
+
+
 def test_the_goal_of_reach_ends_the_episode():
     env = Reach()
     wanted = env.model.solve(env._inputs_at(np.array([0.3, 0, 0.15]), 0.0)).markers()[0]

@@ -39,3 +39,23 @@ def test_every_public_name_is_there():
 def test_an_unknown_name_is_an_attribute_error():
     with pytest.raises(AttributeError, match="module 'pliant' has no attribute 'Modell'"):
         pliant.Modell  # noqa: B018
+
+
+def test_the_module_can_be_inspected_without_torch():
+    code = """
+import sys
+sys.modules["torch"] = None  # as if it were not installed
+import inspect, pydoc, pliant
+assert not hasattr(pliant, "torch")
+assert "Model" in dict(inspect.getmembers(pliant))
+assert "pliant.torch" not in sys.modules
+print(pydoc.plain(pydoc.render_doc(pliant)).splitlines()[0])
+for way in ("import pliant.torch", "from pliant import torch"):
+    try:
+        exec(way)
+    except ImportError as error:
+        print(error)
+"""
+    said = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout
+    missing = "pliant.torch needs PyTorch (Debian: python3-torch)"
+    assert said.splitlines() == ["Python Library Documentation: package pliant", missing, missing]

@@ -65,6 +65,14 @@ def test_an_unreachable_goal_names_its_limit():
         pliant.inverse(bar())
 
 
+def test_a_goal_beside_all_that_the_actuators_do_says_so(model):
+    beside = 1e3 * model.solve({"flexor": {"shortening": "4 mm"}}).markers()[0] + [0, 10, 0]
+    goal = {"name": "reach", "marker": "tip", "point": beside.tolist()}
+    result = pliant.inverse(pliant.Model(pliant.Robot({**REACHING, "goal": [goal]})))
+    assert result[0].limits == ["the actuators move the robot in other directions only"]
+    assert result.summary["waypoints"][0]["reasons"] == result[0].limits
+
+
 def test_a_workspace_is_sampled(model, tmp_path):
     space = pliant.workspace(model, side=3, between=5)
     assert len(space) == len(space.values) > 0 and space.values.shape[1] == 1

@@ -143,6 +143,18 @@ MISTAKES = {
         lambda m: m.step(m.rest(), {"flexor": {"tension": "1e308 kN"}}),
         'cable "flexor": tension: "1e308 kN" is too large',
     ),
+    "controls are masked": (
+        lambda m: m.step(m.rest(), np.ma.array([0.058], mask=[True])),
+        "controls has masked entries; give a number for each, as .filled(0) does",
+    ),
+    "a batch is too large": (
+        lambda m: pliant.Batch(m, 2 * 10**8),
+        "count is 200000000; a batch has 0 to 100,000 robots",
+    ),
+    "a folder of a study is not there": (
+        lambda m: pliant.StudyResult.load("nostudy"),
+        "nostudy: is no folder of a study that has ended: it has no summary.json",
+    ),
     "a time is too large": (lambda m: m.program(10**400), "time is 1000"),
     "measures are forgotten": (
         lambda m: pliant.gradient(m, None, lambda step, values: (0.0, [])),

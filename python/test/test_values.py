@@ -40,6 +40,22 @@ def test_the_result_of_a_step_says_what_it_is_and_can_be_pickled(model):
     assert result != model.step(model.rest(), [0.055]) and result != 3
 
 
+def test_inputs_do_not_change(model):
+    inputs = model.program(0.5)
+    for name in ("time", "names", "_values", "colour"):
+        with pytest.raises(AttributeError, match=f"inputs do not change: {name} cannot be set"):
+            setattr(inputs, name, 1)
+    with pytest.raises(AttributeError, match="inputs do not change: time cannot be deleted"):
+        del inputs.time
+    assert inputs == model.program(0.5) and all(again == inputs for again in both(inputs))
+
+
+def test_a_run_that_stopped_says_so_once(program):
+    stopped = bar(program={"steps": 2, "max_iterations": 1}).run()
+    assert f"steps, {stopped.message}>" in repr(stopped) and stopped.message.startswith("stopped at step")
+    assert "stopped" not in repr(program)
+
+
 def test_steps_and_waypoints_can_be_pickled_and_compared(model, program):
     for value in (program[-1], pliant.inverse(model)[0], program[1].observed, model.rest().fields()):
         for again in both(value):

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _check
-from ..batch import Batch
+from ..batch import MOST_ROBOTS, Batch
 from ..errors import InputError
 from .base import Episode, FloatArray, Half, RobotEnv
 from .spaces import box
@@ -23,7 +23,8 @@ class Vector:
 
     With the signatures of vector environments of Gymnasium 0.29: an environment whose episode is over is reset at once,
     its observation is that of the new episode, and ``infos["final_observation"]`` and ``infos["final_info"]`` hold the
-    last ones of the episode that is over.
+    last ones of the episode that is over. Infos that are numbers or flags are arrays of them, 0 and False where the flags
+    ``infos["_" + key]`` say that an environment has none.
 
     Args:
         task: a class of environments, as :class:`Reach`.
@@ -36,8 +37,8 @@ class Vector:
         if not (isinstance(task, type) and issubclass(task, RobotEnv)):
             raise TypeError("task must be a class of environments, as pliant.envs.Reach")
         self.num_envs = _check.integer(count, "count")
-        if self.num_envs < 1:
-            raise InputError(f"count is {count}; it must be at least 1")
+        if not 1 <= self.num_envs <= MOST_ROBOTS:
+            raise InputError(f"count is {count}; 1 to {MOST_ROBOTS:,} environments are possible")
         model = arguments.pop("model", None) or task.make_model()
         self.envs = [task(model=model, **arguments) for _ in range(self.num_envs)]
         self._batch = Batch(model, self.num_envs, threads=threads)
@@ -140,12 +141,31 @@ class Vector:
 
 
 def _gathered(infos: list[dict[str, Any]]) -> dict[str, Any]:
-    """(count,) objects for each key, and for each ``_key`` (count,) flags of the environments that have it."""
+    """(count,) values for each key, and for each ``_key`` (count,) flags of the environments that have it."""
     gathered: dict[str, Any] = {}
     for key in sorted({key for info in infos for key in info}):
-        values = np.empty(len(infos), dtype=object)
-        for k, info in enumerate(infos):
-            values[k] = info.get(key)
-        gathered[key] = values
+        gathered[key] = _array_of(infos, key)
         gathered["_" + key] = np.array([key in info for info in infos])
     return gathered
+
+
+def _array_of(infos: list[dict[str, Any]], key: str) -> npt.NDArray[Any]:
+    """Flags, whole numbers or numbers, 0 where an environment has none; anything else as objects, there None."""
+    dtype = _dtype_of([info[key] for info in infos if key in info])
+    if dtype is not object:
+        return np.array([info.get(key, 0) for info in infos], dtype=dtype)
+    values = np.empty(len(infos), dtype=object)
+    for k, info in enumerate(infos):
+        values[k] = info.get(key)
+    return values
+
+
+def _dtype_of(values: list[Any]) -> type:
+    flags = [isinstance(value, (bool, np.bool_)) for value in values]
+    if any(flags):
+        return bool if all(flags) else object
+    if all(isinstance(value, (int, np.integer)) and abs(int(value)) < 2**63 for value in values):
+        return int
+    if all(isinstance(value, (int, float, np.integer, np.floating)) for value in values):
+        return float
+    return object

@@ -40,7 +40,8 @@ public:
 private:
     void ask() {
         try {
-            stop_ = !watch_("robots", static_cast<double>(done_) / static_cast<double>(robots_));
+            const double share = robots_ == 0 ? 1 : static_cast<double>(done_) / static_cast<double>(robots_);
+            stop_ = !watch_("robots", share);
         } catch (...) {
             thrown_ = std::current_exception();
             stop_ = true;

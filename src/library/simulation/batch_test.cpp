@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
@@ -92,6 +93,20 @@ TEST_CASE("a batch calls its watch on the calling thread only, and can be cancel
     CHECK_THROWS_AS(batch.step(states, pulled_each(states, 1e-3),
                                [](std::string_view, double) -> bool { throw std::runtime_error("enough"); }),
                     std::runtime_error);
+}
+
+TEST_CASE("the watch of a batch without robots is told that all is done") {
+    Batch batch({}, {});
+    std::vector<State> states;
+    std::vector<double> told;
+    CHECK(batch
+              .step(states, {},
+                    [&](std::string_view, double share) {
+                        told.push_back(share);
+                        return true;
+                    })
+              .empty());
+    CHECK(std::ranges::all_of(told, [](double share) { return share == 1; }));
 }
 
 TEST_CASE("work on each core passes on the exception of the lowest index") {

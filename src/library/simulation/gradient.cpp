@@ -148,21 +148,24 @@ double value_of_number(const std::vector<std::pair<std::string, double>>& all, c
                                                                           : "did you mean \"" + nearest + "\"?"));
 }
 
-Numbers numbers_around(const Model::Data& model, const std::vector<std::string>& names, Progress& progress) {
+Numbers numbers_around(const Model::Data& model, const std::vector<std::string>& names,
+                       library::WatchedProgress& progress) {
     Numbers out;
     if (names.empty()) return out;
     const Robot::Data& given = *model.robot;
     const auto all = library::value_of(robot::free_parameters(given.text, given.file, given.changes));
     const auto read = [&](const std::vector<std::string>& more) { return library::read_again(given, more); };
-    const mesh::TetMesh mesh = library::value_of(model.given_mesh ? robot::take_mesh(given.robot, *model.given_mesh)
-                                                                  : robot::build_mesh(given.robot, progress));
+    auto made =
+        model.given_mesh ? robot::take_mesh(given.robot, *model.given_mesh) : robot::build_mesh(given.robot, progress);
+    progress.rethrow();
+    const mesh::TetMesh mesh = library::value_of(std::move(made));
     for (const std::string& name : names) {
         out.models.push_back(std::make_unique<robot::NumberModels>(
             library::value_of(robot::number_models(read, given.robot, mesh, name, value_of_number(all, name)))));
-        const robot::NumberModels& made = *out.models.back();
-        for (const sim::Model* one : {&made.more, &made.less})
+        const robot::NumberModels& around = *out.models.back();
+        for (const sim::Model* one : {&around.more, &around.less})
             out.systems.push_back(std::make_unique<sim::Equilibrium>(*one));
-        out.changes.push_back({(out.systems.end() - 2)->get(), out.systems.back().get(), made.step});
+        out.changes.push_back({(out.systems.end() - 2)->get(), out.systems.back().get(), around.step});
     }
     return out;
 }
@@ -176,7 +179,7 @@ ProgramGradient gradient(const Model& model, const Objective& objective, const G
     Judge judge(scene.model, objective);
     library::WatchedProgress watched(watch, "gradient");
     JudgedProgress progress(watched, judge);
-    const Numbers numbers = numbers_around(*model.data(), options.numbers, progress);
+    const Numbers numbers = numbers_around(*model.data(), options.numbers, watched);
     library::Guides guides;
     if (options.guide_points) guides = library::guides_of(*model.data());
     const sim::By by{.tets = options.tets,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "base/core/near.hpp"
 #include "library/simulation/test_bar.hpp"
@@ -279,6 +280,13 @@ TEST_CASE("parameters of the drawing have derivatives through everything that fo
     CHECK_THROWS_AS((void)gradient(Model(Robot::parse(text)), at_end(), {.numbers = {"twice"}}), Failure);
     CHECK_THROWS_WITH_AS((void)gradient(Model(bar(four_steps)), at_end(), {.numbers = {"height"}}),
                          "the robot file has no [parameters] that are numbers", Failure);
+}
+
+TEST_CASE("an exception of the Watch reaches the caller, also while the robot is meshed for derivatives by numbers") {
+    const Model model(Robot::parse(drawn));
+    const Watch thrower = [](std::string_view, double) -> bool { throw std::out_of_range("of the caller"); };
+    CHECK_THROWS_WITH_AS((void)gradient(model, at_end(), {.numbers = {"height"}}, thrower), "of the caller",
+                         std::out_of_range);
 }
 
 TEST_CASE("the derivative of the tension by a bar's height agrees with bars of other heights") {

@@ -18,9 +18,10 @@ namespace {
 namespace fs = std::filesystem;
 
 sim::identify::Source source_of(const std::shared_ptr<const Robot::Data>& robot, const std::optional<Mesh>& mesh,
-                                Progress& progress) {
+                                library::WatchedProgress& progress) {
     Result<mesh::TetMesh> made =
         mesh ? robot::take_mesh(robot->robot, library::tet_mesh(*mesh)) : robot::build_mesh(robot->robot, progress);
+    progress.rethrow();
     return {[robot](const std::vector<std::string>& more) { return library::read_again(*robot, more); },
             library::value_of(std::move(made))};
 }

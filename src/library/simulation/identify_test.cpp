@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <stdexcept>
 
 #include "base/core/near.hpp"
 #include "base/core/test_folder.hpp"
@@ -86,4 +87,19 @@ TEST_CASE("identification refuses an unknown key and unusable measurements") {
         CHECK(failure.file() == "m.csv");
         CHECK(failure.line() == 3);
     }
+}
+
+TEST_CASE("an exception of the Watch of an identification reaches the caller, also while the robot is meshed") {
+    const auto identify_with = [](const Watch& watch) {
+        (void)identify(bar(program), {"material.soft.youngs_modulus"}, {"step,tip_z_mm\n4,5\n"}, JudgeOn::nothing, {},
+                       watch);
+    };
+    std::string first;
+    const auto note_stage = [&](std::string_view stage, double) -> bool {
+        first = stage;
+        throw std::runtime_error("of the caller");
+    };
+    CHECK_THROWS_WITH_AS(identify_with(note_stage), "of the caller", std::runtime_error);
+    CHECK(first != "trial");
+    CHECK_THROWS_AS(identify_with([](std::string_view, double) { return false; }), Failure);
 }

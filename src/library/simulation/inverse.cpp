@@ -90,7 +90,7 @@ Waypoint InverseResult::waypoint(std::size_t index) const {
     for (std::size_t g = 0; g < at.goals.size(); ++g)
         out.goals.push_back(goal_result(data_->task.goals[g], at.goals[g], index));
     out.inputs = at.values;
-    for (const sim::inverse::Limit& limit : at.limits) out.limits.push_back(sim::inverse::text(limit));
+    out.limits = sim::inverse::reasons(at);
     out.result = library::result_of(at.state);
     out.observed = library::observation_of(at.state);
     out.positions = library::points_of(at.state.positions);

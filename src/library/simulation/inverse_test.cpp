@@ -2,6 +2,7 @@
 #include "pliant/inverse.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
@@ -79,6 +80,21 @@ TEST_CASE("an unreachable goal ends at the nearest point and names the limit") {
     CHECK(at.limits[0] == "flexor is at the upper end of its range");
     CHECK(result.text().find("waypoint 1 of 1: not reached") != std::string::npos);
     CHECK(result.json().find("\"reached\": false") != std::string::npos);
+}
+
+TEST_CASE("a goal beside all that the actuators do says so") {
+    const Model model(with_goal(reachable));
+    Stepper stepper(model);
+    State state = stepper.rest();
+    Inputs inputs = stepper.program(1);
+    inputs.cables[0] = {Drive::By::length, 0.056};
+    REQUIRE(stepper.step(state, inputs).arrived);
+    const Point tip = stepper.observe(state).markers[0].position_m;
+    const std::string beside = fmt::format("point = [{}, {}, {}]", 1e3 * tip[0], 1e3 * tip[1] + 10, 1e3 * tip[2]);
+    const InverseResult result = inverse(Model(with_goal(beside)));
+    CHECK_FALSE(result.reached());
+    CHECK(result.waypoint(0).limits ==
+          std::vector<std::string>{"the actuators move the robot in other directions only"});
 }
 
 TEST_CASE("a robot without a goal, an impossible number of starts and a cancelled search throw") {

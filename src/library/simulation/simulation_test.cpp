@@ -2,9 +2,12 @@
 #include "pliant/simulation.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <thread>
 #include <type_traits>
@@ -124,8 +127,26 @@ TEST_CASE("a quantity needs a unit that fits") {
                          "there is no unit \"J\" here; write m, s, N, Pa, m^3, kg/m^3 or N/m", Failure);
 }
 
+TEST_CASE("a step in time as long as the file's time_step is one, also where the program's divide its duration") {
+    // 143 steps of 6.993 ms, and 3 of 0.333 s
+    for (const auto& [step_s, duration] : {std::pair{0.007, "1 s"}, {0.3, "1 s"}, {0.005, "1 s"}}) {
+        const Model model(
+            bar(fmt::format("program = {{ duration = \"{}\", time_step = \"{} s\" }}\n", duration, step_s)));
+        Stepper stepper(model);
+        State state = stepper.rest();
+        for (int k = 0; k < 20; ++k) {
+            Inputs inputs = state.inputs();
+            inputs.time += step_s;
+            CHECK(stepper.step(state, inputs).pieces == 1);
+        }
+        Inputs inputs = state.inputs();
+        inputs.time += 2 * step_s;
+        CHECK(stepper.step(state, inputs).pieces == 2);
+    }
+}
+
 TEST_CASE("a mesh made by a program takes the place of a file") {
-    const Robot robot = Robot::parse(R"(
+    const std::string memory_block = R"(
         name = "block"
         length_unit = "mm"
         material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.3 }
@@ -134,7 +155,8 @@ TEST_CASE("a mesh made by a program takes the place of a file") {
         fixed = [{ name = "bottom", box = [[0, 0, 0], [10, 10, 0]] }]
         load = [{ name = "push", box = [[0, 0, 10], [10, 10, 10]], force = ["0 N", "0 N", "-0.1 N"] }]
         marker = [{ name = "top", point = [5, 5, 10] }]
-    )");
+    )";
+    const Robot robot = Robot::parse(memory_block);
     Mesh cube;  // of 10 mm, in six tets around a diagonal, with an unused point
     for (int k = 0; k < 8; ++k) cube.points.push_back({0.01 * (k & 1), 0.01 * (k >> 1 & 1), 0.01 * (k >> 2)});
     cube.points.push_back({1, 1, 1});
@@ -147,6 +169,19 @@ TEST_CASE("a mesh made by a program takes the place of a file") {
     CHECK(stepper.step(state, stepper.program(1)).arrived);
     CHECK(stepper.observe(state).supports[0].force_N[2] == near(0.1, {.relative = 1e-3}));
     CHECK(stepper.observe(state).markers[0].position_m[2] < 0.01);
+
+    const Model quadratic(Robot::parse(memory_block, {}, {"mesh.order=2"}), cube);
+    Mesh of_ten;  // the same cube: `order = 1` takes its corners
+    of_ten.nodes_per_tet = 10;
+    of_ten.tets.assign(quadratic.tets().begin(), quadratic.tets().end());
+    const std::span<const double> at = quadratic.rest_coordinates();
+    for (std::size_t n = 0; n < at.size(); n += 3) of_ten.points.push_back({at[n], at[n + 1], at[n + 2]});
+    REQUIRE(of_ten.points.size() == 27);
+    const Model corners(robot, of_ten);
+    CHECK(corners.order() == 1);
+    CHECK(std::ranges::equal(corners.tets(), model.tets()));
+    CHECK(std::ranges::equal(corners.rest_coordinates(), model.rest_coordinates()));
+    CHECK(Model(Robot::parse(memory_block, {}, {"mesh.order=2"}), of_ten).node_count() == 27);
 
     const auto problem = [&](const Mesh& mesh) -> std::string {
         try {

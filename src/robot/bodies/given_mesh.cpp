@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <utility>
+#include <vector>
+
 #include "base/core/text.hpp"
 #include "geometry/files/tet_file.hpp"
 #include "robot/bodies/body_errors.hpp"
@@ -41,6 +44,27 @@ Status claim_tets(const Robot& robot, const mesh::TetMesh& mesh, const std::vect
     return wrong(fmt::format("the mesh has no region \"{}\"; it has {}", wanted.name, join_names(mesh.region_names)));
 }
 
+/// Straight tets of the corners of a quadratic mesh, without its other nodes. A linear mesh comes back unchanged.
+mesh::TetMesh to_linear(mesh::TetMesh mesh) {
+    if (mesh.order == 1) return mesh;
+    std::vector<int> corners;
+    for (std::size_t t = 0; t < mesh.tet_count(); ++t)
+        corners.insert(corners.end(), mesh.tet(t).begin(), mesh.tet(t).begin() + 4);
+    std::vector<int> place(mesh.points.size(), -1);
+    for (const int node : corners) place[static_cast<std::size_t>(node)] = 0;
+    std::vector<Vec3> points;
+    for (std::size_t n = 0; n < place.size(); ++n) {
+        if (place[n] < 0) continue;
+        place[n] = static_cast<int>(points.size());
+        points.push_back(mesh.points[n]);
+    }
+    for (int& node : corners) node = place[static_cast<std::size_t>(node)];
+    mesh.order = 1;
+    mesh.points = std::move(points);
+    mesh.nodes = std::move(corners);
+    return mesh;
+}
+
 }  // namespace
 
 Result<mesh::TetMesh> give_regions(const Robot& robot, mesh::TetMesh mesh) {
@@ -66,7 +90,7 @@ Result<mesh::TetMesh> give_regions(const Robot& robot, mesh::TetMesh mesh) {
     mesh.region = std::move(user_of_tet);
     mesh.region_names.clear();
     for (const Region& user : users) mesh.region_names.emplace_back(user.name);
-    return robot.mesh.order == 2 ? mesh::to_quadratic(mesh) : std::move(mesh);
+    return robot.mesh.order == 2 ? mesh::to_quadratic(mesh) : to_linear(std::move(mesh));
 }
 
 Result<mesh::TetMesh> read_mesh_file(const Robot& robot) {

@@ -24,6 +24,7 @@ struct Dynamics {
     Damping damping;
     Integrator integrator = Integrator::bdf2;
     double time_tolerance_m = 0;  ///< above 0: adapts the step length so that the error of each step stays below this
+    double time_step_s = 0;       ///< as the file says; steps of the program divide its duration. 0: as these
 };
 
 struct Program {

@@ -209,6 +209,7 @@ void spread_steps(Reader& program, Robot& robot) {
                                                         fits, duration, most_steps));
     const double steps = std::round(fits);
     robot.program.steps = static_cast<int>(steps);
+    robot.program.dynamics->time_step_s = step;
     if (std::fabs(fits - steps) > rounding * steps)
         robot.notes.push_back(
             fmt::format("program.time_step is {:.6g} s instead of {:.6g} s, so that {:.0f} steps fill "

@@ -189,7 +189,10 @@ StepReport Stepper::drive(RobotState& robot, const Inputs& wanted, const Progres
     StepPath path{from + length, [&](double along) { return controls(robot, inputs_at(along)); },
                   (is_adaptive() ? smallest_adaptive_share : smallest_share) * length, onward, expected};
     if (after_piece) path.after_piece = [&](const RobotState& at) { after_piece((at.now.along - from) / length); };
-    if (in_time) path.longest_piece = length / std::max(1.0, std::ceil(length / options_.time_unit - rounding));
+    if (in_time) {
+        const double longest = std::max(options_.time_unit, options_.dynamics->time_step_s);
+        path.longest_piece = length / std::max(1.0, std::ceil(length / longest - rounding));
+    }
     StepReport report = step(robot, path, progress);
     robot.inputs = report.arrived ? wanted : inputs_at(robot.now.along);
     if (report.pieces > 0) robot.before = inputs_at(robot.past.back().along);
