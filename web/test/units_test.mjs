@@ -208,6 +208,14 @@ test('a job is out of date by what its robot and its form say now, in the words 
   assert.deepEqual(page.changesSince({ ...source, order: { layer_um: 100 } }, 'abc', order), []);
 });
 
+test('a form that nobody has filled in leaves the layer height to the printer', () => {
+  const order = page.wholeOrder(['soft']);
+  assert.deepEqual(order, { printer: 'tower', copies: 1, resin: [], exposure: [], overlap: [], interlock: [] });
+  page.setOrder({ printer: 'arm.toml', layer: '80 um' });
+  page.setOrder(order);
+  assert.equal('layer' in page.wholeOrder(['soft']), false);
+});
+
 test('a form that takes the order of a job gives the same order again', () => {
   const order = {
     printer: 'arm.toml',
