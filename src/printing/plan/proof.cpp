@@ -42,7 +42,7 @@ public:
             left_ml = std::max(usable_ml(from), resin_ml(layer, from.resin));
         left_ml -= image_ml(layer, job_.layers[layer].images[k]);
         if (left_ml >= -1e-6 * (1 + usable_ml(from))) return {};
-        return input_error("the vat of slot {} has run dry: it gives {:.1f} ml of \"{}\"", from.slot, usable_ml(from),
+        return input_error("the vat of slot {} has run dry: it gives {} of \"{}\"", from.slot, ml_text(usable_ml(from)),
                            from.resin);
     }
 
