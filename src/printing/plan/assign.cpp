@@ -196,7 +196,7 @@ private:
         constexpr std::size_t most_named = 8;
         std::string named;
         for (std::size_t i = 0; i < std::min(layers.size(), most_named); ++i) {
-            named += fmt::format("{}{}", i == 0 ? "" : ", ", layers[i]);
+            named += fmt::format("{}{}", i == 0 ? "" : ", ", layers[i] + 1);
         }
         if (layers.size() > most_named) named += fmt::format(" and {} more", layers.size() - most_named);
         const Supply& supply = supplies_[s];

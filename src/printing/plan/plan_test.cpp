@@ -95,7 +95,7 @@ TEST_CASE("too many resins, another projector, a part too tall, layers out of or
     job.layers[2].z_um = 304801;
     CHECK(holds(plan_error(job, printer), "builds 304.80 mm"));
     job.layers[2].z_um = 50;
-    CHECK(holds(plan_error(job, printer), "layer 2 at 50 um does not lie above 100 um"));
+    CHECK(holds(plan_error(job, printer), "layer 3 at 50 um does not lie above 100 um"));
     job = plan::test::make_job(repeated({0}, 3), two);
     job.layers[1].images[0].material = 2;
     CHECK(holds(plan_error(job, printer), "prints material 2, there are 2"));
@@ -113,7 +113,7 @@ TEST_CASE("warnings: a material that prints nothing, and a vat that holds too li
     REQUIRE(plan.warnings.size() == 3);
     CHECK(holds(plan.warnings[0], "\"m1\" prints nothing"));
     CHECK(holds(plan.warnings[1],
-                "the vat of slot 1 gives under 0.1 ml of \"semi-flex\" at a time: refill it before layer 4"));
+                "the vat of slot 1 gives under 0.1 ml of \"semi-flex\" at a time: refill it before layer 5"));
     CHECK(holds(plan.warnings[2], "1 layer would have to be cured deeper"));
     const auto json = nlohmann::json::parse(plan_json(plan));
     REQUIRE(json["vats"].size() == 1);

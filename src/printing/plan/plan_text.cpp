@@ -111,7 +111,7 @@ std::string solution_text(const SolutionUse& s) {
         "solution", s.used_ml, s.pumped_ml, s.liquid_ml, 100 * s.resin_share, 100 * s.spent_share);
     constexpr std::size_t most = 5;
     for (std::size_t i = 0; i < std::min(most, s.care.size()); ++i)
-        text += fmt::format("  {:<10}{:>10}   {}\n", "before", fmt::format("layer {}", s.care[i].layer),
+        text += fmt::format("  {:<10}{:>10}   {}\n", "before", fmt::format("layer {}", s.care[i].layer + 1),
                             machine::care_text(s.care[i].care));
     if (s.care.size() > most) text += fmt::format("  and {} more\n", counted(s.care.size() - most, "time"));
     return text;

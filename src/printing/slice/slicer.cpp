@@ -7,6 +7,7 @@
 #include "base/core/parallel.hpp"
 #include "base/core/text.hpp"
 #include "printing/slice/blend.hpp"
+#include "printing/slice/layer_text.hpp"
 #include "printing/slice/mask.hpp"
 #include "printing/slice/overlap.hpp"
 #include "printing/slice/raster_frame.hpp"
@@ -400,13 +401,12 @@ Summary Tally::summary() const {
         summary.warnings.push_back(fmt::format("gaps of at most {:.6g} um between materials closed in {} pixels",
                                                settings.rules.close_gap_um, closed_gap_pixels_));
     if (first_filled_ > 0)
-        summary.warnings.push_back(
-            fmt::format("{} empty: nothing touches the platform",
-                        first_filled_ == 1 ? "layer 0 is" : fmt::format("layers 0 to {} are", first_filled_ - 1)));
+        summary.warnings.push_back(fmt::format("{} {} empty: nothing touches the platform",
+                                               layers_text(0, first_filled_ - 1), first_filled_ == 1 ? "is" : "are"));
     if (empty_between_ > 0)
         summary.warnings.push_back(
-            fmt::format("{} empty layers between printed ones, the first is layer {}: what is above will float",
-                        empty_between_, first_empty_));
+            fmt::format("{} empty layers between printed ones, the first is {}: what is above will float",
+                        empty_between_, layer_text(first_empty_)));
     return summary;
 }
 
