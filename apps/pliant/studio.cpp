@@ -68,7 +68,8 @@ void tell(const StudioOptions& options, const std::string& address) {
         fmt::print("{}\n", address);
     } else {
         fmt::print("Pliant studio: {}\n", address);
-        if (!options.token_file.empty()) fmt::print("The token is in {}.\n", options.token_file);
+        if (!options.token_file.empty())
+            fmt::print("The token is in {}: add ?token=TOKEN to the address.\n", options.token_file);
         fmt::print("Ctrl-C ends it.\n");
     }
     std::fflush(stdout);
@@ -111,7 +112,8 @@ Result<int> run_studio(const StudioOptions& options) {
     if (!token) return tl::unexpected(token.error());
     std::error_code error;
     const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-    const auto server = start(**studio, options, {options.address, 0, *token, program.parent_path()});
+    const auto server =
+        start(**studio, options, {options.address, 0, *token, !options.token_file.empty(), program.parent_path()});
     if (!server) return tl::unexpected(server.error());
     const std::string address = fmt::format("http://{}:{}/", host_of(options.address), (*server)->port());
     const std::string with_token = token->empty() ? address : address + "?token=" + *token;

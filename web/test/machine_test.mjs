@@ -78,6 +78,7 @@ test('an open door pauses the print with a message; an empty vat asks for resin;
   await state(page, 'switch-z_max', 'free').catch(() => state(page, 'switch-z_max', 'pressed'));
   assert.match(await text(page, 'emergency-line'), /none: an emergency stop relies on the firmware/);
   assert.match(await text(page, 'known'), /the print will pause once for a refill: layer 1\d, refill the vat of slot 1/);
+  assert.match(await text(page, 'check-slot1'), /slot 1 holds at least 21 ml of semi-flex/); // of which 20 must stay
   for (const box of await page.locator('.checklist input').all()) await box.check();
   await page.getByTestId('move-door').click();
   await state(page, 'door', 'open');

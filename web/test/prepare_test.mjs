@@ -230,6 +230,23 @@ test('a job that no longer matches robot or form is marked, here and before it i
   assert.deepEqual(wrong, []);
 });
 
+test('without a layer height of its own a job has that of its printer', async (t) => {
+  const coarse = readFileSync(new URL('../../examples/printers/tower.toml', import.meta.url), 'utf8').replace(/^layer_height = .*$/m, 'layer_height = "500 um"');
+  writeFileSync(join(studio.folder, 'coarse.toml'), coarse);
+  const { page, wrong } = await withTable(t);
+  await page.getByTestId('printer').selectOption('tower');
+  await page.getByTestId('option-layer').fill('');
+  await page.waitForFunction(() => document.querySelector('[data-testid=option-layer]').placeholder === '50');
+  await page.getByTestId('printer').selectOption('coarse.toml');
+  await page.waitForFunction(() => document.querySelector('[data-testid=option-layer]').placeholder === '500');
+  await slice(page);
+  assert.equal(await page.evaluate(() => window.pliant.job.value.manifest.layers.length), 26); // 13 mm
+  await page.getByTestId('printer').selectOption('tower');
+  await slice(page);
+  assert.equal(await page.evaluate(() => window.pliant.job.value.manifest.layers.length), 260);
+  assert.deepEqual(wrong, []);
+});
+
 test('a wrong option is reported at its field before anything is sliced', async (t) => {
   const { page, wrong } = await withTable(t);
   await page.getByTestId('option-layer').fill('0');

@@ -53,6 +53,21 @@ async function shown(page, check, given) {
 }
 const layer = (page) => page.getByTestId('print-layer').textContent().then(Number);
 
+/// On a phone nothing covers the machine, and no name of its parts is cut.
+async function readableOnPhone(page) {
+  const size = page.viewportSize();
+  await page.setViewportSize({ width: 390, height: 844 });
+  await shown(page, () => {
+    const box = (e) => e.getBoundingClientRect();
+    const apart = (a, b) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+    const names = [...document.querySelectorAll('.names span')].filter((e) => e.style.visibility === 'visible').map(box);
+    const over = [...document.querySelectorAll('.watch .picture, .watch .view-of, .watch .part-caption')].map(box);
+    const canvas = box(document.querySelector('.machine-view canvas'));
+    return canvas.width <= 390 && over.every((o) => apart(canvas, o)) && names.length >= 3 && names.every((n) => n.left >= 0 && n.right <= 390);
+  });
+  await page.setViewportSize(size);
+}
+
 test('a file that is not a serial port, and a job that is not saved, are refused', async (t) => {
   const { page } = await openPage(browser, `${studio.address}#print`, t);
   await page.getByTestId('device').fill('/etc/passwd');
@@ -75,6 +90,7 @@ test('a print at a port survives the end of the studio, and is resumed from the 
   for (const box of await first.page.locator('.checklist input').all()) await box.check();
   await first.page.getByTestId('start').click();
   await first.page.waitForFunction(() => Number(document.querySelector('[data-testid=print-layer]').textContent) >= 2);
+  await readableOnPhone(first.page);
   const broken = await layer(first.page);
   studio.child.kill('SIGKILL');
   await first.context.close();

@@ -33,7 +33,7 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 let page;
 before(async () => {
   pretendBrowser();
-  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/fit', 'simulate/robot_keys', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'make/gantt', 'make/plan', 'make/place', 'make/order', 'make/paint', 'make/stale', 'print/telling', 'orbit_keys', 'simulate/gif', 'simulate/response', 'simulate/geometry', 'simulate/motion', 'simulate/workspace'];
+  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/fit', 'simulate/robot_keys', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'counted', 'make/gantt', 'make/plan', 'make/place', 'make/order', 'make/paint', 'make/stale', 'print/telling', 'orbit_keys', 'simulate/gif', 'simulate/response', 'simulate/geometry', 'simulate/motion', 'simulate/workspace'];
   const entry = join(folder, 'entry.ts');
   writeFileSync(entry, modules.map((m) => `export * from ${JSON.stringify(join(sources, m))};`).join('\n'));
   const outfile = join(folder, 'units.mjs');
@@ -208,6 +208,14 @@ test('a job is out of date by what its robot and its form say now, in the words 
   assert.deepEqual(page.changesSince({ ...source, order: { layer_um: 100 } }, 'abc', order), []);
 });
 
+test('a form that nobody has filled in leaves the layer height to the printer', () => {
+  const order = page.wholeOrder(['soft']);
+  assert.deepEqual(order, { printer: 'tower', copies: 1, resin: [], exposure: [], overlap: [], interlock: [] });
+  page.setOrder({ printer: 'arm.toml', layer: '80 um' });
+  page.setOrder(order);
+  assert.equal('layer' in page.wholeOrder(['soft']), false);
+});
+
 test('a form that takes the order of a job gives the same order again', () => {
   const order = {
     printer: 'arm.toml',
@@ -243,6 +251,10 @@ test('the colours of a field are those of the pictures, and are clamped at both 
   assert.deepEqual(page.fieldColour(NaN), page.fieldColour(0));
   page.fieldColour(0.25).forEach((v, i) => assert.ok(Math.abs(v - [0.2355, 0.29, 0.51][i]) < 1e-12));
   assert.match(page.gradientCss(), /^linear-gradient\(to top, rgb\(68 1 84\) 0%, .*100%\)$/);
+});
+
+test('an amount of resin that is not none is not shown as none', () => {
+  assert.deepEqual([0, 0.004, 0.06, 12.34].map(page.millilitres), ['0.0 ml', 'under 0.1 ml', '0.1 ml', '12.3 ml']);
 });
 
 test('times, time steps and ranges are formatted', () => {

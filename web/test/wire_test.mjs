@@ -129,7 +129,9 @@ test('bound to other addresses the studio needs its token', async () => {
     const address = `http://127.0.0.1:${url.port}`;
     assert.equal((await ask('/', {}, address)).status, 401);
     assert.equal((await ask('/api/project', {}, address)).status, 401);
-    assert.equal((await ask(`/api/project?token=${'x'.repeat(32)}`, {}, address)).status, 401);
+    const refused = await ask(`/api/project?token=${'x'.repeat(32)}`, {}, address);
+    assert.equal(refused.status, 401);
+    assert.match(String(refused.text), /the token is wrong: use the address that the studio printed/);
     assert.doesNotMatch(await handshake({ Origin: address }, '/live', address), /101/);
     assert.equal((await ask('/api/project', { headers: { Authorization: `Bearer ${token}` } }, address)).status, 200);
     const first = await ask(`/?token=${token}`, {}, address);

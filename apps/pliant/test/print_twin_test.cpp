@@ -434,7 +434,7 @@ TEST_CASE("mutation: one changed pixel in any image is noticed, and the layer is
             REQUIRE(other.status);
             CHECK_FALSE(other.report.passed);
             CHECK(other.report.wrong_pixels >= 1);
-            CHECK(holds(other.report.first_deviation, fmt::format("layer {}", layer)));
+            CHECK(holds(other.report.first_deviation, fmt::format("layer {}", layer + 1)));
         }
     }
 }
@@ -546,13 +546,13 @@ TEST_CASE("a fault of projector, hooks or vats makes the inspection fail, and la
         return p.report;
     };
     const twin::Report dark = broken({Fault::Kind::dark_projector, 4, 0});
-    CHECK(holds(dark.first_deviation, "layer 1, material \"soft\""));
+    CHECK(holds(dark.first_deviation, "layer 2, material \"soft\""));
     CHECK(holds(dark.first_deviation, "exposure"));
     const twin::Report stuck = broken({Fault::Kind::stuck_hook, 1, 0});
     CHECK(holds(stuck.first_deviation, "another resin"));
     CHECK(stuck.materials[1].foreign_mm3 > 0);
     const twin::Report empty = broken({Fault::Kind::empty_vat, 2, 0});
-    CHECK(holds(empty.first_deviation, "layer 0, material \"rigid\""));
+    CHECK(holds(empty.first_deviation, "layer 1, material \"rigid\""));
     INFO(empty.first_deviation);
     const twin::Report pump = broken({Fault::Kind::dead_pump, 1, 0});
     CHECK(pump.log.short_cleanings == 5);

@@ -107,7 +107,7 @@ TEST_CASE("a layer without exposure is missing in the picture, and the text name
     CHECK(volume_mm3(block.off, 1) == near(1.25, {.relative = 1e-12}));
     const std::string page =
         block_section(block, square_job(), block_picture(block, square_job(), small_tower().projector).value());
-    CHECK(holds(page, "First deviation: layer 1: nothing cured at 100 um"));
+    CHECK(holds(page, "First deviation: layer 2: nothing cured at 100 um"));
     CHECK(holds(page, "<b>off</b>"));
 }
 

@@ -42,10 +42,32 @@ Access check_access(const AccessRules& rules, const Credentials& c) {
     if (c.host.empty()) return Access::wrong_host;
     if (c.origin.empty() ? c.websocket : c.origin != fmt::format("http://{}", c.host)) return Access::wrong_origin;
     if (rules.token.empty()) return Access::granted;
+    bool some = false;
     for (const std::string_view offered : {c.query_token, c.bearer, cookie_value(c.cookie, cookie_name)}) {
         if (equal(offered, rules.token)) return Access::granted;
+        some = some || !offered.empty();
     }
-    return Access::no_token;
+    return some ? Access::wrong_token : Access::no_token;
+}
+
+const char* refusal_text(const AccessRules& rules, Access access) {
+    switch (access) {
+        case Access::granted:
+            break;
+        case Access::wrong_host:
+            return "this name is not the studio's; use the address that it printed";
+        case Access::wrong_origin:
+            return "requests from other pages are refused";
+        case Access::no_token:
+            return rules.token_from_file ? "the token is missing: add ?token=TOKEN to the address; the token is in the "
+                                           "file that the studio was given with --token-file"
+                                         : "the token is missing: use the address that the studio printed";
+        case Access::wrong_token:
+            return rules.token_from_file
+                       ? "the token is wrong: it is in the file that the studio was given with --token-file"
+                       : "the token is wrong: use the address that the studio printed when it was started";
+    }
+    return "";
 }
 
 std::string random_key() {

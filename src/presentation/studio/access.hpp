@@ -9,7 +9,8 @@ namespace pliant::studio {
 
 struct AccessRules {
     int port = 0;
-    std::string token;  ///< empty: bound to loopback only, no token needed
+    std::string token;             ///< empty: bound to loopback only, no token needed
+    bool token_from_file = false;  ///< not part of the address that was printed
 };
 
 /// The parts of a request that decide about access.
@@ -22,12 +23,15 @@ struct Credentials {
     bool websocket = false;
 };
 
-enum class Access { granted, wrong_host, wrong_origin, no_token };
+enum class Access { granted, wrong_host, wrong_origin, no_token, wrong_token };
 
 /// Without a token only loopback names with the right port are accepted as Host. An Origin must be this very page; a
 /// WebSocket must have one. With a token any Host is accepted, and the token must be in the query, a cookie or a bearer
 /// header.
 [[nodiscard]] Access check_access(const AccessRules& rules, const Credentials& credentials);
+
+/// One line for the person who was refused: what was wrong, and what would be right.
+[[nodiscard]] const char* refusal_text(const AccessRules& rules, Access access);
 
 /// 32 letters and digits from the system's source of randomness.
 [[nodiscard]] std::string random_key();

@@ -57,10 +57,12 @@ TEST_CASE("bound to another address, access needs the right token, however it is
     const AccessRules rules{7117, "abcDEF123"};
     Credentials c = from("printer.lan:7117", "http://printer.lan:7117");
     CHECK(check_access(rules, c) == Access::no_token);
-    for (const char* wrong : {"abcDEF124", "abcDEF12", "abcDEF1234", ""}) {
+    for (const char* wrong : {"abcDEF124", "abcDEF12", "abcDEF1234"}) {
         c.bearer = wrong;
-        CHECK(check_access(rules, c) == Access::no_token);
+        CHECK(check_access(rules, c) == Access::wrong_token);
     }
+    c.bearer = "";
+    CHECK(check_access(rules, c) == Access::no_token);
     c.bearer = "abcDEF123";
     CHECK(check_access(rules, c) == Access::granted);
     c = from("printer.lan:7117");
@@ -71,9 +73,21 @@ TEST_CASE("bound to another address, access needs the right token, however it is
     CHECK(check_access(rules, c) == Access::granted);
     c.cookie = "xpliant_token=abcDEF123";
     CHECK(check_access(rules, c) == Access::no_token);
+    c.cookie = "pliant_token=abcDEF124";
+    CHECK(check_access(rules, c) == Access::wrong_token);
     c.cookie = "pliant_token=abcDEF123";
     c.origin = "http://evil.example";
     CHECK(check_access(rules, c) == Access::wrong_origin);
+}
+
+TEST_CASE("who is refused learns where the right token is") {
+    const auto says = [](bool from_file, Access access, const char* part) {
+        return std::string(refusal_text({7117, "abcDEF123", from_file}, access)).find(part) != std::string::npos;
+    };
+    CHECK(says(false, Access::no_token, "the token is missing: use the address that the studio printed"));
+    CHECK(says(false, Access::wrong_token, "the token is wrong: use the address that the studio printed"));
+    CHECK(says(true, Access::no_token, "add ?token=TOKEN to the address; the token is in the file"));
+    CHECK(says(true, Access::wrong_token, "the token is wrong: it is in the file"));
 }
 
 TEST_CASE("page keys are long and all different") {

@@ -3,7 +3,6 @@
 #include <charconv>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "base/core/json.hpp"
 #include "base/core/parse_all.hpp"
@@ -27,27 +26,12 @@ int number_behind(const std::string& text, const std::string& words) {
     return number;
 }
 
-/// The layer that a remark of the slicer refers to, or -1.
+/// The layer that a remark of the slicer refers to, from 0; or -1. Texts count from 1.
 int layer_of(const std::string& remark) {
     for (const char* words : {"in layer ", "is layer ", "in layers ", "from layer ", "layer "}) {
-        if (const int layer = number_behind(remark, words); layer >= 0) return layer;
+        if (const int layer = number_behind(remark, words); layer > 0) return layer - 1;
     }
     return -1;
-}
-
-/// The same text with layers counted from 1, as on the page; the slicer counts from 0.
-std::string from_one(const std::string& text) {
-    static const std::regex layers(R"(\b(layers? )(\d+)( to )?(\d+)?)");
-    const auto next = [](const std::string& digits) { return std::to_string(std::stol(digits) + 1); };
-    std::string out;
-    std::size_t at = 0;
-    for (std::sregex_iterator m(text.begin(), text.end(), layers); m != std::sregex_iterator(); ++m) {
-        const auto begin = static_cast<std::size_t>(m->position());
-        out += text.substr(at, begin - at) + (*m)[1].str() + next((*m)[2]) + (*m)[3].str();
-        if ((*m)[4].matched) out += (*m)[3].matched ? next((*m)[4]) : (*m)[4].str();
-        at = begin + static_cast<std::size_t>(m->length());
-    }
-    return out + text.substr(at);
 }
 
 /// Findings of the slicer with a position; then its other remarks.
@@ -69,7 +53,7 @@ Json issues_json(const job::Manifest& manifest) {
                           {"column", f.column}});
     }
     for (const std::string& warning : manifest.warnings)
-        issues.push_back({{"text", from_one(warning)}, {"layer", layer_of(warning)}});
+        issues.push_back({{"text", warning}, {"layer", layer_of(warning)}});
     return issues;
 }
 

@@ -470,7 +470,10 @@ std::string PrintSession::describe() const {
     if (!machine) return R"({"machine":null})";
     Json vats = Json::array(), refills = Json::array();
     for (const plan::VatUse& use : machine->ready.plan.vats)
-        vats.push_back({{"slot", use.slot}, {"resin", use.resin}, {"ml", use.resin_ml}, {"materials", use.materials}});
+        vats.push_back({{"slot", use.slot},
+                        {"resin", use.resin},
+                        {"needed", plan::needed_text(use)},
+                        {"materials", use.materials}});
     for (const host::Refill& refill : machine->ready.job.refills)
         refills.push_back({{"layer", refill.layer}, {"slot", refill.slot}, {"text", refill.text}});
     Json materials = Json::array();

@@ -152,15 +152,10 @@ struct Server::State {
         Request request{info.request_method, info.local_uri_raw != nullptr ? info.local_uri_raw : "",
                         read_query(info.query_string)};
         const std::string token = request.query.contains("token") ? request.query["token"] : "";
-        switch (access(wire, token, false)) {
-            case Access::granted:
-                break;
-            case Access::wrong_host:
-                return refuse(wire, 403, "this name is not the studio's; use the address that it printed");
-            case Access::wrong_origin:
-                return refuse(wire, 403, "requests from other pages are refused");
-            case Access::no_token:
-                return refuse(wire, 401, "the token is missing: use the address that the studio printed");
+        const Access right = access(wire, token, false);
+        if (right != Access::granted) {
+            const bool lacks_token = right == Access::no_token || right == Access::wrong_token;
+            return refuse(wire, lacks_token ? 401 : 403, refusal_text(rules, right));
         }
         if (!token.empty() && request.method == "GET" && request.path == "/") return settle_token(wire, token);
         request.page = header(wire, "X-Pliant-Page");
@@ -308,8 +303,8 @@ struct Server::LivePath {
 Result<std::unique_ptr<Server>> Server::start(Studio& studio, const ServerSettings& settings) {
     use_large_thread_stacks();
     mg_init_library(MG_FEATURES_DEFAULT);
-    std::unique_ptr<Server> server(new Server(
-        std::unique_ptr<State>(new State{studio, {0, settings.token}, find_help_pages(settings.program_folder)})));
+    std::unique_ptr<Server> server(new Server(std::unique_ptr<State>(
+        new State{studio, {0, settings.token, settings.token_from_file}, find_help_pages(settings.program_folder)})));
     State* state = server->state_.get();
     if (Status status = listen(*state, settings); !status) return tl::unexpected(status.error());
     // Without the sign for its end, the pattern takes /livex too.

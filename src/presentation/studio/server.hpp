@@ -12,8 +12,9 @@ namespace pliant::studio {
 
 struct ServerSettings {
     std::string address = "127.0.0.1";
-    int port = 0;       ///< 0: any free port
-    std::string token;  ///< required from every page; must not be empty unless the address is loopback
+    int port = 0;                  ///< 0: any free port
+    std::string token;             ///< required from every page; must not be empty unless the address is loopback
+    bool token_from_file = false;  ///< not part of the address that is printed
     std::filesystem::path program_folder{};  ///< used to find the pages of /help/
 };
 

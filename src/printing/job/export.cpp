@@ -132,8 +132,8 @@ Status check_alike(const Manifest& m, Format format) {
     if (format != Format::sl1 && format != Format::nanodlp) return {};
     for (std::size_t k = 1; k < m.layers.size(); ++k) {
         if (m.layers[k].thickness_um != m.layers[0].thickness_um)
-            return input_error("layer {} is {} um thick, layer 0 {} um: this format knows layers of one thickness only",
-                               k, m.layers[k].thickness_um, m.layers[0].thickness_um);
+            return input_error("layer {} is {} um thick, layer 1 {} um: this format knows layers of one thickness only",
+                               k + 1, m.layers[k].thickness_um, m.layers[0].thickness_um);
     }
     return {};
 }

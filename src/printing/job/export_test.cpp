@@ -345,7 +345,7 @@ TEST_CASE("layers of different heights are exported only to formats that allow t
     const auto refused = export_job(archive, Format::sl1, folder / "a");
     REQUIRE(!refused.has_value());
     CHECK(refused.error().message ==
-          "layer 1 is 100 um thick, layer 0 50 um: this format knows layers of one thickness only");
+          "layer 2 is 100 um thick, layer 1 50 um: this format knows layers of one thickness only");
     CHECK(export_job(archive, Format::vats, folder / "b").has_value());
     CHECK(height_note(archive.manifest(), Format::vats) ==
           "the layers are 50 to 100 um thick, which a folder of vats does not say; manifest.json of the job does");

@@ -118,8 +118,8 @@ Status check_findings(const Manifest& m, std::string_view where) {
     for (std::size_t i = 0; i < m.findings.size(); ++i) {
         const Finding& f = m.findings[i];
         if (f.first_layer < 0 || f.last_layer < f.first_layer || f.last_layer >= layers)
-            return input_error("{}: findings[{}]: layers {} to {} are not layers of the {} there are", where, i,
-                               f.first_layer, f.last_layer, layers);
+            return input_error("{}: findings[{}]: layers {} to {}, counted from 0, are not layers of the {} there are",
+                               where, i, f.first_layer, f.last_layer, layers);
         if (f.row < 0 || f.row >= m.height_px || f.column < 0 || f.column >= m.width_px)
             return input_error("{}: findings[{}]: row {}, column {} lies outside the image", where, i, f.row, f.column);
         if (!is_amount(f.area_mm2) || !is_amount(f.volume_mm3))
@@ -143,7 +143,7 @@ Status check_sha256(const Manifest& m, std::string_view where) {
     for (std::size_t k = 0; k < m.layers.size(); ++k) {
         for (const LayerImage& image : m.layers[k].images) {
             if (!m.sha256.contains(image.file))
-                return input_error("{}: sha256: \"{}\", an image of layer {}, is missing", where, image.file, k);
+                return input_error("{}: sha256: \"{}\", an image of layer {}, is missing", where, image.file, k + 1);
         }
     }
     return {};

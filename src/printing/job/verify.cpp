@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "printing/slice/layer_text.hpp"
 #include "printing/slice/run_image.hpp"
 
 namespace pliant::job {
@@ -46,8 +47,9 @@ Status check_shared(const Manifest& m, std::size_t k, const std::vector<slice::R
             // Calibrated greys change the amount of shared light, but not whether there is any.
             const bool agreed = corrected ? said > 0 : static_cast<double>(shared.light) / 255 <= said * (1 + 1e-6);
             if (shared.light == 0 || agreed) continue;
-            return input_error("{}: layer {}: {} and {} both light the pixel at row {}, column {}", path, k,
-                               entries[i].file, entries[j].file, shared.row, shared.column);
+            return input_error("{}: {}: {} and {} both light the pixel at row {}, column {}", path,
+                               slice::layer_text(static_cast<int>(k)), entries[i].file, entries[j].file, shared.row,
+                               shared.column);
         }
     }
     return {};

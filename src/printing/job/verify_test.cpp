@@ -36,13 +36,13 @@ TEST_CASE("areas must agree and no pixel may be lit twice") {
     CHECK(verdict(20, 0.11) == "job.zip: layers/a.png: its pixels hold 0.1 mm^2, the manifest says 0.11");
     CHECK(verdict(20, 0.11, true).empty());
     CHECK(verdict(19, 0.1) ==
-          "job.zip: layer 0: layers/a.png and layers/b.png both light the pixel at row 5, column 19");
+          "job.zip: layer 1: layers/a.png and layers/b.png both light the pixel at row 5, column 19");
 }
 
 TEST_CASE("pixels may be lit twice as far as the manifest allows it") {
     CHECK(verdict(17, 0.1, false, 0.03).empty());
     CHECK(verdict(17, 0.1, false, 0.02) ==
-          "job.zip: layer 0: layers/a.png and layers/b.png both light the pixel at row 5, column 17");
+          "job.zip: layer 1: layers/a.png and layers/b.png both light the pixel at row 5, column 17");
     CHECK(verdict(17, 0.1, true, 0.02).empty());
     CHECK(!verdict(17, 0.1, true).empty());
 }

@@ -50,7 +50,7 @@ Status run_layer_command(const std::string& command, int layer, double most_s) {
         ::usleep(look_every_us);
     }
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
-    return failure("{}: failed on layer {}", command, layer);
+    return failure("{}: failed on layer {}", command, layer + 1);
 }
 
 }  // namespace pliant::operate

@@ -114,6 +114,7 @@ public:
         : job_(job), printer_(printer), supplies_(std::move(supplies)), assignment_(assignment) {
         for (Supply& s : supplies_) s.left_ml = usable_ml(printer, s.vats.front());
         refills_.resize(supplies_.size());
+        refilled_.resize(printer.vats.size());
         uses_.resize(printer.vats.size());
         for (const job::Material& m : job.materials) {
             const auto found =
@@ -154,9 +155,10 @@ private:
         }
         if (ml > supply.left_ml) {
             refills_[s].push_back(layer);
-            const int slot = vat_at(printer_, supply.vats[supply.in_use]).slot;
-            assignment_.refills.push_back({layer, slot, supply.resin});
-            supply.left_ml = std::max(ml, usable_ml(printer_, supply.vats[supply.in_use]));
+            const int vat = supply.vats[supply.in_use];
+            assignment_.refills.push_back({layer, vat_at(printer_, vat).slot, supply.resin});
+            refilled_[static_cast<std::size_t>(vat)] = true;
+            supply.left_ml = std::max(ml, usable_ml(printer_, vat));
         }
         supply.left_ml -= ml;
     }
@@ -174,12 +176,14 @@ private:
                 use.resin = supply.resin;
                 use.first_layer = index;
                 use.refill = vat_at(printer_, vat).resin != supply.resin;
+                use.needed_ml = printer_.vat_shape.least_ml;
             }
             if (std::find(use.materials.begin(), use.materials.end(), image.material) == use.materials.end())
                 use.materials.insert(std::upper_bound(use.materials.begin(), use.materials.end(), image.material),
                                      image.material);
             use.last_layer = index;
             use.resin_ml += volume_ml(layer, image);
+            if (!refilled_[static_cast<std::size_t>(vat)]) use.needed_ml += volume_ml(layer, image);
             int& first = assignment_.vat_of_material[static_cast<std::size_t>(image.material)];
             if (first < 0) first = vat;
         }
@@ -192,14 +196,14 @@ private:
         constexpr std::size_t most_named = 8;
         std::string named;
         for (std::size_t i = 0; i < std::min(layers.size(), most_named); ++i) {
-            named += fmt::format("{}{}", i == 0 ? "" : ", ", layers[i]);
+            named += fmt::format("{}{}", i == 0 ? "" : ", ", layers[i] + 1);
         }
         if (layers.size() > most_named) named += fmt::format(" and {} more", layers.size() - most_named);
         const Supply& supply = supplies_[s];
         const int vat = supply.vats[supply.in_use];
         assignment_.warnings.push_back(
-            fmt::format("the vat of slot {} gives {:.1f} ml of \"{}\" at a time: refill it before layer {}",
-                        vat_at(printer_, vat).slot, usable_ml(printer_, vat), supply.resin, named));
+            fmt::format("the vat of slot {} gives {} of \"{}\" at a time: refill it before layer {}",
+                        vat_at(printer_, vat).slot, ml_text(usable_ml(printer_, vat)), supply.resin, named));
     }
 
     const job::Manifest& job_;
@@ -207,7 +211,8 @@ private:
     std::vector<Supply> supplies_;
     std::vector<std::size_t> supply_of_;  ///< by material
     std::vector<std::vector<int>> refills_;
-    std::vector<VatUse> uses_;  ///< by vat
+    std::vector<VatUse> uses_;    ///< by vat
+    std::vector<bool> refilled_;  ///< by vat: during the print, so far
     Assignment& assignment_;
 };
 

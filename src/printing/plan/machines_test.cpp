@@ -165,7 +165,7 @@ TEST_CASE("two vats of one resin: the second takes over at the layer that the fi
     CHECK(plan.vats[0].last_layer == 1);
     CHECK(plan.vats[1].first_layer == 2);
     REQUIRE(plan.warnings.size() == 1);
-    CHECK(plan.warnings[0].find("slot 3 gives 0.0 ml of \"semi-flex\" at a time: refill it before layer 4") !=
+    CHECK(plan.warnings[0].find("slot 3 gives under 0.1 ml of \"semi-flex\" at a time: refill it before layer 5") !=
           std::string::npos);
 }
 

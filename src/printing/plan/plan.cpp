@@ -44,15 +44,15 @@ Status check_materials(const job::Manifest& job) {
 
 Status check_image(const job::Manifest& job, std::size_t layer, const job::LayerImage& image) {
     if (image.material < 0 || image.material >= static_cast<int>(job.materials.size())) {
-        return input_error("{}: layer {} prints material {}, there are {}", job.name, layer, image.material,
+        return input_error("{}: layer {} prints material {}, there are {}", job.name, layer + 1, image.material,
                            job.materials.size());
     }
     const bool printable = std::all_of(image.file.begin(), image.file.end(), [](char c) { return c >= ' '; });
     if (image.file.empty() || !printable || image.file.front() == ' ' || image.file.back() == ' ') {
-        return input_error("{}: layer {} has an image without a usable name", job.name, layer);
+        return input_error("{}: layer {} has an image without a usable name", job.name, layer + 1);
     }
     if (!(image.area_mm2 >= 0) || !std::isfinite(image.area_mm2)) {
-        return input_error("{}: layer {} has an image with an impossible area", job.name, layer);
+        return input_error("{}: layer {} has an image with an impossible area", job.name, layer + 1);
     }
     return {};
 }
@@ -62,7 +62,7 @@ Status check_layers(const job::Manifest& job, const Printer& printer) {
     for (std::size_t i = 0; i < job.layers.size(); ++i) {
         const job::Layer& layer = job.layers[i];
         if (layer.z_um <= below_um || layer.thickness_um <= 0) {
-            return input_error("{}: layer {} at {} um does not lie above {} um", job.name, i, layer.z_um, below_um);
+            return input_error("{}: layer {} at {} um does not lie above {} um", job.name, i + 1, layer.z_um, below_um);
         }
         below_um = layer.z_um;
         for (const job::LayerImage& image : layer.images) {

@@ -19,8 +19,10 @@ struct VatUse {
     int slot = 0;                ///< its place in the tower, from 1
     std::string resin;           ///< what it must be filled with
     std::vector<int> materials;  ///< printed from it; indices into Manifest::materials
-    double resin_ml = 0;
-    bool refill = false;  ///< the printer file names another resin for it, or none
+    double resin_ml = 0;         ///< used by the job
+    double needed_ml = 0;        ///< in the vat before the print: what is printed and wasted before its first
+                                 ///< refill, and what must stay to cover its floor
+    bool refill = false;         ///< the printer file names another resin for it, or none
     int first_layer = 0, last_layer = 0;
     double waste_ml = 0;    ///< resin on the part when this vat leaves it, to be washed off
     double brushed_ml = 0;  ///< resin wiped back into the vat by the brush before that
@@ -91,8 +93,13 @@ struct Plan {
 [[nodiscard]] std::string plan_json(const Plan& plan);
 /// For people: a table.
 [[nodiscard]] std::string plan_text(const Plan& plan);
-/// Filling instructions, one line per vat: "slot 2: semi-flex, 12.3 ml", and what to do about it.
+/// Filling instructions, one line per vat: "slot 2: semi-flex, at least 75 ml (12.3 ml printed, 2.1 ml wasted)", and
+/// what to do about it.
 [[nodiscard]] std::vector<std::string> vat_lines(const Plan& plan);
+/// What must be in the vat before the print: "at least 75 ml", in whole millilitres.
+[[nodiscard]] std::string needed_text(const VatUse& use);
+/// "12.3 ml"; "under 0.1 ml" where that would be 0.0 and is not.
+[[nodiscard]] std::string ml_text(double ml);
 /// "1:02:03", rounded to seconds.
 [[nodiscard]] std::string clock_text(double seconds);
 

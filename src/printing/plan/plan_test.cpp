@@ -95,7 +95,7 @@ TEST_CASE("too many resins, another projector, a part too tall, layers out of or
     job.layers[2].z_um = 304801;
     CHECK(holds(plan_error(job, printer), "builds 304.80 mm"));
     job.layers[2].z_um = 50;
-    CHECK(holds(plan_error(job, printer), "layer 2 at 50 um does not lie above 100 um"));
+    CHECK(holds(plan_error(job, printer), "layer 3 at 50 um does not lie above 100 um"));
     job = plan::test::make_job(repeated({0}, 3), two);
     job.layers[1].images[0].material = 2;
     CHECK(holds(plan_error(job, printer), "prints material 2, there are 2"));
@@ -112,8 +112,8 @@ TEST_CASE("warnings: a material that prints nothing, and a vat that holds too li
     const Plan plan = planned(plan::test::make_job({{0}, {0}, {}, {}, {0}}, two), printer);
     REQUIRE(plan.warnings.size() == 3);
     CHECK(holds(plan.warnings[0], "\"m1\" prints nothing"));
-    CHECK(
-        holds(plan.warnings[1], "the vat of slot 1 gives 0.0 ml of \"semi-flex\" at a time: refill it before layer 4"));
+    CHECK(holds(plan.warnings[1],
+                "the vat of slot 1 gives under 0.1 ml of \"semi-flex\" at a time: refill it before layer 5"));
     CHECK(holds(plan.warnings[2], "1 layer would have to be cured deeper"));
     const auto json = nlohmann::json::parse(plan_json(plan));
     REQUIRE(json["vats"].size() == 1);
@@ -228,9 +228,35 @@ TEST_CASE("the list of vats says what to fill in") {
     job::Manifest job = plan::test::make_job({{0}, {0, 1}}, {"glue", "rigid-flex"});
     const Plan plan = make_plan(job, plan::test::tower()).value();
     CHECK(vat_lines(plan) ==
-          std::vector<std::string>{
-              "slot 1: glue, 0.0 ml, to be filled in: the printer file has another resin there, or none",
-              "slot 2: rigid-flex, 0.0 ml"});
+          std::vector<std::string>{"slot 1: glue, at least 61 ml (under 0.1 ml printed, under 0.1 ml wasted), to be "
+                                   "filled in: the printer file has another resin "
+                                   "there, or none",
+                                   "slot 2: rigid-flex, at least 61 ml (under 0.1 ml printed, under 0.1 ml wasted)"});
+}
+
+TEST_CASE("a vat needs what is printed and wasted before its first refill, and what must stay in it") {
+    machine::Printer printer = plan::test::tower();  // 60 ml must stay
+    job::Manifest job = plan::test::make_job(repeated({0}, 4), two);
+    for (job::Layer& layer : job.layers) layer.images[0].area_mm2 = 5e4;  // 2.5 ml a layer
+    const VatUse whole = planned(job, printer).vats.front();
+    CHECK(whole.resin_ml == near(10, {.relative = 1e-12}));
+    CHECK(whole.waste_ml == near(2.13, {.relative = 1e-9}));  // of a film of 60 um on 500 cm^2 the brush leaves 71 %
+    CHECK(whole.needed_ml == near(70 + whole.waste_ml, {.relative = 1e-12}));
+    CHECK(needed_text(whole) == "at least 73 ml");
+    printer.vats[0].fill_ml = 68;  // three layers; cleaned after the fourth
+    const Plan refilled = planned(job, printer);
+    CHECK(refilled.vats.front().needed_ml == near(67.5, {.relative = 1e-12}));
+    REQUIRE(vat_lines(refilled).size() == 1);
+    CHECK(holds(vat_lines(refilled)[0], "slot 1: semi-flex, at least 68 ml (10.0 ml printed, "));
+    CHECK(holds(vat_lines(refilled)[0], " wasted), refilled 1 time during the print"));
+    CHECK(nlohmann::json::parse(plan_json(refilled))["vats"][0]["needed_ml"] == 67.5);
+}
+
+TEST_CASE("an amount that is not none is not printed as none") {
+    CHECK(ml_text(0) == "0.0 ml");
+    CHECK(ml_text(0.004) == "under 0.1 ml");
+    CHECK(ml_text(0.06) == "0.1 ml");
+    CHECK(ml_text(12.34) == "12.3 ml");
 }
 
 TEST_CASE("no name can add a line to the program") {

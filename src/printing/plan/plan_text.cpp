@@ -79,6 +79,7 @@ Json vat_json(const Plan& plan, const VatUse& use) {
     return {{"slot", use.slot},
             {"resin", use.resin},
             {"materials", use.materials},
+            {"needed_ml", rounded(use.needed_ml)},
             {"refill", use.refill},
             {"refills", refills_json(plan, use.slot)},
             {"first_layer", use.first_layer},
@@ -110,7 +111,7 @@ std::string solution_text(const SolutionUse& s) {
         "solution", s.used_ml, s.pumped_ml, s.liquid_ml, 100 * s.resin_share, 100 * s.spent_share);
     constexpr std::size_t most = 5;
     for (std::size_t i = 0; i < std::min(most, s.care.size()); ++i)
-        text += fmt::format("  {:<10}{:>10}   {}\n", "before", fmt::format("layer {}", s.care[i].layer),
+        text += fmt::format("  {:<10}{:>10}   {}\n", "before", fmt::format("layer {}", s.care[i].layer + 1),
                             machine::care_text(s.care[i].care));
     if (s.care.size() > most) text += fmt::format("  and {} more\n", counted(s.care.size() - most, "time"));
     return text;
@@ -131,8 +132,8 @@ std::string orders_text(const Plan& plan) {
 /// ", 2.4 ml brushed back and 3.6 ml wasted"
 std::string waste_text(const VatUse& use) {
     if (use.brushed_ml <= 0)
-        return use.waste_ml > 0 ? fmt::format(", and {:.1f} ml wasted", use.waste_ml) : std::string();
-    return fmt::format(", {:.1f} ml brushed back and {:.1f} ml wasted", use.brushed_ml, use.waste_ml);
+        return use.waste_ml > 0 ? fmt::format(", and {} wasted", ml_text(use.waste_ml)) : std::string();
+    return fmt::format(", {} brushed back and {} wasted", ml_text(use.brushed_ml), ml_text(use.waste_ml));
 }
 
 }  // namespace
@@ -167,13 +168,25 @@ std::string plan_json(const Plan& plan) {
 std::vector<std::string> vat_lines(const Plan& plan) {
     std::vector<std::string> lines;
     for (const VatUse& use : plan.vats) {
-        std::string line = fmt::format("slot {}: {}, {:.1f} ml", use.slot, use.resin, use.resin_ml);
+        const std::string waste = use.waste_ml > 0 ? fmt::format(", {} wasted", ml_text(use.waste_ml)) : "";
+        std::string line = fmt::format("slot {}: {}, {} ({} printed{})", use.slot, use.resin, needed_text(use),
+                                       ml_text(use.resin_ml), waste);
         if (use.refill) line += ", to be filled in: the printer file has another resin there, or none";
         const std::size_t refills = plan.refills_of(use.slot).size();
         if (refills > 0) line += fmt::format(", refilled {} during the print", counted(refills, "time"));
         lines.push_back(std::move(line));
     }
     return lines;
+}
+
+std::string needed_text(const VatUse& use) {
+    constexpr double noise = 1e-9;
+    return fmt::format("at least {:.0f} ml", std::ceil(use.needed_ml - noise));
+}
+
+std::string ml_text(double ml) {
+    std::string text = fmt::format("{:.1f} ml", ml);
+    return ml > 0 && text == "0.0 ml" ? "under 0.1 ml" : text;
 }
 
 std::string clock_text(double seconds) {
@@ -193,8 +206,8 @@ std::string plan_text(const Plan& plan) {
         text += fmt::format("  {:<10}{:>10}\n", name, clock_text(value));
     }
     for (const VatUse& use : plan.vats) {
-        text += fmt::format("  {:<10}{:>7.1f} ml   {}{}\n", fmt::format("slot {}", use.slot), use.resin_ml, use.resin,
-                            waste_text(use));
+        text += fmt::format("  {:<8}{:>12}   {}{}\n", fmt::format("slot {}", use.slot), ml_text(use.resin_ml),
+                            use.resin, waste_text(use));
     }
     text += solution_text(plan.solution);
     for (const std::string& warning : plan.warnings) text += fmt::format("  warning: {}\n", warning);

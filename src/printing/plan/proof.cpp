@@ -23,7 +23,7 @@ constexpr double light_tolerance_s = 1e-3;  // exposures are written in whole mi
 
 Status in_layer(std::size_t layer, const Status& status) {
     if (status) return status;
-    return tl::unexpected(Error{status.error().cause, fmt::format("layer {}: {}", layer, status.error().message)});
+    return tl::unexpected(Error{status.error().cause, fmt::format("layer {}: {}", layer + 1, status.error().message)});
 }
 
 /// The content of every vat, including the plan's refills.
@@ -42,7 +42,7 @@ public:
             left_ml = std::max(usable_ml(from), resin_ml(layer, from.resin));
         left_ml -= image_ml(layer, job_.layers[layer].images[k]);
         if (left_ml >= -1e-6 * (1 + usable_ml(from))) return {};
-        return input_error("the vat of slot {} has run dry: it gives {:.1f} ml of \"{}\"", from.slot, usable_ml(from),
+        return input_error("the vat of slot {} has run dry: it gives {} of \"{}\"", from.slot, ml_text(usable_ml(from)),
                            from.resin);
     }
 
@@ -156,14 +156,14 @@ private:
         const auto layer = static_cast<std::size_t>(light.layer);
         const std::string& name = material_name(light.material);
         if (layer < open_layer_)
-            return input_error("layer {}: exposure of \"{}\" after layer {}", layer, name, open_layer_);
+            return input_error("layer {}: exposure of \"{}\" after layer {}", layer + 1, name, open_layer_ + 1);
         if (layer > open_layer_) {
             if (Status status = check_complete(layer); !status) return status;
             open_layer_ = layer;
             lit_.clear();
         }
         if (!lit_.insert(light.material).second)
-            return input_error("layer {}: exposure of \"{}\" a second time", layer, name);
+            return input_error("layer {}: exposure of \"{}\" a second time", layer + 1, name);
         return {};
     }
 
@@ -172,7 +172,7 @@ private:
         for (std::size_t layer = open_layer_; layer < end; ++layer) {
             for (const job::LayerImage& image : job_.layers[layer].images) {
                 if (layer != open_layer_ || !lit_.contains(image.material))
-                    return input_error("layer {}: the exposure of \"{}\" is missing", layer,
+                    return input_error("layer {}: the exposure of \"{}\" is missing", layer + 1,
                                        material_name(image.material));
             }
         }

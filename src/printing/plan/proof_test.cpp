@@ -109,12 +109,12 @@ TEST_CASE("the proof finds an exposure missing, repeated, too long, too short or
     const auto with = [](const char* what, const char* instead) {
         return [=](std::string line) { return line.replace(line.find(what), std::string(what).size(), instead); };
     };
-    CHECK(holds(changed([](const std::string&) { return std::string(); }), "layer 2: the exposure of \""));
+    CHECK(holds(changed([](const std::string&) { return std::string(); }), "layer 3: the exposure of \""));
     CHECK(holds(changed([](const std::string& line) { return line + "\n" + line; }), "a second time"));
     CHECK(holds(changed(with("seconds=12.000", "seconds=11.990")), "lasts 11.99 s, the manifest says 12 s"));
     CHECK(holds(changed(with("seconds=12.000", "seconds=24.000")), "lasts 24 s"));
     CHECK(holds(changed(with("layers/2", "layers/1")), "shows layers/1_"));
-    CHECK(holds(changed(with("layer=2", "layer=1")), "layer 1: "));
+    CHECK(holds(changed(with("layer=2", "layer=1")), "layer 2: "));
     CHECK(holds(changed(with("layer=2", "layer=77")), "the job has 5 layers"));
     CHECK(holds(changed(with("material=", "material=4")), "is in this layer"));
     CHECK(changed(with("layer=2", "layer=1")).starts_with("G-code line "));
@@ -125,7 +125,7 @@ TEST_CASE("the proof finds a vat put away with the part too high for its brush")
     // The way up for the first swap, with two layers of part: a brush reaches the part 1 mm above the rim, at 82.55 mm.
     change_line(c.gcode, "G1 Z83.650", 0, [](std::string line) { return line.replace(4, 6, "84.650"); });
     CHECK(holds(c.error(), "is put away with the part 2 mm above its rim, its brush reaches 1 mm"));
-    CHECK(holds(c.error(), "layer 1: "));
+    CHECK(holds(c.error(), "layer 2: "));
     Case bare = two_materials();
     bare.printer.cleaning.brush = false;
     CHECK(holds(bare.error(), "the platform is down"));  // without a brush the part must not pass this low
@@ -141,16 +141,16 @@ TEST_CASE("the proof finds a wrong height, and a missing lift, rest, stroke or a
     };
     const auto dropped = [](const std::string&) { return std::string(); };
     CHECK(holds(changed("G1 Z0.100", 0, [](std::string l) { return l.replace(0, 9, "G1 Z0.070"); }),
-                "layer 1: exposure of \"m0\": the platform stands at 0.070 mm, the layer's height is 0.100 mm"));
+                "layer 2: exposure of \"m0\": the platform stands at 0.070 mm, the layer's height is 0.100 mm"));
     CHECK(holds(changed("G1 Z0.100", 0, [](const std::string&) { return "G1 Z0.100 F6000.0"; }), "goes down faster"));
     const std::string lift = fmt::format("G1 Z{:.3f}", (50 + tower.platform.lift_um) / 1000.0);
-    CHECK(holds(changed(lift, 0, dropped), "layer 0: the platform lifts"));
+    CHECK(holds(changed(lift, 0, dropped), "layer 1: the platform lifts"));
     CHECK(holds(changed(lift, 0, [](const std::string& l) { return l.substr(0, l.find('F')) + "F9000.0"; }),
                 "peels the layer faster"));
     if (tower.carriage.shear_um > 0) {
         const std::string shear =
             fmt::format("G1 X{:.3f}", (tower.carriage.print_um + tower.carriage.shear_um) / 1000.0);
-        CHECK(holds(changed(shear, 1, dropped), "layer 1: the carriage moves 0 mm aside"));
+        CHECK(holds(changed(shear, 1, dropped), "layer 2: the carriage moves 0 mm aside"));
     }
     if (tower.platform.settle_s > 0) CHECK(holds(changed("G4", 0, dropped), "the resin rests for 0 s"));
     machine::Printer slow = tower;
@@ -222,7 +222,7 @@ TEST_CASE("the proof finds vats with the wrong resins, and vats that run dry") {
     Case c = two_materials();
     std::swap(c.printer.vats[0].resin, c.printer.vats[1].resin);
     c.plan = make_plan(c.job, c.printer).value();
-    CHECK(holds(c.error(), "layer 0: exposure of \"m0\": over the vat of slot 1"));
+    CHECK(holds(c.error(), "layer 1: exposure of \"m0\": over the vat of slot 1"));
     c = two_materials();
     c.printer.vats[2].resin = c.printer.vats[0].resin;  // the plan changes to the second vat, the program does not
     for (job::Layer& layer : c.job.layers) layer.images.front().area_mm2 = 5e6;

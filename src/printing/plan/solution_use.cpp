@@ -94,13 +94,17 @@ std::vector<std::vector<Cleaning>> cleanings(const Plan& plan, const job::Manife
     return all;
 }
 
-void add_waste(Plan& plan, const Cleaning& c, const Printer& printer) {
+/// Of a cleaning before or within a layer.
+void add_waste(Plan& plan, const Cleaning& c, int layer, const Printer& printer) {
     const auto use = std::find_if(plan.vats.begin(), plan.vats.end(), [&](const VatUse& u) { return u.vat == c.vat; });
     const double brushed_ml = c.film_ml * printer.brushed_share();
+    const double wasted_ml = c.film_ml - brushed_ml;
     use->brushed_ml += brushed_ml;
-    use->waste_ml += c.film_ml - brushed_ml;
+    use->waste_ml += wasted_ml;
     plan.brushed_ml += brushed_ml;
-    plan.waste_ml += c.film_ml - brushed_ml;
+    plan.waste_ml += wasted_ml;
+    const std::vector<int> refills = plan.refills_of(use->slot);
+    if (refills.empty() || layer < refills.front()) use->needed_ml += wasted_ml;
 }
 
 /// Applies the cleanings and the duration of one layer.
@@ -142,7 +146,7 @@ void reckon_solution(Plan& plan, const job::Manifest& job, const Printer& printe
         const double seconds = i < plan.layer_seconds.size() ? plan.layer_seconds[i].total : 0;
         if (!layers[i].empty()) look_after(circuit, layers[i], seconds, static_cast<int>(i), printer, use.care);
         pass_layer(circuit, layers[i], seconds, printer);
-        for (const Cleaning& c : layers[i]) add_waste(plan, c, printer);
+        for (const Cleaning& c : layers[i]) add_waste(plan, c, static_cast<int>(i), printer);
     }
     for (const CareBefore& care : use.care) {
         if (care.layer == 0) plan.warnings.push_back(fmt::format("{} before the print", machine::care_text(care.care)));

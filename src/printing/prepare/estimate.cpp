@@ -21,8 +21,7 @@ Status leave_out_slow(Order& order) {
                                        {"--raft", &order.raft},
                                        {"--hollow", &order.hollow},
                                        {"--drain", &order.drain},
-                                       {"--least-layer", &order.least_layer},
-                                       {"--least-feature", &order.least_feature}}) {
+                                       {"--least-layer", &order.least_layer}}) {
         if (const auto length = length_um(option, *text, 0); !length) return tl::unexpected(length.error());
         text->clear();
     }

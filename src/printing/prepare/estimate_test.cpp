@@ -99,8 +99,8 @@ TEST_CASE("exposures of layers that the job does not have, and a job that prints
     CHECK(warned(sliced(fmt::format("{}:0-{}=4 s", name, count), blocks())));
     std::filesystem::remove(folder / "blocks.zip");
     CHECK(sliced(fmt::format("{}:{}-{}=4 s", name, count, count + 5), blocks()).error().message ==
-          fmt::format("--exposure {}:{}-{}=4 s: the job has no such layers, its layers are 0 to {}", name, count,
-                      count + 5, count - 1));
+          fmt::format("--exposure {}:{}-{}=4 s: the job has no such layers, its layers are 0 to {}, counted from 0",
+                      name, count, count + 5, count - 1));
     // Every image of a stack may be dark.
     const std::filesystem::path dark = folder / "dark";
     std::filesystem::create_directories(dark);

@@ -12,6 +12,7 @@
 #include "printing/prepare/printed_together.hpp"
 #include "printing/prepare/thumbnail.hpp"
 #include "printing/slice/inspect.hpp"
+#include "printing/slice/layer_text.hpp"
 #include "printing/slice/thin.hpp"
 
 namespace pliant::job {
@@ -42,7 +43,7 @@ Status check_light(const slice::SlicedLayer& layer, const JobSettings& settings,
     if (!settings.edge) return {};
     for (const slice::MaterialImage& m : layer.images) {
         const Beyond beyond = settings.edge->beyond(m.image);
-        if (beyond.um > 0) return input_error("layer {}: light {}", k, settings.edge->text(beyond));
+        if (beyond.um > 0) return input_error("{}: light {}", slice::layer_text(k), settings.edge->text(beyond));
     }
     return {};
 }
@@ -199,9 +200,9 @@ void note_rare_materials(Manifest& manifest) {
     for (std::size_t m = 0; manifest.materials.size() > 1 && m < manifest.materials.size(); ++m) {
         const std::vector<std::size_t> layers = layers_of(manifest, static_cast<int>(m));
         if (!layers.empty() && layers.size() <= few && manifest.layers.size() > 10 * few)
-            manifest.warnings.push_back(
-                fmt::format("material \"{}\" occurs in {} of {} layers only, the first is layer {}",
-                            manifest.materials[m].name, layers.size(), manifest.layers.size(), layers.front()));
+            manifest.warnings.push_back(fmt::format("material \"{}\" occurs in {} of {} layers only, the first is {}",
+                                                    manifest.materials[m].name, layers.size(), manifest.layers.size(),
+                                                    slice::layer_text(static_cast<int>(layers.front()))));
     }
 }
 

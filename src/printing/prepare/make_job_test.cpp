@@ -133,8 +133,8 @@ TEST_CASE("features narrower than asked for are named with material, layers and 
     REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
     REQUIRE(made->manifest.warnings.size() == 1);
     CHECK(made->manifest.warnings.front() ==
-          "material \"soft one\": 1 feature narrower than 0.6 mm in layers 10 to 13; the largest, 0.4 mm^2, begins in "
-          "layer 10 at row 14, column 31");
+          "material \"soft one\": 1 feature narrower than 0.6 mm in layers 11 to 14; the largest, 0.4 mm^2, begins in "
+          "layer 11 at row 14, column 31");
 }
 
 TEST_CASE("exposures of layers, layer heights, bonds and findings are written to the manifest") {

@@ -396,6 +396,16 @@ Status check_limits(const Drawing& drawing, const std::vector<job::Material>& ma
     return {};
 }
 
+/// Walls are found that are narrower by a pixel: with less than two pixels, none would be. 0: not asked for.
+Result<double> least_feature_um(const Order& order, double pixel_um) {
+    constexpr double most_um = 10000, rounding_um = 1e-6;
+    const Result<double> least_um = length_um("--least-feature", order.least_feature, 0, 1e-3, most_um);
+    if (least_um && !order.least_feature.empty() && *least_um < 2 * pixel_um - rounding_um)
+        return input_error("--least-feature {}: must be {:.6g} to {:.6g} mm, at least two pixels of {:.6g} um",
+                           order.least_feature, 2 * pixel_um / 1000, most_um / 1000, pixel_um);
+    return least_um;
+}
+
 }  // namespace
 
 Result<job::JobSettings> job_settings(const Order& order, const machine::Printer& printer,
@@ -441,9 +451,9 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
             "xy_compensation, elephant_foot and bleed_compensation: layer images are printed as they are");
     }
     if (Status status = set_pairs(order, drawing, settings.slicing); !status) return tl::unexpected(status.error());
-    const Result<double> least = length_um("--least-feature", order.least_feature, 0, 1e-3, 10000);
-    if (!least) return tl::unexpected(least.error());
-    settings.least_feature_um = *least;
+    const Result<double> least_um = least_feature_um(order, settings.slicing.raster.pixel_um);
+    if (!least_um) return tl::unexpected(least_um.error());
+    settings.least_feature_um = *least_um;
     if (order.threshold != Order{}.threshold && !order.no_anti_alias)
         return input_error("--threshold {:g}: is that of images without anti-aliasing; add --no-anti-alias",
                            order.threshold);

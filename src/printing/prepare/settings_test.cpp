@@ -205,6 +205,9 @@ TEST_CASE("--layer and --least-feature set their values") {
     CHECK(refused_settings([](Order& o) { o.least_feature = "10.1 mm"; }) ==
           "--least-feature 10.1 mm: must be 1e-06 to 10 mm");
     CHECK(refused_settings([](Order& o) { o.least_feature = "0 mm"; }).find("--least-feature 0 mm: must be") == 0);
+    CHECK(settings_of([](Order& o) { o.least_feature = "0.2 mm"; }).least_feature_um == near(200, {.relative = 1e-12}));
+    CHECK(refused_settings([](Order& o) { o.least_feature = "0.199 mm"; }) ==
+          "--least-feature 0.199 mm: must be 0.2 to 10 mm, at least two pixels of 100 um");
 }
 
 TEST_CASE("--interlock and --overlap name two materials, pixels and layers") {

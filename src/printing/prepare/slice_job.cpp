@@ -39,9 +39,10 @@ Status check_spans(const job::JobSettings& settings, job::Manifest& manifest) {
             const std::string option =
                 fmt::format("--exposure {}:{}-{}={:g} s", material, span.first, span.last, span.seconds);
             if (span.first >= count)
-                return input_error("{}: the job has no such layers, its layers are 0 to {}", option, count - 1);
+                return input_error("{}: the job has no such layers, its layers are 0 to {}, counted from 0", option,
+                                   count - 1);
             if (span.last >= count)
-                manifest.warnings.push_back(fmt::format("{}: the last layer is {}", option, count - 1));
+                manifest.warnings.push_back(fmt::format("{}: the last layer is {}, counted from 0", option, count - 1));
         }
     }
     return {};

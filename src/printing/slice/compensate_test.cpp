@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "base/core/near.hpp"
@@ -102,4 +103,23 @@ TEST_CASE("invalid offsets are refused with the material's name") {
     settings.compensation["soft"] = {2e4};
     CHECK(Slicer::prepare(square, settings).error().message ==
           "material 'soft': XY compensation of 20000 um: must be -10000 to 10000 um");
+}
+
+TEST_CASE("bleed compensation does not take the ring that the elephant foot leaves out for an underside") {
+    // 20 px wide; 2 px less on each side in the first layer, half a pixel less in every one above it. A half-lit pixel
+    // has the grey 128 of 255.
+    for (int k = 0; k < 5; ++k) {
+        const double side = 20 - 2 * 0.5 * std::max(0, 4 - k);
+        const double plain = area(cut(square, {{"soft", {0, 200, 4, 0}}}, k), 0);
+        CHECK(plain == near(side * side, {.relative = 0.001}));
+        for (const double bleed_um : {26.0, 60.0, 100.0}) {
+            CAPTURE(bleed_um);
+            CHECK(area(cut(square, {{"soft", {0, 200, 4, bleed_um}}}, k), 0) == plain);
+        }
+    }
+    // An underside of the drawing begins higher all the same, on the foot and beside it.
+    const std::vector<Body> tee{{"soft", box({-1000, -1000, 0}, {1000, 1000, 100}), ""},
+                                {"soft", box({-1000, -1000, 100}, {1500, 1000, 500}), ""}};
+    CHECK(area(cut(tee, {{"soft", {0, 200, 4, 60}}}, 2), 0) == near(19 * 18, {.relative = 1e-12}));
+    CHECK(area(cut(tee, {{"soft", {0, 200, 4, 60}}}, 4), 0) == near(25 * 20, {.relative = 1e-12}));
 }

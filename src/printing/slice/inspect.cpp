@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/core/counted.hpp"
+#include "printing/slice/layer_text.hpp"
 
 namespace pliant::slice {
 namespace {
@@ -58,10 +59,10 @@ std::string area_text(std::int64_t pixels, const Raster& raster) {
 
 std::string group_text(const IslandGroup& g, const Raster& raster) {
     return fmt::format(
-        "{} in mid-air in layer {}, {}: up to {}, at {}",
+        "{} in mid-air in {}, {}: up to {}, at {}",
         g.islands == 1 ? "an island begins" : fmt::format("{} islands that grow together begin", g.islands),
-        g.first_layer,
-        g.held_layer < 0 ? "and nothing ever holds it" : fmt::format("held from layer {} on", g.held_layer),
+        layer_text(g.first_layer),
+        g.held_layer < 0 ? "and nothing ever holds it" : fmt::format("held from {} on", layer_text(g.held_layer)),
         area_text(g.most_pixels, raster), place(raster, g.largest.row, g.largest.column));
 }
 
@@ -73,10 +74,9 @@ std::string summary_text(std::span<const IslandGroup> groups, std::string_view w
     const auto [first, last] = std::minmax_element(groups.begin(), groups.end(), by_layer);
     std::size_t islands = 0;
     for (const IslandGroup& g : groups) islands += static_cast<std::size_t>(g.islands);
-    return fmt::format("{} in mid-air{}, in layers {} to {}; the largest, {} in layer {}, at {}",
-                       counted(islands, "island"), what, first->first_layer, last->first_layer,
-                       area_text(largest.most_pixels, raster), largest.largest.layer,
-                       place(raster, largest.largest.row, largest.largest.column));
+    return fmt::format("{} in mid-air{}, in {}; the largest, {} in {}, at {}", counted(islands, "island"), what,
+                       layers_text(first->first_layer, last->first_layer), area_text(largest.most_pixels, raster),
+                       layer_text(largest.largest.layer), place(raster, largest.largest.row, largest.largest.column));
 }
 
 /// The worst groups one by one, the others of each severity in one line.
@@ -104,9 +104,8 @@ void describe_cavities(std::span<const Cavity> cavities, const Raster& raster, s
         const char* what = c.end == Cavity::End::closed   ? "resin trap, closed for good"
                            : c.end == Cavity::End::opened ? "suction cup, which opens in the layer after"
                                                           : "suction cup, open at the part's last layer only";
-        lines.push_back(fmt::format("cavity of {:.4g} mm^3 in layers {} to {}: {}",
-                                    static_cast<double>(c.volume) / 1000 * pixel_mm2, c.first_layer, c.last_layer,
-                                    what));
+        lines.push_back(fmt::format("cavity of {:.4g} mm^3 in {}: {}", static_cast<double>(c.volume) / 1000 * pixel_mm2,
+                                    layers_text(c.first_layer, c.last_layer), what));
     }
     if (cavities.size() > most_lines)
         lines.push_back(fmt::format("{} smaller cavit{}", cavities.size() - most_lines,
@@ -284,9 +283,10 @@ std::vector<std::string> describe(const Findings& findings, const Raster& raster
     describe_islands(findings.groups, raster, lines);
     describe_cavities(findings.cavities, raster, lines);
     if (!findings.faint_layers.empty())
-        lines.push_back(fmt::format("{} hold{} only features thinner than half a pixel, the first is layer {}",
+        lines.push_back(fmt::format("{} hold{} only features thinner than half a pixel, the first is {}",
                                     counted(findings.faint_layers.size(), "layer"),
-                                    findings.faint_layers.size() == 1 ? "s" : "", findings.faint_layers.front()));
+                                    findings.faint_layers.size() == 1 ? "s" : "",
+                                    layer_text(findings.faint_layers.front())));
     return lines;
 }
 

@@ -49,7 +49,7 @@ TEST_CASE("a part of a table that hangs below its plate is an island; legs are n
     CHECK(f.cavities.empty());
     CHECK(describe(f, small_raster)
               .at(0)
-              .starts_with("an island begins in mid-air in layer 4, held from layer 8 on: up to 0.04"));
+              .starts_with("an island begins in mid-air in layer 5, held from layer 9 on: up to 0.04"));
 }
 
 TEST_CASE("closed cavities, cups and tunnels are distinguished") {
@@ -130,9 +130,9 @@ TEST_CASE("islands that join before they are supported are one group") {
     CHECK(comb.severity == Severity::high);
     const std::vector<std::string> lines = describe(f, small_raster);
     REQUIRE(lines.size() == 2);
-    CHECK(lines[1].starts_with("an island begins in mid-air in layer 1, and nothing ever holds it: up to 1 mm^2, at"));
+    CHECK(lines[1].starts_with("an island begins in mid-air in layer 2, and nothing ever holds it: up to 1 mm^2, at"));
     CHECK(lines[0].starts_with(
-        "3 islands that grow together begin in mid-air in layer 2, held from layer 8 on: up to 0.26"));
+        "3 islands that grow together begin in mid-air in layer 3, held from layer 9 on: up to 0.26"));
 }
 
 TEST_CASE("islands of raster size take one line, whatever their number, and hide no larger island") {
@@ -159,8 +159,8 @@ TEST_CASE("islands of raster size take one line, whatever their number, and hide
     CHECK(f.groups.back().severity == Severity::low);
     const std::vector<std::string> lines = describe(f, small_raster);
     REQUIRE(lines.size() == 3);
-    CHECK(lines[0].starts_with("an island begins in mid-air in layer 6, held from layer 10 on: up to 0.04 mm^2"));
-    CHECK(lines[1].starts_with("1 island in mid-air, held within two layers, in layers 9 to 9; the largest, 2 mm^2"));
+    CHECK(lines[0].starts_with("an island begins in mid-air in layer 7, held from layer 11 on: up to 0.04 mm^2"));
+    CHECK(lines[1].starts_with("1 island in mid-air, held within two layers, in layer 10; the largest, 2 mm^2"));
     CHECK(lines[2].starts_with(
-        fmt::format("{} islands in mid-air of a few pixels, the grain of the raster, in layers 9 to 9", specks)));
+        fmt::format("{} islands in mid-air of a few pixels, the grain of the raster, in layer 10", specks)));
 }

@@ -5,6 +5,7 @@
 
 #include "base/core/counted.hpp"
 #include "printing/slice/holes.hpp"
+#include "printing/slice/layer_text.hpp"
 #include "printing/slice/shells.hpp"
 
 namespace pliant::slice {
@@ -27,8 +28,8 @@ int last_layer(const GridSurface& surface, const Layers& layers) {
 std::string hole_warning(const Holes& holes, const std::string& label, int last, const Layers& layers) {
     const int low = std::min(last, layer_at(holes.z_low, layers));
     const int high = std::min(last, layer_at(std::max(holes.z_low, holes.z_high - 1), layers));
-    return fmt::format("{}: {} hole{} ({} open edges, {:.3g} mm^2) closed in layers {} to {}", label, holes.count,
-                       holes.count == 1 ? "" : "s", holes.edges, holes.area_mm2, low, high);
+    return fmt::format("{}: {} hole{} ({} open edges, {:.3g} mm^2) closed in {}", label, holes.count,
+                       holes.count == 1 ? "" : "s", holes.edges, holes.area_mm2, layers_text(low, high));
 }
 
 std::string join_warning(std::size_t points, const std::string& label, double join_um) {

@@ -64,9 +64,9 @@ TEST_CASE("a hole in the top is in the uppermost layer, not in one that the part
         REQUIRE(repaired->warnings.size() == 1);
         return repaired->warnings.front();
     };
-    CHECK(warning(50).ends_with("closed in layers 19 to 19"));  // 20 layers
-    CHECK(warning(300).ends_with("closed in layers 2 to 2"));   // 900 um: the middle of a fourth would be at 1050
-    CHECK(warning(2500).ends_with("closed in layers 0 to 0"));  // thinner than half a layer
+    CHECK(warning(50).ends_with("closed in layer 20"));   // 20 layers
+    CHECK(warning(300).ends_with("closed in layer 3"));   // 900 um: the middle of a fourth would be at 1050
+    CHECK(warning(2500).ends_with("closed in layer 1"));  // thinner than half a layer
 }
 
 TEST_CASE("any missing triangle is filled in, with a warning that names body and layers") {
@@ -82,7 +82,7 @@ TEST_CASE("any missing triangle is filled in, with a warning that names body and
     no_side.triangles.resize(10);  // the last side, both triangles: a square hole from z = 0 to 1000
     const Repaired r = repaired(no_side);
     CHECK(volume_um3(r.surface) == near(1e9, {.relative = 1e-9}));
-    CHECK(r.warnings[0] == "body 'b' (soft): 1 hole (4 open edges, 1 mm^2) closed in layers 0 to 19");
+    CHECK(r.warnings[0] == "body 'b' (soft): 1 hole (4 open edges, 1 mm^2) closed in layers 1 to 20");
 }
 
 TEST_CASE("a T-junction is closed without a warning") {

@@ -7,6 +7,7 @@
 #include "base/core/parallel.hpp"
 #include "base/core/text.hpp"
 #include "printing/slice/blend.hpp"
+#include "printing/slice/layer_text.hpp"
 #include "printing/slice/mask.hpp"
 #include "printing/slice/overlap.hpp"
 #include "printing/slice/raster_frame.hpp"
@@ -206,19 +207,22 @@ ComposedLayer Slicer::composed(int k, const Raster& raster, const ComposeRules& 
 }
 
 /// Per zone; empty if no border of the layer moves.
-std::vector<double> Slicer::offsets_um(int layer) const {
+std::vector<double> Slicer::offsets_um(int layer, Foot foot) const {
     std::vector<double> offsets;
     for (const Zone& zone : zones_) {
         const auto known = settings_.compensation.find(materials_[zone.material]);
-        offsets.push_back(known == settings_.compensation.end() ? 0 : known->second.offset_um(layer));
+        if (known == settings_.compensation.end())
+            offsets.push_back(0);
+        else
+            offsets.push_back(foot == Foot::drawn ? known->second.grow_um : known->second.offset_um(layer));
     }
     if (std::all_of(offsets.begin(), offsets.end(), [](double um) { return um == 0; })) offsets.clear();
     return offsets;
 }
 
 /// The layer with outer borders moved.
-ComposedLayer Slicer::outlined(int k) const {
-    const std::vector<double> offsets = offsets_um(k);
+ComposedLayer Slicer::outlined(int k, Foot foot) const {
+    const std::vector<double> offsets = offsets_um(k, foot);
     if (offsets.empty()) return composed(k, settings_.raster, settings_.rules);
     const int factor = fine_factor(settings_.raster);
     const ComposedLayer fine = composed(k, refined(settings_.raster, factor), {false, 0.5, 0});
@@ -260,8 +264,8 @@ void Slicer::take_out(int k, ComposedLayer& layer) const {
 }
 
 /// The layer with one owner per pixel, before light is added or left out.
-ComposedLayer Slicer::owned(int k) const {
-    ComposedLayer layer = outlined(k);
+ComposedLayer Slicer::owned(int k, Foot foot) const {
+    ComposedLayer layer = outlined(k, foot);
     if (settings_.removed) take_out(k, layer);
     const bool blends = std::any_of(zones_.begin(), zones_.end(), [](const Zone& z) { return z.blend.has_value(); });
     if (blends) deal_out(k, layer);
@@ -285,15 +289,15 @@ int Slicer::bleed_layers(int material, int k) const {
 }
 
 /// The layer without the light that would go too deep: no pixel gets more than is covered in all layers that must be
-/// solid below it.
+/// solid below it. What the elephant foot leaves out below counts as solid: light is to cure it.
 ComposedLayer Slicer::bled(int k) const {
-    ComposedLayer layer = owned(k);
+    ComposedLayer layer = owned(k, Foot::left_out);
     std::vector<RunImage> held;  // by the number of solid layers required below
     for (MaterialImage& m : layer.images) {
         const auto count = static_cast<std::size_t>(bleed_layers(m.material, k));
         if (count == 0) continue;
         while (held.size() < count) {
-            RunImage solid = coverage(owned(k - 1 - static_cast<int>(held.size())), settings_.raster);
+            RunImage solid = coverage(owned(k - 1 - static_cast<int>(held.size()), Foot::drawn), settings_.raster);
             held.push_back(held.empty() ? std::move(solid) : lesser(held.back(), solid));
         }
         m.image = lesser(m.image, held[count - 1]);
@@ -397,13 +401,12 @@ Summary Tally::summary() const {
         summary.warnings.push_back(fmt::format("gaps of at most {:.6g} um between materials closed in {} pixels",
                                                settings.rules.close_gap_um, closed_gap_pixels_));
     if (first_filled_ > 0)
-        summary.warnings.push_back(
-            fmt::format("{} empty: nothing touches the platform",
-                        first_filled_ == 1 ? "layer 0 is" : fmt::format("layers 0 to {} are", first_filled_ - 1)));
+        summary.warnings.push_back(fmt::format("{} {} empty: nothing touches the platform",
+                                               layers_text(0, first_filled_ - 1), first_filled_ == 1 ? "is" : "are"));
     if (empty_between_ > 0)
         summary.warnings.push_back(
-            fmt::format("{} empty layers between printed ones, the first is layer {}: what is above will float",
-                        empty_between_, first_empty_));
+            fmt::format("{} empty layers between printed ones, the first is {}: what is above will float",
+                        empty_between_, layer_text(first_empty_)));
     return summary;
 }
 

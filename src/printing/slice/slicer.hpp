@@ -86,7 +86,8 @@ private:
     Status add_body(const Body& body, const std::string& label);
     void add_shape(const Body& body, const Vec3& size_um);
     void section(std::size_t body, int layer, std::vector<Segment>& segments) const;
-    [[nodiscard]] std::vector<double> offsets_um(int layer) const;
+    enum class Foot { drawn, left_out };  ///< the ring of the first layers that an elephant foot would fill
+    [[nodiscard]] std::vector<double> offsets_um(int layer, Foot foot) const;
     [[nodiscard]] int material(const std::string& name) const;
     [[nodiscard]] Status check_pairs() const;
     [[nodiscard]] Status check_pair(const char* what, const std::string& first, const std::string& second) const;
@@ -95,9 +96,9 @@ private:
     void deal_out(int layer, ComposedLayer& composed) const;
     void take_out(int layer, ComposedLayer& composed) const;
     [[nodiscard]] int bleed_layers(int material, int layer) const;
-    [[nodiscard]] ComposedLayer owned(int layer) const;
+    [[nodiscard]] ComposedLayer owned(int layer, Foot foot) const;
     [[nodiscard]] ComposedLayer bled(int layer) const;
-    [[nodiscard]] ComposedLayer outlined(int layer) const;
+    [[nodiscard]] ComposedLayer outlined(int layer, Foot foot) const;
     [[nodiscard]] ComposedLayer composed(int layer, const Raster& raster, const ComposeRules& rules) const;
 
     Settings settings_;

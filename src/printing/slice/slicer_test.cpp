@@ -317,7 +317,7 @@ TEST_CASE("bodies too small to be lit, and floating parts, are reported") {
     REQUIRE(s.summary.warnings.size() == 3);
     CHECK(s.summary.warnings[0].find("body 2 (speck)") == 0);
     CHECK(s.summary.warnings[1].find("body 3 (hair)") == 0);
-    CHECK(s.summary.warnings[2].find("2 empty layers between printed ones, the first is layer 2") == 0);
+    CHECK(s.summary.warnings[2].find("2 empty layers between printed ones, the first is layer 3") == 0);
 }
 
 TEST_CASE("an error of emit, or cancellation, stops slicing") {

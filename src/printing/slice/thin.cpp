@@ -7,6 +7,7 @@
 
 #include "base/core/counted.hpp"
 #include "printing/slice/layer_shape.hpp"
+#include "printing/slice/layer_text.hpp"
 #include "printing/slice/run_set.hpp"
 
 namespace pliant::slice {
@@ -190,10 +191,10 @@ std::vector<std::string> describe(const std::vector<ThinSpot>& features, const s
         const int first = std::ranges::min(own, {}, &ThinSpot::layer).layer;
         const int last = std::ranges::max(own, {}, &ThinSpot::last_layer).last_layer;
         lines.push_back(fmt::format(
-            "material \"{}\": {} narrower than {:.4g} mm in layers {} to {}; the largest, {:.4g} mm^2, begins in layer "
-            "{} at row {}, column {}",
-            materials[m], counted(own.size(), "feature"), least_um / 1000, first, last,
-            static_cast<double>(most.pixels) * pixel_mm2, most.layer, most.row, most.column));
+            "material \"{}\": {} narrower than {:.4g} mm in {}; the largest, {:.4g} mm^2, begins in {} at row {}, "
+            "column {}",
+            materials[m], counted(own.size(), "feature"), least_um / 1000, layers_text(first, last),
+            static_cast<double>(most.pixels) * pixel_mm2, layer_text(most.layer), most.row, most.column));
     }
     return lines;
 }

@@ -31,10 +31,9 @@ TEST_CASE("a wall of 0.2 mm is thinner than 0.3 mm and not than 0.2 mm") {
     CHECK(spots[0].pixels == 40 * 4);
     CHECK(spots[0].row == 46);
     CHECK(spots[0].column == 44);
-    CHECK(
-        describe(spots, {"soft"}, 300, fine_raster).front() ==
-        "material \"soft\": 1 feature narrower than 0.3 mm in layers 0 to 0; the largest, 0.4 mm^2, begins in layer 0 "
-        "at row 46, column 44");
+    CHECK(describe(spots, {"soft"}, 300, fine_raster).front() ==
+          "material \"soft\": 1 feature narrower than 0.3 mm in layer 1; the largest, 0.4 mm^2, begins in layer 1 "
+          "at row 46, column 44");
     CHECK(thin_in({{"soft", box({-1000, -150, 0}, {1000, 150, 500}), ""}}, 250).empty());
     CHECK(thin_in(wall, 50).empty());
 }

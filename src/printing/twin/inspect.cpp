@@ -247,7 +247,7 @@ Result<Report> inspect(Twin& twin, const job::Manifest& job, const ImageSource& 
         const auto image = images(layer, material);
         if (!image) return tl::unexpected(image.error());
         if (image->width_px != projector.width_px || image->height_px != projector.height_px)
-            return input_error("the image of layer {} is not of the projector's size", layer);
+            return input_error("the image of layer {} is not of the projector's size", layer + 1);
         return runs_of(*image);
     };
     return inspect(twin, job, runs, judgement);

@@ -297,7 +297,7 @@ TEST_CASE("ten times the exposure, and 10 % more or less, are a wrong dose and n
         CHECK(r.wrong_dose_pixels == 4);
         CHECK((share > 1 ? r.most_dose : r.least_dose) == near(share, {.relative = 1e-12}));
         CHECK(r.first_deviation ==
-              fmt::format("layer 1: 4 pixels lit {:.3g} times as long as the job says (exposure)", share));
+              fmt::format("layer 2: 4 pixels lit {:.3g} times as long as the job says (exposure)", share));
     }
     // The manifest's own exposure counts: of the layer, of the first layers, of the material.
     job::Manifest job = job_of(pyramid);
@@ -321,7 +321,7 @@ TEST_CASE("swapped images of one material are found, whether swapped by projecto
     CHECK(names(archived) == "image");
     CHECK(archived.wrong_images == 2);
     CHECK(archived.first_deviation ==
-          "layer 0, material \"soft\": the image holds 4.00 pixels, the manifest says 8.00 (image)");
+          "layer 1, material \"soft\": the image holds 4.00 pixels, the manifest says 8.00 (image)");
 }
 
 TEST_CASE("one pixel darkened or added is found, even by one grey value") {
@@ -367,7 +367,7 @@ TEST_CASE("overcure below an underside is allowed up to the known depth; more fa
     const double deepest_um = 70 + dp * std::log((1 - std::pow(step, 20)) / (1 - step));
     CHECK(deep.deepest_overcure_um == near(deepest_um, {.relative = 1e-3}));
     CHECK(deep.resins[0].overcure_beyond_mm3 == near(7 * (deepest_um - 120) / 1000, {.relative = 1e-3}));
-    CHECK(deep.first_deviation.find("layer 20: ") == 0);
+    CHECK(deep.first_deviation.find("layer 21: ") == 0);
     const Report accepted = printed({{Finding::Kind::overcure}});
     CHECK(accepted.passed);
     CHECK(names(accepted) == "overcure (accepted)");
@@ -422,7 +422,7 @@ TEST_CASE("what cures beside the platform fails the print, and cannot be accepte
     CHECK(names(report) == "platform");
     CHECK(report.reasons.at(0) ==
           "the part lies 1.250 mm beyond the platform at -x, which reaches from -2.250 to 2.250 mm there");
-    CHECK(report.first_deviation == "layer 0: cured beside the platform");
+    CHECK(report.first_deviation == "layer 1: cured beside the platform");
     CHECK_FALSE(accepted_finding("platform"));
 }
 

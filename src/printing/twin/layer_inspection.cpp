@@ -237,7 +237,7 @@ void note_first(Report& report, const job::Manifest& job, int layer, int materia
     if (!report.first_deviation.empty()) return;
     const std::string who =
         material >= 0 ? fmt::format(", material \"{}\"", job.materials[static_cast<std::size_t>(material)].name) : "";
-    report.first_deviation = fmt::format("layer {}{}: {}", layer, who, what);
+    report.first_deviation = fmt::format("layer {}{}: {}", layer + 1, who, what);
 }
 
 Result<ImageKind> inspect_layers(Report& report, Twin& twin, const job::Manifest& job, const RunSource& images,

@@ -4,7 +4,7 @@ import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
-import { counted } from '../counted';
+import { counted, millilitres } from '../counted';
 import { fitTo } from '../fit_to';
 import { orbitHelp, orbitKeys, turnAround } from '../orbit_keys';
 import { mayDrive, say, scene } from '../store';
@@ -480,7 +480,7 @@ export function Bed() {
           e && (
             <p class="estimate" role="status" data-testid="estimate">
               about <b>{clock(e.seconds)}</b> · {counted(e.layers, 'layer')} · {counted(e.swaps, 'swap')}
-              {Object.entries(e.resin_ml).map(([resin, ml]) => ` · ${ml.toFixed(1)} ml ${resin}`)}
+              {Object.entries(e.resin_ml).map(([resin, ml]) => ` · ${millilitres(ml)} ${resin}`)}
             </p>
           )
         )}

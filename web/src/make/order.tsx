@@ -40,8 +40,8 @@ interface Light {
 export const printer = signal('tower');
 export const printerInfo = signal<PrinterInfo | null>(null);
 export const copies = signal(1);
-/// Texts of the fields, by option; "": not set.
-export const fields = signal<Record<string, string>>({ layer: '100' });
+/// Texts of the fields, by option; "" or none: not set, as the layer height that is then the printer's.
+export const fields = signal<Record<string, string>>({});
 export const turn = signal<[number, number, number]>([0, 0, 0]);
 export const scale = signal(1);
 /// Offset of the part's centre from that of the platform, mm.
@@ -488,7 +488,7 @@ export function SliceForm() {
           ))}
         </select>
       </label>
-      <Field option="layer" label="Layer height" hint={printerInfo.value ? String(printerInfo.value.layer_um) : ''} />
+      <Field option="layer" label="Layer height" hint={printerInfo.value ? String(printerInfo.value.layer_um) : ''} title="Left empty: the layer height of the printer file, for which its exposures are" />
       <div class="groups">
         <Placement />
         <Materials materials={materials} />

@@ -1,6 +1,7 @@
 // What the print needs: time, swaps, resin; one swap and the whole job as bars; comparison of material orders and
 // printers.
 import { useEffect, useState } from 'preact/hooks';
+import { millilitres } from '../counted';
 import { api, say } from '../store';
 import type { Job, Plan } from '../types';
 import { Gantt } from './gantt';
@@ -33,8 +34,8 @@ function Figures({ plan }: { plan: Plan }) {
           <span>{plan.swaps === 1 ? 'swap' : 'swaps'}, minimum {plan.swap_lower_bound}</span>
         </div>
         <div>
-          <b>{Object.values(plan.resin_ml).reduce((a, b) => a + b, 0).toFixed(1)} ml</b>
-          <span>resin, {plan.waste_ml.toFixed(1)} ml wasted</span>
+          <b>{millilitres(Object.values(plan.resin_ml).reduce((a, b) => a + b, 0))}</b>
+          <span>resin, {millilitres(plan.waste_ml)} wasted</span>
         </div>
         <div>
           <b>{plan.solvent_ml.toFixed(0)} ml</b>
@@ -113,7 +114,7 @@ function VatRows({ job, plan }: { job: Job; plan: Plan }) {
               ))}
             </svg>
             <span>
-              {(plan.resin_ml[String(vat.slot)] ?? 0).toFixed(1)} ml{vat.refill && <em> to be filled</em>}
+              {millilitres(plan.resin_ml[String(vat.slot)] ?? 0)}{vat.refill && <em> to be filled</em>}
             </span>
           </div>
         );
@@ -218,7 +219,7 @@ function Compare({ job, plan }: { job: Job; plan: Plan }) {
                 <>
                   <td>{r.swaps}</td>
                   <td>{clock(r.total_s ?? 0)}</td>
-                  <td>{(r.waste_ml ?? 0).toFixed(1)} ml</td>
+                  <td>{millilitres(r.waste_ml ?? 0)}</td>
                 </>
               )}
             </tr>

@@ -59,7 +59,7 @@ function oldJob(): string {
 export function Checklist() {
   const i = info.value!;
   const items: [string, string][] = [
-    ...i.vats.map((v): [string, string] => [`slot${v.slot}`, `slot ${v.slot} holds at least ${Math.ceil(v.ml)} ml of ${v.resin}`]),
+    ...i.vats.map((v): [string, string] => [`slot${v.slot}`, `slot ${v.slot} holds ${v.needed} of ${v.resin}`]),
     ['platform', 'the platform is clean, tightened and level'],
     ['path', 'carriage, tower and platform are free to move'],
     ['solution', 'the cleaning solution is full, the drain is clear'],

@@ -132,8 +132,10 @@ export class MachineView {
     const forward = new THREE.Vector3(0.18, 1, -0.5).normalize();
     const right = new THREE.Vector3().crossVectors(forward, this.camera.up).normalize();
     const up = new THREE.Vector3().crossVectors(right, forward);
-    const tan = 0.94 * Math.tan((this.camera.fov * Math.PI) / 360); // with a margin
-    const place = fitPoints(corners, right.toArray(), up.toArray(), forward.toArray(), tan * this.camera.aspect, tan);
+    const tan = Math.tan((this.camera.fov * Math.PI) / 360);
+    const [margin, names] = [0.94, 50]; // names: room for half of one beside its vat, px
+    const across = Math.min(margin, Math.max(0.5, 1 - names / Math.max(1, this.renderer.domElement.clientWidth)));
+    const place = fitPoints(corners, right.toArray(), up.toArray(), forward.toArray(), across * tan * this.camera.aspect, margin * tan);
     this.controls.target.set(...place.target);
     this.camera.position.set(...place.camera);
     this.controls.update();

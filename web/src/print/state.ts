@@ -63,7 +63,7 @@ export interface PrintInfo {
   seconds: number;
   /** What of the job could not be verified. */
   warnings: string[];
-  vats: { slot: number; resin: string; ml: number; materials: number[] }[];
+  vats: { slot: number; resin: string; needed: string; materials: number[] }[];
   refills: { layer: number; slot: number; text: string }[];
 }
 
