@@ -13,6 +13,7 @@
 #include "simulation/actuators/chamber_surface.hpp"
 #include "simulation/scene/build_places.hpp"
 #include "simulation/scene/chamber_mouths.hpp"
+#include "simulation/scene/chamber_overlaps.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -160,6 +161,7 @@ void add_chamber(ModelDraft& draft, const sim::Attacher& attacher, const Chamber
 
 void add_chambers(ModelDraft& draft, const sim::Attacher& attacher) {
     for (const ChamberSpec& chamber : draft.robot.chambers) add_chamber(draft, attacher, chamber);
+    if (draft.description.chambers.size() == draft.robot.chambers.size()) check_overlaps(draft);  // else told already
 }
 
 }  // namespace pliant::robot
