@@ -1,7 +1,12 @@
 #include "usage.hpp"
 
 #include <CLI/Error.hpp>
+#include <algorithm>
+#include <iterator>
 #include <string_view>
+#include <vector>
+
+#include "base/core/text.hpp"
 
 namespace pliant::app {
 namespace {
@@ -30,7 +35,60 @@ std::string reason_of(const CLI::App& command, const CLI::ParseError& error) {
     return std::string(text);
 }
 
+/// The only name that begins with the word, or the nearest one; "": none is near.
+std::string meant(const std::string& word, const std::vector<std::string>& names) {
+    std::vector<std::string> longer;
+    std::copy_if(names.begin(), names.end(), std::back_inserter(longer),
+                 [&](const std::string& name) { return word.size() > 1 && name.starts_with(word); });
+    return longer.size() == 1 ? longer.front() : nearest_name(word, names);
+}
+
+/// The option that is nearest to a word; "": none is. Dashes do not count, since all have them.
+std::string nearest_option(const std::string& word, const std::vector<std::string>& names) {
+    const std::size_t begin = std::min(word.find_first_not_of('-'), word.size());
+    const std::string nearest = nearest_name(word.substr(begin), names);
+    return nearest.empty() ? "" : "--" + nearest;
+}
+
+Error no_such(const CLI::App& command, std::string_view kind, const std::string& word, const std::string& nearest) {
+    const std::string name = full_name(command);
+    return {Cause::input, fmt::format("{}: there is no {} \"{}\"; {}", name, kind, word,
+                                      nearest.empty() ? fmt::format("{} --help lists them", name)
+                                                      : fmt::format("did you mean \"{}\"?", nearest))};
+}
+
+/// For a first word that is neither a command nor an option of the program.
+Error no_such_command(const CLI::App& app, const std::string& word) {
+    if (word.starts_with('-')) return no_such(app, "option", word, nearest_option(word, {"help", "version"}));
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
+    return no_such(app, "command", word, meant(word, names));
+}
+
 }  // namespace
+
+const CLI::App& given_command(const CLI::App& app) {
+    const CLI::App* command = &app;
+    for (auto below = app.get_subcommands(); !below.empty(); below = command->get_subcommands())
+        command = below.front();
+    return *command;
+}
+
+std::optional<Error> misspelt(const CLI::App& app) {
+    const CLI::App& command = given_command(app);
+    const std::vector<std::string> left = command.remaining();
+    if (&command == &app) return left.empty() ? std::nullopt : std::optional(no_such_command(app, left.front()));
+    const auto found = std::find_if(left.begin(), left.end(),
+                                    [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
+    if (found == left.end()) return std::nullopt;
+    const std::string word = found->substr(0, found->find('='));
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back(name);
+    }
+    return no_such(command, "option", word, nearest_option(word, names));
+}
 
 Error usage_error(const CLI::App& command, const CLI::ParseError& error) {
     const std::string name = full_name(command), reason = reason_of(command, error);

@@ -3,12 +3,20 @@
 
 #include <CLI/App.hpp>
 #include <CLI/Validators.hpp>
+#include <optional>
 #include <string>
 #include <type_traits>
 
 #include "base/core/error.hpp"
 
 namespace pliant::app {
+
+/// The command that was given, or its subcommand, as in `calibrate tensile`; without one the program itself.
+[[nodiscard]] const CLI::App& given_command(const CLI::App& app);
+
+/// After parsing has failed: the first word that is neither a command nor an option of the program, or an option that
+/// the given command does not have, with what may have been meant; empty: it is another mistake.
+[[nodiscard]] std::optional<Error> misspelt(const CLI::App& app);
 
 /// The error of CLI11 in one line that begins with the command.
 [[nodiscard]] Error usage_error(const CLI::App& command, const CLI::ParseError& error);

@@ -63,8 +63,7 @@ int run(const sim::distributed::Ranks& ranks, int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() != 0) {
-            const auto below = app.get_subcommands();
-            const Error found = app::usage_error(below.empty() ? app : *below.front(), error);
+            const Error found = app::misspelt(app).value_or(app::usage_error(app::given_command(app), error));
             if (ranks.is_root()) fmt::print(stderr, "{}\n", found.message);
             return app::exit_bad_input;
         }

@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -18,7 +17,6 @@
 
 #include "../standard_streams.hpp"
 #include "../usage.hpp"
-#include "base/core/text.hpp"
 #include "command.hpp"
 #include "interrupt.hpp"
 #include "printed.hpp"
@@ -26,59 +24,6 @@
 #include "study_rows.hpp"
 
 namespace {
-
-/// The only name that begins with the word, or the nearest one; "": none is near.
-std::string meant(const std::string& word, const std::vector<std::string>& names) {
-    std::vector<std::string> longer;
-    std::copy_if(names.begin(), names.end(), std::back_inserter(longer),
-                 [&](const std::string& name) { return word.size() > 1 && name.starts_with(word); });
-    return longer.size() == 1 ? longer.front() : pliant::nearest_name(word, names);
-}
-
-/// The option that is nearest to a word; "": none is. Dashes do not count, since all have them.
-std::string nearest_option(const std::string& word, const std::vector<std::string>& names) {
-    const std::size_t begin = std::min(word.find_first_not_of('-'), word.size());
-    const std::string nearest = pliant::nearest_name(word.substr(begin), names);
-    return nearest.empty() ? "" : "--" + nearest;
-}
-
-/// For a first word that is neither a command nor an option.
-int refuse(const CLI::App& app, const std::string& word) {
-    std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-        names.push_back(command->get_name());
-    const bool option = word.starts_with('-');
-    const std::string nearest = option ? nearest_option(word, {"help", "version"}) : meant(word, names);
-    fmt::print(stderr, "pliant: there is no {} \"{}\"; {}\n", option ? "option" : "command",
-               pliant::app::one_line(word),
-               nearest.empty() ? "pliant --help lists them" : "did you mean \"" + nearest + "\"?");
-    return pliant::app::exit_bad_input;
-}
-
-/// The command that was given, or its subcommand, as in `calibrate tensile`.
-const CLI::App* given_command(const CLI::App& app) {
-    const CLI::App* command = &app;
-    for (auto below = app.get_subcommands(); !below.empty(); below = command->get_subcommands())
-        command = below.front();
-    return command;
-}
-
-/// The error for an option that the command does not have, with a suggestion. "": there is none.
-std::string unknown_option(const CLI::App& command) {
-    const std::vector<std::string> left = command.remaining();
-    const auto found = std::find_if(left.begin(), left.end(),
-                                    [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
-    if (found == left.end()) return "";
-    const std::string word = found->substr(0, found->find('='));
-    std::vector<std::string> names;
-    for (const CLI::Option* option : command.get_options()) {
-        for (const std::string& name : option->get_lnames()) names.push_back(name);
-    }
-    const std::string nearest = nearest_option(word, names);
-    return fmt::format("pliant {}: there is no option \"{}\"; {}", command.get_name(), word,
-                       nearest.empty() ? fmt::format("pliant {} --help lists them", command.get_name())
-                                       : "did you mean \"" + nearest + "\"?");
-}
 
 struct Command {
     std::string_view name;
@@ -155,19 +100,19 @@ int pliant::app::run_program(const std::vector<std::string>& words) {
     try {
         app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
     } catch (const CLI::ParseError& error) {
-        const CLI::App& command = *given_command(app);
-        if (const std::string text = &command == &app ? "" : unknown_option(command);
-            error.get_exit_code() != 0 && !text.empty()) {
-            fmt::print(stderr, "{}\n", one_line(text));
+        // Help is for a command that there is.
+        const bool asks = error.get_exit_code() == 0 && !app.get_subcommands().empty();
+        if (const auto slip = misspelt(app); slip && !asks) {
+            fmt::print(stderr, "{}\n", one_line(slip->message));
             return exit_bad_input;
         }
-        if (app.get_subcommands().empty() && !app.remaining().empty()) return refuse(app, app.remaining().front());
         if (words.empty()) {  // the help says more than that a command is missing
             fmt::print(stderr, "{}", app.help());
             return exit_bad_input;
         }
         if (error.get_exit_code() == 0) return app.exit(error);  // it asks for the help or the version
-        return report(usage_error(command, error), std::find(words.begin(), words.end(), "--json") != words.end());
+        return report(usage_error(given_command(app), error),
+                      std::find(words.begin(), words.end(), "--json") != words.end());
     }
     return status;
 }

@@ -132,6 +132,7 @@ Result<int> run_chunk(const StudyOptions& options) {
     settings.chunks = study::chunks_from(*plan, first, static_cast<std::size_t>(options.chunks), options.others);
     settings.wait_for_others = false;
     settings.stop_at_missing_path = false;
+    settings.stop_at_wrong_input = false;
     constexpr int most_begun = 4;
     settings.most_begun = most_begun;
     const auto account = study::run_rows(*plan, options.study, settings, *progress);

@@ -203,6 +203,20 @@ TEST_CASE("--set changes any value, and an unknown key gives the nearest one") {
     CHECK_FALSE(set(document, "program..steps=1"));
 }
 
+TEST_CASE("--set takes an entry of a list as messages write it") {
+    Document document = document_of("[[cable]]\nname = \"flexor\"\npoints = [[0, 0, 0], [1, 0, 0]]\n");
+    REQUIRE(set(document, "cable[0].points[1][2]=5"));
+    REQUIRE(set(document, "cable[flexor].friction=0.5"));
+    Problems problems("test.toml");
+    Reader cable = Reader(document.root, problems).tables("cable").at(0);
+    CHECK(cable.vectors("points").at(1) == Vec3{1, 0, 5});
+    CHECK(cable.number("friction") == 0.5);
+    CHECK(problems.empty());
+    CHECK(set(document, "cable[1].friction=0.5")
+              .error()
+              .message.starts_with("--set cable[1].friction: there is no \"cable[1]\" in test.toml"));
+}
+
 TEST_CASE("all within a value of --set stands on the line of what it replaces") {
     Document document = document_of("steps = 30\n\ncable = 2\n");
     REQUIRE(set(document, "cable=[{ name = \"flexor\" }]"));

@@ -22,6 +22,7 @@ struct RowRecord {
     std::string reason;          ///< of the failure, one line
     std::vector<double> values;  ///< (results); NaN: missing
     double wall_s = 0, cpu_s = 0;
+    bool wrong_input = false;  ///< it failed because of its files or options; not recorded
     bool operator==(const RowRecord&) const = default;
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <deque>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "base/core/stopwatch.hpp"
@@ -29,6 +30,38 @@ struct OpenChunk {
     Clock::time_point synced = Clock::now();
 };
 
+/// Tells from the first rows whether every row fails because of its input: a key that is misspelt, a file that is not
+/// there. A single row may be wrong by its values, so each key must have had three of them, or all that it has.
+class FirstRows {
+public:
+    FirstRows(const Plan& plan, bool looks) : plan_(plan), met_(plan.keys.size()), looks_(looks) {
+        for (std::size_t k = 0; looks && k < met_.size(); ++k) {
+            std::set<std::string> values;
+            for (std::size_t row = 0; row < plan.rows.size() && values.size() < enough; ++row)
+                values.insert(plan.rows[row][k]);
+            wanted_.push_back(values.size());
+        }
+    }
+    /// Takes a row that has ended; true: all rows are wrong.
+    bool take(const RowRecord& record) {
+        looks_ = looks_ && record.wrong_input;
+        if (!looks_) return false;
+        bool all = true;
+        for (std::size_t k = 0; k < met_.size(); ++k) {
+            if (met_[k].size() < wanted_[k]) met_[k].insert(plan_.rows[record.row][k]);
+            all = all && met_[k].size() == wanted_[k];
+        }
+        return all;
+    }
+
+private:
+    static constexpr std::size_t enough = 3;
+    const Plan& plan_;
+    std::vector<std::set<std::string>> met_;  ///< (keys) values of rows that failed so
+    std::vector<std::size_t> wanted_;         ///< (keys) as many of them are enough
+    bool looks_;                              ///< no row has ended in another way
+};
+
 /// Hands out the rows of one chunk after the other, and records their outcomes.
 class Rows {
 public:
@@ -39,6 +72,7 @@ public:
         Stopwatch watch;
         Follower follower(plan_, folder_);
         if (Status status = look(follower); !status) return tl::unexpected(status.error());
+        judge_.emplace(plan_, settings_.stop_at_wrong_input && recorded_ == 0);
         to_visit_.assign(settings_.chunks.begin(), settings_.chunks.end());
         for (;;) {
             const auto cpu = run_pool(pool_options(), calls(), progress_);
@@ -166,6 +200,7 @@ private:
         account_.rows_cpu_s += record.cpu_s;
         open.account.rows_cpu_s += record.cpu_s;
         --open.running;
+        if (judge_->take(record) && recorded_ < plan_.rows.size()) return every_row_is_wrong(record);
         if (open.waiting.empty() && open.running == 0) return close(chunk);
         constexpr auto sync_every = std::chrono::seconds(2);
         if (Clock::now() - open.synced < sync_every) return {};
@@ -182,6 +217,13 @@ private:
         open_.erase(chunk);
         with_open_rows_.erase(chunk);
         return status;
+    }
+
+    [[nodiscard]] Status every_row_is_wrong(const RowRecord& record) const {
+        return input_error(
+            "{}: all of the first {} rows fail because of their input, row {} by: {}; the study stops "
+            "here, and --resume runs the other rows in spite of this",
+            plan_.study_file, account_.rows, record.row, record.reason);
     }
 
     /// Adds to the row's reason, which lists the results present, the place in the study file that asks for the result.
@@ -204,6 +246,7 @@ private:
     std::map<std::size_t, OpenChunk> open_;
     std::size_t recorded_ = 0;
     bool any_done_ = false;
+    std::optional<FirstRows> judge_;
     RunAccount account_;
 };
 

@@ -20,6 +20,7 @@ struct RunSettings {
                                        ///< leave
     bool wait_for_others = true;       ///< until all rows of the chunks are recorded, by any process
     bool stop_at_missing_path = true;  ///< stop if the first row lacks a wanted result: the others would, too
+    bool stop_at_wrong_input = true;   ///< stop if the first rows all fail because of their input, whatever the values
     int most_begun = 0;                ///< a row during which this many tasks died counts as failed; 0: no limit
     std::string place;                 ///< host name and task, for the accounting
 };
@@ -33,7 +34,8 @@ struct RunAccount {
 };
 
 /// Runs all rows without a record. Records are written as rows end; an interrupted run can be continued. Errors: of the
-/// disk, a process that does not start, a missing wanted result, cancellation.
+/// disk, a process that does not start, a missing wanted result, first rows that all fail because of their input,
+/// cancellation.
 [[nodiscard]] Result<RunAccount> run_rows(const Plan& plan, const std::filesystem::path& folder,
                                           const RunSettings& settings, Progress& progress);
 

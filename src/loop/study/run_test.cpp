@@ -138,6 +138,31 @@ TEST_CASE("a missing result stops a study at its first row, with the nearest nam
     CHECK(collected(plan, folder / "s").recorded() == 0);
 }
 
+TEST_CASE("a study whose first rows all fail because of their input stops, and --resume runs the others") {
+    const pliant::test::Folder folder("study");
+    const Plan plan = squares("wrong");
+    REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
+    const auto account = run(plan, folder / "s", settings(plan, 1));
+    REQUIRE_FALSE(account);
+    CHECK(account.error().cause == Cause::input);
+    CHECK(account.error().message ==
+          "squares.toml: all of the first 3 rows fail because of their input, row 2 by: finger.toml:3: stepps: unknown "
+          "key; the study stops here, and --resume runs the other rows in spite of this");
+    CHECK(collected(plan, folder / "s").recorded() == 3);
+    REQUIRE(run(plan, folder / "s", settings(plan)));
+    CHECK(collected(plan, folder / "s").failed == 8);
+}
+
+TEST_CASE("rows that fail because of their own values do not stop a study") {
+    const pliant::test::Folder folder("study");
+    const Plan plan = squares("wrong-first");
+    REQUIRE(open_folder(plan, folder / "s", Begin::fresh));
+    REQUIRE(run(plan, folder / "s", settings(plan)));
+    const Collected found = collected(plan, folder / "s");
+    CHECK(found.failed == 2);
+    CHECK(found.done == 6);
+}
+
 TEST_CASE("a program that cannot serve rows is an error at once") {
     const pliant::test::Folder folder("study");
     const Plan plan = squares("plain");

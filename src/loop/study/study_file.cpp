@@ -30,6 +30,20 @@ bool mentions(const std::vector<std::string>& words, const std::string& what) {
                        [&](const std::string& word) { return word.find(what) != std::string::npos; });
 }
 
+/// Every row would write over what the one before has written.
+void check_output(Reader& root, const std::vector<std::string>& words) {
+    for (std::size_t k = 1; k < words.size(); ++k) {
+        const bool apart = words[k] == "-o" || words[k] == "--output", joined = words[k].starts_with("--output=");
+        if (!apart && !joined) continue;
+        const std::string value = joined ? words[k] : k + 1 < words.size() ? words[k + 1] : "";
+        if (value.empty() || value.find('{') != std::string::npos) continue;
+        root.problem("command",
+                     fmt::format("all rows would write \"{}\", one over the other; {{row}} in it stands for "
+                                 "a folder of the row's own, as in \"{}\", \"{{row}}/out\"",
+                                 joined ? value.substr(value.find('=') + 1) : value, apart ? words[k] : "--output"));
+    }
+}
+
 std::vector<std::string> read_command(Reader& root, const StudyContext& context) {
     std::vector<std::string> words = root.texts("command");
     if (words.empty()) {
@@ -43,6 +57,7 @@ std::vector<std::string> read_command(Reader& root, const StudyContext& context)
                                             near.empty() ? "" : fmt::format(", did you mean \"{}\"?", near),
                                             join_names(context.commands)));
     }
+    check_output(root, words);
     return words;
 }
 

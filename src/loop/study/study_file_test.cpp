@@ -141,6 +141,21 @@ TEST_CASE("a mistake in a study file gives one line: where, and what would be ri
               .find("a key is expected at letter 8") != std::string::npos);
 }
 
+TEST_CASE("an output that all rows would write is refused, one of each row is not") {
+    const std::string rest = "plan = \"grid\"\n" + modulus + tension;
+    const std::string refused =
+        "s.toml:1: command: all rows would write \"x\", one over the other; {row} in it stands for "
+        "a folder of the row's own, as in \"";
+    const auto command = [](const std::string& words) {
+        return "command = [\"simulate\", \"finger.toml\", " + words + "]\n";
+    };
+    CHECK(mistake(command("\"-o\", \"x\"") + rest) == refused + "-o\", \"{row}/out\"");
+    CHECK(mistake(command("\"--output\", \"x\"") + rest) == refused + "--output\", \"{row}/out\"");
+    CHECK(mistake(command("\"--output=x\"") + rest) == refused + "--output\", \"{row}/out\"");
+    CHECK(mistake(command("\"-o\", \"{row}/x\"") + rest) == "");
+    CHECK(mistake(command("\"-o\", \"x_{E}\"") + "plan = \"grid\"\nkey.E = { values = [1, 2] }\n" + tension) == "");
+}
+
 TEST_CASE("names that would be one column, and keys that set the same thing, are refused with their line") {
     CHECK(mistake(head + "plan = \"grid\"\n" + modulus + "result.modulus = \"cables.flexor.tension_N\"\n") ==
           "s.toml:4: result.modulus: is the name of key.modulus too; in results.csv every column needs a name of its "

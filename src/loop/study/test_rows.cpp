@@ -33,6 +33,10 @@ int work(const std::vector<std::string>& words) {
         fmt::print("{{\"error\": \"finger.toml: step 4: no equilibrium\"}}\n");
         return 1;
     }
+    if (kind == "wrong" || (kind == "wrong-first" && x < 2)) {
+        fmt::print(stderr, "finger.toml:3: stepps: unknown key\n");
+        return 2;
+    }
     if (kind == "silent" && x == 3) return 0;
     fmt::print("{{\"square\": {}, \"pid\": {}}}\n", x * x, ::getpid());
     return 0;

@@ -61,6 +61,8 @@ public:
     std::string missing;  ///< error message of the first missing path
 };
 
+constexpr int wrong_input = 2;  ///< exit status of a command whose files or options are wrong
+
 nlohmann::json run_row(const std::vector<std::string>& words, const std::vector<JsonPath>& paths,
                        const RunCommand& run) {
     Stopwatch watch;
@@ -78,9 +80,13 @@ nlohmann::json run_row(const std::vector<std::string>& words, const std::vector<
         missing_path = true;
         reason = reading.missing;
     }
-    return {{"done", reason.empty()},   {"missing_path", missing_path},
-            {"reason", reason},         {"values", std::move(reading.values)},
-            {"wall_s", watch.read_s()}, {"cpu_s", cpu_s() - cpu_before}};
+    return {{"done", reason.empty()},
+            {"missing_path", missing_path},
+            {"wrong_input", outcome.exit_status == wrong_input},
+            {"reason", reason},
+            {"values", std::move(reading.values)},
+            {"wall_s", watch.read_s()},
+            {"cpu_s", cpu_s() - cpu_before}};
 }
 
 FileHandle memory_file(const char* name) {

@@ -230,6 +230,11 @@ void read_body(Reader& reader, Context& context, BodySpec& body) {
     body.geometry = read_geometry(reader, context);
     body.size = read_size(reader, "size", context);
     body.blend = read_blend(reader, context);
+    if (body.blend && body.blend->material == body.material && !reader.unreadable("blend"))
+        context.robot.notes.push_back(
+            fmt::format("body \"{}\" blends into its own material \"{}\", which changes "
+                        "nothing",
+                        body.name, reader.text("material")));
     body.exposure_s = read_exposure(reader, "exposure");
 }
 
@@ -239,7 +244,7 @@ void read_bodies(Reader& root, Context& context) {
     read_materials(root, context);
     read_mesh(root, context);
     read_each(root, context, "body", "bodies", context.robot.bodies, read_body);
-    if (context.robot.bodies.empty()) root.problem("", "there is no body; add [[body]]");
+    if (context.robot.bodies.empty() && !root.unreadable("body")) root.problem("", "there is no body; add [[body]]");
 }
 
 }  // namespace pliant::robot

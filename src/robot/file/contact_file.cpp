@@ -66,10 +66,12 @@ void read_object(Reader& reader, Context& context, ObjectSpec& object) {
     read_mass_or_density(reader, object);
     object.velocity_m_s = reader.vector("velocity", Vec3{});
     object.angular_velocity_rad_s = reader.vector("angular_velocity", Vec3{});
+    check_needs_time(reader, "velocity", object.velocity_m_s != Vec3{}, context);
+    check_needs_time(reader, "angular_velocity", object.angular_velocity_rad_s != Vec3{}, context);
     object.friction = read_friction(reader);
 }
 
-FluidSpec read_fluid_table(Reader reader) {
+FluidSpec read_fluid_table(Reader reader, const Context& context) {
     FluidSpec fluid;
     fluid.line = reader.line();
     fluid.density_kg_m3 = reader.quantity("density", Dimension::density);
@@ -80,10 +82,13 @@ FluidSpec read_fluid_table(Reader reader) {
         if (!(*drag >= 0 && *drag <= 1000))
             reader.problem(key,
                            fmt::format("{} is not possible; a coefficient from 0 to 1000, a plate has about 1", *drag));
+        else
+            check_needs_time(reader, key, *drag > 0, context);
     }
     if (reader.has("level")) fluid.level = reader.number("level");
     (void)reader.raw("level");
     fluid.current_m_s = reader.vector("current", Vec3{});
+    check_needs_time(reader, "current", fluid.current_m_s != Vec3{}, context);
     reader.finish();
     return fluid;
 }
@@ -120,7 +125,7 @@ void read_contact(Reader& root, Context& context) {
 void read_fluid(Reader& root, Context& context) {
     const bool given = root.has("fluid");
     const Reader reader = root.table("fluid", false);
-    if (given) context.robot.fluid = read_fluid_table(reader);
+    if (given) context.robot.fluid = read_fluid_table(reader, context);
 }
 
 }  // namespace pliant::robot

@@ -118,7 +118,10 @@ void read_joint(Reader& reader, Context& context, JointSpec& joint) {
     joint.damping = reader.number("damping", 0);
     if (!(joint.damping >= 0)) reader.problem("damping", "must not be negative");
     if (joint.stiffness < 0) reader.problem("stiffness", "must not be negative");
-    if (joint.damping > 0 && !has_axis(joint.kind)) reader.problem("damping", "is that of a hinge, motor or slider");
+    if (joint.damping > 0 && !has_axis(joint.kind))
+        reader.problem("damping", "is that of a hinge, motor or slider");
+    else
+        check_needs_time(reader, "damping", joint.damping > 0, context);
     read_limits(reader, context.robot, joint);
     read_drive(reader, joint);
     if (reader.has("clearance")) {

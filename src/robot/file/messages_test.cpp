@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/core/test_text.hpp"
 #include "robot/file/robot_file.hpp"
 
 using namespace pliant;
@@ -153,4 +154,70 @@ TEST_CASE("a goal has a time for every waypoint, none after the end of the progr
     CHECK(only(neo, ranged + path + "times = [0.5, 3]\n") ==
           "goal: \"reach\" has a time of 3 s, and the program ends at 1 s; give program.duration");
     CHECK(only(neo, ranged + path + "times = [0.5, 3]\n[program]\nduration = \"3 s\"\n").empty());
+}
+
+TEST_CASE("what only a motion in time knows is refused without time_step, as damping is") {
+    const std::string object =
+        "[[object]]\nname = \"ball\"\ngeometry = { sphere = { center = [0, 0, 50], radius = 5 } }\nmass = \"1 g\"\n";
+    const std::string hinge =
+        "[[joint]]\nname = \"j\"\nkind = \"hinge\"\nbetween = [\"bar\", \"world\"]\npoint = [0, 5, 5]\naxis = [0, 0, "
+        "1]\n";
+    const std::string fluid = "[fluid]\ndensity = \"1 g/cm^3\"\n";
+    const std::string moves = "[program]\ntime_step = \"10 ms\"\n", why = ": has no meaning without program.time_step";
+    CHECK(only(neo, object + "velocity = [0, 0, 1]\n") == "object[0].velocity" + why);
+    CHECK(only(neo, object + "angular_velocity = [0, 0, 1]\n") == "object[0].angular_velocity" + why);
+    CHECK(only(neo, hinge + "damping = 0.01\n") == "joint[0].damping" + why);
+    CHECK(only(neo, fluid + "drag_normal = 1\n") == "fluid.drag_normal" + why);
+    CHECK(only(neo, fluid + "drag_tangential = 1\n") == "fluid.drag_tangential" + why);
+    CHECK(only(neo, fluid + "current = [1, 0, 0]\n") == "fluid.current" + why);
+    CHECK(only(neo, object + "velocity = [0, 0, 1]\nangular_velocity = [0, 0, 1]\n" + moves).empty());
+    CHECK(only(neo, hinge + "damping = 0.01\n" + moves).empty());
+    CHECK(only(neo, fluid + "drag_normal = 1\ncurrent = [1, 0, 0]\n" + moves).empty());
+    CHECK(only(neo, object + "velocity = [0, 0, 0]\n" + fluid + "drag_normal = 0\n").empty());
+}
+
+TEST_CASE("a support cannot move its nodes where it does not hold them") {
+    const std::string end = "[[fixed]]\nname = \"end\"\nplane = { point = [40, 0, 0], normal = [1, 0, 0] }\n";
+    CHECK(only(neo, end + "directions = [\"x\"]\nmove = [0, 0, 3]\n")
+              .starts_with("fixed[1].move: moves the nodes by (0, 0, 3) across"));
+    CHECK(only(neo, end + "directions = \"normal\"\nmove = [1, 2, 0]\n")
+              .starts_with("fixed[1].move: moves the nodes by (0, 2, 0) across"));
+    CHECK(only(neo, end + "directions = \"normal\"\nmove = [1, 0, 0]\n").empty());
+    CHECK(only(neo, end + "directions = [[1, 1, 0], [0, 1, 0]]\nmove = [1, 2, 0]\n").empty());
+    CHECK(only(neo, end + "move = [0, 0, 3]\n").empty());
+}
+
+TEST_CASE("names that are blank, or that of the key of a time, are refused") {
+    CHECK(only(neo, "[[marker]]\nname = \"\"\npoint = [1, 1, 1]\n") == "marker[0].name: is blank; a name is required");
+    CHECK(only(neo, "[[marker]]\nname = \" \"\npoint = [1, 1, 1]\n") == "marker[0].name: is blank; a name is required");
+    CHECK(message("name = \"\"\nlength_unit = \"mm\"\n" + neo + body) ==
+          "bar.toml:1: name: is blank; a name is required");
+    const std::string load = "[[load]]\nname = \"time\"\npoint = [40, 5, 5]\nforce = [\"1 N\", \"0 N\", \"0 N\"]\n";
+    CHECK(only(neo, load + "[[program.key]]\ntime = \"1 s\"\n")
+              .starts_with("program.key[0].time: says when the key holds"));
+    CHECK(only(neo, load).empty());
+}
+
+TEST_CASE("a table where a list of tables belongs is the only thing told") {
+    const std::string text = head + neo + body;
+    CHECK(message(test::replaced(text, "[[body]]", "[body]")) ==
+          "bar.toml:5: body: is a table; write [[body]] for each");
+    CHECK(message(test::replaced(text, "[[fixed]]", "[fixed]")) ==
+          "bar.toml:9: fixed: is a table; write [[fixed]] for each");
+}
+
+TEST_CASE("a body that blends into its own material gets a note") {
+    const auto notes = [](const std::string& other) {
+        const Result<Robot> robot = parse_robot(
+            head + neo + "[material.firm]\nyoungs_modulus = \"2 MPa\"\n" + body +
+                "[[body]]\nname = \"tip\"\nmaterial = \"soft\"\ngeometry = { box = [[40, 0, 0], [50, 10, 10]] }\n"
+                "blend = { material = \"" +
+                other + "\", from = [40, 0, 0], to = [50, 0, 0] }\n",
+            "bar.toml");
+        REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+        return robot->notes;
+    };
+    CHECK(notes("firm").empty());
+    CHECK(notes("soft") ==
+          std::vector<std::string>{"body \"tip\" blends into its own material \"soft\", which changes nothing"});
 }

@@ -91,10 +91,33 @@ void read_directions(Reader& reader, FixedSpec& fixed) {
                        "has no meaning together with rotate: a support that rotates holds all directions");
 }
 
+/// Where a support does not hold its nodes, it cannot move them either.
+void check_move(Reader& reader, const FixedSpec& fixed) {
+    constexpr double left_over = 1e-6;
+    if (fixed.directions.empty()) return;
+    std::vector<Vec3> held;  // unit vectors at right angles that span the directions
+    const auto free_part = [&](Vec3 v) {
+        for (const Vec3& axis : held) v -= dot(v, axis) * axis;
+        return v;
+    };
+    for (const Vec3& direction : fixed.directions) {
+        const Vec3 rest = free_part(unit(direction));
+        if (norm(rest) > left_over) held.push_back(unit(rest));
+    }
+    const Vec3 free = free_part(fixed.move);
+    if (norm(free) <= left_over * norm(fixed.move)) return;
+    reader.problem("move",
+                   fmt::format("moves the nodes by ({:.6g}, {:.6g}, {:.6g}) across the directions in which they "
+                               "are held, where they slide freely; add this direction to directions, or leave "
+                               "that part of the motion out",
+                               free.x, free.y, free.z));
+}
+
 void read_support(Reader& reader, Context& context, FixedSpec& fixed) {
     fixed.selector = read_selector(reader, context);
     fixed.move = reader.vector("move", Vec3{});
     read_directions(reader, fixed);
+    check_move(reader, fixed);
     read_rotation(reader, fixed);
 }
 

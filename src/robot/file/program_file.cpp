@@ -127,6 +127,15 @@ Curve read_curve(std::vector<Reader>& keys, const std::vector<double>& times, co
     return named ? curve : Curve{{0, duration}, {d.rest, d.end}};
 }
 
+/// What is named as the key that says when a key holds cannot be told from it.
+void refuse_name_of_time(std::vector<Reader>& keys, const std::vector<Driven>& list) {
+    const bool clashes = std::ranges::any_of(list, [](const Driven& d) { return d.name == "time"; });
+    if (clashes && !keys.empty())
+        keys.front().problem("time",
+                             "says when the key holds, and is the name of a cable, load or other thing that keys may "
+                             "drive; give that another name");
+}
+
 void read_keys(Reader& program, Robot& robot) {
     std::vector<Reader> keys = program.tables("key");
     double duration = program.quantity("duration", Dimension::time, 1);
@@ -139,13 +148,16 @@ void read_keys(Reader& program, Robot& robot) {
     robot.program.duration = duration > 0 ? duration : 1;
     if (keys.empty() && duration == 1 && !robot.program.dynamics) return;
     std::vector<Driven> list = everything_driven(robot);
+    refuse_name_of_time(keys, list);
     for (std::size_t i = 0; i < list.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
             if (list[i].name != list[j].name) continue;
             for (Reader& key : keys) {
-                if (key.has(list[i].name)) key.problem(list[i].name, "names two things; give them different names");
+                if (key.has(list[i].name) && list[i].name != "time")
+                    key.problem(list[i].name, "names two things; give them different names");
             }
         }
+        if (list[i].name == "time" && !keys.empty()) continue;  // refused
         list[i].drive(read_curve(keys, times, list[i], robot.program.duration));
     }
     for (Reader& key : keys) key.finish();

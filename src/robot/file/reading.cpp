@@ -10,9 +10,15 @@ namespace pliant::robot {
 
 using config::Reader;
 
+bool refuse_blank(Reader& reader, const std::string& name) {
+    const bool blank = name.find_first_not_of(" \t\r\n") == std::string::npos;
+    if (blank) reader.problem("name", "is blank; a name is required");
+    return blank;
+}
+
 std::string read_name(Reader& reader, std::set<std::string>& taken, std::string_view kind) {
     const std::string name = reader.text("name");
-    if (name.empty()) return name;
+    if (refuse_blank(reader, name)) return name;
     if (!taken.insert(name).second) reader.problem("name", fmt::format("there are two {} named \"{}\"", kind, name));
     return name;
 }
@@ -23,6 +29,10 @@ std::filesystem::path need_file(Reader& reader, std::string_view key, const std:
     std::error_code code;
     if (!std::filesystem::is_regular_file(path, code)) reader.problem(key, "there is no file " + path.string());
     return path;
+}
+
+void check_needs_time(Reader& reader, std::string_view key, bool is_used, const Context& context) {
+    if (is_used && !context.moves_in_time) reader.problem(key, "has no meaning without program.time_step");
 }
 
 BoxSelector read_box(Reader& reader) {

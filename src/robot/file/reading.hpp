@@ -19,9 +19,17 @@ struct Context {
     Robot& robot;
     config::Problems& problems;
     mesh::NamedShapes shapes;  ///< [shape.NAME]: solids that others may use
+    bool moves_in_time;        ///< program.time_step is given
 };
 
-/// The key `name`; a problem if it stands in `taken`, to which it is added. `kind` is the plural for the message.
+/// A problem if `key`, which says something about a motion in time, acts (`is_used`) in a program that has none.
+void check_needs_time(config::Reader& reader, std::string_view key, bool is_used, const Context& context);
+
+/// Whether a name that was read is blank, with a problem where it is given so.
+bool refuse_blank(config::Reader& reader, const std::string& name);
+
+/// The key `name`; a problem if it is blank, or if it stands in `taken`, to which it is added. `kind` is the plural for
+/// the message.
 [[nodiscard]] std::string read_name(config::Reader& reader, std::set<std::string>& taken, std::string_view kind);
 
 /// `file`, which the text of `key` names, as seen from the robot file's folder; a problem if there is no such file.

@@ -40,12 +40,7 @@ void forget_lines(config::Value& value) {
     }
 }
 
-constexpr std::array<std::string_view, 3> tables_of_names = {"material", "parameters", "shape"};
-
-/// A table entry that an assignment has added, such as material.soft.
-struct AddedName {
-    std::string kind, name;
-};
+}  // namespace
 
 const config::Value* entry_of(const config::Value& value, std::string_view key) {
     const auto* table = std::get_if<config::Table>(&value.data);
@@ -53,6 +48,15 @@ const config::Value* entry_of(const config::Value& value, std::string_view key) 
     const auto found = std::ranges::find(*table, key, [](const config::Entry& entry) { return entry.first; });
     return found == table->end() ? nullptr : &found->second;
 }
+
+namespace {
+
+constexpr std::array<std::string_view, 3> tables_of_names = {"material", "parameters", "shape"};
+
+/// A table entry that an assignment has added, such as material.soft.
+struct AddedName {
+    std::string kind, name;
+};
 
 /// The entry that this assignment is about to add, if any.
 std::optional<AddedName> added_name(const config::Document& document, std::string_view assignment) {

@@ -12,6 +12,9 @@
 
 namespace pliant::robot {
 
+/// The value of a key of a table; null if there is none.
+[[nodiscard]] const config::Value* entry_of(const config::Value& value, std::string_view key);
+
 /// Of robot = "FILE.toml" that robot, changed by set = ["KEY=VALUE", ...], with what [program] says here in place of
 /// what it says there. Without that key the document as it is. Errors: of either file; any other key beside those.
 [[nodiscard]] Result<config::Document> on_base(config::Document document);

@@ -35,6 +35,11 @@ mesh::NamedShapes read_shapes(Reader& root) {
     return shapes;
 }
 
+bool has_time_step(const config::Value& root) {
+    const config::Value* program = entry_of(root, "program");
+    return program != nullptr && entry_of(*program, "time_step") != nullptr;
+}
+
 Result<Robot> read_robot(config::Document given, const std::vector<std::string>& assignments) {
     Result<config::Document> based = on_base(std::move(given));
     if (!based) return tl::unexpected(based.error());
@@ -47,13 +52,14 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
     Robot robot;
     robot.file = document.file;
     robot.name = root.text("name");
+    refuse_blank(root, robot.name);
     const std::string unit = root.text("length_unit");
     if (const Result<double> factor = unit_factor(unit, Dimension::length))
         robot.unit_m = *factor;
     else if (root.has("length_unit"))
         root.problem("length_unit", factor.error().message);
 
-    Context context{robot, problems, read_shapes(root)};
+    Context context{robot, problems, read_shapes(root), has_time_step(document.root)};
     read_bodies(root, context);
     read_places(root, context);
     read_actuators(root, context);
@@ -67,7 +73,7 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
     check_goal_times(root, robot);
     if (robot.fluid && robot.fluid->level && robot.gravity_m_s2 == Vec3{})
         root.problem("fluid", "has a level, and nothing says where up is; give program.gravity");
-    if (robot.fixed.empty() && !may_be_free(robot))
+    if (robot.fixed.empty() && !root.unreadable("fixed") && !may_be_free(robot))
         root.problem("",
                      "nothing is fixed; add [[fixed]] with a box that holds one end of the robot, an [[obstacle]] to "
                      "stand on, or program.time_step for a motion in time");

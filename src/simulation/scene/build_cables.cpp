@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "robot/bodies/passage.hpp"
 #include "simulation/scene/build_places.hpp"
 #include "simulation/scene/object_points.hpp"
 #include "simulation/scene/symmetry_planes.hpp"
+#include "simulation/scene/target_values.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -76,13 +78,23 @@ void drive_by_gaps(ModelDraft& draft, const CableSpec& spec, const std::vector<V
         draft.problem(spec.line, "cable", spec.name, "passes no [[gap]], which model = \"gap-elements\" needs");
 }
 
+/// What remains of a cable of this length; empty if its tension is given.
+std::optional<double> length_at(const sim::CableTarget& target, double value, double rest_m) {
+    if (target.kind == sim::CableTarget::Kind::tension_N) return std::nullopt;
+    const bool ratio = target.kind == sim::CableTarget::Kind::length_ratio;
+    return (ratio ? value * rest_m : rest_m - value) + target.offset;
+}
+
+/// No cable becomes shorter than nothing.
 void check_shortening(ModelDraft& draft, const CableSpec& spec, const std::vector<Vec3>& points) {
-    double length = 0;
-    for (std::size_t k = 1; k < points.size(); ++k) length += norm(points[k] - points[k - 1]);
-    if (spec.target.kind == sim::CableTarget::Kind::shortening_m && spec.target.value >= length) {
-        draft.problem(spec.line, "cable", spec.name,
-                      fmt::format("cannot be shortened by {:.6g} mm, it is {:.6g} mm long", 1e3 * spec.target.value,
-                                  1e3 * length));
+    double rest_m = 0;
+    for (std::size_t k = 1; k < points.size(); ++k) rest_m += norm(points[k] - points[k - 1]);
+    for (const TargetValue& wanted : target_values(spec)) {
+        const std::optional<double> length_m = length_at(spec.target, wanted.value, rest_m);
+        if (!length_m || *length_m > 0) continue;
+        return draft.problem(spec.line, "cable", spec.name,
+                             fmt::format("{}cannot be shortened by {:.6g} mm{}, it is {:.6g} mm long", wanted.where,
+                                         1e3 * (rest_m - *length_m), with_offset(spec.target.offset), 1e3 * rest_m));
     }
 }
 

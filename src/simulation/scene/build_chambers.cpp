@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,8 @@
 #include "simulation/actuators/chamber_surface.hpp"
 #include "simulation/scene/build_places.hpp"
 #include "simulation/scene/chamber_mouths.hpp"
+#include "simulation/scene/chamber_overlaps.hpp"
+#include "simulation/scene/target_values.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -111,25 +114,41 @@ sim::Wall wall_of_file(ModelDraft& draft, const sim::Attacher& attacher, const C
 
 /// Nothing is below a vacuum.
 void check_pressure(ModelDraft& draft, const ChamberSpec& spec) {
+    if (spec.target.kind != sim::ChamberTarget::Kind::pressure_Pa) return;
     const double ambient = draft.robot.ambient_pressure_Pa;
-    if (spec.target.kind == sim::ChamberTarget::Kind::pressure_Pa && spec.target.value < -ambient)
-        draft.problem(spec.line, "chamber", spec.name,
-                      fmt::format("a pressure of {:.6g} kPa is below a vacuum: the air around has {:.6g} kPa "
-                                  "(program.ambient_pressure)",
-                                  1e-3 * spec.target.value, 1e-3 * ambient));
+    for (const TargetValue& wanted : target_values(spec)) {
+        const double pressure = wanted.value + spec.target.offset;
+        if (pressure >= -ambient) continue;
+        return draft.problem(
+            spec.line, "chamber", spec.name,
+            fmt::format("{}a pressure of {:.6g} kPa{} is below a vacuum: the air around has {:.6g} "
+                        "kPa (program.ambient_pressure)",
+                        wanted.where, 1e-3 * pressure, with_offset(spec.target.offset), 1e-3 * ambient));
+    }
 }
 
-/// A chamber cannot lose more air than it holds.
+/// What remains of a chamber of this volume; empty if its volume is not given.
+std::optional<double> volume_at(const sim::ChamberTarget& target, double value, double rest_m3) {
+    using Kind = sim::ChamberTarget::Kind;
+    if (target.kind == Kind::volume_ratio) return value * rest_m3 + target.offset;
+    if (target.kind == Kind::volume_change_m3) return rest_m3 + value + target.offset;
+    return std::nullopt;
+}
+
+/// A chamber cannot lose all the air that it holds, nor more.
 void check_volume_change(ModelDraft& draft, const ChamberSpec& spec, const sim::Wall& wall) {
-    if (spec.target.kind != sim::ChamberTarget::Kind::volume_change_m3) return;
+    constexpr double ml_per_m3 = 1e6, rounding = 1e-9;
     std::vector<double> rest;
     for (const Vec3& p : draft.description.mesh.points) rest.insert(rest.end(), {p.x, p.y, p.z});
-    constexpr double ml_per_m3 = 1e6;
-    const double volume = sim::ChamberSurface(wall, rest).volume(rest);
-    if (-spec.target.value >= volume)
-        draft.problem(spec.line, "chamber", spec.name,
-                      fmt::format("cannot lose {:.4g} ml, it holds {:.4g} ml", -ml_per_m3 * spec.target.value,
-                                  ml_per_m3 * volume));
+    const double holds = sim::ChamberSurface(wall, rest).volume(rest);
+    for (const TargetValue& wanted : target_values(spec)) {
+        const std::optional<double> volume = volume_at(spec.target, wanted.value, holds);
+        if (!volume || *volume > rounding * holds) continue;
+        return draft.problem(
+            spec.line, "chamber", spec.name,
+            fmt::format("{}cannot lose {:.4g} ml{}, it holds {:.4g} ml", wanted.where, ml_per_m3 * (holds - *volume),
+                        with_offset(spec.target.offset), ml_per_m3 * holds));
+    }
 }
 
 void add_chamber(ModelDraft& draft, const sim::Attacher& attacher, const ChamberSpec& spec) {
@@ -160,6 +179,7 @@ void add_chamber(ModelDraft& draft, const sim::Attacher& attacher, const Chamber
 
 void add_chambers(ModelDraft& draft, const sim::Attacher& attacher) {
     for (const ChamberSpec& chamber : draft.robot.chambers) add_chamber(draft, attacher, chamber);
+    if (draft.description.chambers.size() == draft.robot.chambers.size()) check_overlaps(draft);  // else told already
 }
 
 }  // namespace pliant::robot

@@ -16,6 +16,7 @@
 #include "simulation/scene/build_joints.hpp"
 #include "simulation/scene/build_places.hpp"
 #include "simulation/scene/build_sensors.hpp"
+#include "simulation/scene/column_clashes.hpp"
 
 namespace pliant::robot {
 namespace {
@@ -131,6 +132,7 @@ Result<sim::Description> build_description(const Robot& robot, mesh::TetMesh mes
     description.moves_in_time = robot.program.dynamics.has_value();
     description.fluid = fluid_of(draft);
     add_sensors(draft, attacher);
+    if (draft.problems.empty()) check_columns(draft);
     if (!draft.problems.empty()) return tl::unexpected(error_of(Cause::input, draft.problems));
     description.notes = draft.notes_on_points();
     if (Status held = check_free_motion(robot, description); !held) return tl::unexpected(held.error());

@@ -23,6 +23,7 @@ using testing::Built;
 using testing::check_problem;
 using testing::last_step;
 using testing::problem;
+using testing::run_text;
 
 namespace {
 
@@ -371,6 +372,7 @@ TEST_CASE("a chamber takes one of four targets") {
     CHECK(problem(chamber(room, "pressure = \"-90 kPa\"")).empty());
     check_problem(chamber(room, "pressure = \"-200 kPa\""),
                   "a pressure of -200 kPa is below a vacuum: the air around has 101.325 kPa");
+    check_problem(chamber(room, "volume_change = \"-192 mm^3\""), "cannot lose 0.192 ml, it holds 0.192 ml");
     check_problem(chamber(room, "volume_ratio = 0"), "a ratio of 0 is not possible; it must be above zero");
     check_problem(chamber(room, "pressure = 40"), "40 has no unit; write a pressure such as");
     check_problem(chamber(room, "volume_change = \"5 mm\""), "unknown unit \"mm\"; here the units are ml");
@@ -496,6 +498,37 @@ TEST_CASE("loads that are too small to be carried beside a very stiff material a
     const std::vector<std::string> warnings = pulled("1e-6 mN").warnings;
     REQUIRE(warnings.size() == 1);
     CHECK(warnings[0].starts_with("from step 1 on the loads are not carried: "));
+}
+
+TEST_CASE("what a target may not ask for, its keys, its offset and its range may not either") {
+    const auto keyed = [](const std::string& name, const std::string& value) {
+        return test::replaced(good, "steps = 3\n",
+                              "steps = 3\n[[program.key]]\ntime = \"2 s\"\n" + name + " = \"" + value + "\"\n");
+    };
+    const auto air = [](const std::string& target) {
+        return "[[chamber]]\nname = \"air\"\n" + room + "\ntarget = { " + target + " }\n";
+    };
+    check_problem(keyed("air", "-300 kPa") + air("pressure = \"1 kPa\""),
+                  "chamber \"air\": program.key at 2 s: a pressure of -300 kPa is below a vacuum");
+    check_problem(good + air("pressure = \"-100 kPa\", offset = \"-5 kPa\""),
+                  "chamber \"air\": a pressure of -105 kPa with its offset is below a vacuum");
+    check_problem(good + air("pressure = \"10 kPa\", offset = \"-105 kPa\"") + "range = [\"0 kPa\", \"10 kPa\"]\n",
+                  "chamber \"air\": target.offset: a pressure of -105 kPa with its offset is below a vacuum");
+    check_problem(keyed("air", "-200 mm^3") + air("volume_change = \"0 ml\""),
+                  "chamber \"air\": program.key at 2 s: cannot lose 0.2 ml, it holds 0.192 ml");
+    check_problem(good + air("volume_ratio = 0.5, offset = \"-100 mm^3\""),
+                  "chamber \"air\": cannot lose 0.196 ml with its offset, it holds 0.192 ml");
+    const auto cable = [](const std::string& text, const std::string& target) {
+        return test::replaced(text, "target = { length_ratio = 0.97 }", "target = { " + target + " }");
+    };
+    check_problem(cable(keyed("flexor", "41 mm"), "shortening = \"1 mm\""),
+                  "cable \"flexor\": program.key at 2 s: cannot be shortened by 41 mm, it is 40 mm long");
+    check_problem(cable(good, "shortening = \"36 mm\", offset = \"-5 mm\""),
+                  "cable \"flexor\": cannot be shortened by 41 mm with its offset, it is 40 mm long");
+    check_problem(cable(good, "length_ratio = 0.1, offset = \"-5 mm\""),
+                  "cable \"flexor\": cannot be shortened by 41 mm with its offset, it is 40 mm long");
+    CHECK(problem(cable(keyed("flexor", "39 mm"), "shortening = \"1 mm\"")) == "");
+    CHECK(problem(cable(good, "tension = \"1 N\", offset = \"-2 N\"")) == "");  // slack at first
 }
 
 TEST_CASE("a chamber outside every body, and chambers that overlap, are refused by name") {

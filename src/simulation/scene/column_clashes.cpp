@@ -1,0 +1,94 @@
+#include "simulation/scene/column_clashes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <map>
+
+#include "simulation/run/sensors.hpp"
+
+namespace pliant::robot {
+namespace {
+
+class Columns {
+public:
+    explicit Columns(ModelDraft& draft) : draft_(draft) {}
+
+    /// The columns NAME_ENDING of a thing, for each of these endings. False if another thing has one of them.
+    template <class Spec>
+    bool take(std::string_view kind, const Spec& spec, std::initializer_list<std::string_view> endings) {
+        return std::ranges::all_of(endings, [&](std::string_view ending) {
+            return take_one(kind, spec.name, spec.line, fmt::format("{}_{}", spec.name, ending));
+        });
+    }
+    /// The input of an actuator that the inverse moves.
+    template <class Spec>
+    void take_input(std::string_view kind, const Spec& spec) {
+        if (spec.steering) take_one(kind, spec.name, spec.line, spec.name);
+    }
+
+private:
+    /// False, with a problem, if another thing has this column.
+    bool take_one(std::string_view kind, const std::string& name, int line, const std::string& column) {
+        const std::string thing = fmt::format("{} \"{}\"", kind, name);
+        const auto [other, is_new] = owner_.emplace(column, thing);
+        if (!is_new)
+            draft_.problem(line, kind, name,
+                           fmt::format("has the column \"{}\" in the tables of results, and so has {}; give one of the "
+                                       "two another name",
+                                       column, other->second));
+        return is_new;
+    }
+
+    ModelDraft& draft_;
+    std::map<std::string, std::string> owner_;
+};
+
+void take_actuators(const Robot& robot, Columns& columns) {
+    for (const CableSpec& c : robot.cables) {
+        if (columns.take("cable", c, {"length_ratio", "length_mm", "tension_N"})) columns.take_input("cable", c);
+    }
+    for (const ChamberSpec& c : robot.chambers) {
+        if (columns.take("chamber", c, {"volume_ratio", "volume_mm3", "pressure_kPa"}))
+            columns.take_input("chamber", c);
+    }
+    for (const SpringSpec& s : robot.springs) columns.take("spring", s, {"length_mm", "force_N"});
+}
+
+void take_joint(const JointSpec& joint, Columns& columns) {
+    if (!columns.take("joint", joint,
+                      {"force_x_N", "force_y_N", "force_z_N", "torque_x_Nm", "torque_y_Nm", "torque_z_Nm"}))
+        return;
+    if (joint.kind == JointSpec::Kind::hinge || joint.kind == JointSpec::Kind::motor)
+        columns.take("joint", joint, {"angle_deg", "effort_Nm"});
+    if (joint.kind == JointSpec::Kind::slider) columns.take("joint", joint, {"position_mm", "effort_N"});
+}
+
+void take_bodies(const Robot& robot, Columns& columns) {
+    for (const FixedSpec& f : robot.fixed) columns.take("fixed", f, {"force_x_N", "force_y_N", "force_z_N"});
+    for (const ObstacleSpec& o : robot.obstacles) columns.take("obstacle", o, {"force_x_N", "force_y_N", "force_z_N"});
+    for (const ObjectSpec& o : robot.objects)
+        columns.take("object", o,
+                     {"x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz", "force_x_N", "force_y_N", "force_z_N"});
+    for (const JointSpec& j : robot.joints) take_joint(j, columns);
+}
+
+void take_sensor(const SensorSpec& spec, const sim::Sensor& sensor, Columns& columns) {
+    for (const auto& [name, quantity] : sim::readings_of(sensor)) {
+        const std::string ending = fmt::format("{}{}", name, sim::shown(quantity).suffix);
+        if (!columns.take("sensor", spec, {ending})) return;
+    }
+}
+
+}  // namespace
+
+void check_columns(ModelDraft& draft) {
+    Columns columns(draft);
+    take_actuators(draft.robot, columns);
+    take_bodies(draft.robot, columns);
+    const auto& sensors = draft.robot.sensors;
+    for (std::size_t k = 0; k < sensors.size(); ++k) take_sensor(sensors[k], draft.description.sensors[k], columns);
+}
+
+}  // namespace pliant::robot
