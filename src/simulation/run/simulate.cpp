@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "base/core/stopwatch.hpp"
 #include "simulation/run/describe.hpp"
+#include "simulation/run/left_open.hpp"
 #include "simulation/run/position_file.hpp"
 #include "simulation/run/warnings.hpp"
 
@@ -71,12 +73,22 @@ private:
         const StepPath path = program_path(stepper_, program_, now_.robot, k);
         step.time = path.end;
         StepReport report;
+        std::optional<RobotState> before;
+        if (!program_.dynamics && stepper_.has_inertia()) before = now_.robot;
         if (!progress.cancelled()) report = stepper_.step(now_.robot, path, progress);
         Trajectory& result = now_.so_far;
-        if (report.arrived) checks_.after_step(now_.robot, step, report, result.warnings, progress);
+        std::string falls;
+        if (report.arrived && before)
+            falls = falling(stepper_.system(), now_.robot.now.state, now_.robot.controls, before->x());
+        if (report.arrived && falls.empty()) checks_.after_step(now_.robot, step, report, result.warnings, progress);
         for (IterationRecord record : report.history) {
             record.step = k;
             result.iterations.push_back(record);
+        }
+        if (!falls.empty()) {
+            now_.robot = *std::move(before);
+            stop(k, falls);
+            return false;
         }
         if (progress.cancelled() && !report.arrived) {
             result.converged = false;
@@ -143,6 +155,9 @@ private:
         }
         if (std::string braked = braked_turns(program_, result.steps); !braked.empty())
             result.warnings.push_back(std::move(braked));
+        for (auto* find : {impossible_vacuums, squeezed_objects})
+            for (std::string& warning : find(stepper_.model(), result.steps))
+                result.warnings.push_back(std::move(warning));
         result.solve_s += watch.read_s();
         add_warnings(result);
     }
