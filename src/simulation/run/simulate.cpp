@@ -96,7 +96,10 @@ private:
             return false;
         }
         if (!report.arrived) {
-            stop(k, report.reason + advice(stepper_, program_, now_.robot, step.time, progress));
+            const bool by_supports = report.reason.starts_with("the prescribed motion");
+            stop(k, report.reason + (program_.dynamics && by_supports
+                                         ? ""
+                                         : advice(stepper_, program_, now_.robot, step.time, progress)));
             return false;
         }
         step.iterations = report.iterations;
