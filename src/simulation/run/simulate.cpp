@@ -87,6 +87,7 @@ private:
         }
         if (!falls.empty()) {
             now_.robot = *std::move(before);
+            falls_ = true;
             stop(k, falls);
             return false;
         }
@@ -152,7 +153,7 @@ private:
         if (!progress.cancelled()) checks_.at_end(now_.robot, result);
         // At the end of the program the checks say what is left open.
         const bool checked = result.converged && !progress.cancelled() && can_tell_left_open(stepper_.model());
-        if (!program_.dynamics && !checked) {
+        if (!program_.dynamics && !checked && !falls_) {
             if (std::string held = held_by_nothing(stepper_.model()); !held.empty())
                 result.warnings.push_back(std::move(held));
         }
@@ -173,6 +174,7 @@ private:
     RunChecks checks_;
     RunState now_;
     std::unique_ptr<PositionFile> file_;  ///< null: in memory
+    bool falls_ = false;
 };
 
 }  // namespace

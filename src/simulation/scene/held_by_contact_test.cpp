@@ -274,7 +274,7 @@ time_step = "1 ms"
     std::string text = floating_object("[[0, 0, 0], [20, 20, 20]]", "625000", impact);
     text.replace(text.find("name = \"thing\""), 14, "name = \"thing\", velocity = [3, 0, 0]");
     const sim::Trajectory soft = run_to_where_it_stops(text);
-    if (!soft.converged) {
+    if (!soft.converged) {  // 100 kPa over 0.2 mm cannot stop 5 kg at 3 m/s
         CHECK_MESSAGE(has(soft.message, "object \"thing\" touches obstacle \"wall\""), soft.message);
         CHECK_MESSAGE(has(soft.message, "contact.stiffness"), soft.message);
     }
