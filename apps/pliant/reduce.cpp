@@ -137,8 +137,10 @@ void add_reduce(CLI::App& app, int& status) {
     command->add_option("robot", options->robot, "robot file (TOML) with ranges of actuators")->required();
     add_output_path(*command, options->file, "file for the reduced model, .reduced");
     command
-        ->add_option("--samples", options->reduction.samples,
-                     "equilibria to learn from; 0: 24 for each actuator, 240 at most")
+        ->add_option(
+            "--samples", options->reduction.samples,
+            "equilibria to learn from, with no actuation and the corners of the ranges always among them; 0: 24 "
+            "for each actuator, 240 at most")
         ->check(between(0, 100000))
         ->capture_default_str();
     command

@@ -73,8 +73,11 @@ void print_summary(const Model& model, const ProgramResult& result) {
                    readable(1e9 * c.volume_m3, 1), readable(1e-3 * c.pressure_Pa, 3));
     for (const auto& s : last.springs)
         fmt::print("spring {}: {} mm, force {} N\n", s.name, readable(1e3 * s.length_m, 2), readable(s.force_N, 4));
-    for (const auto& [name, force_N] : last.contacts)
+    for (const auto& [name, force_N] : last.contacts) {
+        const bool none = std::ranges::all_of(force_N, [&](double f) { return std::fabs(f) < rounding_N; });
+        if (none && !last.objects.empty()) continue;  // objects may stand on it, whose forces are not among these
         fmt::print("obstacle {}: presses on the robot with ({}) N\n", name, readable(force_N, 4, rounding_N));
+    }
     if (last.self_contact_N > 0) {
         fmt::print("self-contact: {} N total, nearest {} mm\n", readable(last.self_contact_N, 4),
                    readable(1e3 * last.smallest_distance_m, 4));

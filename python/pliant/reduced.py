@@ -288,7 +288,8 @@ def reduce(
     Args:
         model: a model of a robot with a range for each actuator that may be moved; without contact, friction, moving
             supports, joints and motion in time.
-        samples: equilibria to learn from; 0: 24 for each actuator, 240 at most.
+        samples: equilibria to learn from; 0: 24 for each actuator, 240 at most. That without actuation and, with up
+            to four actuators, the corners of the ranges are always among them.
         basis_error: share of the motion of the samples that the modes may leave out.
         force_error: share of the forces in the modes that the weighted tetrahedra may miss.
         most_modes: largest number of modes.

@@ -250,6 +250,20 @@ TEST_CASE("a chamber that collapses stops the run with a message, and the last g
     for (const Step& step : result.steps) CHECK(step.chambers[0].volume_m3 > 0);
 }
 
+TEST_CASE("a chamber that would have to pull harder than a vacuum is named") {
+    Description d = hollow_block(1);
+    d.chambers[0].target = {ChamberTarget::Kind::volume_ratio, 0.7};
+    const Trajectory possible = solve(d, {.steps = 4});
+    REQUIRE_MESSAGE(possible.converged, possible.message);
+    CHECK(possible.warnings.empty());
+    const double lowest = possible.steps.back().chambers[0].pressure_Pa;
+    d.ambient_pressure_Pa = -0.9 * lowest;
+    const Trajectory impossible = solve(d, {.steps = 4});
+    REQUIRE(impossible.warnings.size() == 1);
+    CHECK(impossible.warnings[0].starts_with("from step 4 on the pressure in chamber \"" + d.chambers[0].name +
+                                             "\" is below a vacuum"));
+}
+
 TEST_CASE("a chamber with an open wall is refused") {
     Description d = hollow_block(1);
     d.chambers[0].wall.faces.pop_back();

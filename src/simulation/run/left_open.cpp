@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/core/boxes.hpp"
 #include "base/core/counted.hpp"
 #include "base/linalg/dense.hpp"
 #include "base/linalg/sparse.hpp"
@@ -55,6 +56,28 @@ public:
                 texts.push_back(bodies_[b].name + " can " + text);
         }
         return fmt::format("{}", fmt::join(texts, ", "));
+    }
+
+    /// The first body that its weight and loads have moved very far since the positions `before` (3n) against nothing
+    /// but the tether; null: none.
+    [[nodiscard]] const Body* falling(const Eigen::VectorXd& before) const {
+        constexpr double far = 10;              // robot sizes, for which the tether takes a hundredth of the weight
+        constexpr double share_of_load = 0.01;  // that the tether carries
+        if (!controls_.inertia) return nullptr;
+        const double size_m = bounds_of(system_.model().mesh().points).diagonal();
+        const auto& masses = system_.model().elements().node_mass_kg();
+        for (const Body& body : bodies_) {
+            Eigen::Vector3d load = Eigen::Vector3d::Zero(), way = Eigen::Vector3d::Zero();
+            for (const int node : body.nodes) {
+                load += controls_.external_N.segment<3>(3 * node);
+                way += masses[static_cast<std::size_t>(node)] / body.mass_kg *
+                       (state_.x.segment<3>(3 * node) - before.segment<3>(3 * node));
+            }
+            // What something pushes is moved across its load. Buoyancy lifts against it.
+            const double along = load.norm() > 0 ? std::fabs(way.dot(load)) / load.norm() : 0;
+            if (along > far * size_m && body.mass_kg * tether() * along > share_of_load * load.norm()) return &body;
+        }
+        return nullptr;
     }
 
 private:
@@ -204,6 +227,17 @@ bool can_tell_left_open(const Model& model) {
 
 std::string left_open(const Equilibrium& system, const State& state, const Controls& controls) {
     return Bodies(system, state, controls).describe();
+}
+
+std::string falling(const Equilibrium& system, const State& state, const Controls& controls,
+                    const Eigen::VectorXd& before) {
+    const Bodies bodies(system, state, controls);
+    const Body* body = bodies.falling(before);
+    if (body == nullptr) return {};
+    return fmt::format(
+        "nothing carries {}: it moves on under its weight and loads without end, and there is no equilibrium. Support "
+        "it, or give program.time_step, with which its motion is computed",
+        body->name);
 }
 
 }  // namespace pliant::sim

@@ -12,6 +12,12 @@ namespace pliant::sim {
 /// step that led to `state`. Cost: a proximity search, and a dense matrix of six rows for each piece or object.
 [[nodiscard]] std::string left_open(const Equilibrium& system, const State& state, const Controls& controls);
 
+/// Names a piece or an object that falls: in the quasi-static step from `before` (3n) to `state` its weight and loads
+/// moved it by many times the robot's size, because only the tether carries it. A sentence without a full stop; "" if
+/// none does.
+[[nodiscard]] std::string falling(const Equilibrium& system, const State& state, const Controls& controls,
+                                  const Eigen::VectorXd& before);
+
 /// False if the robot has too many pieces and objects for left_open(), which then says nothing.
 [[nodiscard]] bool can_tell_left_open(const Model& model);
 

@@ -1,13 +1,17 @@
 #include "simulation/run/run_checks.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "base/core/boxes.hpp"
+#include "base/linalg/vectors.hpp"
 #include "simulation/run/left_open.hpp"
 #include "simulation/run/warnings.hpp"
 #include "simulation/solver/pressure_limit.hpp"
@@ -21,6 +25,36 @@ constexpr double noticeable = 0.01;  // of the robot's size, as a mean of all no
 constexpr double long_first = 0.03;  // likewise, for the first step, which has no step to compare with
 constexpr int most_pushes = 5;
 constexpr double extremely_soft = 100;  // a shape parameter
+
+/// What acts from the first instant on, as a stretched spring, a load that begins at once or the offset of a drive: the
+/// robot leaps to it by the wish of the program's author. On the path from rest to the first step it grows from
+/// nothing.
+class SuddenStart {
+public:
+    /// `first`: controls just after rest.
+    SuddenStart(const Equilibrium& system, const State& rest, const Controls& first) : lead_(first.drives.size(), 0.0) {
+        const Evaluation now = system.evaluate(rest, first);
+        if (!now.possible()) return;
+        force_N_ = now.out_of_balance;
+        for (std::size_t a = 0; a < lead_.size(); ++a) {
+            const Actuator& actuator = system.actuators()[a];
+            if (first.drives[a].kind != Drive::Kind::measure) continue;
+            lead_[a] = actuator.measure(linalg::view(rest.x)) - first.drives[a].value;
+            if (actuator.only_pulls()) lead_[a] = std::max(lead_[a], 0.0);  // else it is slack, and does not act
+        }
+    }
+
+    /// The controls with this share of it, 0 to 1.
+    [[nodiscard]] Controls with(double share, Controls controls) const {
+        if (force_N_.size() > 0) controls.external_N += (1 - share) * force_N_;
+        for (std::size_t a = 0; a < lead_.size(); ++a) controls.drives[a].value += (1 - share) * lead_[a];
+        return controls;
+    }
+
+private:
+    Eigen::VectorXd force_N_;   // (3n) out of balance at rest; empty: nothing
+    std::vector<double> lead_;  // (actuators) of the measure at rest over the prescribed one
+};
 
 }  // namespace
 
@@ -64,8 +98,14 @@ bool RunChecks::jumped(const RobotState& robot, const Progress& progress) {
     const bool first = !(before > 0);
     if (first ? !program_.checks || way < long_first * reach : way < sudden * before || way < noticeable * reach)
         return false;
+    const auto at = [&](double time) { return stepper_.controls(robot, time); };
+    std::optional<SuddenStart> start;
+    if (state_.reported.along == 0) {
+        constexpr double instant = 1e-6;  // of the step: offsets act from there on, not at rest
+        start.emplace(system_, state_.reported.state, at(instant * robot.now.along));
+    }
     return is_jump(state_.reported, robot.now, [&](double time, State& state) {
-        return stepper_.find(stepper_.controls(robot, time), state, progress);
+        return stepper_.find(start ? start->with(time / robot.now.along, at(time)) : at(time), state, progress);
     });
 }
 
@@ -151,10 +191,10 @@ void RunChecks::at_end(const RobotState& robot, Trajectory& result) {
             (is_unstable(robot, result.steps[middle]) ? unstable : stable) = middle;
         }
         const bool jumps = suspect + 1 < result.steps.size();
-        result.warnings.push_back(
-            fmt::format("from step {} on the equilibrium is unstable{}: a real robot buckles to one side where this "
-                        "one stays in balance; program.imperfection follows the stable way",
-                        unstable, jumps ? fmt::format(", until the robot jumps in step {}", suspect + 1) : ""));
+        result.warnings.push_back(fmt::format(
+            "from step {} on the equilibrium is unstable{}: a real robot buckles or tips to one side where this "
+            "one stays in balance; program.imperfection follows the stable way",
+            unstable, jumps ? fmt::format(", until the robot jumps in step {}", suspect + 1) : ""));
         return;
     }
 }
@@ -177,9 +217,51 @@ bool RunChecks::is_unstable(const RobotState& robot, const Step& step) {
     Controls controls = stepper_.controls(robot, step.time);
     for (std::size_t j = 0; j < step.joints.size(); ++j)  // with their whole turns in that step
         controls.joint_start[j] = step.joints[j].coordinate;
+    // Without the tether what nothing holds would have no stiffness at all, and rounding errors would decide.
+    if (stepper_.has_inertia()) controls.inertia = robot.controls.inertia;
     state.multiplier = system_.evaluate(state, controls).multiplier;
     return stability_.falling_motion(state, controls).has_value();
 }
+
+namespace {
+
+/// What touches what, as "object "a" touches obstacle "wall"", at most three of them.
+std::string touching_text(const Description& d, std::span<const std::array<int, 2>> surfaces) {
+    constexpr std::size_t most = 3;
+    const auto name = [&](int owner) {
+        if (owner == 0) return std::string("the robot");
+        return owner > 0 ? "object \"" + d.objects[static_cast<std::size_t>(owner) - 1].name + "\""
+                         : "obstacle \"" + d.contact->obstacles[static_cast<std::size_t>(-owner) - 1].body.name + "\"";
+    };
+    std::vector<std::string> texts;
+    for (const auto& [low, high] : surfaces.first(std::min(most, surfaces.size())))
+        texts.push_back(low == 0 && high == 0 ? "the robot touches itself" : name(high) + " touches " + name(low));
+    if (surfaces.size() > most) texts.push_back("and more");
+    return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+/// For a motion in time that stops: a contact that is too soft and too thin to stop what hits it is squeezed until the
+/// forces grow without bound.
+std::string advice_on_impact(const Stepper& stepper, const RobotState& robot) {
+    const Equilibrium& system = stepper.system();
+    const Description& d = stepper.model().description();
+    const contact::Contact* contact = stepper.model().contact(robot.controls.met);
+    if (contact == nullptr || !robot.controls.inertia) return {};
+    auto surfaces = system.touching(robot.now.state, robot.controls).surfaces;
+    if (surfaces.empty()) {  // so near that they meet within two steps
+        const Eigen::VectorXd way = 2 * stepper.options().time_unit * robot.history.v;
+        const std::vector<double> x = system.with_obstacles(robot.x(), robot.controls.obstacles);
+        surfaces =
+            contact->partners(contact->find_near(x, contact->settings().distance_m + way.lpNorm<Eigen::Infinity>()));
+    }
+    if (surfaces.empty()) return {};
+    return fmt::format(
+        ". Here {}, and the contact may be too soft and too thin to stop what moves: a larger contact.stiffness (now "
+        "{:.3g} kPa) or contact.distance (now {:.3g} mm) helps, sometimes also a smaller program.time_step",
+        touching_text(d, surfaces), 1e-3 * contact->settings().stiffness_Pa, 1e3 * contact->settings().distance_m);
+}
+
+}  // namespace
 
 std::string advice(Stepper& stepper, const Program& program, const RobotState& robot, double time,
                    const Progress& progress) {
@@ -193,7 +275,8 @@ std::string advice(Stepper& stepper, const Program& program, const RobotState& r
                 "with {:g} or less a solution is far easier to find",
                 material.name, 1 / blend->a, extremely_soft);
     }
-    if (program.dynamics || !d.growths.empty()) return {};
+    if (program.dynamics) return advice_on_impact(stepper, robot);
+    if (!d.growths.empty()) return {};
     if (stepper.system().has_friction() && stepper.has_inertia())
         return ". Only friction holds something here: where it is too weak there is no equilibrium, and the thing "
                "slides; with program.time_step its motion is computed";

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "base/core/stopwatch.hpp"
 #include "simulation/run/describe.hpp"
+#include "simulation/run/left_open.hpp"
 #include "simulation/run/position_file.hpp"
 #include "simulation/run/warnings.hpp"
 
@@ -71,12 +73,23 @@ private:
         const StepPath path = program_path(stepper_, program_, now_.robot, k);
         step.time = path.end;
         StepReport report;
+        std::optional<RobotState> before;
+        if (!program_.dynamics && stepper_.has_inertia()) before = now_.robot;
         if (!progress.cancelled()) report = stepper_.step(now_.robot, path, progress);
         Trajectory& result = now_.so_far;
-        if (report.arrived) checks_.after_step(now_.robot, step, report, result.warnings, progress);
+        std::string falls;
+        if (report.arrived && before)
+            falls = falling(stepper_.system(), now_.robot.now.state, now_.robot.controls, before->x());
+        if (report.arrived && falls.empty()) checks_.after_step(now_.robot, step, report, result.warnings, progress);
         for (IterationRecord record : report.history) {
             record.step = k;
             result.iterations.push_back(record);
+        }
+        if (!falls.empty()) {
+            now_.robot = *std::move(before);
+            falls_ = true;
+            stop(k, falls);
+            return false;
         }
         if (progress.cancelled() && !report.arrived) {
             result.converged = false;
@@ -84,7 +97,10 @@ private:
             return false;
         }
         if (!report.arrived) {
-            stop(k, report.reason + advice(stepper_, program_, now_.robot, step.time, progress));
+            const bool by_supports = report.reason.starts_with("the prescribed motion");
+            stop(k, report.reason + (program_.dynamics && by_supports
+                                         ? ""
+                                         : advice(stepper_, program_, now_.robot, step.time, progress)));
             return false;
         }
         step.iterations = report.iterations;
@@ -137,12 +153,15 @@ private:
         if (!progress.cancelled()) checks_.at_end(now_.robot, result);
         // At the end of the program the checks say what is left open.
         const bool checked = result.converged && !progress.cancelled() && can_tell_left_open(stepper_.model());
-        if (!program_.dynamics && !checked) {
+        if (!program_.dynamics && !checked && !falls_) {
             if (std::string held = held_by_nothing(stepper_.model()); !held.empty())
                 result.warnings.push_back(std::move(held));
         }
         if (std::string braked = braked_turns(program_, result.steps); !braked.empty())
             result.warnings.push_back(std::move(braked));
+        for (auto* find : {impossible_vacuums, squeezed_objects})
+            for (std::string& warning : find(stepper_.model(), result.steps))
+                result.warnings.push_back(std::move(warning));
         result.solve_s += watch.read_s();
         add_warnings(result);
     }
@@ -155,6 +174,7 @@ private:
     RunChecks checks_;
     RunState now_;
     std::unique_ptr<PositionFile> file_;  ///< null: in memory
+    bool falls_ = false;
 };
 
 }  // namespace

@@ -155,9 +155,50 @@ TEST_CASE("an arch that snaps through under a load is reported; one driven by a 
     REQUIRE_MESSAGE(snap.converged, said(snap));
     CHECK(snap.steps.back().markers[0].position_m.z < 0);  // it is through
     CHECK_MESSAGE(warns(snap, "the robot jumps"), said(snap));
+    pushed.loads[0].share = ramp(1, 1);  // all of it from the first instant on
+    const Trajectory snap_at_once = testing::solve(pushed, {.steps = 2});
+    REQUIRE_MESSAGE(snap_at_once.converged, said(snap_at_once));
+    CHECK_MESSAGE(warns(snap_at_once, "at step 1 the robot jumps"), said(snap_at_once));
     Description moved = d;
     moved.supports.push_back({"hand", top, {0, 0, -0.016}});
     const Trajectory smooth = testing::solve(moved, program);
     REQUIRE_MESSAGE(smooth.converged, said(smooth));
     CHECK_MESSAGE(!warns(smooth, "jumps"), said(smooth));
+}
+
+TEST_CASE("a pull that acts from the first instant on is no jump: a load, a stretched spring, the offset of a cable") {
+    Description d;
+    d.mesh = reference::kuhn_box({30e-3, 10e-3, 10e-3}, 6, 2, 2, [](Vec3) { return 0; });
+    d.mesh.region_names = {"bar"};
+    d.materials = {{"A", material::neo_hookean(1e6, 0.3), 1000}};
+    d.material_of_region = {0};
+    d.supports = {{"clamp", reference::nodes_where(d.mesh, [](Vec3 p) { return p.x < 1e-9; }), {}}};
+    const std::vector<int> tip = reference::nodes_where(d.mesh, [](Vec3 p) { return p.x > 30e-3 - 1e-9; });
+    const double each = 1.0 / static_cast<double>(tip.size());
+    const auto check = [&](const Description& pulled, double way_m) {
+        const Trajectory result = testing::solve(pulled, {.steps = 4});
+        REQUIRE_MESSAGE(result.converged, said(result));
+        const double moved = result.steps[1].positions[static_cast<std::size_t>(tip[0])].x - 30e-3;
+        CHECK(moved / way_m > 0.7);  // far enough to be examined
+        CHECK_MESSAGE(result.warnings.empty(), said(result));
+    };
+    Description loaded = d;
+    loaded.loads = {{"pull", tip, std::vector<double>(tip.size(), each), {10, 0, 0}, ramp(1, 1)}};
+    check(loaded, 3e-3);
+    Description sprung = d;
+    Spring spring;
+    spring.name = "spring";
+    spring.points = {reference::mean_of(tip), {{}, {}, {40e-3, 5e-3, 5e-3}}};
+    spring.stiffness_N_m = 1000;
+    spring.free_length_m = 0;
+    sprung.springs = {spring};
+    check(sprung, 2.5e-3);
+    Description shortened = d;
+    Cable cable;
+    cable.name = "cable";
+    cable.points = {{{}, {}, {0, 5e-3, 8e-3}}, reference::mean_of(tip)};
+    cable.target = {CableTarget::Kind::shortening_m, 1e-3};
+    cable.target.offset = -5e-3;
+    shortened.cables = {cable};
+    check(shortened, -4e-3);
 }

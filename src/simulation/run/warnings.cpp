@@ -8,8 +8,10 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 #include "base/core/counted.hpp"
+#include "base/linalg/small.hpp"
 
 namespace pliant::sim {
 namespace {
@@ -131,6 +133,54 @@ std::string braked_turns(const Program& program, const std::vector<Step>& steps)
         "object \"{}\" touches something and turns by up to {:.2g} rad in a step of time: above {:g} rad the effect of "
         "contact on what rolls is noticeably too small; give a smaller program.time_step",
         fastest->name, largest, noticeable);
+}
+
+std::vector<std::string> impossible_vacuums(const Model& model, const std::vector<Step>& steps) {
+    constexpr double rounding = 1e-6;
+    const double least_Pa = -model.description().ambient_pressure_Pa;
+    std::vector<std::string> warnings;
+    for (std::size_t c = 0; c < model.description().chambers.size(); ++c) {
+        const Step *first = nullptr, *worst = nullptr;
+        for (const Step& step : steps) {
+            if (!(step.chambers[c].pressure_Pa < (1 + rounding) * least_Pa)) continue;
+            if (first == nullptr) first = &step;
+            if (worst == nullptr || step.chambers[c].pressure_Pa < worst->chambers[c].pressure_Pa) worst = &step;
+        }
+        if (worst == nullptr) continue;
+        warnings.push_back(fmt::format(
+            "from step {} on the pressure in chamber \"{}\" is below a vacuum, down to {:.4g} kPa in step {}: air "
+            "cannot "
+            "pull by more than {:.4g} kPa (program.ambient_pressure), so that no pump reaches such a volume",
+            first->index, worst->chambers[c].name, 1e-3 * worst->chambers[c].pressure_Pa, worst->index,
+            -1e-3 * least_Pa));
+    }
+    return warnings;
+}
+
+std::vector<std::string> squeezed_objects(const Model& model, const std::vector<Step>& steps) {
+    constexpr double noticeable = 0.01;
+    std::vector<std::string> warnings;
+    for (std::size_t k = 0; k < model.objects().size(); ++k) {
+        double largest = noticeable;
+        const Step *first = nullptr, *worst = nullptr;
+        for (const Step& step : steps) {
+            const std::span<const double> x(&step.positions.data()->x, 3 * step.positions.size());
+            const linalg::Vector3 stretches = linalg::signed_svd(model.objects()[k].deformation(x)).sigma;
+            const double strain = (stretches.array() - 1).abs().maxCoeff();
+            if (!(strain > noticeable)) continue;
+            if (first == nullptr) first = &step;
+            if (strain <= largest) continue;
+            largest = strain;
+            worst = &step;
+        }
+        if (worst == nullptr) continue;
+        warnings.push_back(
+            fmt::format("from step {} on object \"{}\", which should be rigid, is deformed, by up to {:.2g} % in step "
+                        "{}: usually a "
+                        "motor, a joint or a wall asks for what cannot be, and the forces there tell nothing",
+                        first->index, model.description().objects[k].name, 100 * largest, worst->index));
+    }
+    return warnings;
 }
 
 void add_warnings(Trajectory& trajectory) {

@@ -32,6 +32,12 @@ struct ClosedGap {
 /// that the time integration renders the effect of contact badly; empty if none does.
 [[nodiscard]] std::string braked_turns(const Program& program, const std::vector<Step>& steps);
 
+/// Names the chambers whose pressure falls below a vacuum, which no air can do.
+[[nodiscard]] std::vector<std::string> impossible_vacuums(const Model& model, const std::vector<Step>& steps);
+
+/// Names the objects that are meant to be rigid but are noticeably stretched or squeezed.
+[[nodiscard]] std::vector<std::string> squeezed_objects(const Model& model, const std::vector<Step>& steps);
+
 /// Adds warnings about the steps to those of the trajectory: each kind once, with the number of the first step and, for
 /// kinds of varying severity, the number of steps.
 void add_warnings(Trajectory& trajectory);

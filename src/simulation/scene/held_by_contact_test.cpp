@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <string_view>
+#include <utility>
 
 #include "base/core/near.hpp"
 #include "simulation/scene/test_run.hpp"
@@ -165,4 +168,117 @@ anchor = "first"
 stiffness = "0.1 N/mm"
 )");
     CHECK_MESSAGE(tied.find("can slide in 1 direction") != std::string::npos, tied);
+}
+
+namespace {
+
+/// An object in free space; a body far away, since a robot needs one.
+std::string floating_object(const std::string& box, const std::string& density, const std::string& rest) {
+    return fmt::format(R"(
+name = "free"
+length_unit = "mm"
+material.rubber = {{ youngs_modulus = "1 MPa", poisson_ratio = 0.45, density = "1000 kg/m^3" }}
+body = [{{ name = "anchor", material = "rubber", geometry = {{ box = [[-200, -200, 200], [-190, -190, 210]] }} }}]
+mesh = {{ size = "10 mm", order = 1 }}
+fixed = [{{ name = "clamp", box = [[-200, -200, 200], [-190, -190, 210]] }}]
+object = [{{ name = "thing", geometry = {{ box = {} }}, density = "{} kg/m^3" }}]
+{}
+)",
+                       box, density, rest);
+}
+const std::string water = "fluid = { density = \"1000 kg/m^3\", level = 0 }\n";
+const std::string deep_water = "fluid = { density = \"1000 kg/m^3\" }\n";
+const std::string still_program = "[program]\nsteps = 4\ngravity = [0, 0, -9.81]\n";
+
+sim::Trajectory run_to_where_it_stops(const std::string& text) {
+    return robot::testing::run(robot::testing::build_text(text));
+}
+
+bool has(const std::string& text, std::string_view part) {
+    return text.find(part) != std::string::npos;
+}
+
+bool any_says(const sim::Trajectory& result, std::string_view part) {
+    return std::ranges::any_of(result.warnings, [&](const std::string& w) { return has(w, part); });
+}
+
+}  // namespace
+
+TEST_CASE("what falls, sinks or rises without end has no equilibrium: the program stops and says so") {
+    const std::string cube = "[[0, 0, 0], [10, 10, 10]]";
+    for (const auto& [density, fluid] :
+         {std::pair{"10000", std::string()}, std::pair{"1500", deep_water}, std::pair{"500", deep_water}}) {
+        CAPTURE(density);
+        const sim::Trajectory t = run_to_where_it_stops(floating_object(cube, density, fluid + still_program));
+        CHECK_FALSE(t.converged);
+        CHECK_MESSAGE(has(t.message, "nothing carries object \"thing\""), t.message);
+        CHECK(t.steps.size() == 1);
+    }
+    const sim::Trajectory in_balance = run_to_where_it_stops(floating_object(cube, "1000", deep_water + still_program));
+    CHECK_MESSAGE(in_balance.converged, in_balance.message);
+    const sim::Trajectory weightless = run_to_where_it_stops(floating_object(cube, "1000", "[program]\nsteps = 4\n"));
+    CHECK_MESSAGE(weightless.converged, weightless.message);
+}
+
+TEST_CASE("a flat box floats upright and stable in any number of steps, a tall one does not") {
+    // Metacentric height over the centre of mass: I / V - (h - draught) / 2, with I / V = w^2 / (12 draught).
+    for (const int steps : {1, 2, 3, 4, 8}) {
+        CAPTURE(steps);
+        const std::string program = fmt::format("{}[program]\nsteps = {}\ngravity = [0, 0, -9.81]\n", water, steps);
+        const auto flat = run_text(floating_object("[[-20, -20, -5], [20, 20, 15]]", "600", program));  // 7 mm
+        CHECK(flat.steps.back().objects[0].position_m.z == near(-2e-3, {.absolute = 0.1e-3}));
+        CHECK_FALSE(any_says(flat, "unstable"));
+        CHECK(any_says(flat, "can slide in 2 directions and turn or roll in 1 way"));
+        const auto tall = run_text(floating_object("[[-5, -5, -20], [5, 5, 40]]", "600", program));  // -12 mm
+        CHECK(any_says(tall, "from step 1 on the equilibrium is unstable"));
+    }
+}
+
+TEST_CASE("a pendulum that stands on its hinge is unstable, one that hangs is not") {
+    const std::string hinge =
+        "joint = [{ name = \"j\", kind = \"hinge\", between = [\"world\", \"thing\"], point = [0, 0, 0], axis = [0, 1, "
+        "0] }]\n";
+    CHECK(any_says(run_text(floating_object("[[-5, -5, 0], [5, 5, 50]]", "2000", hinge + still_program)), "unstable"));
+    CHECK(run_text(floating_object("[[-5, -5, -50], [5, 5, 0]]", "2000", hinge + still_program)).warnings.empty());
+}
+
+TEST_CASE("an object that a motor drives into an obstacle is named as squeezed") {
+    const std::string arm = R"(
+joint = [{ name = "m", kind = "motor", between = ["world", "thing"], point = [0, 0, 0], axis = [0, 0, 1], angle = "90 deg" }]
+contact = { distance = "0.5 mm" }
+obstacle = [{ name = "peg", geometry = { box = [[35, Y, -20], [45, 30, 20]] } }]
+[program]
+duration = "0.2 s"
+time_step = "5 ms"
+)";
+    const std::string box = "[[0, -3, -3], [60, 3, 3]]",
+                      squeezed = "object \"thing\", which should be rigid, is deformed";
+    const auto with = [&](const std::string& y, const std::string& angle) {
+        std::string text = arm;
+        text.replace(text.find('Y'), 1, y);
+        text.replace(text.find("90 deg"), 6, angle);
+        return run_to_where_it_stops(floating_object(box, "9000", text));
+    };
+    CHECK(any_says(with("20", "90 deg"), squeezed));
+    CHECK_FALSE(any_says(with("20", "10 deg"), squeezed));  // it does not reach the peg
+}
+
+TEST_CASE("where an impact stops a motion in time, the message says what touches what and what helps") {
+    const std::string impact = R"(
+contact = { distance = "0.2 mm" }
+obstacle = [{ name = "wall", geometry = { box = [[30, -43, -51], [40, 77, 66]] } }]
+[program]
+duration = "10 ms"
+time_step = "1 ms"
+)";
+    std::string text = floating_object("[[0, 0, 0], [20, 20, 20]]", "625000", impact);
+    text.replace(text.find("name = \"thing\""), 14, "name = \"thing\", velocity = [3, 0, 0]");
+    const sim::Trajectory soft = run_to_where_it_stops(text);
+    if (!soft.converged) {  // 100 kPa over 0.2 mm cannot stop 5 kg at 3 m/s
+        CHECK_MESSAGE(has(soft.message, "object \"thing\" touches obstacle \"wall\""), soft.message);
+        CHECK_MESSAGE(has(soft.message, "contact.stiffness"), soft.message);
+    }
+    text.replace(text.find("distance = \"0.2 mm\""), 19, "distance = \"0.2 mm\", stiffness = \"10 MPa\"");
+    const sim::Trajectory stiff = run_to_where_it_stops(text);
+    CHECK_MESSAGE(stiff.converged, stiff.message);
 }

@@ -206,6 +206,8 @@ StepReport Stepper::step_by_error(RobotState& robot, const StepPath& path, const
     const double tolerance = options_.dynamics->time_tolerance_m;
     StepReport report;
     std::string off, why;  // why the last solved step was rejected, and the last one of all
+    int in_vain = 0;       // iterations of the attempts that failed since the last step that was not very short
+    const double very_short = smallest_share * options_.time_unit;
     double piece = robot.history.next_dt;
     if (!(piece > 0)) piece = first_share * (path.end - robot.now.along);
     while (robot.now.along < path.end && !progress.cancelled()) {
@@ -225,16 +227,20 @@ StepReport Stepper::step_by_error(RobotState& robot, const StepPath& path, const
         if (outcome.converged) {
             robot.history.next_dt = dt < piece && growth >= 1 ? std::max(piece, growth * dt) : growth * dt;
             piece = robot.history.next_dt;
+            if (dt > very_short) in_vain = 0;
             if (path.after_piece) path.after_piece(robot);
             continue;
         }
         ++report.refused;
+        if (!of_second_order) in_vain += outcome.iterations;
         if (error > tolerance) off = outcome.reason;
         why = off.empty() || error > tolerance
                   ? outcome.reason
                   : fmt::format("{}, and shorter ones are not solved: {}", off, outcome.reason);
         piece = std::min(growth, careful) * dt;
-        if (shortest) break;
+        // Where only shorter and shorter steps are solved, as in an impact on what is too soft, the end is never
+        // reached.
+        if (shortest || (dt < very_short && in_vain >= std::max(most_in_vain, options_.iteration_limit))) break;
     }
     report.arrived = !(robot.now.along < path.end);
     if (!report.arrived) report.reason = why;
