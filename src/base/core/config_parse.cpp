@@ -190,11 +190,11 @@ void set_lines(Value& value, int line) {
 }
 
 /// Also as messages write entries of a list: "object[0]".
-Value* find_entry(Value& node, std::string_view part) {
+Value* find_part(Value& node, std::string_view part) {
     if (Value* child = find_child(node, part)) return child;
     const std::size_t open = part.rfind('[');
     if (open == std::string_view::npos || !part.ends_with(']')) return nullptr;
-    Value* list = find_entry(node, part.substr(0, open));
+    Value* list = find_part(node, part.substr(0, open));
     return list == nullptr ? nullptr : find_child(*list, part.substr(open + 1, part.size() - open - 2));
 }
 
@@ -249,7 +249,7 @@ Status set(Document& document, std::string_view assignment) {
     for (std::size_t begin = 0; begin <= key.size();) {
         const std::size_t end = std::min(key.find('.', begin), key.size());
         const std::string_view part = key.substr(begin, end - begin);
-        Value* child = find_entry(*node, part);
+        Value* child = find_part(*node, part);
         if (child == nullptr) {
             // A table missing from the file may still be valid, as in program.steps; if not, it is reported as an
             // unknown key.

@@ -30,7 +30,7 @@ std::vector<Corners> faces_of_nodes(const sim::Wall& wall) {
             corners[i] = nodes.size() == 1 ? nodes[0] : -1;
         }
         if (std::ranges::count(corners, -1) > 0) continue;
-        std::ranges::rotate(corners, std::ranges::min_element(corners));
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
         faces.push_back(corners);
     }
     return faces;

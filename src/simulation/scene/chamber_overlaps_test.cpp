@@ -29,7 +29,7 @@ name = "base"
 plane = { point = [0, 0, 0], normal = [1, 0, 0] }
 )";
 
-std::string chamber(const std::string& name, const std::string& air) {
+std::string chamber_of(const std::string& name, const std::string& air) {
     return "[[chamber]]\nname = \"" + name + "\"\n" + air + "\ntarget = { pressure = \"1 kPa\" }\n";
 }
 
@@ -40,16 +40,16 @@ const std::string refused =
 }  // namespace
 
 TEST_CASE("two points in one cavity cannot be two chambers") {
-    const std::string first = two_cavities + chamber("a", "inside = [6, 5, 5]");
-    CHECK(problem(first + chamber("b", "inside = [5, 4, 5]")) == refused);
-    CHECK(problem(first + chamber("b", "inside = [20, 5, 5]")) == "");
+    const std::string first = two_cavities + chamber_of("a", "inside = [6, 5, 5]");
+    CHECK(problem(first + chamber_of("b", "inside = [5, 4, 5]")) == refused);
+    CHECK(problem(first + chamber_of("b", "inside = [20, 5, 5]")) == "");
 }
 
 TEST_CASE("a chamber drawn in a cavity that another one names, whole or in part, is refused in one line") {
-    const std::string first = two_cavities + chamber("a", "inside = [6, 5, 5]");
-    CHECK(problem(first + chamber("b", "geometry = { box = [[3, 3, 3], [7, 7, 7]] }")) == refused);
-    CHECK(problem(first + chamber("b", "geometry = { box = [[3, 3, 3], [5, 7, 7]] }")) == refused);
-    CHECK(problem(first + chamber("b", "geometry = { box = [[18, 3, 3], [22, 7, 7]] }")) == "");
+    const std::string first = two_cavities + chamber_of("a", "inside = [6, 5, 5]");
+    CHECK(problem(first + chamber_of("b", "geometry = { box = [[3, 3, 3], [7, 7, 7]] }")) == refused);
+    CHECK(problem(first + chamber_of("b", "geometry = { box = [[3, 3, 3], [5, 7, 7]] }")) == refused);
+    CHECK(problem(first + chamber_of("b", "geometry = { box = [[18, 3, 3], [22, 7, 7]] }")) == "");
 }
 
 TEST_CASE("a surface from a file in a cavity that another chamber has is refused") {
@@ -57,6 +57,6 @@ TEST_CASE("a surface from a file in a cavity that another chamber has is refused
     const std::string file = folder / "air.stl";
     REQUIRE(mesh::write_stl(file, mesh::test::cube({3, 3, 3}, 4)));
     const std::string air = "surface = \"" + file + "\"";
-    CHECK(problem(two_cavities + chamber("a", "inside = [6, 5, 5]") + chamber("b", air)) == refused);
-    CHECK(problem(two_cavities + chamber("a", "inside = [20, 5, 5]") + chamber("b", air)) == "");
+    CHECK(problem(two_cavities + chamber_of("a", "inside = [6, 5, 5]") + chamber_of("b", air)) == refused);
+    CHECK(problem(two_cavities + chamber_of("a", "inside = [20, 5, 5]") + chamber_of("b", air)) == "");
 }

@@ -10,7 +10,7 @@ using robot::testing::problem;
 
 namespace {
 
-const std::string bar = R"(name = "bar"
+const std::string cable_bar = R"(name = "bar"
 length_unit = "mm"
 [material.rubber]
 youngs_modulus = "1 MPa"
@@ -31,7 +31,7 @@ target = { tension = "1 N" }
 )";
 
 std::string sensor(const std::string& name, const std::string& keys) {
-    return bar + "[[sensor]]\nname = \"" + name + "\"\n" + keys;
+    return cable_bar + "[[sensor]]\nname = \"" + name + "\"\n" + keys;
 }
 std::string clash(const std::string& thing, const std::string& column, const std::string& other) {
     return "bar.toml:19: " + thing + ": has the column \"" + column + "\" in the tables of results, and so has " +
@@ -45,14 +45,15 @@ TEST_CASE("a sensor, a spring or an obstacle whose column another thing has is r
     CHECK(problem(sensor("flexor", "kind = \"tension\"\ncable = \"flexor\"\n")) ==
           clash("sensor \"flexor\"", "flexor_tension_N", cable));
     CHECK(problem(sensor("flexor", strain)) == clash("sensor \"flexor\"", "flexor_length_mm", cable));
-    CHECK(problem(bar + "[[spring]]\nname = \"flexor\"\npoints = [[1, 5, 5], [29, 5, 5]]\nstiffness = \"1 N/m\"\n") ==
+    CHECK(problem(cable_bar +
+                  "[[spring]]\nname = \"flexor\"\npoints = [[1, 5, 5], [29, 5, 5]]\nstiffness = \"1 N/m\"\n") ==
           clash("spring \"flexor\"", "flexor_length_mm", cable));
-    CHECK(problem(bar + "[[obstacle]]\nname = \"base\"\nplane = { point = [0, 0, -1], normal = [0, 0, 1] }\n") ==
+    CHECK(problem(cable_bar + "[[obstacle]]\nname = \"base\"\nplane = { point = [0, 0, -1], normal = [0, 0, 1] }\n") ==
           clash("obstacle \"base\"", "base_force_x_N", "fixed \"base\""));
 }
 
 TEST_CASE("one name for two things is allowed where their columns differ") {
     CHECK(problem(sensor("flexor", "kind = \"distance\"\npoints = [[1, 5, 5], [29, 5, 5]]\n")) == "");
     CHECK(problem(sensor("pull", "kind = \"tension\"\ncable = \"flexor\"\n")) == "");
-    CHECK(problem(bar + "[[marker]]\nname = \"flexor\"\npoint = [29, 5, 5]\n") == "");
+    CHECK(problem(cable_bar + "[[marker]]\nname = \"flexor\"\npoint = [29, 5, 5]\n") == "");
 }
