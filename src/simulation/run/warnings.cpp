@@ -149,8 +149,7 @@ std::vector<std::string> impossible_vacuums(const Model& model, const std::vecto
         if (worst == nullptr) continue;
         warnings.push_back(fmt::format(
             "from step {} on the pressure in chamber \"{}\" is below a vacuum, down to {:.4g} kPa in step {}: air "
-            "cannot "
-            "pull by more than {:.4g} kPa (program.ambient_pressure), so that no pump reaches such a volume",
+            "cannot pull by more than {:.4g} kPa (program.ambient_pressure), so that no pump reaches such a volume",
             first->index, worst->chambers[c].name, 1e-3 * worst->chambers[c].pressure_Pa, worst->index,
             -1e-3 * least_Pa));
     }
@@ -174,11 +173,10 @@ std::vector<std::string> squeezed_objects(const Model& model, const std::vector<
             worst = &step;
         }
         if (worst == nullptr) continue;
-        warnings.push_back(
-            fmt::format("from step {} on object \"{}\", which should be rigid, is deformed, by up to {:.2g} % in step "
-                        "{}: usually a "
-                        "motor, a joint or a wall asks for what cannot be, and the forces there tell nothing",
-                        first->index, model.description().objects[k].name, 100 * largest, worst->index));
+        warnings.push_back(fmt::format(
+            "from step {} on object \"{}\", which should be rigid, is deformed, by up to {:.2g} % in step "
+            "{}: usually a motor, a joint or a wall asks for what cannot be, and the forces there tell nothing",
+            first->index, model.description().objects[k].name, 100 * largest, worst->index));
     }
     return warnings;
 }

@@ -17,8 +17,8 @@ namespace {
 /// Of the smaller chamber: a surface from a file need not match the mesh, and may reach a little into a neighbour.
 constexpr double most_shared = 0.05;
 
-using Corners =
-    std::array<int, 3>;  ///< nodes in the order of the face, the smallest first: it keeps the side of the air
+/// Nodes in the order of the face, the smallest first: it keeps the side of the air.
+using Corners = std::array<int, 3>;
 
 /// The faces of a wall that consist of nodes; none for one from a surface file.
 std::vector<Corners> faces_of_nodes(const sim::Wall& wall) {
