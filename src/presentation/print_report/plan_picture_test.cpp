@@ -17,7 +17,7 @@ plan::Plan small_plan() {
     plan.printer = "tower";
     plan.layers = 10;
     plan.seconds = {100, 50, 25, 15, 10};
-    plan.vats = {{0, 1, "soft", {0}, 1, false, 0, 9, 0}, {3, 4, "firm", {1}, 1, false, 2, 9, 0}};
+    plan.vats = {{0, 1, "soft", {0}, 1, 1, false, 0, 9, 0}, {3, 4, "firm", {1}, 1, 1, false, 2, 9, 0}};
     plan.order = {{0}, {0}, {0, 3}, {3, 0}, {0}, {}, {}, {}, {3}, {3}};
     return plan;
 }
