@@ -489,7 +489,25 @@ StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Sche
     }
     next = std::move(start.state);
     solvers_.restart();
-    return settle(robot, controls, next, progress, std::move(start.evaluation));
+    StepOutcome outcome = settle(robot, controls, next, progress, std::move(start.evaluation));
+    if (tether_dt_s_ > 0 && outcome.converged && model_.contact(controls.met) != nullptr && !system_.has_friction())
+        settle_tether(controls, next, progress, outcome);
+    return outcome;
+}
+
+/// What is pushed and not held comes to rest anywhere ahead of what pushes it: the tolerance of a step does not notice
+/// the tether, which holds it back. Here it counts; what it then holds on to is the nearest place.
+void Stepper::settle_tether(const Controls& controls, State& next, const Progress& progress, StepOutcome& outcome) {
+    constexpr double share = 1e-3;  // of the tolerance
+    constexpr int most = 30;
+    State settled = next;
+    StepOutcome fine =
+        solvers_.solve(system_, controls, {share * options_.tolerance, most}, settled, progress, outcome.evaluation);
+    if (!fine.converged) return;
+    next = std::move(settled);
+    outcome.iterations += fine.iterations;
+    outcome.evaluation = std::move(fine.evaluation);
+    outcome.history.insert(outcome.history.end(), fine.history.begin(), fine.history.end());
 }
 
 /// `known`: evaluation of `next`, used if there is no friction.

@@ -139,6 +139,7 @@ private:
     [[nodiscard]] StepReport step_by_error(RobotState& robot, const StepPath& path, const Progress& progress);
     [[nodiscard]] StepOutcome settle(const RobotState& from, Controls& controls, State& next, const Progress& progress,
                                      std::optional<Evaluation> known);
+    void settle_tether(const Controls& controls, State& next, const Progress& progress, StepOutcome& outcome);
     void accept(RobotState& robot, const Target& target, Controls controls, State next, int touching,
                 StepOutcome outcome);
     void recall(const RobotState& robot);
