@@ -106,7 +106,7 @@ Number number_of(const Request& request, const char* key) {
 Response printed_part(Studio& studio, const Request& request) {
     std::string packet =
         studio.print().part(number_of<int>(request, "revision"), number_of<std::size_t>(request, "from"));
-    if (packet.empty()) return error_response(404, "no machine is connected");
+    if (packet.empty()) return {204, "application/octet-stream", ""};  // a page may ask while its machine is left
     return {200, "application/octet-stream", std::move(packet)};
 }
 

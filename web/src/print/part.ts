@@ -70,9 +70,10 @@ async function fetchPart() {
     try {
       const known = part.value;
       const answer = await api(`/api/print/part?revision=${known?.revision ?? -1}&from=${known ? closed : 0}`);
-      take(await answer.arrayBuffer());
+      if (answer.status === 204) part.value = null; // no machine
+      else take(await answer.arrayBuffer());
     } catch {
-      part.value = null; // no machine, or no studio: requested again after the next event
+      part.value = null; // no studio: requested again after the next event
     }
   } while (stale);
   fetching = false;
