@@ -756,7 +756,7 @@ TEST_CASE("a body that is no JSON object is refused as such, by every request th
         for (const char* body : {"{", "[]", "\"name\"", "{\"name\": }"}) {
             INFO(route.path, " ", body);
             const Response answer = ask(*studio, route.method, route.path, body);
-            CHECK(answer.status == 422);
+            CHECK(answer.status == (route.path.starts_with("/api/print/host/") ? 400 : 422));
             CHECK(answer.body == R"({"error":"a JSON object is needed"})");
         }
     }

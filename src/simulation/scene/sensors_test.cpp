@@ -171,7 +171,7 @@ axes = [[0, 0, 1], [1, 0, 0]]
 
 TEST_CASE("a motion sensor on a spinning object reads its rotation and centripetal acceleration") {
     const double w = 5;
-    const sim::Trajectory result = run_text(loose_cube(0, R"(
+    const sim::Trajectory result = run_text(loose_cube(5, R"(
 [[object]]
 name = "block"
 geometry = { box = [[100, 0, 100], [120, 20, 110]] }
