@@ -5,7 +5,7 @@
 namespace pliant {
 
 LoadedLibrary::LoadedLibrary(const char* file_name)
-    : handle_(dlopen(file_name, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE)) {}
+    : name_(file_name), handle_(dlopen(file_name, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE)) {}
 
 void* LoadedLibrary::address_of(const char* name) {
     void* address = handle_ ? dlsym(handle_.get(), name) : nullptr;

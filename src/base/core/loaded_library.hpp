@@ -6,13 +6,17 @@
 
 namespace pliant {
 
-/// Either all functions that were looked up are present, or the library counts as missing. Once loaded the library
-/// stays in the process, so that further objects cost nothing.
+/// For a class that has the functions of one library in use. Either all that were looked up are present, or the library
+/// counts as missing. Once loaded the library stays in the process, so that further objects cost nothing.
 class LoadedLibrary {
 public:
-    explicit LoadedLibrary(const char* file_name);
     /// False if the library is not installed or lacks one of the functions.
     [[nodiscard]] bool is_there() const { return handle_ != nullptr; }
+    /// File name of the library.
+    [[nodiscard]] const char* name() const { return name_; }
+
+protected:
+    explicit LoadedLibrary(const char* file_name);
 
     /// Sets `function` to that of the name; null if the library is missing.
     template <class Function>
@@ -25,6 +29,7 @@ private:
     struct Close {
         void operator()(void* library) const;
     };
+    const char* name_;
     std::unique_ptr<void, Close> handle_;
 };
 

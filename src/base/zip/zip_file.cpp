@@ -45,7 +45,7 @@ Result<ZipReader> ZipReader::open(const std::filesystem::path& path) {
     if (!std::filesystem::exists(status)) return input_error("{}: no such file", path.string());
     if (!std::filesystem::is_regular_file(status)) return input_error("{}: is not a regular file", path.string());
     const std::uint64_t bytes = std::filesystem::file_size(path, error);
-    if (!libzip().is_there()) return failure("{}: the library {} is not installed", path.string(), ZipLibrary::name());
+    if (!libzip().is_there()) return failure("{}: the library {} is not installed", path.string(), libzip().name());
     int code = 0;
     Handle archive(libzip().open(path.c_str(), ZIP_RDONLY, &code));
     if (!archive) return input_error("{}: {}", path.string(), text_of(code));

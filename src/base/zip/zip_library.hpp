@@ -8,13 +8,10 @@
 namespace pliant {
 
 /// The functions in use, by their names in libzip without "zip_".
-class ZipLibrary {
+class ZipLibrary : public LoadedLibrary {
 public:
     /// The library of this process.
     [[nodiscard]] static const ZipLibrary& instance();
-    [[nodiscard]] bool is_there() const { return library_.is_there(); }
-    /// File name of the library.
-    [[nodiscard]] static const char* name();
 
     decltype(&zip_open) open = nullptr;
     decltype(&zip_discard) discard = nullptr;
@@ -34,7 +31,6 @@ public:
 
 private:
     ZipLibrary();
-    LoadedLibrary library_;
 };
 
 }  // namespace pliant

@@ -15,16 +15,10 @@ constexpr const char* crash =
 /// Open CASCADE has tolerances that are lengths: much smaller or larger shapes crash it or Gmsh.
 Status check_extent(std::span<const BodyGeometry> bodies) {
     constexpr double smallest = 1e-5, largest = 2e5;
-    Box3 box;
-    bool drawn = false;
-    for (const BodyGeometry& body : bodies) {
-        const Box3 own = bounds(body);
-        if (own.empty()) continue;
-        drawn = drawn || std::holds_alternative<Solid>(body.shape);
-        box.add(own.low);
-        box.add(own.high);
-    }
-    const double extent = box.diagonal();
+    const bool drawn = std::ranges::any_of(bodies, [](const BodyGeometry& body) {
+        return std::holds_alternative<Solid>(body.shape) && !bounds(body).empty();
+    });
+    const double extent = bounds(bodies).diagonal();
     if (!drawn || (extent >= smallest && extent <= largest)) return {};
     return input_error(
         "the bodies measure {:.3g} length units from corner to corner, {:g} to {:g} can be meshed: choose another "
@@ -55,14 +49,20 @@ Box3 bounds(const BodyGeometry& body) {
     return solid != nullptr ? bounds(*solid) : bounds(std::get<TriMesh>(body.shape));
 }
 
-double longest_side(std::span<const BodyGeometry> bodies) {
+Box3 bounds(std::span<const BodyGeometry> bodies) {
     Box3 box;
     for (const BodyGeometry& body : bodies) {
         const Box3 own = bounds(body);
+        if (own.empty()) continue;
         box.add(own.low);
         box.add(own.high);
     }
-    return std::max({box.size().x, box.size().y, box.size().z});
+    return box;
+}
+
+double longest_side(std::span<const BodyGeometry> bodies) {
+    const Vec3 size = bounds(bodies).size();
+    return std::max({size.x, size.y, size.z});
 }
 
 Result<TetMesh> mesh_bodies(std::span<const BodyGeometry> bodies, const MeshSettings& settings, Progress& progress) {

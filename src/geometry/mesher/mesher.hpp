@@ -22,7 +22,9 @@ struct BodyGeometry {
 };
 
 [[nodiscard]] Box3 bounds(const BodyGeometry& body);
-/// Of the box around all bodies.
+/// The box around all bodies that have points.
+[[nodiscard]] Box3 bounds(std::span<const BodyGeometry> bodies);
+/// Of that box.
 [[nodiscard]] double longest_side(std::span<const BodyGeometry> bodies);
 
 struct MeshSettings {

@@ -81,15 +81,11 @@ bool is_rounded(const Solid& solid) {
 double rounding(std::span<const BodyGeometry> bodies) {
     constexpr double share = 2e-6;  // of the size of all bodies: 32-bit floats have an error of 6e-8, and several
                                     // errors add up
-    Box3 box;
-    bool rounded = false;
-    for (const BodyGeometry& body : bodies) {
-        box.add(bounds(body).low);
-        box.add(bounds(body).high);
+    const bool rounded = std::ranges::any_of(bodies, [](const BodyGeometry& body) {
         const auto* solid = std::get_if<Solid>(&body.shape);
-        rounded = rounded || (solid != nullptr && is_rounded(*solid));
-    }
-    return rounded ? share * box.diagonal() : 0;
+        return solid != nullptr && is_rounded(*solid);
+    });
+    return rounded ? share * bounds(bodies).diagonal() : 0;
 }
 
 Result<Part> mesh_drawn_solids(std::span<const BodyGeometry> bodies, const MeshSettings& settings,

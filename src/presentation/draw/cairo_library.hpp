@@ -8,12 +8,9 @@
 namespace pliant::report {
 
 /// The functions in use, by their names in Cairo.
-class CairoLibrary {
+class CairoLibrary : public LoadedLibrary {
 public:
     CairoLibrary();
-    [[nodiscard]] bool is_there() const { return library_.is_there(); }
-    /// File name of the library.
-    [[nodiscard]] static const char* name();
 
     decltype(&cairo_image_surface_create) image_surface_create = nullptr;
     decltype(&cairo_image_surface_get_data) image_surface_get_data = nullptr;
@@ -45,9 +42,6 @@ public:
     decltype(&cairo_set_font_size) set_font_size = nullptr;
     decltype(&cairo_text_extents) text_extents = nullptr;
     decltype(&cairo_show_text) show_text = nullptr;
-
-private:
-    LoadedLibrary library_;
 };
 
 }  // namespace pliant::report

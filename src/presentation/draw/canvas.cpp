@@ -72,7 +72,7 @@ Result<Canvas> Canvas::create(int width_px, int height_px, const Colour& backgro
     Canvas canvas;
     State& state = *canvas.state_;
     const CairoLibrary& cairo = state.cairo;
-    if (!cairo.is_there()) return failure("pictures: the library {} is not installed", CairoLibrary::name());
+    if (!cairo.is_there()) return failure("pictures: the library {} is not installed", cairo.name());
     state.owned_surface.reset(cairo.image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px));
     state.owned_context.reset(cairo.create(state.surface()));
     cairo.set_source_rgb(state.context(), background.r, background.g, background.b);

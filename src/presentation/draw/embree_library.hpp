@@ -8,12 +8,9 @@
 namespace pliant::report {
 
 /// The functions in use, by their names in Embree.
-class EmbreeLibrary {
+class EmbreeLibrary : public LoadedLibrary {
 public:
     EmbreeLibrary();
-    [[nodiscard]] bool is_there() const { return library_.is_there(); }
-    /// File name of the library.
-    [[nodiscard]] static const char* name();
 
     decltype(&rtcNewDevice) new_device = nullptr;
     decltype(&rtcReleaseDevice) release_device = nullptr;
@@ -29,9 +26,6 @@ public:
     decltype(&rtcReleaseGeometry) release_geometry = nullptr;
     decltype(&rtcIntersect1) intersect_1 = nullptr;
     decltype(&rtcOccluded8) occluded_8 = nullptr;
-
-private:
-    LoadedLibrary library_;
 };
 
 }  // namespace pliant::report

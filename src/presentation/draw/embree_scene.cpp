@@ -8,7 +8,7 @@ EmbreeDevice::EmbreeDevice()
     : device_(library_.is_there() ? library_.new_device("set_affinity=0") : nullptr, library_.release_device) {}
 
 Status EmbreeDevice::status() const {
-    if (!library_.is_there()) return failure("pictures: the library {} is not installed", EmbreeLibrary::name());
+    if (!library_.is_there()) return failure("pictures: the library {} is not installed", library_.name());
     if (!device_) return failure("pictures: Embree cannot start on this machine");
     if (const RTCError code = library_.get_device_error(device_.get()); code != RTC_ERROR_NONE) {
         return failure("pictures: Embree reports error {}", static_cast<int>(code));
