@@ -43,6 +43,10 @@ struct Life {
         ++deeds;
         if (at_deed && on_wire) at_deed(deeds);
         if (deeds != dies_at) return true;
+        die();
+    }
+
+    [[noreturn]] void die() {
         dead = true;
         if (on_death) on_death();
         throw Killed();

@@ -711,6 +711,44 @@ struct OperatorAtOpenDoor {
 
 }  // namespace
 
+namespace {
+
+/// At every question of a paused or exposing host: kills it after 45 s there.
+struct KilledLate {
+    ControlBench& b;
+    bool in_pause;
+    std::optional<double> since_s;
+
+    void look() {
+        constexpr double late_s = 45;
+        const Snapshot s = b.snapshot();
+        if (in_pause && s.state == State::printing && s.completion > 0.5) (void)b.control->pause(PauseWhen::now);
+        if (!in_pause && s.state == State::printing) (void)b.control->set_exposure(1, 1.3 * late_s);
+        const bool there = in_pause ? s.state == State::paused : s.lit;
+        if (!there) since_s.reset();
+        if (there && !since_s) since_s = b.twin->now();
+        if (there && b.twin->now() > *since_s + late_s) b.life->die();
+    }
+};
+
+}  // namespace
+
+TEST_CASE("after a host is killed late in a long pause or exposure, the next host finishes the print") {
+    for (const auto release : both_releases) {
+        for (const bool in_pause : {true, false}) {
+            CAPTURE(in_pause);
+            ControlBench b(options_of(release), "tower", 5, with_door);
+            KilledLate person{b, in_pause, {}};
+            b.life->at_look = [&] { person.look(); };
+            REQUIRE_FALSE(b.start());
+            b.new_host();
+            b.start({true, {}});
+            INFO(b.last_error());
+            CHECK(b.snapshot().finished);
+        }
+    }
+}
+
 TEST_CASE("door opened during an exposure: dark within 0.5 s, no motion, and the print resumes when it is shut") {
     for (const int light : {1, 4, 7}) {
         CAPTURE(light);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulation/run/result_columns.hpp"
+
 namespace pliant::report {
 namespace {
 
@@ -33,29 +35,20 @@ void names(Row& row, const std::string& name, std::span<const std::string_view> 
 }
 
 std::string steps_header(const sim::Step& rest, bool contact) {
+    namespace columns = sim::columns;
     static constexpr std::array<std::string_view, 9> common = {
         "index", "time", "converged", "iterations", "substeps", "residual", "wall_ms", "min_J", "solver"};
-    static constexpr std::array<std::string_view, 3> cable = {"length_ratio", "length_mm", "tension_N"};
-    static constexpr std::array<std::string_view, 3> chamber = {"volume_ratio", "volume_mm3", "pressure_kPa"};
-    static constexpr std::array<std::string_view, 2> spring = {"length_mm", "force_N"};
-    static constexpr std::array<std::string_view, 3> force = {"force_x_N", "force_y_N", "force_z_N"};
-    static constexpr std::array<std::string_view, 10> object = {"x_mm", "y_mm", "z_mm",      "qw",        "qx",
-                                                                "qy",   "qz",   "force_x_N", "force_y_N", "force_z_N"};
-    static constexpr std::array<std::string_view, 6> load = {"force_x_N",   "force_y_N",   "force_z_N",
-                                                             "torque_x_Nm", "torque_y_Nm", "torque_z_Nm"};
-    static constexpr std::array<std::string_view, 2> turning = {"angle_deg", "effort_Nm"};
-    static constexpr std::array<std::string_view, 2> sliding = {"position_mm", "effort_N"};
     Row row;
     for (const std::string_view name : common) row.text(name);
-    for (const auto& c : rest.cables) names(row, c.name, cable);
-    for (const auto& c : rest.chambers) names(row, c.name, chamber);
-    for (const auto& s : rest.springs) names(row, s.name, spring);
-    for (const auto& s : rest.supports) names(row, s.name, force);
-    for (const auto& o : rest.contacts) names(row, o.name, force);
-    for (const auto& o : rest.objects) names(row, o.name, object);
+    for (const auto& c : rest.cables) names(row, c.name, columns::cable);
+    for (const auto& c : rest.chambers) names(row, c.name, columns::chamber);
+    for (const auto& s : rest.springs) names(row, s.name, columns::spring);
+    for (const auto& s : rest.supports) names(row, s.name, columns::force);
+    for (const auto& o : rest.contacts) names(row, o.name, columns::force);
+    for (const auto& o : rest.objects) names(row, o.name, columns::object);
     for (const auto& j : rest.joints) {
-        names(row, j.name, load);
-        if (j.turns || j.slides) names(row, j.name, j.turns ? turning : sliding);
+        names(row, j.name, columns::joint);
+        if (j.turns || j.slides) names(row, j.name, j.turns ? columns::turning : columns::sliding);
     }
     for (const auto& sensor : rest.sensors) {
         for (const sim::Reading& r : sensor.readings)

@@ -30,6 +30,9 @@ struct LightFact {
     long record = 0;          ///< of its last piece
 };
 
+/// At most as many lines that are no steps (fences, questions) follow a GoFact before the next one.
+constexpr long most_questions = 100;
+
 /// The last point where the machine stood still, and what was sent from there on.
 struct GoFact {
     long program = 0;      ///< 0: the job itself; -1: nothing was sent; else the record number of a program

@@ -98,6 +98,7 @@ Machine::Machine(Wire& wire, Clock& clock, const Printer& printer, const LinkOpt
 void Machine::keep(Journal* journal) {
     journal_ = journal;
     noted_ = false;
+    place_.reset();
 }
 
 Status Machine::connect(long base) {
@@ -114,12 +115,23 @@ Status Machine::note_go(long program, std::size_t step, const Interlock& before,
         if (Status status = look_at_switches(); !status) return status;
     }
     noted_ = true;
+    return write_go(program, step, before, most);
+}
+
+Status Machine::write_go(long program, std::size_t step, const Interlock& before, long most) {
+    noted_line_ = link_.next_number();
     const auto number = journal_->append("go", {{"program", fmt::format("{}", program)},
                                                 {"step", fmt::format("{}", step)},
-                                                {"line", fmt::format("{}", link_.next_number())},
+                                                {"line", fmt::format("{}", noted_line_)},
                                                 {"most", fmt::format("{}", most)},
                                                 {"state", write_state(before.state())}});
     return number ? Status{} : tl::unexpected(number.error());
+}
+
+Status Machine::keep_place() {
+    constexpr long most_asked = most_questions / 2;
+    if (journal_ == nullptr || !place_ || link_.next_number() - noted_line_ < most_asked) return {};
+    return write_go(place_->program, place_->step, at_.lock, 0);
 }
 
 // Switches.
@@ -149,6 +161,7 @@ Status Machine::ask_for_door() {
     if (!printer_.door.present() || !link_.is_quiet() || clock_.now() - switches_asked_s_ < every_s) return {};
     switches_asked_s_ = clock_.now();
     noted_ = false;
+    if (Status status = keep_place(); !status) return status;
     return link_.send("M119");
 }
 
@@ -239,6 +252,7 @@ Status Machine::send(long program, std::size_t step, std::string_view command) {
     if (alone && journal_ == nullptr) {  // homing starts when the moves before it are done
         if (Status status = link_.fence(); !status) return status;
     }
+    place_.reset();
     if (Status status = link_.send(command); !status) return status;
     // As soon as the tower has completed its stroke the journal records it: part-way through, its position cannot be
     // reconstructed.
@@ -259,7 +273,9 @@ Status Machine::run(std::string_view program) {
     for (std::size_t i = 0; i < commands.size(); ++i) {
         if (Status status = send(number, i, commands[i]); !status) return status;
     }
-    return rest();
+    if (Status status = rest(); !status) return status;
+    place_ = Place{number, commands.size()};
+    return {};
 }
 
 Status Machine::rest() {
@@ -269,6 +285,7 @@ Status Machine::rest() {
 
 Status Machine::stand_where_stopped() {
     noted_ = false;
+    place_.reset();
     machine::Position position = at_.lock.position();
     const auto answers = link_.ask("M114");
     for (const std::string& answer : answers ? *answers : std::vector<std::string>{}) {

@@ -51,6 +51,11 @@ public:
     /// After M410: queries the position at rest. All axes then count as not homed, since steps may have been lost.
     [[nodiscard]] Status stand_where_stopped();
 
+    /// Step `step` of the job is an exposure, which begins now: until the next command the controller only gets
+    /// questions. After run() that holds as well. Before there are too many of them to prove that no other program has
+    /// used the controller, the journal records where it stands.
+    void stay_for(std::size_t step) { place_ = Place{0, step}; }
+
     // Switches: a machine whose file lists none and that has no door is not queried.
 
     /// Waits until the machine stands still, sends M119 and checks the answer against the position. Errors: those of
@@ -76,6 +81,8 @@ private:
     [[nodiscard]] Status after_homing(std::string_view command);
     [[nodiscard]] Status leave_switch(machine::Axis axis);
     [[nodiscard]] Status note_go(long program, std::size_t step, const machine::Interlock& before, long most);
+    [[nodiscard]] Status write_go(long program, std::size_t step, const machine::Interlock& before, long most);
+    [[nodiscard]] Status keep_place();
 
     Clock& clock_;
     const machine::Printer& printer_;
@@ -86,7 +93,14 @@ private:
     std::optional<bool> door_open_;
     std::vector<std::optional<bool>> pressed_;  ///< per listed limit switch
     double switches_asked_s_ = 0;
-    bool noted_ = false;  ///< the journal knows the line number of the next step
+    bool noted_ = false;   ///< the journal knows the line number of the next step
+    long noted_line_ = 0;  ///< of the journal's last record
+    /// A step before which no command is left to carry out.
+    struct Place {
+        long program;
+        std::size_t step;
+    };
+    std::optional<Place> place_;
 };
 
 /// Whether two states agree in what a resuming host needs: the vat on the hooks, and the place of the carriage.

@@ -196,6 +196,7 @@ Status PrintRun::shine(std::size_t step, const job::Image& image, const std::str
         return status;
     }
     fact.open_light = last_record_;
+    run_.machine.stay_for(step);
     // The last check before the exposure: a controller that has restarted reports it, or does not answer any more.
     Status alive = run_.machine.rest();
     if (alive) alive = run_.machine.link().listen_for(0);

@@ -14,7 +14,6 @@ namespace {
 using machine::Interlock;
 
 constexpr long most_introduction_lines = 100;  // sent by a session before it moves anything
-constexpr long most_questions = 100;           // fences and the like, among the commands up to an exposure
 
 /// Whether the controller is in the state that its last host left it in; that host had at most `commands` to send.
 bool is_proven(const JournalFacts& facts, long last_line, std::size_t commands) {

@@ -97,10 +97,8 @@ private:
             return false;
         }
         if (!report.arrived) {
-            const bool by_supports = report.reason.starts_with("the prescribed motion");
-            stop(k, report.reason + (program_.dynamics && by_supports
-                                         ? ""
-                                         : advice(stepper_, program_, now_.robot, step.time, progress)));
+            const bool is_impossible = program_.dynamics && report.no_start;
+            stop(k, report.reason + (is_impossible ? "" : advice(stepper_, program_, now_.robot, step.time, progress)));
             return false;
         }
         step.iterations = report.iterations;

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <initializer_list>
+#include <array>
 #include <map>
+#include <span>
 
+#include "simulation/run/result_columns.hpp"
 #include "simulation/run/sensors.hpp"
 
 namespace pliant::robot {
@@ -17,7 +19,7 @@ public:
 
     /// The columns NAME_ENDING of a thing, for each of these endings. False if another thing has one of them.
     template <class Spec>
-    bool take(std::string_view kind, const Spec& spec, std::initializer_list<std::string_view> endings) {
+    bool take(std::string_view kind, const Spec& spec, std::span<const std::string_view> endings) {
         return std::ranges::all_of(endings, [&](std::string_view ending) {
             return take_one(kind, spec.name, spec.line, fmt::format("{}_{}", spec.name, ending));
         });
@@ -47,37 +49,32 @@ private:
 
 void take_actuators(const Robot& robot, Columns& columns) {
     for (const CableSpec& c : robot.cables) {
-        if (columns.take("cable", c, {"length_ratio", "length_mm", "tension_N"})) columns.take_input("cable", c);
+        if (columns.take("cable", c, sim::columns::cable)) columns.take_input("cable", c);
     }
     for (const ChamberSpec& c : robot.chambers) {
-        if (columns.take("chamber", c, {"volume_ratio", "volume_mm3", "pressure_kPa"}))
-            columns.take_input("chamber", c);
+        if (columns.take("chamber", c, sim::columns::chamber)) columns.take_input("chamber", c);
     }
-    for (const SpringSpec& s : robot.springs) columns.take("spring", s, {"length_mm", "force_N"});
+    for (const SpringSpec& s : robot.springs) columns.take("spring", s, sim::columns::spring);
 }
 
 void take_joint(const JointSpec& joint, Columns& columns) {
-    if (!columns.take("joint", joint,
-                      {"force_x_N", "force_y_N", "force_z_N", "torque_x_Nm", "torque_y_Nm", "torque_z_Nm"}))
-        return;
+    if (!columns.take("joint", joint, sim::columns::joint)) return;
     if (joint.kind == JointSpec::Kind::hinge || joint.kind == JointSpec::Kind::motor)
-        columns.take("joint", joint, {"angle_deg", "effort_Nm"});
-    if (joint.kind == JointSpec::Kind::slider) columns.take("joint", joint, {"position_mm", "effort_N"});
+        columns.take("joint", joint, sim::columns::turning);
+    if (joint.kind == JointSpec::Kind::slider) columns.take("joint", joint, sim::columns::sliding);
 }
 
 void take_bodies(const Robot& robot, Columns& columns) {
-    for (const FixedSpec& f : robot.fixed) columns.take("fixed", f, {"force_x_N", "force_y_N", "force_z_N"});
-    for (const ObstacleSpec& o : robot.obstacles) columns.take("obstacle", o, {"force_x_N", "force_y_N", "force_z_N"});
-    for (const ObjectSpec& o : robot.objects)
-        columns.take("object", o,
-                     {"x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz", "force_x_N", "force_y_N", "force_z_N"});
+    for (const FixedSpec& f : robot.fixed) columns.take("fixed", f, sim::columns::force);
+    for (const ObstacleSpec& o : robot.obstacles) columns.take("obstacle", o, sim::columns::force);
+    for (const ObjectSpec& o : robot.objects) columns.take("object", o, sim::columns::object);
     for (const JointSpec& j : robot.joints) take_joint(j, columns);
 }
 
 void take_sensor(const SensorSpec& spec, const sim::Sensor& sensor, Columns& columns) {
     for (const auto& [name, quantity] : sim::readings_of(sensor)) {
         const std::string ending = fmt::format("{}{}", name, sim::shown(quantity).suffix);
-        if (!columns.take("sensor", spec, {ending})) return;
+        if (!columns.take("sensor", spec, std::array<std::string_view, 1>{ending})) return;
     }
 }
 

@@ -21,7 +21,8 @@ struct StepSettings {
 
 struct StepOutcome {
     bool converged = false;
-    bool loose = false;  ///< converged only at a looser tolerance: friction_rounds.hpp
+    bool loose = false;     ///< converged only at a looser tolerance: friction_rounds.hpp
+    bool no_start = false;  ///< the prescribed motion is impossible: there was no state to begin with
     int iterations = 0;
     Evaluation evaluation;                 ///< of the final state
     std::string reason;                    ///< why it did not converge, or only at a looser tolerance

@@ -33,6 +33,19 @@ void note(const std::vector<IterationRecord>& history, double along, StepReport&
     }
 }
 
+struct FailedAttempt {
+    std::string reason;
+    bool no_start = false;
+};
+
+/// `last`: the last attempt that failed.
+void conclude(double along, double end, const FailedAttempt& last, StepReport& report) {
+    report.arrived = !(along < end);
+    if (report.arrived) return;
+    report.reason = last.reason;
+    report.no_start = last.no_start;
+}
+
 /// Laws without an energy guarantee no descent, however short the step is: if as many iterations as one attempt may
 /// take were in vain, further ones are too.
 bool is_hopeless(const Model& model, const StepperOptions& options, int in_vain) {
@@ -205,8 +218,9 @@ StepReport Stepper::step_by_error(RobotState& robot, const StepPath& path, const
     constexpr double first_share = 1.0 / 64, most_growth = 2, most_loss = 0.2, careful = 0.9;
     const double tolerance = options_.dynamics->time_tolerance_m;
     StepReport report;
-    std::string off, why;  // why the last solved step was rejected, and the last one of all
-    int in_vain = 0;       // iterations of the attempts that failed since the last step that was not very short
+    std::string off;  // why the last solved step was rejected
+    FailedAttempt last;
+    int in_vain = 0;  // iterations of the attempts that failed since the last step that was not very short
     const double very_short = smallest_share * options_.time_unit;
     double piece = robot.history.next_dt;
     if (!(piece > 0)) piece = first_share * (path.end - robot.now.along);
@@ -234,16 +248,16 @@ StepReport Stepper::step_by_error(RobotState& robot, const StepPath& path, const
         ++report.refused;
         if (!of_second_order) in_vain += outcome.iterations;
         if (error > tolerance) off = outcome.reason;
-        why = off.empty() || error > tolerance
-                  ? outcome.reason
-                  : fmt::format("{}, and shorter ones are not solved: {}", off, outcome.reason);
+        last = {off.empty() || error > tolerance
+                    ? outcome.reason
+                    : fmt::format("{}, and shorter ones are not solved: {}", off, outcome.reason),
+                outcome.no_start};
         piece = std::min(growth, careful) * dt;
         // Where only shorter and shorter steps are solved, as in an impact on what is too soft, the end is never
         // reached.
         if (shortest || (dt < very_short && in_vain >= std::max(most_in_vain, options_.iteration_limit))) break;
     }
-    report.arrived = !(robot.now.along < path.end);
-    if (!report.arrived) report.reason = why;
+    conclude(robot.now.along, path.end, last, report);
     remember(robot);
     return report;
 }
@@ -255,7 +269,7 @@ StepReport Stepper::step(RobotState& robot, const StepPath& path, const Progress
     const double longest = path.longest_piece > 0 ? path.longest_piece : path.end - robot.now.along;
     double piece = longest;
     int in_vain = 0;  // iterations of the attempts since the last one that succeeded
-    std::string why;  // the last one that failed did so
+    FailedAttempt last;
     while (robot.now.along < path.end) {
         const double along = robot.now.along + piece;
         const double end = along >= path.end - rounding * path.shortest_piece ? path.end : along;
@@ -267,15 +281,14 @@ StepReport Stepper::step(RobotState& robot, const StepPath& path, const Progress
             if (path.after_piece) path.after_piece(robot);
             continue;
         }
-        why = outcome.reason;
+        last = {outcome.reason, outcome.no_start};
         piece *= 0.5;
         in_vain += outcome.iterations;
         if (piece >= path.shortest_piece && !is_hopeless(model_, options_, in_vain) && !progress.cancelled()) continue;
         if (!ends_by_relaxing(robot, path, report, progress)) break;
         if (path.after_piece) path.after_piece(robot);
     }
-    report.arrived = !(robot.now.along < path.end);
-    if (!report.arrived) report.reason = why;
+    conclude(robot.now.along, path.end, last, report);
     remember(robot);
     return report;
 }
@@ -324,6 +337,7 @@ StepReport Stepper::leap(RobotState& robot, const StepPath& path, const Progress
     StepReport report;
     const StepOutcome outcome = go(robot, {path.end, path.at(path.end), path.onward, path.expected}, report, progress);
     report.arrived = outcome.converged;
+    report.no_start = outcome.no_start;
     if (!outcome.converged) report.reason = outcome.reason;
     remember(robot);
     return report;
@@ -484,6 +498,7 @@ StepOutcome Stepper::attempt(const RobotState& robot, const Target& target, Sche
         start = predict(system_, laplacian_, robot, controls, {}, progress);
     if (!start.reason.empty()) {
         StepOutcome outcome;
+        outcome.no_start = true;
         outcome.reason = std::move(start.reason);
         return outcome;
     }

@@ -43,8 +43,9 @@ struct StepPath {
 /// Result of a step.
 struct StepReport {
     bool arrived = false;
-    bool loose = false;  ///< a piece was accepted at a looser tolerance: friction_rounds.hpp
-    std::string reason;  ///< why it did not arrive, or at which tolerance
+    bool loose = false;     ///< a piece was accepted at a looser tolerance: friction_rounds.hpp
+    bool no_start = false;  ///< it did not arrive because the prescribed motion is impossible
+    std::string reason;     ///< why it did not arrive, or at which tolerance
     int iterations = 0;
     int pieces = 0;                        ///< number of accepted pieces
     int refused = 0;                       ///< number of rejected pieces: too large an error in time, or not converged
