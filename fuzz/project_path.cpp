@@ -4,7 +4,7 @@
 #include <string>
 
 #include "input.hpp"
-#include "presentation/studio/project_folder.hpp"
+#include "studio/requests/project_folder.hpp"
 
 namespace {
 

@@ -3,8 +3,8 @@
 #include <cstdlib>
 
 #include "input.hpp"
-#include "presentation/studio/frame_reader.hpp"
-#include "presentation/studio/message.hpp"
+#include "studio/requests/frame_reader.hpp"
+#include "studio/requests/message.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace pliant::studio;

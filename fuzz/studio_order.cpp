@@ -1,7 +1,7 @@
 // Requests from a page for slicing and searches.
 #include "input.hpp"
-#include "presentation/studio/search_order.hpp"
-#include "presentation/studio/slice_order.hpp"
+#include "studio/requests/search_order.hpp"
+#include "studio/requests/slice_order.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text = as_text(data, size);

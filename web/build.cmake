@@ -11,7 +11,7 @@ function(write_missing_page why)
   file(READ ${SOURCE}/missing.html content HEX)
   string(REGEX REPLACE "(..)" "\\\\x\\1" content "${content}")
   file(WRITE ${BUILD}/page.cpp
-       "// Made by web/build.cmake.\n#include \"presentation/studio/examples.hpp\"\n\nnamespace pliant::studio {\n\n"
+       "// Made by web/build.cmake.\n#include \"studio/built_in/examples.hpp\"\n\nnamespace pliant::studio {\n\n"
        "std::span<const PageFile> page_files() {\n    static constexpr PageFile files[] = {"
        "{\"/\", \"text/html; charset=utf-8\", \"${content}\", false}};\n    return files;\n}\n\n"
        "}  // namespace pliant::studio\n")

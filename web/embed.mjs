@@ -22,7 +22,7 @@ function files(path) {
 // Octal escapes: three digits always, so that no digit behind one belongs to it.
 const literal = (bytes) => Array.from(bytes, (b) => '\\' + b.toString(8).padStart(3, '0')).join('');
 
-let text = '// Made by web/embed.mjs.\n#include "presentation/studio/examples.hpp"\n\nnamespace pliant::studio {\n\n';
+let text = '// Made by web/embed.mjs.\n#include "studio/built_in/examples.hpp"\n\nnamespace pliant::studio {\n\n';
 text += 'std::span<const PageFile> page_files() {\n    using namespace std::string_view_literals;\n';
 text += '    static constexpr PageFile files[] = {\n';
 let total = 0;

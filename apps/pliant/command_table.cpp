@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "base/core/json.hpp"
-#include "presentation/studio/examples.hpp"
 #include "robot/file/material_library.hpp"
+#include "studio/built_in/examples.hpp"
 
 namespace pliant::app {
 namespace {

@@ -8,8 +8,8 @@
 #include "base/core/files.hpp"
 #include "base/core/text.hpp"
 #include "geometry/open/open_geometry.hpp"
-#include "presentation/studio/examples.hpp"
 #include "robot/file/robot_file.hpp"
+#include "studio/built_in/examples.hpp"
 
 namespace pliant::app {
 namespace {

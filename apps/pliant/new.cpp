@@ -13,8 +13,8 @@
 #include "base/core/text.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
-#include "presentation/studio/examples.hpp"
 #include "printed.hpp"
+#include "studio/built_in/examples.hpp"
 
 namespace pliant::app {
 namespace {

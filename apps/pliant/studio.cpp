@@ -16,10 +16,10 @@
 #include "base/core/process.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
-#include "presentation/studio/access.hpp"
-#include "presentation/studio/server.hpp"
-#include "presentation/studio/token_file.hpp"
 #include "printed.hpp"
+#include "studio/base/access.hpp"
+#include "studio/base/token_file.hpp"
+#include "studio/server/server.hpp"
 
 namespace pliant::app {
 namespace {

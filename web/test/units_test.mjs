@@ -41,7 +41,7 @@ before(async () => {
   page = await import(pathToFileURL(outfile));
 });
 
-/// A packet as src/presentation/studio/packet.hpp writes it.
+/// A packet as src/presentation/scene/packet.hpp writes it.
 function packet(head, arrays) {
   const entries = Object.entries(arrays).map(([name, data]) => ({ name, type: data instanceof Float32Array ? 'f32' : 'u32', count: data.length }));
   let text = JSON.stringify({ head, arrays: entries });

@@ -1,4 +1,5 @@
-// Columns of the table of steps (steps.csv): a thing called NAME has one column NAME_ENDING for each ending of its kind.
+// Columns of the table of steps (steps.csv): a thing called NAME has one column NAME_ENDING for each ending of its
+// kind.
 #pragma once
 
 #include <array>

@@ -1,0 +1,137 @@
+#include "studio/requests/project_folder.hpp"
+
+#include <algorithm>
+#include <system_error>
+
+#include "base/core/config.hpp"
+
+namespace pliant::studio {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t longest_path = 400, longest_name = 255, most_files = 500;
+constexpr int deepest_folder = 2;
+
+bool is_robot_or_job(const fs::path& path) {
+    const std::string extension = path.extension().string();
+    return extension == ".toml" || extension == ".zip";
+}
+
+bool is_journal(const fs::path& path) {
+    return path.extension() == ".journal";
+}
+
+void list(const fs::path& folder, const fs::path& root, int depth, bool (*is_listed)(const fs::path&),
+          std::vector<std::string>& files) {
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+        if (files.size() >= most_files) return;
+        const fs::path& path = it->path();
+        if (path.filename().string().starts_with('.') || it->is_symlink(error)) continue;
+        if (it->is_directory(error)) {
+            if (depth < deepest_folder) list(path, root, depth + 1, is_listed, files);
+        } else if (it->is_regular_file(error) && is_listed(path)) {
+            files.push_back(path.lexically_relative(root).generic_string());
+        }
+    }
+}
+
+template <class Visit>
+void visit_texts(const config::Value& value, const Visit& visit) {
+    if (const auto* text = std::get_if<std::string>(&value.data)) visit(*text);
+    if (const auto* array = std::get_if<config::Array>(&value.data)) {
+        for (const config::Value& entry : *array) visit_texts(entry, visit);
+    }
+    if (const auto* table = std::get_if<config::Table>(&value.data)) {
+        for (const config::Entry& entry : *table) visit_texts(entry.second, visit);
+    }
+}
+
+}  // namespace
+
+Result<ProjectFolder> ProjectFolder::open(const fs::path& folder) {
+    std::error_code error;
+    fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
+    if (error || !fs::is_directory(root, error)) return input_error("{}: not a folder", folder.string());
+    return ProjectFolder(std::move(root));
+}
+
+Result<fs::path> ProjectFolder::resolve(std::string_view relative) const {
+    const auto refused = [&](const char* why) {
+        return input_error("\"{}\": {}; a path within the project folder is needed, as in \"parts/finger.toml\"",
+                           relative.substr(0, longest_path), why);
+    };
+    const auto bad = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f || c == '\\'; };
+    if (relative.empty() || relative.size() > longest_path) return refused("empty or too long");
+    if (std::any_of(relative.begin(), relative.end(), bad)) return refused("holds a character that no name may have");
+    const fs::path path{std::string(relative)};
+    if (path.is_absolute()) return refused("absolute");
+    for (const fs::path& part : path) {
+        if (part == ".." || part == "." || part.empty()) return refused("leads elsewhere");
+    }
+    fs::path full = root_ / path;
+    if (!holds(full)) return refused("leads outside");
+    return full;
+}
+
+bool ProjectFolder::holds(const fs::path& path) const {
+    std::error_code error;
+    const fs::path real = fs::weakly_canonical(path, error);
+    if (error) return false;
+    const auto [end, _] = std::mismatch(root_.begin(), root_.end(), real.begin(), real.end());
+    return end == root_.end();
+}
+
+std::vector<std::string> ProjectFolder::files() const {
+    std::vector<std::string> files;
+    list(root_, root_, 0, is_robot_or_job, files);
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::vector<std::string> ProjectFolder::journals() const {
+    std::vector<std::string> files;
+    list(root_, root_, 0, is_journal, files);
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::vector<std::string> ProjectFolder::texts_leading_outside(std::string_view toml, const fs::path& file) const {
+    std::vector<std::string> outside;
+    const Result<config::Document> document = config::parse(toml, file);
+    if (!document) return outside;
+    visit_texts(document->root, [&](const std::string& text) {
+        const bool a_name = text.find('/') == std::string::npos && text != "..";
+        if (a_name && text.size() > longest_name) return;  // too long for a file name
+        if (!holds(file.parent_path() / text)) outside.push_back(text);
+    });
+    return outside;
+}
+
+Status ProjectFolder::check_texts(std::string_view toml, const fs::path& file,
+                                  std::span<const std::string> known) const {
+    for (const std::string& text : texts_leading_outside(toml, file)) {
+        if (std::find(known.begin(), known.end(), text) != known.end()) continue;
+        return input_error("\"{}\" lies outside of the project folder {}", text, root_.string());
+    }
+    return {};
+}
+
+std::string ProjectFolder::stamps_of(std::string_view toml, const fs::path& file) const {
+    std::string stamps;
+    const Result<config::Document> document = config::parse(toml, file);
+    if (!document) return stamps;
+    visit_texts(document->root, [&](const std::string& text) {
+        std::error_code error;
+        if (text.empty() || text.size() > longest_path) return;
+        const fs::path path = file.parent_path() / text;
+        if (!fs::is_regular_file(path, error)) return;
+        const auto size = fs::file_size(path, error);
+        const auto changed = fs::last_write_time(path, error).time_since_epoch().count();
+        if (!error) stamps += "\n" + text + " " + std::to_string(size) + " " + std::to_string(changed);
+    });
+    return stamps;
+}
+
+}  // namespace pliant::studio

@@ -1,0 +1,95 @@
+// Paths cannot lead out of the project folder.
+#include "studio/requests/project_folder.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "base/core/test_folder.hpp"
+
+using namespace pliant::studio;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A project beside a folder that it must not access.
+struct Place {
+    pliant::test::Folder folder{"project"};
+    fs::path base = folder.path();
+    fs::path project = base / "project";
+    Place() {
+        fs::create_directories(project / "parts" / "deep" / "deeper");
+        fs::create_directories(base / "project_secret");
+        for (const char* name :
+             {"project/a.toml", "project/b.txt", "project/.hidden.toml", "project/parts/c.zip",
+              "project/parts/deep/d.toml", "project/parts/deep/deeper/e.toml", "project_secret/s.toml"})
+            std::ofstream(base / name) << "x";
+        fs::create_directory_symlink(base / "project_secret", project / "way_out");
+        fs::create_symlink(base / "project_secret" / "s.toml", project / "link.toml");
+    }
+};
+
+}  // namespace
+
+TEST_CASE("paths within the folder are found, all others refused") {
+    const Place place;
+    const auto folder = ProjectFolder::open(place.project);
+    REQUIRE(folder);
+    for (const char* good : {"a.toml", "parts/c.zip", "new.toml", "parts/new.toml", "no/such/folder.toml"}) {
+        const auto path = folder->resolve(good);
+        CHECK_MESSAGE(path, good);
+        if (path) CHECK(*path == fs::canonical(place.project) / good);
+    }
+    for (const char* bad : {"", "/etc/passwd", "..", "../project_secret/s.toml", "parts/../../project_secret/s.toml",
+                            "./a.toml", "parts/./c.zip", "way_out/s.toml", "link.toml", "parts//c.zip/", "a\\..\\b",
+                            "a\nb.toml", "\x7f", "parts/", "way_out/new.toml", "../project_secret"})
+        CHECK_MESSAGE(!folder->resolve(bad), bad);
+    CHECK_FALSE(folder->resolve(std::string_view("a.toml\0/../../x", 15)));
+    CHECK_FALSE(folder->resolve(std::string(5000, 'a')));
+}
+
+TEST_CASE("a folder holds the files in it, not those in a folder whose name begins alike") {
+    const Place place;
+    const auto folder = ProjectFolder::open(place.project);
+    REQUIRE(folder);
+    CHECK(folder->holds(place.project / "parts" / "c.zip"));
+    CHECK(folder->holds(place.project / "parts" / ".." / "a.toml"));
+    CHECK_FALSE(folder->holds(place.base / "project_secret" / "s.toml"));
+    CHECK_FALSE(folder->holds(place.project / "way_out" / "s.toml"));
+    CHECK_FALSE(folder->holds(place.project / ".." / "project_secret" / "s.toml"));
+}
+
+TEST_CASE("robots and jobs are listed two levels deep, and links are not followed") {
+    const Place place;
+    const auto folder = ProjectFolder::open(place.project);
+    REQUIRE(folder);
+    CHECK(folder->files() == std::vector<std::string>{"a.toml", "parts/c.zip", "parts/deep/d.toml"});
+}
+
+TEST_CASE("a folder that does not exist is refused") {
+    CHECK_FALSE(ProjectFolder::open("/no/such/folder"));
+}
+
+TEST_CASE("texts of a document that lead outside the folder are found under any key") {
+    const Place place;
+    const auto folder = ProjectFolder::open(place.project);
+    REQUIRE(folder);
+    const std::string toml = R"(name = "a / b"
+pitch = "= 84 / gaps"
+size = "2.5 mm"
+mesh.file = "../project_secret/s.toml"
+body = [{ geometry = { union = [{ step = "/etc/passwd" }, { box = [1] }] } }, { geometry = "parts/c.zip" }]
+surface = "link.toml"
+up = "..")";
+    CHECK(folder->texts_leading_outside(toml, place.project / "a.toml") ==
+          std::vector<std::string>{"../project_secret/s.toml", "/etc/passwd", "link.toml", ".."});
+    const std::vector<std::string> known = {"..", "/etc/passwd", "link.toml"};
+    const auto unknown = folder->check_texts(toml, place.project / "a.toml", known);
+    REQUIRE_FALSE(unknown);
+    CHECK(unknown.error().message.find("\"../project_secret/s.toml\" lies outside of the project folder") == 0);
+    CHECK(folder->check_texts("up = \"..\"", place.project / "a.toml", known));
+    CHECK_FALSE(folder->check_texts("up = \"..\"", place.project / "a.toml"));
+    CHECK(folder->texts_leading_outside("x = \"" + std::string(5000, 'a') + "\"", place.project / "a.toml").empty());
+    CHECK(folder->texts_leading_outside("not toml", place.project / "a.toml").empty());
+}

@@ -1,0 +1,81 @@
+// Edits of the robot file other than typing: numbers, entries; and checks of a typed text.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/core/json.hpp"
+#include "base/core/toml_edit.hpp"
+#include "robot/file/material_library.hpp"
+#include "studio/base/dumped.hpp"
+#include "studio/server/json_toml.hpp"
+#include "studio/server/request_reading.hpp"
+#include "studio/server/studio.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+
+Response set_values(Studio& studio, const Request& request) {
+    const Json json = parse_json(request.body);
+    if (Status list = check_changes(json); !list) return error_response(list.error());
+    std::string text = studio.document().text;
+    for (const Json& change : json["changes"]) {
+        if (!change.is_object() || !change.contains("key") || !change["key"].is_string() || !change.contains("value"))
+            return error_response(422, "changes: key and value of each are needed");
+        auto next = config::with_value(text, change["key"].get<std::string>(), toml_text(change["value"]));
+        if (!next) return error_response(next.error());
+        text = std::move(*next);
+    }
+    return done(studio.edit(text));
+}
+
+Response add_entry(Studio& studio, const Request& request) {
+    const auto json = parse_ordered_json(request.body);
+    if (!json.is_object() || !json.contains("list") || !json["list"].is_string() || !json.contains("entry") ||
+        !json["entry"].is_object() || json["entry"].empty())
+        return error_response(422, "list and entry are needed: its keys and their values");
+    config::EntryText entry;
+    for (const auto& [key, value] : json["entry"].items()) entry.emplace_back(key, toml_text(Json(value)));
+    const auto text = config::with_entry(studio.document().text, json["list"].get<std::string>(), entry);
+    return text ? done(studio.edit(*text)) : error_response(text.error());
+}
+
+Response open_new(Studio& studio, const Request& request) {
+    return done(studio.open_new(request.body, asked_for(request, "name")));
+}
+
+Response check(Studio& studio, const Request& request) {
+    const Status status = studio.check(request.body);
+    return json_response(fmt::format(R"({{"lines":{}}})", status ? "[]" : problem_lines(status.error())));
+}
+
+Response materials(Studio&, const Request&) {
+    Json list = Json::array();
+    for (const robot::LibraryFile& file : robot::library_files()) {
+        const auto material = robot::library_material(file.name);
+        if (material)
+            list.push_back({{"name", file.name}, {"title", material->title}, {"hardness", material->hardness}});
+    }
+    return json_response(dumped(list));
+}
+
+}  // namespace
+
+void add_edit_routes(std::vector<Route>& routes) {
+    const std::string json = "application/json";
+    routes.push_back({"POST", "/api/robot/set",
+                      "{\"changes\": [{\"key\", \"value\"}, ...]}: values of the robot file, all else as it was", json,
+                      true, set_values, json});
+    routes.push_back({"POST", "/api/robot/add", "{\"list\", \"entry\"}: one more entry, as of [[marker]]", json, true,
+                      add_entry, json});
+    routes.push_back({"POST", "/api/robot/new",
+                      "a robot that is in no file of the folder yet, by its text; ?name= of the file it came from",
+                      json, true, open_new, "text/plain"});
+    routes.push_back({"POST", "/api/robot/check", "what is wrong with a robot file, by line; nothing is built", json,
+                      true, check, "text/plain"});
+    routes.push_back({"GET", "/api/materials", "the library of materials", json, false, materials});
+}
+
+}  // namespace pliant::studio

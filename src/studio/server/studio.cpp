@@ -1,0 +1,402 @@
+#include "studio/server/studio.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "base/core/files.hpp"
+#include "printing/job/sha256.hpp"
+#include "printing/machine/printer.hpp"
+#include "robot/file/robot_file.hpp"
+#include "studio/base/dumped.hpp"
+#include "studio/base/limits.hpp"
+#include "studio/built_in/examples.hpp"
+#include "studio/requests/json_keys.hpp"
+
+namespace pliant::studio {
+namespace {
+
+constexpr std::size_t most_undo = 200;
+constexpr std::string_view first_example = "cable_gripper";
+constexpr std::string_view host_path = "/api/print/host/";  // its interface has statuses of its own
+
+std::string document_event(const Studio::Document& d) {
+    const nlohmann::json json = {{"type", "document"},
+                                 {"name", d.name},
+                                 {"unsaved", d.text != d.saved},
+                                 {"undo", d.undo.size()},
+                                 {"redo", d.redo.size()},
+                                 {"accuracy", name(d.accuracy)},
+                                 {"digest", job::sha256_hex(d.text)},
+                                 {"title", d.name.empty() ? d.title : d.name}};
+    return dumped(json);
+}
+
+/// "" if there is no second robot.
+std::string comparison_event(const std::string& title) {
+    const nlohmann::json json = {{"type", "comparison"}, {"title", title}};
+    return dumped(json);
+}
+
+tl::unexpected<Error> not_a_robot(const std::string& name) {
+    return input_error("\"{}\": a robot file ends with .toml", name);
+}
+
+/// Refuses a printer file, which is opened elsewhere.
+Status check_kind(const std::string& text, const std::filesystem::path& file) {
+    if (!machine::parse_printer(text, file)) return {};
+    return input_error("{} is a printer file: choose it under Prepare, when the robot is sliced",
+                       file.filename().string());
+}
+
+/// Of an input that a frame would answer.
+std::optional<double> tag_of(const Message& message) {
+    return std::visit(
+        [](const auto& kind) -> std::optional<double> {
+            if constexpr (requires { kind.tag; }) return kind.tag;
+            return std::nullopt;
+        },
+        message);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Studio>> Studio::open(const Start& start) {
+    Result<ProjectFolder> folder = ProjectFolder::open(start.file.parent_path());
+    if (!folder) return tl::unexpected(folder.error());
+    std::unique_ptr<Studio> studio(new Studio(std::move(*folder), start));
+    if (Status status = studio->start(start.file); !status) return tl::unexpected(status.error());
+    return studio;
+}
+
+Studio::Studio(ProjectFolder folder, Start start)
+    : folder_(std::move(folder)), start_(std::move(start)), routes_(all_routes()) {
+    const auto send = [this](const std::string& json) { hub_.send_text(json); };
+    simulation_ = std::make_unique<SimulationSession>(
+        SessionEvents{send, [this](auto frame) { hub_.send_frame(frame); }, [this] { return hub_.fields(); }});
+    search_ = std::make_unique<SearchSession>(send);
+    make_ = std::make_unique<MakeSession>(send, start_.version);
+    print_ = std::make_unique<PrintSession>(send, start_.notify);
+    queue_ = std::make_unique<PrintQueue>(folder_, send);
+    projector_ = std::make_unique<ProjectorSession>();
+}
+
+Studio::~Studio() {
+    beside_.reset();  // its thread uses the hub
+}
+
+Status Studio::start(const std::filesystem::path& file) {
+    if (file.extension() == ".zip") {
+        if (Status status = make_->open(file); !status) return status;
+    }
+    if (file.empty() || file.extension() == ".zip") {
+        open_example(std::string(first_example));
+        return {};
+    }
+    const Result<std::string> text = read_file(file, largest_robot);
+    if (!text) return tl::unexpected(text.error());
+    if (Status status = check_kind(*text, file); !status) return status;
+    const std::string name = file.filename().string();
+    document_ = {name, folder_.path() / name, *text, *text, {}, {}, Accuracy::automatic, {}};
+    // Files named by the user's own file are allowed wherever they are.
+    document_.outside = folder_.texts_leading_outside(*text, document_.file);
+    rebuild(After::from_rest);
+    return {};
+}
+
+std::shared_ptr<const std::string> Studio::first_picture(bool dark, const std::stop_token& stop) {
+    const Document d = document();
+    return thumbnails_.of(d.text, d.file, folder_, first_picture_style(dark), d.outside, stop);
+}
+
+Studio::Document Studio::document() {
+    const std::lock_guard lock(mutex_);
+    return document_;
+}
+
+void Studio::rebuild(After after) {
+    simulation_->open({document_.file, document_.text, document_.accuracy}, after);
+    hub_.send_text(document_event(document_));
+}
+
+/// A text received over the network must be short, and must not make the program read files outside the folder.
+Status Studio::check_text(const std::string& text) const {
+    if (text.size() > largest_robot) return input_error("a robot file of over 4 MB is refused");
+    return folder_.check_texts(text, document_.file, document_.outside);
+}
+
+Status Studio::edit(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    if (Status status = check_text(text); !status) return status;
+    if (text != document_.text) {
+        document_.undo.push_back(document_.text);
+        if (document_.undo.size() > most_undo) document_.undo.erase(document_.undo.begin());
+        document_.redo.clear();
+        document_.text = text;
+    }
+    rebuild(After::as_before);
+    return {};
+}
+
+Status Studio::check(const std::string& text) {
+    const std::lock_guard lock(mutex_);
+    if (Status status = check_text(text); !status) return status;
+    const Result<robot::Robot> robot = robot::parse_robot(text, document_.file);
+    return robot ? Status{} : tl::unexpected(robot.error());
+}
+
+void Studio::take_back(std::vector<std::string>& from, std::vector<std::string>& to) {
+    to.push_back(std::exchange(document_.text, from.back()));
+    from.pop_back();
+    rebuild(After::as_before);
+}
+
+Status Studio::undo() {
+    const std::lock_guard lock(mutex_);
+    if (document_.undo.empty()) return input_error("there is nothing to undo");
+    take_back(document_.undo, document_.redo);
+    return {};
+}
+
+Status Studio::redo() {
+    const std::lock_guard lock(mutex_);
+    if (document_.redo.empty()) return input_error("there is nothing to redo");
+    take_back(document_.redo, document_.undo);
+    return {};
+}
+
+Status Studio::save(const std::string& name) {
+    const std::lock_guard lock(mutex_);
+    const Result<std::filesystem::path> path = folder_.resolve(name.empty() ? document_.name : name);
+    if (!path) return tl::unexpected(path.error());
+    if (path->extension() != ".toml") return not_a_robot(name);
+    std::error_code ignored;
+    // An example or a new robot has a place in the folder, where another file may be.
+    const bool is_its_own = !document_.name.empty() && *path == document_.file;
+    if (!is_its_own && std::filesystem::exists(*path, ignored))
+        return input_error("\"{}\" exists; choose another name", name);
+    if (Status status = write_file(*path, document_.text); !status) return status;
+    document_.name = path->lexically_relative(folder_.path()).generic_string();
+    document_.file = *path;
+    document_.saved = document_.text;
+    hub_.send_text(document_event(document_));
+    return {};
+}
+
+Status Studio::open_file(const std::string& name) {
+    const Result<std::filesystem::path> path = folder_.resolve(name);
+    if (!path) return tl::unexpected(path.error());
+    if (path->extension() == ".zip") return make_->open(*path);
+    if (path->extension() != ".toml")
+        return input_error("\"{}\": a robot file (.toml) or a job (.zip) is needed", name);
+    const Result<std::string> text = read_file(*path, largest_robot);
+    if (!text) return tl::unexpected(text.error());
+    if (Status status = check_kind(*text, *path); !status) return status;
+    const std::lock_guard lock(mutex_);
+    Document opened{name, *path, *text, *text, {}, {}, document_.accuracy, {}};
+    std::swap(document_, opened);
+    if (Status status = check_text(*text); !status) {
+        std::swap(document_, opened);
+        return status;
+    }
+    rebuild(After::from_rest);
+    return {};
+}
+
+void Studio::open_example(const std::string& name) {
+    const BuiltInFile* example = find_file(example_robots(), name);
+    if (example == nullptr) return;
+    const std::lock_guard lock(mutex_);
+    const std::string text(example->text);
+    document_ = {"", folder_.path() / (name + ".toml"), text, text, {}, {}, document_.accuracy, {}, "example"};
+    rebuild(After::from_rest);
+}
+
+Status Studio::open_new(const std::string& text, const std::string& name) {
+    const Result<std::filesystem::path> place = folder_.resolve(name.empty() ? "robot.toml" : name);
+    if (!place) return tl::unexpected(place.error());
+    if (place->extension() != ".toml") return not_a_robot(name);
+    const std::lock_guard lock(mutex_);
+    Document fresh{"", *place, text, "", {}, {}, document_.accuracy, {}};
+    if (!name.empty()) fresh.title = name;
+    std::swap(document_, fresh);
+    if (Status status = check_text(text); !status) {
+        std::swap(document_, fresh);
+        return status;
+    }
+    rebuild(After::from_rest);
+    return {};
+}
+
+void Studio::set_accuracy(Accuracy accuracy) {
+    const std::lock_guard lock(mutex_);
+    if (document_.accuracy == accuracy) return;
+    document_.accuracy = accuracy;
+    rebuild(After::as_before);
+    if (!beside_) return;
+    text_beside_.accuracy = accuracy;
+    beside_->open(text_beside_, After::as_before);
+}
+
+SessionEvents Studio::events_beside() {
+    const auto text = [this](const std::string& json) {
+        hub_.send_text(fmt::format(R"({{"type":"beside","event":{}}})", json));
+    };
+    return {text, [this](auto frame) { hub_.send_frame_beside(frame); }, [this] { return hub_.fields(); }, true};
+}
+
+Status Studio::compare(const std::string& name, const std::string& example) {
+    RobotText source;
+    std::string title = name.empty() ? example : name;
+    if (!example.empty()) {
+        const BuiltInFile* found = find_file(example_robots(), example);
+        if (found == nullptr) return input_error("\"{}\": there is no such example", example);
+        source = {folder_.path() / (example + ".toml"), std::string(found->text)};
+    } else if (!name.empty()) {
+        const Result<std::filesystem::path> path = folder_.resolve(name);
+        if (!path) return tl::unexpected(path.error());
+        if (path->extension() != ".toml") return input_error("\"{}\": a robot file (.toml) is needed", name);
+        Result<std::string> text = read_file(*path, largest_robot);
+        if (!text) return tl::unexpected(text.error());
+        if (Status status = check_kind(*text, *path); !status) return status;
+        if (Status status = folder_.check_texts(*text, *path); !status) return status;
+        source = {*path, std::move(*text)};
+    }
+    auto session = std::make_shared<SimulationSession>(events_beside());
+    std::shared_ptr<SimulationSession> before;
+    {
+        const std::lock_guard lock(mutex_);
+        if (title.empty()) {
+            source = {document_.file, document_.text};
+            title = "as it was";
+        }
+        source.accuracy = document_.accuracy;
+        text_beside_ = source;
+        title_beside_ = title;
+        before = std::exchange(beside_, session);
+    }
+    before.reset();  // its thread must end before the new one sends
+    hub_.send_text(comparison_event(title));
+    session->open(source);
+    return {};
+}
+
+void Studio::stop_comparing() {
+    std::shared_ptr<SimulationSession> before;
+    {
+        const std::lock_guard lock(mutex_);
+        before = std::exchange(beside_, nullptr);
+    }
+    before.reset();
+    hub_.send_text(comparison_event(""));
+}
+
+std::shared_ptr<SimulationSession> Studio::beside() {
+    const std::lock_guard lock(mutex_);
+    return beside_;
+}
+
+Response Studio::handle(const Request& request) {
+    Request asked = request;
+    bool known = false;
+    for (const Route& route : routes_) {
+        if (!matches(route, asked)) continue;
+        known = true;
+        if (route.method != request.method) continue;
+        if (route.steers && !hub_.may_steer(request.page))
+            return error_response(423, "another page has control; request control first");
+        if (route.takes == "application/json" && !request.body.empty() && !is_object(request.body))
+            return error_response(request.path.starts_with(host_path) ? 400 : 422, "a JSON object is needed");
+        return route.answer(*this, asked);
+    }
+    return known ? error_response(405, "method not allowed") : error_response(404, "not found");
+}
+
+bool Studio::streams(const Request& request) const {
+    Request asked = request;
+    return std::ranges::any_of(routes_, [&](const Route& route) {
+        return route.streams && route.method == request.method && matches(route, asked);
+    });
+}
+
+void Studio::greet(const std::shared_ptr<Connection>& connection) {
+    const auto send = [&](const std::string& json) {
+        connection->send_text(std::make_shared<const std::string>(json));
+    };
+    {
+        // Sent under the lock, so that a later change is also sent later.
+        const std::lock_guard lock(mutex_);
+        send(document_event(document_));
+    }
+    for (const std::string& news : simulation_->news()) send(news);
+    if (const auto second = beside()) {
+        {
+            const std::lock_guard lock(mutex_);
+            send(comparison_event(title_beside_));
+        }
+        for (const std::string& news : second->news()) send(fmt::format(R"({{"type":"beside","event":{}}})", news));
+        if (const auto frame = second->last_frame()) connection->send_frame_beside(frame);
+    } else {
+        send(comparison_event(""));
+    }
+    for (const std::string& news : search_->news()) send(news);
+    for (const std::string& news : make_->news()) send(news);
+    for (const std::string& news : print_->news()) send(news);
+    for (const std::string& news : queue_->news()) send(news);
+    if (const auto frame = simulation_->last_frame()) connection->send_frame(frame);
+}
+
+/// Pulling one robot does not affect the other; actuators that it lacks are skipped.
+void Studio::steer(const Message& message, SimulationSession& simulation, bool beside) {
+    if (const auto* drive = std::get_if<DriveMessage>(&message)) simulation.drive(*drive);
+    if (const auto* follow = std::get_if<Follow>(&message)) simulation.follow(*follow);
+    if (const auto* play = std::get_if<Play>(&message)) simulation.play(play->on);
+    if (std::holds_alternative<Rest>(message)) simulation.rest();
+    if (beside) return;
+    if (const auto* pull = std::get_if<PullMessage>(&message)) simulation.pull(*pull);
+    if (const auto* lead = std::get_if<LeadMessage>(&message)) simulation.lead(*lead);
+    if (std::holds_alternative<Release>(message)) simulation.release();
+}
+
+void Studio::receive(const std::shared_ptr<Connection>& connection, std::string_view text) {
+    const auto refuse = [&](const std::string& why, std::optional<double> tag = {}) {
+        nlohmann::json json = {{"type", "error"}, {"error", why}};
+        if (tag) json["tag"] = *tag;
+        connection->send_text(std::make_shared<const std::string>(dumped(json)));
+    };
+    const Result<Message> message = parse_message(text);
+    if (!message) return refuse(message.error().message);
+    if (const auto* hello = std::get_if<Hello>(&*message)) {
+        hub_.hello(connection, hello->page);
+        return greet(connection);
+    }
+    if (const auto* fields = std::get_if<FieldsMessage>(&*message)) {
+        for (const std::string& name : fields->names)
+            if (!view::is_field(name))
+                return refuse(fmt::format(
+                    "message: names: there is no field \"{}\"; there are J, von_mises, stretch and energy", name));
+        std::set<std::string> names(fields->names.begin(), fields->names.end());
+        hub_.want_fields(connection, std::move(names));
+        if (const auto second = beside()) second->show_again();
+        return simulation_->show_again();
+    }
+    if (const auto* steer = std::get_if<Steer>(&*message)) {
+        if (steer->action == Steer::Action::ask) return hub_.ask(connection);
+        return steer->action == Steer::Action::give ? hub_.give(connection) : hub_.let_go(connection);
+    }
+    if (std::holds_alternative<Ping>(*message)) {
+        hub_.ping();
+        return connection->send_text(std::make_shared<const std::string>(R"({"type":"pong"})"));
+    }
+    if (connection->page.empty() || !hub_.may_steer(connection->page))
+        return refuse("another page has control", tag_of(*message));
+    if (const Status possible = simulation_->check(*message); !possible)
+        return refuse(possible.error().message, tag_of(*message));
+    steer(*message, *simulation_, false);
+    if (const auto second = beside()) steer(*message, *second, true);
+}
+
+}  // namespace pliant::studio

@@ -1,0 +1,645 @@
+#include "studio/simulate/simulation_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+#include <variant>
+
+#include "base/core/boxes.hpp"
+#include "base/core/json.hpp"
+#include "presentation/report/units.hpp"
+#include "robot/file/robot_file.hpp"
+#include "simulation/run/simulate.hpp"
+#include "simulation/run/warnings.hpp"
+#include "studio/base/dumped.hpp"
+#include "studio/simulate/actuator_drive.hpp"
+#include "studio/simulate/state_json.hpp"
+
+namespace pliant::studio {
+namespace {
+
+using Json = nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t history_bytes = std::size_t{96} << 20;
+constexpr std::chrono::milliseconds frame_gap{15};  // sending faster than the display rate is useless
+constexpr std::chrono::milliseconds pause{80};      // after the last input before refining; during interaction inputs
+                                                    // come faster
+constexpr double quick_s = 0.05;                    // per increment: fast enough for interaction
+constexpr double slow_s = 0.15;
+
+double diagonal(const std::vector<Vec3>& points) {
+    return bounds_of(points).diagonal();
+}
+
+/// Only the last value of an actuator counts.
+void put(std::vector<ActuatorValue>& values, const ActuatorValue& value) {
+    std::erase_if(values, [&](const ActuatorValue& v) { return v.name == value.name; });
+    values.push_back(value);
+}
+
+Status check_time(const Built& built, double time) {
+    const double end = built.robot.program.duration;
+    constexpr double rounding = 1e-9;
+    if (time >= 0 && time <= end * (1 + rounding)) return {};
+    return input_error("message: time is {:g}; the program goes from 0 to {:g}", time, end);
+}
+
+Status check_drive(const Built& built, const std::vector<double>& rest_measures, const DriveMessage& message) {
+    if (message.time)
+        if (Status time = check_time(built, *message.time); !time) return time;
+    std::set<std::size_t> driven;
+    for (const ActuatorValue& value : message.actuators) {
+        const Result<ActuatorDrive> drive = drive_of(built.model, rest_measures, value);
+        if (!drive) return input_error("message: actuators: {}", drive.error().message);
+        if (!driven.insert(drive->actuator).second)
+            return input_error("message: actuators: \"{}\" is named twice", value.name);
+    }
+    return {};
+}
+
+Status check_pull(const Built& built, const PullMessage& message) {
+    const std::size_t count = built.scene.vertex_count();
+    if (static_cast<std::size_t>(message.vertex) < count) return {};
+    return input_error("message: vertex is {}; the robot has {}, from 0", message.vertex, count);
+}
+
+Status check_lead(const Built& built, const LeadMessage& message) {
+    const sim::Description& d = built.model.description();
+    std::vector<std::string> names;
+    for (const sim::Marker& marker : d.markers) names.push_back(marker.name);
+    if (std::ranges::find(names, message.marker) == names.end())
+        return input_error("message: marker: {}", no_such_part("marker", message.marker, std::move(names)));
+    if (d.cables.empty() && d.chambers.empty())
+        return input_error("message: marker: the robot has no actuator that could bring it anywhere");
+    return {};
+}
+
+}  // namespace
+
+std::string problem_lines(const Error& error) {
+    if (error.problems.empty()) return dumped(Json::array({{{"line", 0}, {"text", error.message}}}));
+    Json lines = Json::array();
+    for (const Diagnostic& problem : error.problems)
+        lines.push_back({{"line", problem.line}, {"text", shown({"", 0, problem.key, problem.text})}});
+    return dumped(lines);
+}
+
+std::string_view name(Accuracy accuracy) {
+    if (accuracy == Accuracy::automatic) return "automatic";
+    return accuracy == Accuracy::preview ? "preview" : "fine";
+}
+
+std::optional<Accuracy> accuracy_named(std::string_view name) {
+    for (const Accuracy one : {Accuracy::preview, Accuracy::automatic, Accuracy::fine})
+        if (studio::name(one) == name) return one;
+    return std::nullopt;
+}
+
+Built::Built(RobotText source_, robot::Scene scene_, int revision_)
+    : source(std::move(source_)),
+      robot(std::move(scene_.robot)),
+      model(std::move(scene_.model)),
+      revision(revision_),
+      scene(robot, model),
+      preview(source.accuracy == Accuracy::automatic ? Preview::of(robot, model) : nullptr),
+      size_m(diagonal(model.mesh().points)),
+      warnings(sim::warnings_at_rest(model)) {}
+
+/// Reports progress of building, and cancels it if something else is to be built.
+class SimulationSession::Watch final : public Progress {
+public:
+    /// `any_input`: any new input cancels it too.
+    explicit Watch(SimulationSession& session, bool any_input = false) : session_(session), any_input_(any_input) {}
+    void advance(std::string_view stage, double fraction) override {
+        if (Clock::now() - last_ < std::chrono::milliseconds(100)) return;
+        last_ = Clock::now();
+        session_.tell("build", dumped({{"type", "build"}, {"stage", stage}, {"fraction", fraction}}));
+    }
+    [[nodiscard]] bool cancelled() const override {
+        if (session_.stopping_) return true;
+        const std::lock_guard lock(session_.mutex_);
+        return session_.to_build_.has_value() || (any_input_ && session_.input_);
+    }
+
+private:
+    SimulationSession& session_;
+    bool any_input_;
+    Clock::time_point last_{};
+};
+
+SimulationSession::SimulationSession(SessionEvents events) : events_(std::move(events)), thread_([this] { work(); }) {}
+
+SimulationSession::~SimulationSession() {
+    stopping_ = true;
+    { const std::lock_guard lock(mutex_); }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void SimulationSession::open(RobotText source, After after) {
+    const std::lock_guard lock(mutex_);
+    to_build_ = std::move(source);
+    built_once_ = false;
+    if (after == After::from_rest) wanted_ = {};
+    wanted_.pull.reset();
+    wanted_.lead.reset();
+    wanted_.playing = wanted_.to_rest = false;
+    wanted_.again = after == After::as_before;
+    input_ = wanted_.changed = wanted_.again;
+    changed_.notify_all();
+}
+
+void SimulationSession::take_input() {
+    wanted_.changed = true;
+    input_ = true;
+    changed_.notify_all();
+}
+
+Status SimulationSession::check(const Message& message) const {
+    std::shared_ptr<const Built> built;
+    std::vector<double> rest_measures;
+    {
+        const std::lock_guard lock(mutex_);
+        if (to_build_ || !built_once_ || !built_) return {};
+        built = built_;
+        rest_measures = rest_measures_;
+    }
+    if (const auto* drive = std::get_if<DriveMessage>(&message)) return check_drive(*built, rest_measures, *drive);
+    if (const auto* follow = std::get_if<Follow>(&message)) return check_time(*built, follow->time);
+    if (const auto* pull = std::get_if<PullMessage>(&message)) return check_pull(*built, *pull);
+    if (const auto* lead = std::get_if<LeadMessage>(&message)) return check_lead(*built, *lead);
+    return {};
+}
+
+void SimulationSession::drive(const DriveMessage& message) {
+    const std::lock_guard lock(mutex_);
+    wanted_.tag = message.tag;
+    if (message.time) wanted_.time = *message.time;
+    if (message.time) wanted_.follow = false;
+    for (const ActuatorValue& value : message.actuators) put(wanted_.asked, value);
+    wanted_.playing = false;
+    wanted_.lead.reset();
+    wanted_.let_go = false;
+    take_input();
+}
+
+void SimulationSession::follow(const Follow& message) {
+    const std::lock_guard lock(mutex_);
+    wanted_.tag = message.tag;
+    wanted_.time = wanted_.followed = std::max(message.time, 0.0);
+    wanted_.actuators.clear();
+    wanted_.asked.clear();
+    wanted_.follow = true;
+    wanted_.playing = false;
+    wanted_.lead.reset();
+    take_input();
+}
+
+void SimulationSession::play(bool on) {
+    const std::lock_guard lock(mutex_);
+    wanted_.playing = on;
+    if (on) wanted_.actuators.clear();
+    if (on) wanted_.asked.clear();
+    if (on) wanted_.lead.reset();
+    take_input();
+}
+
+void SimulationSession::rest() {
+    const std::lock_guard lock(mutex_);
+    wanted_ = {};
+    wanted_.to_rest = true;
+    take_input();
+}
+
+void SimulationSession::pull(const PullMessage& message) {
+    const std::lock_guard lock(mutex_);
+    wanted_.pull = message;
+    wanted_.tag = message.tag;
+    take_input();
+}
+
+void SimulationSession::lead(const LeadMessage& message) {
+    const std::lock_guard lock(mutex_);
+    wanted_.lead = message;
+    wanted_.pull.reset();
+    wanted_.playing = false;
+    wanted_.tag = message.tag;
+    take_input();
+}
+
+void SimulationSession::release() {
+    const std::lock_guard lock(mutex_);
+    wanted_.pull.reset();
+    wanted_.let_go = wanted_.lead.has_value();
+    wanted_.lead.reset();
+    take_input();
+}
+
+void SimulationSession::show_again() {
+    const std::lock_guard lock(mutex_);
+    wanted_.show_again = true;
+    input_ = true;
+    changed_.notify_all();
+}
+
+std::shared_ptr<const Built> SimulationSession::built() const {
+    const std::lock_guard lock(mutex_);
+    return built_;
+}
+std::shared_ptr<const std::string> SimulationSession::scene() const {
+    const std::lock_guard lock(mutex_);
+    return scene_;
+}
+std::shared_ptr<const std::string> SimulationSession::last_frame() const {
+    const std::lock_guard lock(mutex_);
+    return frame_;
+}
+std::vector<std::string> SimulationSession::news() const {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::string> news;
+    for (const auto& [key, json] : news_) news.push_back(json);
+    return news;
+}
+sim::Trajectory SimulationSession::history() const {
+    const std::lock_guard lock(mutex_);
+    return history_;
+}
+bool SimulationSession::wait_until_built() const {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return built_once_ || stopping_; });
+    return built_ != nullptr;
+}
+
+void SimulationSession::tell(const std::string& key, const std::string& json) {
+    {
+        const std::lock_guard lock(mutex_);
+        std::erase_if(news_, [&](const auto& entry) { return entry.first == key; });
+        if (!json.empty()) news_.emplace_back(key, json);
+    }
+    if (!json.empty()) events_.text(json);
+}
+
+/// Drops impossible requests: the robot keeps its previous target.
+void SimulationSession::take_what_can_be() {
+    if (hand_ == nullptr) return;
+    for (const ActuatorValue& value : wanted_.asked)
+        if (hand_->can_be(value)) put(wanted_.actuators, value);
+    wanted_.asked.clear();
+}
+
+void SimulationSession::work() {
+    for (;;) {
+        std::optional<RobotText> source;
+        std::optional<Wanted> wanted;
+        {
+            std::unique_lock lock(mutex_);
+            const auto called = [&] { return stopping_ || to_build_ || input_; };
+            const auto busy = [&] { return called() || !settled_ || playing_ || may_refine(); };
+            changed_.wait(lock, busy);
+            if (settled_ && !playing_) changed_.wait_for(lock, pause, called);  // or there is something to refine
+            if (stopping_) return;
+            if (to_build_) {
+                source = *to_build_;
+                to_build_.reset();
+            } else if (input_) {
+                take_what_can_be();
+                wanted = wanted_;
+                wanted_.to_rest = wanted_.show_again = wanted_.follow = wanted_.again = wanted_.let_go = false;
+                wanted_.changed = false;
+                input_ = false;
+            }
+        }
+        if (source) build(std::move(*source));
+        if (hand_ == nullptr) continue;
+        if (wanted) apply(*wanted);
+        if (playing_ && settled_) go_on_playing();
+        if (!settled_) {
+            advance();
+        } else if (!source && !wanted && may_refine()) {
+            refine();
+        }
+    }
+}
+
+void SimulationSession::build(RobotText source) {
+    settled_ = true;
+    playing_ = false;
+    Watch watch(*this);
+    tell("problem", "");
+    tell("build", dumped({{"type", "build"}, {"stage", "read"}, {"fraction", 0}}));
+    const auto finished = [&](const std::string& problem) {
+        tell("build", "");
+        events_.text(R"({"type":"build","stage":"","fraction":1})");
+        if (!problem.empty()) tell("problem", problem);
+        const std::lock_guard lock(mutex_);
+        built_once_ = !to_build_;  // waiting callers wait for the last build
+        changed_.notify_all();
+    };
+    const auto refuse = [&](const Error& error) {
+        finished(error.cause == Cause::cancelled
+                     ? ""
+                     : fmt::format(R"({{"type":"problem","lines":{}}})", problem_lines(error)));
+    };
+    std::vector<std::string> assignments;
+    if (source.accuracy == Accuracy::preview) assignments.emplace_back("mesh.order=1");
+    Result<robot::Robot> robot = robot::parse_robot(source.text, source.file, assignments);
+    if (!robot) return refuse(robot.error());
+    Result<robot::Scene> scene = robot::build_scene(std::move(*robot), watch);
+    if (!scene) return refuse(scene.error());
+    const std::shared_ptr<const Built> before = this->built();
+    auto built = std::make_shared<const Built>(std::move(source), std::move(*scene), ++revision_);
+    start(built);
+    want_as_before(before.get(), *built);
+    {
+        const std::lock_guard lock(mutex_);
+        built_ = built;
+        rest_measures_ = fine_->live().rest_measures();
+        scene_ = std::make_shared<const std::string>(built->scene.packet(
+            fmt::format(R"(,"revision":{},"accuracy":"{}")", built->revision, name(built->source.accuracy))));
+    }
+    forget_history();
+    tell("scene", dumped({{"type", "scene"}, {"revision", built->revision}}));
+    publish({true, !is_input_waiting(), 0, 0, ""}, *fine_);  // rest is not the target of a robot that was elsewhere
+    finished("");
+}
+
+bool SimulationSession::is_input_waiting() const {
+    const std::lock_guard lock(mutex_);
+    return input_;
+}
+
+void SimulationSession::start(const std::shared_ptr<const Built>& built) {
+    hand_ = shown_ = nullptr;
+    reduced_.reset();
+    preview_.reset();
+    fine_ = std::make_unique<LiveRobot>(built->robot, built->model, built->size_m);
+    hand_ = fine_.get();
+    if (built->preview) {
+        preview_ = std::make_unique<LiveRobot>(built->preview->robot(), built->preview->model(), built->size_m);
+        hand_ = preview_.get();
+    }
+    now_ = {};
+    refining_ = catching_up_ = false;
+}
+
+/// The previous targets still apply if the actuators have the same names.
+void SimulationSession::want_as_before(const Built* before, const Built& now) {
+    const auto names = [](const Built& b) {
+        const sim::Description& d = b.model.description();
+        std::vector<std::string> all;
+        for (const auto& cable : d.cables) all.push_back("cable " + cable.name);
+        for (const auto& chamber : d.chambers) all.push_back("chamber " + chamber.name);
+        return all;
+    };
+    const std::lock_guard lock(mutex_);
+    if (!wanted_.again || (before != nullptr && names(*before) == names(now))) return;
+    wanted_ = {};
+    input_ = false;
+}
+
+void SimulationSession::apply(const Wanted& wanted) {
+    tag_ = wanted.tag;
+    now_ = wanted;
+    if (wanted.to_rest) return to_rest();
+    if (wanted.show_again && shown_ != nullptr) publish({false, settled_ && !refining_, 0, 0, ""}, *shown_);
+    if (!wanted.changed) return;
+    if (playing_ != wanted.playing) {
+        playing_ = wanted.playing;
+        const double end = built_->robot.program.duration;
+        if (playing_ && hand_->target().time >= end * (1 - 1e-9)) hand_->follow(0);
+        if (!playing_) publish({false, settled_ && !refining_, 0, 0, ""}, *shown_);
+    }
+    settled_ = false;
+    refining_ = false;
+    if (wanted.lead && hand_->lead(*wanted.lead)) return;
+    if (hand_->is_led() && wanted.let_go) return let_go_of_marker();
+    hand_->stop_leading();
+    move_by_hand(wanted);
+}
+
+void SimulationSession::to_rest() {
+    fine_->to_rest();
+    if (preview_) preview_->to_rest();
+    playing_ = refining_ = catching_up_ = false;
+    settled_ = true;
+    forget_history();
+    publish({false, true, 0, 0, ""}, *fine_);
+}
+
+void SimulationSession::move_by_hand(const Wanted& wanted) {
+    if (wanted.follow || wanted.again) hand_->follow(wanted.followed);
+    if (!playing_ && !wanted.follow) hand_->drive(wanted.time, wanted.actuators);
+    hand_->pull(pulled(wanted.pull));
+}
+
+/// The sliders keep the positions to which dragging moved the actuators.
+void SimulationSession::let_go_of_marker() {
+    hand_->let_go();
+    {
+        const std::lock_guard lock(mutex_);
+        wanted_.actuators = now_.actuators = hand_->driven();
+        wanted_.time = now_.time = hand_->target().time;
+    }
+    settled_ = true;
+    refining_ = hand_ != fine_.get();
+    publish({false, !refining_, 0, 0, ""}, *hand_);
+}
+
+std::optional<Pulled> SimulationSession::pulled(const std::optional<PullMessage>& message) const {
+    if (!message || message->vertex >= static_cast<int>(built_->scene.vertex_count())) return std::nullopt;
+    const int node = built_->scene.node_of_vertex(static_cast<std::size_t>(message->vertex));
+    return Pulled{message->vertex, built_->model.mesh().points[static_cast<std::size_t>(node)],
+                  1 / report::mm_per_m * Vec3{message->to_mm[0], message->to_mm[1], message->to_mm[2]}};
+}
+
+void SimulationSession::go_on_playing() {
+    const sim::Program& program = built_->robot.program;
+    const double step = program.duration / program.steps;
+    const double time = hand_->target().time;
+    const bool over = time >= program.duration * (1 - 1e-9);
+    if (!over) hand_->follow(std::min(time + step, program.duration));
+    {
+        const std::lock_guard lock(mutex_);
+        now_.time = now_.followed = hand_->target().time;
+        now_.actuators.clear();
+        now_.playing = !over;
+        if (!wanted_.changed) {
+            wanted_.time = wanted_.followed = now_.time;
+            wanted_.playing = now_.playing;
+        }
+    }
+    settled_ = over;
+    if (!over) return;
+    playing_ = false;
+    refining_ = hand_ != fine_.get();
+    publish({false, !refining_, 0, 0, ""}, *hand_);
+}
+
+void SimulationSession::advance() {
+    if (advance_reduced()) return;
+    Watch watch(*this);
+    sim::LiveProgress progress = hand_->advance(watch);
+    if (!progress.reason.empty()) playing_ = false;
+    settled_ = progress.arrived || !progress.reason.empty();
+    catching_up_ = catching_up_ && !settled_;
+    if (hand_ != fine_.get()) {
+        refining_ = settled_ && !playing_ && !hand_->is_led();
+        progress.arrived = false;  // only the fine robot can tell whether there is an equilibrium
+        progress.reason.clear();
+    }
+    const bool slow = progress.wall_s > slow_s;
+    const bool due = Clock::now() - last_frame_at_ >= frame_gap;
+    if ((due || settled_) && !catching_up_) publish(progress, *hand_);
+    if (preview_ && hand_ == fine_.get() && slow && !settled_ && !hand_->is_led()) give_way();
+}
+
+/// Jumps to the target with the reduced model; the preview, which falls behind, catches up when it is needed. False:
+/// the reduced model does not cover it.
+bool SimulationSession::advance_reduced() {
+    if (!preview_ || hand_ != preview_.get() || hand_->is_led()) return false;
+    // Made when something first moves: a robot that is only looked at costs nothing.
+    if (!reduced_) {
+        auto inputs = led_inputs(built_->robot, built_->model, fine_->live().rest_measures());
+        reduced_ = std::make_unique<ReducedHand>(built_->robot, built_->model, std::move(inputs), built_->size_m);
+    }
+    const std::optional<ReducedHand::Shown> shown = reduced_->at(hand_->target());
+    if (!shown) return false;
+    settled_ = catching_up_ = true;
+    refining_ = !playing_;
+    publish(*shown);
+    return true;
+}
+
+/// True if nothing moves and no marker is dragged.
+bool SimulationSession::may_refine() const {
+    return refining_ && settled_ && !playing_ && hand_ != nullptr && !hand_->is_led();
+}
+
+/// Solves the fine robot for the current target, unless a new input arrives.
+void SimulationSession::refine() {
+    Watch watch(*this, true);
+    fine_->follow(now_.followed);
+    if (!now_.actuators.empty() || now_.time != now_.followed) fine_->drive(now_.time, now_.actuators);
+    fine_->pull(pulled(now_.pull));
+    double slowest_s = 0;
+    for (;;) {
+        const sim::LiveProgress progress = fine_->advance(watch);
+        if (watch.cancelled()) return;
+        if (progress.moved) slowest_s = std::max(slowest_s, progress.wall_s);
+        if (progress.arrived || !progress.reason.empty()) {
+            refining_ = false;
+            publish(progress, *fine_);
+            break;
+        }
+        if (progress.moved) remember(fine_->live().describe());
+    }
+    if (slowest_s > 0 && slowest_s < quick_s) hand_ = fine_.get();
+}
+
+/// The fine robot is too slow for this interaction: switch to the preview.
+void SimulationSession::give_way() {
+    hand_ = preview_.get();
+    catching_up_ = true;
+    hand_->follow(now_.followed);
+    if (!playing_) hand_->drive(now_.time, now_.actuators);
+    hand_->pull(pulled(now_.pull));
+}
+
+void SimulationSession::publish(const sim::LiveProgress& progress, const LiveRobot& shown) {
+    shown_ = &shown == fine_.get() ? fine_.get() : preview_.get();
+    sim::Step step = shown.live().describe();
+    About about;
+    about.order = shown.model().mesh().order;
+    about.arrived = progress.arrived;
+    about.stuck = progress.reason;
+    about.iterations = progress.iterations;
+    about.warnings = shown.live().warnings(step);
+    about.pulled_vertex = shown.pulled_vertex();
+    if (about.pulled_vertex >= 0) about.pull_force_N = shown.live().pull_force_N();
+    const std::string head = frame_head(step, about);
+    // With a preview, exported states are only those of the fine robot.
+    if (progress.moved && shown_ == fine_.get() && !refining_) remember(step);
+    if (shown_ == preview_.get()) step.positions = built_->preview->lifted(step.positions);
+    send(step, head);
+}
+
+void SimulationSession::publish(const ReducedHand::Shown& shown) {
+    shown_ = preview_.get();
+    About about;
+    about.warnings = sim::warnings_of(shown.step);
+    about.reduced_error_m = shown.error_m;
+    send(shown.step, frame_head(shown.step, about));
+}
+
+void SimulationSession::send(const sim::Step& step, const std::string& head) {
+    last_frame_at_ = Clock::now();
+    auto frame = std::make_shared<const std::string>(built_->scene.frame(step, events_.fields(), head));
+    {
+        const std::lock_guard lock(mutex_);
+        frame_ = frame;
+    }
+    events_.frame(std::move(frame));
+}
+
+void SimulationSession::forget_history() {
+    const std::lock_guard lock(mutex_);
+    history_ = {};
+    history_stride_ = 1;
+    history_seen_ = 0;
+}
+
+void SimulationSession::remember(const sim::Step& step) {
+    const std::lock_guard lock(mutex_);
+    if (history_seen_++ % history_stride_ != 0) return;
+    history_.steps.push_back(step);
+    history_.steps.back().index = static_cast<int>(history_seen_) - 1;
+    if (history_.steps.size() * step.positions.size() * sizeof(Vec3) < history_bytes) return;
+    std::vector<sim::Step> kept;  // every other one, always including rest
+    for (std::size_t k = 0; k < history_.steps.size(); k += 2) kept.push_back(std::move(history_.steps[k]));
+    history_.steps = std::move(kept);
+    history_stride_ *= 2;
+}
+
+std::string SimulationSession::frame_head(const sim::Step& step, const About& about) {
+    std::vector<std::string> warnings = about.warnings;
+    warnings.insert(warnings.begin(), built_->warnings.begin(), built_->warnings.end());
+    Json json = state_json(step);
+    json.update({{"type", "frame"},
+                 {"revision", built_->revision},
+                 {"sequence", sequence_++},
+                 {"tag", tag_},
+                 {"order", about.order},
+                 {"refining", refining_},
+                 {"arrived", about.arrived},
+                 {"stuck", about.stuck},
+                 {"warnings", warnings},
+                 {"playing", playing_},
+                 {"iterations", about.iterations},
+                 {"solve_ms", 1e3 * step.wall_s}});
+    if (about.reduced_error_m) json["reduced_error_mm"] = report::mm_per_m * *about.reduced_error_m;
+    if (events_.beside) json["beside"] = true;
+    if (about.pulled_vertex >= 0) {
+        const Vec3 force = about.pull_force_N;
+        json["pull"] = {{"vertex", about.pulled_vertex}, {"force_N", Json::array({force.x, force.y, force.z})}};
+    }
+    if (hand_->led()) json["lead"] = parse_json(hand_->led()->json());
+    std::string text = dumped(json);
+    text.insert(text.size() - 1, fmt::format(R"(,"wanted":{},"obstacles":{})", wanted_json(),
+                                             built_->scene.obstacle_offsets(step.time, step.positions)));
+    return text;
+}
+
+/// The current target, so that every page shows it rather than its own last request.
+std::string SimulationSession::wanted_json() const {
+    Json actuators = Json::array();
+    for (const ActuatorValue& v : hand_->driven())
+        actuators.push_back({{"name", v.name}, {"kind", v.kind}, {"value", v.value}});
+    return dumped({{"time", hand_->target().time}, {"actuators", actuators}});
+}
+
+}  // namespace pliant::studio
