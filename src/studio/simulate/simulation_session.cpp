@@ -9,14 +9,13 @@
 #include <utility>
 #include <variant>
 
-#include "base/core/boxes.hpp"
 #include "base/core/json.hpp"
 #include "presentation/report/units.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/run/warnings.hpp"
 #include "studio/base/dumped.hpp"
-#include "studio/simulate/actuator_drive.hpp"
+#include "studio/simulate/message_check.hpp"
 #include "studio/simulate/state_json.hpp"
 
 namespace pliant::studio {
@@ -25,90 +24,13 @@ namespace {
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t history_bytes = std::size_t{96} << 20;
 constexpr std::chrono::milliseconds frame_gap{15};  // sending faster than the display rate is useless
 constexpr std::chrono::milliseconds pause{80};      // after the last input before refining; during interaction inputs
                                                     // come faster
 constexpr double quick_s = 0.05;                    // per increment: fast enough for interaction
 constexpr double slow_s = 0.15;
 
-double diagonal(const std::vector<Vec3>& points) {
-    return bounds_of(points).diagonal();
-}
-
-/// Only the last value of an actuator counts.
-void put(std::vector<ActuatorValue>& values, const ActuatorValue& value) {
-    std::erase_if(values, [&](const ActuatorValue& v) { return v.name == value.name; });
-    values.push_back(value);
-}
-
-Status check_time(const Built& built, double time) {
-    const double end = built.robot.program.duration;
-    constexpr double rounding = 1e-9;
-    if (time >= 0 && time <= end * (1 + rounding)) return {};
-    return input_error("message: time is {:g}; the program goes from 0 to {:g}", time, end);
-}
-
-Status check_drive(const Built& built, const std::vector<double>& rest_measures, const DriveMessage& message) {
-    if (message.time)
-        if (Status time = check_time(built, *message.time); !time) return time;
-    std::set<std::size_t> driven;
-    for (const ActuatorValue& value : message.actuators) {
-        const Result<ActuatorDrive> drive = drive_of(built.model, rest_measures, value);
-        if (!drive) return input_error("message: actuators: {}", drive.error().message);
-        if (!driven.insert(drive->actuator).second)
-            return input_error("message: actuators: \"{}\" is named twice", value.name);
-    }
-    return {};
-}
-
-Status check_pull(const Built& built, const PullMessage& message) {
-    const std::size_t count = built.scene.vertex_count();
-    if (static_cast<std::size_t>(message.vertex) < count) return {};
-    return input_error("message: vertex is {}; the robot has {}, from 0", message.vertex, count);
-}
-
-Status check_lead(const Built& built, const LeadMessage& message) {
-    const sim::Description& d = built.model.description();
-    std::vector<std::string> names;
-    for (const sim::Marker& marker : d.markers) names.push_back(marker.name);
-    if (std::ranges::find(names, message.marker) == names.end())
-        return input_error("message: marker: {}", no_such_part("marker", message.marker, std::move(names)));
-    if (d.cables.empty() && d.chambers.empty())
-        return input_error("message: marker: the robot has no actuator that could bring it anywhere");
-    return {};
-}
-
 }  // namespace
-
-std::string problem_lines(const Error& error) {
-    if (error.problems.empty()) return dumped(Json::array({{{"line", 0}, {"text", error.message}}}));
-    Json lines = Json::array();
-    for (const Diagnostic& problem : error.problems)
-        lines.push_back({{"line", problem.line}, {"text", shown({"", 0, problem.key, problem.text})}});
-    return dumped(lines);
-}
-
-std::string_view name(Accuracy accuracy) {
-    if (accuracy == Accuracy::automatic) return "automatic";
-    return accuracy == Accuracy::preview ? "preview" : "fine";
-}
-
-std::optional<Accuracy> accuracy_named(std::string_view name) {
-    for (const Accuracy one : {Accuracy::preview, Accuracy::automatic, Accuracy::fine})
-        if (studio::name(one) == name) return one;
-    return std::nullopt;
-}
-
-Built::Built(RobotText source_, robot::Scene scene_, int revision_)
-    : source(std::move(source_)),
-      robot(std::move(scene_.robot)),
-      model(std::move(scene_.model)),
-      revision(revision_),
-      scene(robot, model),
-      preview(source.accuracy == Accuracy::automatic ? Preview::of(robot, model) : nullptr),
-      size_m(diagonal(model.mesh().points)),
-      warnings(sim::warnings_at_rest(model)) {}
 
 /// Reports progress of building, and cancels it if something else is to be built.
 class SimulationSession::Watch final : public Progress {
@@ -154,8 +76,9 @@ void SimulationSession::open(RobotText source, After after) {
     changed_.notify_all();
 }
 
-void SimulationSession::take_input() {
-    wanted_.changed = true;
+void SimulationSession::change(const std::function<void(WantedInputs&)>& how) {
+    const std::lock_guard lock(mutex_);
+    how(wanted_);
     input_ = true;
     changed_.notify_all();
 }
@@ -169,82 +92,39 @@ Status SimulationSession::check(const Message& message) const {
         built = built_;
         rest_measures = rest_measures_;
     }
-    if (const auto* drive = std::get_if<DriveMessage>(&message)) return check_drive(*built, rest_measures, *drive);
-    if (const auto* follow = std::get_if<Follow>(&message)) return check_time(*built, follow->time);
-    if (const auto* pull = std::get_if<PullMessage>(&message)) return check_pull(*built, *pull);
-    if (const auto* lead = std::get_if<LeadMessage>(&message)) return check_lead(*built, *lead);
-    return {};
+    return check_message(*built, rest_measures, message);
 }
 
 void SimulationSession::drive(const DriveMessage& message) {
-    const std::lock_guard lock(mutex_);
-    wanted_.tag = message.tag;
-    if (message.time) wanted_.time = *message.time;
-    if (message.time) wanted_.follow = false;
-    for (const ActuatorValue& value : message.actuators) put(wanted_.asked, value);
-    wanted_.playing = false;
-    wanted_.lead.reset();
-    wanted_.let_go = false;
-    take_input();
+    change([&](WantedInputs& wanted) { wanted.drive(message); });
 }
 
 void SimulationSession::follow(const Follow& message) {
-    const std::lock_guard lock(mutex_);
-    wanted_.tag = message.tag;
-    wanted_.time = wanted_.followed = std::max(message.time, 0.0);
-    wanted_.actuators.clear();
-    wanted_.asked.clear();
-    wanted_.follow = true;
-    wanted_.playing = false;
-    wanted_.lead.reset();
-    take_input();
+    change([&](WantedInputs& wanted) { wanted.follow_program(message); });
 }
 
 void SimulationSession::play(bool on) {
-    const std::lock_guard lock(mutex_);
-    wanted_.playing = on;
-    if (on) wanted_.actuators.clear();
-    if (on) wanted_.asked.clear();
-    if (on) wanted_.lead.reset();
-    take_input();
+    change([&](WantedInputs& wanted) { wanted.play(on); });
 }
 
 void SimulationSession::rest() {
-    const std::lock_guard lock(mutex_);
-    wanted_ = {};
-    wanted_.to_rest = true;
-    take_input();
+    change([](WantedInputs& wanted) { wanted.go_to_rest(); });
 }
 
 void SimulationSession::pull(const PullMessage& message) {
-    const std::lock_guard lock(mutex_);
-    wanted_.pull = message;
-    wanted_.tag = message.tag;
-    take_input();
+    change([&](WantedInputs& wanted) { wanted.pull_at(message); });
 }
 
 void SimulationSession::lead(const LeadMessage& message) {
-    const std::lock_guard lock(mutex_);
-    wanted_.lead = message;
-    wanted_.pull.reset();
-    wanted_.playing = false;
-    wanted_.tag = message.tag;
-    take_input();
+    change([&](WantedInputs& wanted) { wanted.lead_marker(message); });
 }
 
 void SimulationSession::release() {
-    const std::lock_guard lock(mutex_);
-    wanted_.pull.reset();
-    wanted_.let_go = wanted_.lead.has_value();
-    wanted_.lead.reset();
-    take_input();
+    change([](WantedInputs& wanted) { wanted.release(); });
 }
 
 void SimulationSession::show_again() {
-    const std::lock_guard lock(mutex_);
-    wanted_.show_again = true;
-    input_ = true;
-    changed_.notify_all();
+    change([](WantedInputs& wanted) { wanted.show_again = true; });
 }
 
 std::shared_ptr<const Built> SimulationSession::built() const {
@@ -267,7 +147,7 @@ std::vector<std::string> SimulationSession::news() const {
 }
 sim::Trajectory SimulationSession::history() const {
     const std::lock_guard lock(mutex_);
-    return history_;
+    return history_.states();
 }
 bool SimulationSession::wait_until_built() const {
     std::unique_lock lock(mutex_);
@@ -284,18 +164,10 @@ void SimulationSession::tell(const std::string& key, const std::string& json) {
     if (!json.empty()) events_.text(json);
 }
 
-/// Drops impossible requests: the robot keeps its previous target.
-void SimulationSession::take_what_can_be() {
-    if (hand_ == nullptr) return;
-    for (const ActuatorValue& value : wanted_.asked)
-        if (hand_->can_be(value)) put(wanted_.actuators, value);
-    wanted_.asked.clear();
-}
-
 void SimulationSession::work() {
     for (;;) {
         std::optional<RobotText> source;
-        std::optional<Wanted> wanted;
+        std::optional<WantedInputs> wanted;
         {
             std::unique_lock lock(mutex_);
             const auto called = [&] { return stopping_ || to_build_ || input_; };
@@ -307,10 +179,10 @@ void SimulationSession::work() {
                 source = *to_build_;
                 to_build_.reset();
             } else if (input_) {
-                take_what_can_be();
+                // An actuator that cannot be where it is asked to be keeps its last target.
+                if (hand_) wanted_.take_asked([&](const ActuatorValue& value) { return hand_->can_be(value); });
                 wanted = wanted_;
-                wanted_.to_rest = wanted_.show_again = wanted_.follow = wanted_.again = wanted_.let_go = false;
-                wanted_.changed = false;
+                wanted_.forget_requests();
                 input_ = false;
             }
         }
@@ -402,7 +274,7 @@ void SimulationSession::want_as_before(const Built* before, const Built& now) {
     input_ = false;
 }
 
-void SimulationSession::apply(const Wanted& wanted) {
+void SimulationSession::apply(const WantedInputs& wanted) {
     tag_ = wanted.tag;
     now_ = wanted;
     if (wanted.to_rest) return to_rest();
@@ -431,7 +303,7 @@ void SimulationSession::to_rest() {
     publish({false, true, 0, 0, ""}, *fine_);
 }
 
-void SimulationSession::move_by_hand(const Wanted& wanted) {
+void SimulationSession::move_by_hand(const WantedInputs& wanted) {
     if (wanted.follow || wanted.again) hand_->follow(wanted.followed);
     if (!playing_ && !wanted.follow) hand_->drive(wanted.time, wanted.actuators);
     hand_->pull(pulled(wanted.pull));
@@ -589,20 +461,11 @@ void SimulationSession::send(const sim::Step& step, const std::string& head) {
 void SimulationSession::forget_history() {
     const std::lock_guard lock(mutex_);
     history_ = {};
-    history_stride_ = 1;
-    history_seen_ = 0;
 }
 
 void SimulationSession::remember(const sim::Step& step) {
     const std::lock_guard lock(mutex_);
-    if (history_seen_++ % history_stride_ != 0) return;
-    history_.steps.push_back(step);
-    history_.steps.back().index = static_cast<int>(history_seen_) - 1;
-    if (history_.steps.size() * step.positions.size() * sizeof(Vec3) < history_bytes) return;
-    std::vector<sim::Step> kept;  // every other one, always including rest
-    for (std::size_t k = 0; k < history_.steps.size(); k += 2) kept.push_back(std::move(history_.steps[k]));
-    history_.steps = std::move(kept);
-    history_stride_ *= 2;
+    history_.add(step);
 }
 
 std::string SimulationSession::frame_head(const sim::Step& step, const About& about) {

@@ -15,48 +15,14 @@
 #include <thread>
 #include <vector>
 
-#include "presentation/scene/scene.hpp"
-#include "robot/description/robot.hpp"
-#include "simulation/scene/scene.hpp"
 #include "studio/requests/message.hpp"
+#include "studio/simulate/built_robot.hpp"
 #include "studio/simulate/live_robot.hpp"
-#include "studio/simulate/preview.hpp"
 #include "studio/simulate/reduced_hand.hpp"
+#include "studio/simulate/state_history.hpp"
+#include "studio/simulate/wanted_inputs.hpp"
 
 namespace pliant::studio {
-
-/// Mesh order used: linear tets answer at once but are too stiff; quadratic ones are those of `pliant simulate`.
-/// `automatic`: during interaction, if quadratic ones are not fast enough for it, linear ones or, as soon as it has
-/// been made, a reduced model of the quadratic ones; quadratic ones as soon as the input rests.
-enum class Accuracy { preview, automatic, fine };
-[[nodiscard]] std::string_view name(Accuracy accuracy);
-[[nodiscard]] std::optional<Accuracy> accuracy_named(std::string_view name);
-
-/// Target of a newly built robot: rest, or, for a robot that was only changed, the target of the previous one.
-enum class After { from_rest, as_before };
-
-/// Errors as JSON: a list of {"line", "text"}; line 0 if not about a line.
-[[nodiscard]] std::string problem_lines(const Error& error);
-
-/// The text of a robot file.
-struct RobotText {
-    std::filesystem::path file;  ///< name in messages, and base of its relative paths
-    std::string text;
-    Accuracy accuracy = Accuracy::automatic;
-};
-
-/// Everything that belongs to one robot; immutable once built.
-struct Built {
-    Built(RobotText source_, robot::Scene scene_, int revision_);
-    RobotText source;
-    robot::Robot robot;
-    sim::Model model;
-    int revision;
-    view::Scene scene;
-    std::unique_ptr<const Preview> preview;  ///< null: one model is used for everything
-    double size_m;
-    std::vector<std::string> warnings;  ///< at rest, see sim::warnings_at_rest()
-};
 
 /// Called from the session's thread.
 struct SessionEvents {
@@ -103,36 +69,15 @@ public:
 
 private:
     class Watch;
-    /// The requested inputs, in page units until the robot is built.
-    struct Wanted {
-        double tag = 0;
-        double time = 0;
-        double followed = 0;  ///< program time of the last "follow", for actuators that are not listed
-        std::vector<ActuatorValue> actuators;
-        std::vector<ActuatorValue> asked;  ///< requests since they were last processed; may be impossible
-        std::optional<PullMessage> pull;
-        std::optional<LeadMessage> lead;
-        bool playing = false;
-        bool changed = false;  ///< differs from the last one
-        bool to_rest = false;
-        bool show_again = false;
-        bool follow = false;
-        bool let_go = false;  ///< a dragged marker was released: everything stays where it is
-        bool again = false;   ///< apply everything again, to a newly built robot
-    };
-
     void work();
-    /// Called under the lock: the inputs have changed.
-    void take_input();
-    /// Called under the lock: drops impossible values.
-    void take_what_can_be();
+    void change(const std::function<void(WantedInputs&)>& how);
     void build(RobotText source);
     void start(const std::shared_ptr<const Built>& built);
     [[nodiscard]] bool is_input_waiting() const;
     void want_as_before(const Built* before, const Built& now);
-    void apply(const Wanted& wanted);
+    void apply(const WantedInputs& wanted);
     void to_rest();
-    void move_by_hand(const Wanted& wanted);
+    void move_by_hand(const WantedInputs& wanted);
     [[nodiscard]] std::optional<Pulled> pulled(const std::optional<PullMessage>& message) const;
     void let_go_of_marker();
     void go_on_playing();
@@ -166,7 +111,7 @@ private:
     mutable std::mutex mutex_;  ///< guards what follows
     mutable std::condition_variable changed_;
     std::optional<RobotText> to_build_;
-    Wanted wanted_;
+    WantedInputs wanted_;
     bool input_ = false;  ///< `wanted_` has changed
     std::atomic<bool> stopping_ = false;
     bool built_once_ = false;
@@ -174,8 +119,7 @@ private:
     std::vector<double> rest_measures_;  ///< of the actuators of `built_`
     std::shared_ptr<const std::string> scene_, frame_;
     std::vector<std::pair<std::string, std::string>> news_;
-    sim::Trajectory history_;
-    std::size_t history_stride_ = 1, history_seen_ = 0;
+    StateHistory history_;
 
     // Used by the session's thread only.
     std::unique_ptr<LiveRobot> fine_;       ///< gives the final results, on the model as built
@@ -183,7 +127,7 @@ private:
     std::unique_ptr<ReducedHand> reduced_;  ///< likewise: moves sliders in place of the preview, once it is ready
     LiveRobot* hand_ = nullptr;             ///< the one that follows the interaction
     LiveRobot* shown_ = nullptr;            ///< the one published last
-    Wanted now_;                            ///< the inputs applied last
+    WantedInputs now_;                      ///< the inputs applied last
     double tag_ = 0;
     bool settled_ = true, playing_ = false;
     bool refining_ = false;     ///< the interactive robot has arrived, the fine one has not
