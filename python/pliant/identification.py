@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple, Union
@@ -192,7 +193,7 @@ def identify(
 
 
 def _read(path: Path) -> str:
-    if path.is_dir():
+    if os.path.isdir(path):  # Path.is_dir raises for a name that is too long
         raise InputError(f"{path}: is a folder, a file is needed", file=str(path))
     try:
         return path.read_text(encoding="utf-8")

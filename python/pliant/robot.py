@@ -185,7 +185,7 @@ def _robot_again(text: str, folder: Path, changes: tuple[str, ...], in_python: b
 
 def _folder(folder: PathLike) -> Path:
     """The path of a folder; an empty text is the current one, as for `os.path.dirname`."""
-    return Path() if folder == "" else _check.path(folder, "folder")
+    return Path() if isinstance(folder, str) and folder == "" else _check.path(folder, "folder")
 
 
 def _changes(changes: Changes) -> list[str]:

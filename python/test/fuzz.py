@@ -1,8 +1,8 @@
 """Calls the module with wrong shapes, wrong types, numbers that are none, and objects that are gone.
 
-    python3 fuzz.py [SECONDS [SEED]]
+    python3 fuzz.py [SECONDS [SEED [CALLS]]]
 
-Everything that comes back must be an answer, or an error in a sentence: never a crash, and never an error of the
+It ends after so many seconds or calls; the same seed makes the same calls. Everything that comes back must be an answer, or an error in a sentence: never a crash, and never an error of the
 bindings ("incompatible function arguments"). Run under AddressSanitizer by python/test/fuzz_asan.
 """
 
@@ -203,10 +203,10 @@ class Fuzz:
             repr(thing)
         self.kept.clear()
 
-    def run(self, seconds: float) -> None:
-        """Calls until the time is over."""
+    def run(self, seconds: float, most_calls: float) -> None:
+        """Calls until the time is over, or that many."""
         end = time.monotonic() + seconds
-        while time.monotonic() < end:
+        while time.monotonic() < end and self.calls < most_calls:
             self.calls += 1
             if self.calls % 200 == 0:
                 self.fresh()
@@ -223,8 +223,9 @@ def main() -> None:
     """As the command line says."""
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 10
     seed = int(sys.argv[2]) if len(sys.argv) > 2 else 1
+    most_calls = float(sys.argv[3]) if len(sys.argv) > 3 else float("inf")
     fuzz = Fuzz(seed)
-    fuzz.run(seconds)
+    fuzz.run(seconds, most_calls)
     print(f"{fuzz.calls} calls, {fuzz.answers} answers, no crash (seed {seed})")
 
 

@@ -8,7 +8,7 @@ using namespace pliant;
 
 TEST_CASE("a long history keeps rest and every other, later every fourth state, by their numbers") {
     sim::Step step;
-    step.positions.resize(1'000'000);  // 24 MB: the fifth state is one too many
+    step.positions = std::vector<Vec3>(1'000'000);  // 24 MB: the fifth state is one too many
     studio::StateHistory history;
     std::vector<std::vector<int>> kept;
     for (int k = 0; k < 10; ++k) {
