@@ -14,6 +14,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -148,6 +150,9 @@ public:
 
     /// What touches what in these pairs, each once, ascending: 0 is the robot, k + 1 rigid part k, -k - 1 obstacle k.
     [[nodiscard]] std::vector<std::array<int, 2>> partners(const Pairs& pairs) const;
+    /// The flat faces of obstacles on which objects press: both as in partners(), and the face as in Surface. A block
+    /// that slides on a floor into a wall of the same obstacle meets a second one.
+    [[nodiscard]] std::vector<std::array<std::int64_t, 3>> faces_met(const Pairs& pairs) const;
 
     /// Between two with a coefficient the larger applies; if equal, the obstacle's. `nodes` of a pair, and its obstacle
     /// or -1.
@@ -196,6 +201,7 @@ private:
     void add_obstacles();
     void draw_in_obstacles();
     [[nodiscard]] int obstacle_of(std::span<const int> nodes) const;  ///< of a pair's four nodes
+    [[nodiscard]] std::array<int, 2> owners(const Pair& pair) const;  ///< as in partners()
     /// 0: the robot or an obstacle, else 1 + the rigid part.
     [[nodiscard]] int part_of(int node) const { return part_of_node_.empty() ? 0 : part_of_node_[node]; }
     /// The robot, the obstacles, then the rigid parts.
@@ -224,6 +230,12 @@ private:
     /// `a`, `b`: as part_of(), or -1 for obstacles.
     [[nodiscard]] bool parts_are_joined(int a, int b) const;
     [[nodiscard]] double reach(int obstacle, double apart_m) const;
+    /// Of a point and the triangles of a flat face the nearest pair alone, the first of several. The face has one
+    /// reach, that of its distance at rest. `within_reach`: only pairs on which forces act.
+    [[nodiscard]] Pairs once_per_face(Pairs pairs, std::span<const double> x, bool within_reach) const;
+    /// Distance at rest of a point from a flat face.
+    [[nodiscard]] double rest_distance(int point, std::int64_t flat_face) const;
+    void note_flat_faces(const Surface& surface);
     /// An obstacle and what touches it at rest.
     struct Touched {
         int obstacle, part;  ///< part_of()
@@ -257,7 +269,8 @@ private:
     double touching_m_ = 0;  ///< distances up to this are zero to rounding
     Belonging belonging_;
     Side robot_, others_;
-    std::vector<Side> parts_;  ///< (rigid parts)
+    std::vector<Side> parts_;                                             ///< (rigid parts)
+    std::map<std::int64_t, std::vector<std::array<int, 3>>> flat_faces_;  ///< their triangles
     std::vector<Plane> planes_;
     std::shared_ptr<Memory> memory_;
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "simulation/contact/contact.hpp"
+#include "simulation/contact/contact_search.hpp"
 #include "simulation/contact/obstacle_inset.hpp"
 
 namespace pliant::sim::contact {
@@ -118,6 +119,7 @@ Result<Contact> Contact::create(Surface robot, std::vector<Obstacle> obstacles, 
         if (auto status = contact.check_parts_at_rest(); !status) return tl::unexpected(status.error());
     if (auto status = contact.check_nothing_is_nested(); !status) return tl::unexpected(status.error());
     contact.draw_in_obstacles();
+    contact.memory_ = std::make_shared<Memory>();  // what has been noted of the obstacles was of those not drawn in
     return contact;
 }
 
@@ -125,8 +127,15 @@ void Contact::make_sides(const Surface& robot) {
     std::vector<std::vector<std::array<int, 3>>> triangles(1 + rigid_.size());
     for (const auto& t : robot.triangles) triangles[static_cast<std::size_t>(part_of(t[0]))].push_back(t);
     robot_ = make_side(rigid_.empty() ? robot : make_surface(triangles[0]), rest_);
-    for (std::size_t k = 1; k < triangles.size(); ++k)
+    for (std::size_t k = 1; k < triangles.size(); ++k) {
         parts_.push_back(make_side(make_rigid_surface(triangles[k], rest_), rest_));
+        note_flat_faces(parts_.back().surface);
+    }
+}
+
+void Contact::note_flat_faces(const Surface& surface) {
+    for (std::size_t t = 0; t < surface.flat_face.size(); ++t)
+        if (surface.flat_face[t] >= 0) flat_faces_[surface.flat_face[t]].push_back(surface.triangles[t]);
 }
 
 void Contact::number_parts(std::vector<RigidPart> rigid) {
@@ -177,6 +186,7 @@ void Contact::add_obstacles() {
     }
     first_node_.push_back(node_count());
     others_ = make_side(make_rigid_surface(triangles, rest_), rest_);
+    note_flat_faces(others_.surface);
 }
 
 }  // namespace pliant::sim::contact

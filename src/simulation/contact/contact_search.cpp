@@ -2,6 +2,7 @@
 #include "simulation/contact/contact_search.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -11,26 +12,11 @@ namespace {
 /// After this many calls at nearby states it pays to cache what is near.
 constexpr int settled_calls = 2;
 
-/// Of a point and the triangles of a flat face the nearest pair alone, the first of several.
-Pairs once_per_face(Pairs pairs, std::span<const double> x) {
-    struct Closest {
-        std::size_t pair;
-        double distance_m;
-    };
-    std::map<std::pair<std::int64_t, int>, Closest> closest;
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-        if (pairs[k].flat_face < 0) continue;
-        const double apart = distance(pairs[k], stencil_at(pairs[k].nodes, x));
-        const auto [at, is_new] = closest.try_emplace({pairs[k].flat_face, pairs[k].nodes[0]}, Closest{k, apart});
-        if (!is_new && apart < at->second.distance_m) at->second = {k, apart};
-    }
-    if (closest.empty()) return pairs;
-    Pairs kept;
-    for (std::size_t k = 0; k < pairs.size(); ++k) {
-        if (pairs[k].flat_face < 0 || closest.at({pairs[k].flat_face, pairs[k].nodes[0]}).pair == k)
-            kept.push_back(pairs[k]);
-    }
-    return kept;
+template <class Value>
+std::vector<Value> each_once(std::vector<Value> values) {
+    std::ranges::sort(values);
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    return values;
 }
 
 }  // namespace
@@ -67,15 +53,57 @@ Pairs Contact::find(std::span<const double> x) const {
     return pairs;
 }
 
+double Contact::rest_distance(int point, std::int64_t flat_face) const {
+    const std::lock_guard lock(memory_->mutex);
+    const auto [known, is_new] = memory_->from_face_m.try_emplace({flat_face, point}, 0);
+    if (!is_new) return known->second;
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::array<int, 3>& t : flat_faces_.at(flat_face)) {
+        const Stencil at = stencil_at(std::array{point, t[0], t[1], t[2]}, rest_);
+        least = std::min(least, squared_distance(nearest(Features::point_triangle, at), at));
+    }
+    return known->second = std::sqrt(least);
+}
+
+Pairs Contact::once_per_face(Pairs pairs, std::span<const double> x, bool within_reach) const {
+    struct Closest {
+        std::size_t pair;
+        double distance_m;
+    };
+    std::map<std::pair<std::int64_t, int>, Closest> closest;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        if (pairs[k].flat_face < 0) continue;
+        const double apart = distance(pairs[k], stencil_at(pairs[k].nodes, x));
+        const auto [at, is_new] = closest.try_emplace({pairs[k].flat_face, pairs[k].nodes[0]}, Closest{k, apart});
+        if (!is_new && apart < at->second.distance_m) at->second = {k, apart};
+    }
+    if (closest.empty()) return pairs;
+    Pairs kept;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        Pair& pair = pairs[k];
+        if (pair.flat_face >= 0) {
+            const Closest& one = closest.at({pair.flat_face, pair.nodes[0]});
+            if (one.pair != k) continue;
+            const double apart_m = rest_distance(pair.nodes[0], pair.flat_face);
+            const std::span nodes(pair.nodes);
+            pair.reach_m = reach(pair.obstacle, apart_m);
+            if (left_out(nodes.first(1), nodes.subspan(1), apart_m)) continue;
+            if (within_reach && !(one.distance_m < pair.reach_m)) continue;
+        }
+        kept.push_back(pair);
+    }
+    return kept;
+}
+
 Pairs Contact::search_pairs(std::span<const double> x) const {
     const double most = settings_.distance_m;
     const auto consider = [&](const Search::Candidate& c, Pairs& found) {
         if (c.distance_bound(x) >= most) return;
         const double squared = c.squared_distance(x);
         if (squared >= most * most) return;
-        const double apart = std::sqrt(c.squared_distance(rest_));
-        const double reach = this->reach(obstacle_of(c.nodes), apart);
-        if (squared < reach * reach && !left_out(c.first_nodes(), c.second_nodes(), apart))
+        const double apart = c.flat_face < 0 ? std::sqrt(c.squared_distance(rest_)) : 0;
+        const double reach = c.flat_face < 0 ? this->reach(obstacle_of(c.nodes), apart) : most;
+        if (c.flat_face >= 0 || (squared < reach * reach && !left_out(c.first_nodes(), c.second_nodes(), apart)))
             found.push_back(make_pair(c.features() == Features::edge_edge, c.nodes, reach, c.area_m2, c.flat_face));
     };
     const auto known = nearby(x, {});
@@ -84,37 +112,47 @@ Pairs Contact::search_pairs(std::span<const double> x) const {
               : Search(*this, x, {}, most, Search::What::pairs, settings_.self).run(Pairs{}, consider);
     Pairs pairs;
     for (const Pairs& piece : pieces) pairs.insert(pairs.end(), piece.begin(), piece.end());
-    return once_per_face(std::move(pairs), x);
+    return once_per_face(std::move(pairs), x, true);
 }
 
 Pairs Contact::find_near(std::span<const double> x, double within_m) const {
     const auto consider = [&](const Search::Candidate& c, Pairs& found) {
         if (!(c.squared_distance(x) < within_m * within_m)) return;
-        const double apart = std::sqrt(c.squared_distance(rest_));
-        if (left_out(c.first_nodes(), c.second_nodes(), apart)) return;
+        const double apart = c.flat_face < 0 ? std::sqrt(c.squared_distance(rest_)) : 0;
+        if (c.flat_face < 0 && left_out(c.first_nodes(), c.second_nodes(), apart)) return;
         const double reach = this->reach(obstacle_of(c.nodes), apart);
         found.push_back(make_pair(c.features() == Features::edge_edge, c.nodes, reach, c.area_m2, c.flat_face));
     };
     const Search search(*this, x, {}, within_m, Search::What::pairs, settings_.self);
     Pairs pairs;
     for (const Pairs& piece : search.run(Pairs{}, consider)) pairs.insert(pairs.end(), piece.begin(), piece.end());
-    pairs = once_per_face(std::move(pairs), x);
+    pairs = once_per_face(std::move(pairs), x, false);
     find_planes(x, within_m, pairs);
     return pairs;
 }
 
+std::array<int, 2> Contact::owners(const Pair& pair) const {
+    const auto owner = [&](int node) {
+        return obstacle_of_node_[node] >= 0 ? -obstacle_of_node_[node] - 1 : part_of(node);
+    };
+    const auto [low, high] = std::minmax({owner(pair.nodes.front()), owner(pair.nodes.back())});
+    return {low, high};
+}
+
 std::vector<std::array<int, 2>> Contact::partners(const Pairs& pairs) const {
     std::vector<std::array<int, 2>> all;
+    for (const Pair& pair : pairs) all.push_back(owners(pair));
+    return each_once(std::move(all));
+}
+
+std::vector<std::array<std::int64_t, 3>> Contact::faces_met(const Pairs& pairs) const {
+    std::vector<std::array<std::int64_t, 3>> all;
     for (const Pair& pair : pairs) {
-        const auto owner = [&](int node) {
-            return obstacle_of_node_[node] >= 0 ? -obstacle_of_node_[node] - 1 : part_of(node);
-        };
-        const auto [low, high] = std::minmax({owner(pair.nodes.front()), owner(pair.nodes.back())});
-        all.push_back({low, high});
+        const auto [low, high] = owners(pair);
+        if (pair.flat_face >= 0 && obstacle_of_node_[pair.nodes.back()] >= 0 && high > 0)
+            all.push_back({low, high, pair.flat_face});
     }
-    std::ranges::sort(all);
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    return all;
+    return each_once(std::move(all));
 }
 
 int Contact::obstacle_of(std::span<const int> nodes) const {
@@ -179,6 +217,7 @@ void Contact::find_planes(std::span<const double> x, double within_m, Pairs& pai
 void Contact::find_planes(const Side& side, std::span<const double> x, double within_m, Pairs& pairs) const {
     for (const Plane& plane : planes_) {
         for (std::size_t i = 0; i < side.surface.points.size(); ++i) {
+            if (!side.surface.acts(i)) continue;
             const int point = side.surface.points[i];
             Pair pair;
             pair.kind = PairKind::point_plane;

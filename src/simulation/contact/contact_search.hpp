@@ -216,6 +216,7 @@ private:
             case Kind::point_triangle: {
                 const int p = a.points[i];
                 const auto& t = b.triangles[j];
+                if (!a.acts(static_cast<std::size_t>(i))) return;
                 if (p == t[0] || p == t[1] || p == t[2]) return;
                 const double area = std::min(f.first_side->areas.points[i], f.second_side->areas.triangles[j]);
                 visit(Candidate{f.kind, {p, t[0], t[1], t[2], -1}, area, b.flat_face.empty() ? -1 : b.flat_face[j]});
@@ -303,6 +304,7 @@ struct Contact::Memory {
         std::vector<double> x;
         Pairs pairs;
     } found;  ///< result of the last find: a solver asks several times for the same state
+    std::map<std::pair<std::int64_t, int>, double> from_face_m;  ///< Contact::rest_distance(), by face and point
 
     /// The clearance at a state where nothing was near, and how useful it was.
     struct {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "simulation/contact/surface.hpp"
@@ -48,6 +47,7 @@ FrozenPair freeze(const Pair& pair, double coefficient, double stiffness_Pa, con
     frozen.first_count = pair.first_count();
     frozen.obstacle = pair.obstacle;
     frozen.robot_first = pair.robot_first;
+    frozen.flat_face = pair.flat_face;
     return frozen;
 }
 
@@ -111,8 +111,10 @@ void Friction::visit_hessian(std::span<const double> x, const BlockVisitor& visi
 
 namespace {
 
-auto features_of(const FrozenPair& pair) {
-    return std::tie(pair.nodes, pair.node_count, pair.first_count);
+/// What touches what. Which triangle of a flat face is nearest to a point has no meaning: several may be.
+std::array<std::int64_t, 6> features_of(const FrozenPair& pair) {
+    if (pair.flat_face >= 0) return {pair.nodes[0], pair.flat_face, -1, -1, pair.node_count, pair.first_count};
+    return {pair.nodes[0], pair.nodes[1], pair.nodes[2], pair.nodes[3], pair.node_count, pair.first_count};
 }
 
 /// Transports the tangents by the smallest rotation that maps one normal to the other.

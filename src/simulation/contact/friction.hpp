@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -34,6 +35,7 @@ struct FrozenPair {
     int first_count = 1;  ///< nodes of the first feature
     int obstacle = -1;
     bool robot_first = true;
+    std::int64_t flat_face = -1;  ///< as in Pair
 };
 
 /// `coefficient`: μ of the pair. `x`: positions at which it is frozen.

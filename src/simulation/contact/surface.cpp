@@ -36,6 +36,27 @@ bool is_flat(const std::array<int, 2>& edge, const std::array<int, 2>& opposite,
     return dot(one, other) < 0 && norm(cross(one, other)) <= flat * scale;
 }
 
+/// A third of a triangle's area.
+double third_of(const std::array<int, 3>& t, std::span<const double> positions) {
+    const Vec3 a = node_at(positions, t[0]), b = node_at(positions, t[1]), c = node_at(positions, t[2]);
+    return norm(cross(b - a, c - a)) / 6;
+}
+
+/// By how much the points on the boundary of each flat face must represent more than their own share, for those inside.
+std::map<std::int64_t, double> growth_of_boundaries(const Surface& surface, std::span<const double> positions) {
+    std::map<std::int64_t, double> all, outside;
+    for (std::size_t i = 0; i < surface.flat_face.size(); ++i) {
+        const std::int64_t face = surface.flat_face[i];
+        if (face < 0) continue;
+        const double share = third_of(surface.triangles[i], positions);
+        all[face] += 3 * share;
+        for (const int point : surface.triangles[i])
+            if (surface.acts(index_of(surface.points, point))) outside[face] += share;
+    }
+    for (auto& [face, area] : all) area = outside[face] > 0 ? area / outside[face] : 1;
+    return all;
+}
+
 }  // namespace
 
 Surface make_surface(std::span<const std::array<int, 3>> triangles) {
@@ -68,6 +89,9 @@ Surface make_rigid_surface(std::span<const std::array<int, 3>> triangles, std::s
 
     Surface surface = make_surface(triangles);
     std::erase_if(surface.edges, [&](const std::array<int, 2>& edge) { return sides.contains(edge); });
+    surface.inside_face.assign(surface.points.size(), 1);
+    for (const auto& edge : surface.edges)
+        for (const int point : edge) surface.inside_face[index_of(surface.points, point)] = 0;
     std::vector<std::int64_t> name(triangles.size(), -1);
     const auto nodes = static_cast<std::int64_t>(positions.size() / 3);
     for (const auto& [edge, at] : sides) {
@@ -97,13 +121,16 @@ Surface robot_surface(const mesh::TetMesh& mesh) {
 
 SurfaceAreas surface_areas(const Surface& surface, std::span<const double> positions) {
     SurfaceAreas areas{std::vector<double>(surface.points.size()), std::vector<double>(surface.edges.size()), {}};
-    for (const auto& t : surface.triangles) {
-        const Vec3 a = node_at(positions, t[0]), b = node_at(positions, t[1]), c = node_at(positions, t[2]);
-        const double share = norm(cross(b - a, c - a)) / 6;
+    const std::map<std::int64_t, double> growth = growth_of_boundaries(surface, positions);
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+        const auto& t = surface.triangles[i];
+        const double share = third_of(t, positions);
+        const auto grown = growth.empty() ? growth.end() : growth.find(surface.flat_face[i]);
         areas.triangles.push_back(3 * share);
         std::vector<std::size_t> edges;
         for (int k = 0; k < 3; ++k) {
-            areas.points[index_of(surface.points, t[k])] += share;
+            const std::size_t point = index_of(surface.points, t[k]);
+            if (surface.acts(point)) areas.points[point] += share * (grown == growth.end() ? 1 : grown->second);
             const std::size_t edge = index_of(surface.edges, edge_of(t, k));
             if (edge < surface.edges.size() && surface.edges[edge] == edge_of(t, k)) edges.push_back(edge);
         }

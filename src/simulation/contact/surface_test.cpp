@@ -67,6 +67,7 @@ TEST_CASE("the surface of something rigid has no edges inside its flat faces") {
         const Surface surface = make_rigid_surface(triangles, x);
         CHECK(surface.triangles.size() == 14);
         CHECK(surface.points.size() == 9);
+        for (std::size_t p = 0; p < 9; ++p) CHECK(surface.acts(p) == (p < 8 || middle_z != 1));
         const SurfaceAreas areas = surface_areas(surface, x);
         CHECK(std::accumulate(areas.edges.begin(), areas.edges.end(), 0.0) ==
               near(std::accumulate(areas.points.begin(), areas.points.end(), 0.0), {.relative = 1e-12}));

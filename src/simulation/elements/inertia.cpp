@@ -11,13 +11,13 @@ bool is_as_long_as_the_last(const History& history, double dt) {
     return history.dt_before > 0 && std::fabs(dt / history.dt_before - 1) < 1e-9;
 }
 
-ObjectRotation::Nodes at_nodes(const std::array<int, 4>& nodes, const Eigen::VectorXd& x) {
-    ObjectRotation::Nodes part;
+FreeRotation::Nodes at_nodes(const std::array<int, 4>& nodes, const Eigen::VectorXd& x) {
+    FreeRotation::Nodes part;
     for (int a = 0; a < 4; ++a) part.col(a) = x.segment<3>(3 * nodes[static_cast<std::size_t>(a)]);
     return part;
 }
 
-void add_at_nodes(const std::array<int, 4>& nodes, const ObjectRotation::Nodes& part, Eigen::VectorXd& x) {
+void add_at_nodes(const std::array<int, 4>& nodes, const FreeRotation::Nodes& part, Eigen::VectorXd& x) {
     for (int a = 0; a < 4; ++a) x.segment<3>(3 * nodes[static_cast<std::size_t>(a)]) += part.col(a);
 }
 
@@ -115,54 +115,30 @@ Eigen::VectorXd Inertia::off(const Eigen::VectorXd& x) const {
     return off;
 }
 
-Inertia::Start Inertia::start_of(const std::array<int, 4>& nodes, const History& history) const {
-    Start start{at_nodes(nodes, history.x), at_nodes(nodes, history.v)};
-    if (looks_back()) {
-        start.x_before = at_nodes(nodes, history.x_before);
-        start.v_before = at_nodes(nodes, history.v_before);
-    }
-    return start;
-}
-
-/// The mean torque of the step before; none where the formula does not look back over it.
-linalg::Vector3 Inertia::last_torque(const Start& s) const {
-    if (!looks_back()) return linalg::Vector3::Zero();
-    return (ObjectRotation::momentum(s.x, s.v) - ObjectRotation::momentum(s.x_before, s.v_before)) / start_.dt_before;
-}
-
-linalg::Vector3 Inertia::last_torque_change(const Start& s, const Start& by) const {
-    if (!looks_back()) return linalg::Vector3::Zero();
-    return (ObjectRotation::momentum_change(s.x, s.v, by.x, by.v) -
-            ObjectRotation::momentum_change(s.x_before, s.v_before, by.x_before, by.v_before)) /
-           start_.dt_before;
-}
-
 std::vector<Inertia::Turning> Inertia::turning_objects() const {
     std::vector<Turning> turning;
     if (start_.is_still || scheme_ == Scheme::conserving) return turning;
-    for (const std::array<int, 4>& nodes : elements_->object_nodes()) {
-        const Start start = start_of(nodes, start_);
-        turning.push_back({nodes, start, {start.x, start.v, last_torque(start)}});
-    }
+    for (const std::array<int, 4>& nodes : elements_->object_nodes())
+        turning.push_back({nodes, {at_nodes(nodes, start_.x), at_nodes(nodes, start_.v)}});
     return turning;
 }
 
-Inertia::Defect Inertia::defect_of(const ObjectRotation::Motion& before, const ObjectRotation::Motion& now,
-                                   const ObjectRotation::Motion& after) const {
+Inertia::Defect Inertia::defect_of(const FreeRotation::Motion& before, const FreeRotation::Motion& now,
+                                   const FreeRotation::Motion& after) const {
     return {after.v - rate_ * (after.x - share_now_ * now.x - share_before_ * before.x),
             after.a - rate_ * (after.v - share_now_ * now.v - share_before_ * before.v)};
 }
 
 Inertia::Defect Inertia::defect(const Turning& object) const {
-    const double back = looks_back() ? -start_.dt_before : 0;
+    const double back = share_before_ != 0 ? -start_.dt_before : 0;
     return defect_of(object.motion.at(back), object.motion.at(0), object.motion.at(dt_));
 }
 
-Inertia::Defect Inertia::defect_change(const Turning& object, const Start& by) const {
-    const double back = looks_back() ? -start_.dt_before : 0;
-    const linalg::Vector3 torque = last_torque_change(object.start, by);
-    const auto change = [&](double time) { return object.motion.change(time, by.x, by.v, torque); };
-    return defect_of(change(back), change(0), change(dt_));
+Inertia::Defect Inertia::defect_change(const Turning& object, const FreeRotation::Nodes& dx,
+                                       const FreeRotation::Nodes& dv) const {
+    const double back = share_before_ != 0 ? -start_.dt_before : 0;
+    return defect_of(object.motion.change(back, dx, dv), object.motion.change(0, dx, dv),
+                     object.motion.change(dt_, dx, dv));
 }
 
 void Inertia::shift(const Turning& object, const Defect& by) {
@@ -177,7 +153,8 @@ Inertia Inertia::change(History by) const {
     changed.start_ = std::move(by);
     changed.set_scheme();
     for (const Turning& object : turning_)
-        changed.shift(object, defect_change(object, start_of(object.nodes, changed.start_)));
+        changed.shift(object, defect_change(object, at_nodes(object.nodes, changed.start_.x),
+                                            at_nodes(object.nodes, changed.start_.v)));
     return changed;
 }
 
@@ -196,9 +173,9 @@ Vectors Inertia::error_from(const Vectors& x_end, const Vectors& v_end, const Ve
 Eigen::VectorXd Inertia::error(const Eigen::VectorXd& x) const {
     Eigen::VectorXd error = error_from<Eigen::VectorXd>(x, velocity(x), start_.x, start_.v, start_.v_before);
     for (const Turning& object : turning_) {
-        const ObjectRotation::Motion before = object.motion.at(-start_.dt_before), now = object.motion.at(0),
-                                     after = object.motion.at(dt_);
-        add_at_nodes(object.nodes, -error_from<ObjectRotation::Nodes>(after.x, after.v, now.x, now.v, before.v), error);
+        const FreeRotation::Motion before = object.motion.at(-start_.dt_before), now = object.motion.at(0),
+                                   after = object.motion.at(dt_);
+        add_at_nodes(object.nodes, -error_from<FreeRotation::Nodes>(after.x, after.v, now.x, now.v, before.v), error);
     }
     return error;
 }
@@ -240,22 +217,21 @@ History Inertia::start_weights(const Eigen::VectorXd& force_weights, const Eigen
 /// `by_v` and `by_a` (3n): derivatives with respect to d_v and d_a.
 void Inertia::add_defect_weights(const Eigen::VectorXd& by_v, const Eigen::VectorXd& by_a, History& weights) const {
     for (const Turning& object : turning_) {
-        const ObjectRotation::Nodes v = at_nodes(object.nodes, by_v), a = at_nodes(object.nodes, by_a);
-        const auto by_part = [&](ObjectRotation::Nodes Start::*part) {
-            ObjectRotation::Nodes by;
-            for (Eigen::Index k = 0; k < by.size(); ++k) {
-                Start unit;
-                (unit.*part)(k) = 1;
-                const Defect change = defect_change(object, unit);
-                by(k) = v.cwiseProduct(change.v).sum() + a.cwiseProduct(change.a).sum();
-            }
-            return by;
+        const FreeRotation::Nodes v = at_nodes(object.nodes, by_v), a = at_nodes(object.nodes, by_a);
+        const auto worth = [&](const FreeRotation::Nodes& dx, const FreeRotation::Nodes& dv) {
+            const Defect change = defect_change(object, dx, dv);
+            return v.cwiseProduct(change.v).sum() + a.cwiseProduct(change.a).sum();
         };
-        add_at_nodes(object.nodes, by_part(&Start::x), weights.x);
-        add_at_nodes(object.nodes, by_part(&Start::v), weights.v);
-        if (!looks_back()) continue;
-        add_at_nodes(object.nodes, by_part(&Start::x_before), weights.x_before);
-        add_at_nodes(object.nodes, by_part(&Start::v_before), weights.v_before);
+        const FreeRotation::Nodes none = FreeRotation::Nodes::Zero();
+        FreeRotation::Nodes by_x = none, by_start_v = none;
+        for (Eigen::Index k = 0; k < none.size(); ++k) {
+            FreeRotation::Nodes unit = none;
+            unit(k) = 1;
+            by_x(k) = worth(unit, none);
+            by_start_v(k) = worth(none, unit);
+        }
+        add_at_nodes(object.nodes, by_x, weights.x);
+        add_at_nodes(object.nodes, by_start_v, weights.v);
     }
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/linalg/sparse.hpp"
-#include "simulation/elements/object_rotation.hpp"
+#include "simulation/elements/free_rotation.hpp"
 #include "simulation/parts/robot_names.hpp"
 
 namespace pliant::sim {
@@ -54,16 +54,14 @@ struct StiffnessMatrix {
 /// Norsett and Wanner I, III.5.
 ///
 /// Both would brake the rotation of rigid objects, since their nodes move on arcs. For the nodes of an object these
-/// formulas therefore apply to the deviation from the motion that it would have from x_n and v_n under a constant
-/// torque (ObjectRotation; its centre of mass moves uniformly, which the formulas render exactly):
+/// formulas therefore apply to the deviation from the motion that it would have from x_n and v_n without a torque
+/// (FreeRotation; the centre of mass moves uniformly in it, which the formulas render exactly):
 ///     v = c (x - p) + d_v      d_v = v° - c (x° - p°)
 ///     a = c (v - q) + d_a      d_a = a° - c (v° - q°)
-/// where x°, v° and a° are those of this motion at the end, and p° and q° are formed from it, backwards in time too.
-/// This shifts p by -d_v/c and x~ by -d_v/c - d_a/c^2 (defect correction: Stetter 1978, "The defect correction
-/// principle and discretization methods"). The torque is the mean one of the last step for BDF2, none for Euler, which
-/// begins anew. An object then turns exactly under a constant torque, and what changes has its effect with the order
-/// and the damping of the formulas. With a motion without a torque as the reference, BDF2 would render torques by a
-/// share of about the square of the angle of a step too weak.
+/// where x°, v° and a° are those of the free motion at the end, and p° and q° are formed from it, backwards in time
+/// too. This shifts p by -d_v/c and x~ by -d_v/c - d_a/c^2. A free object then follows its free motion, and forces have
+/// their effect with the order and the damping of the formulas (defect correction: Stetter 1978, "The defect correction
+/// principle and discretization methods").
 ///
 /// The conserving step has  x - x_n = h/2 (v_n + v)  and  M (v - v_n)/h = - mean of the forces on the straight path
 /// from x_n to x, so that the sum of kinetic and potential energy is conserved (Harten, Lax and van Leer 1983; Quispel
@@ -154,31 +152,21 @@ private:
     void set_uneven();
     void set_conserving();
 
-    /// What the motion of an object begins with, or a change of it; what was before only if the step looks back.
-    struct Start {
-        ObjectRotation::Nodes x = ObjectRotation::Nodes::Zero(), v = ObjectRotation::Nodes::Zero();
-        ObjectRotation::Nodes x_before = ObjectRotation::Nodes::Zero(), v_before = ObjectRotation::Nodes::Zero();
-    };
-    /// An object and the motion from which its step is measured.
+    /// An object in its free motion.
     struct Turning {
         std::array<int, 4> nodes;
-        Start start;
-        ObjectRotation motion;
+        FreeRotation motion;
     };
     /// d_v and d_a of an object, or their changes.
     struct Defect {
-        ObjectRotation::Nodes v, a;
+        FreeRotation::Nodes v, a;
     };
-    /// The formula uses the state before the last one.
-    [[nodiscard]] bool looks_back() const { return share_before_ != 0; }
-    [[nodiscard]] Start start_of(const std::array<int, 4>& nodes, const History& history) const;
-    [[nodiscard]] linalg::Vector3 last_torque(const Start& start) const;
-    [[nodiscard]] linalg::Vector3 last_torque_change(const Start& start, const Start& by) const;
     [[nodiscard]] std::vector<Turning> turning_objects() const;
     [[nodiscard]] Defect defect(const Turning& object) const;
-    [[nodiscard]] Defect defect_change(const Turning& object, const Start& by) const;
-    [[nodiscard]] Defect defect_of(const ObjectRotation::Motion& before, const ObjectRotation::Motion& now,
-                                   const ObjectRotation::Motion& after) const;
+    [[nodiscard]] Defect defect_change(const Turning& object, const FreeRotation::Nodes& dx,
+                                       const FreeRotation::Nodes& dv) const;
+    [[nodiscard]] Defect defect_of(const FreeRotation::Motion& before, const FreeRotation::Motion& now,
+                                   const FreeRotation::Motion& after) const;
     void shift(const Turning& object, const Defect& by);
     void add_defect_weights(const Eigen::VectorXd& by_v, const Eigen::VectorXd& by_a, History& weights) const;
     template <class Vectors>

@@ -155,7 +155,7 @@ private:
             if (std::string held = held_by_nothing(stepper_.model()); !held.empty())
                 result.warnings.push_back(std::move(held));
         }
-        if (std::string braked = braked_turns(program_, result.steps); !braked.empty())
+        if (std::string braked = braked_turns(stepper_.model(), program_, result.steps); !braked.empty())
             result.warnings.push_back(std::move(braked));
         for (auto* find : {impossible_vacuums, squeezed_objects})
             for (std::string& warning : find(stepper_.model(), result.steps))

@@ -60,6 +60,23 @@ double angle_between(const ObjectState& before, const ObjectState& after) {
     return 2 * std::acos(std::min(1.0, std::fabs(product)));
 }
 
+/// Objects that a load, a spring or a motor turns by a torque.
+std::vector<bool> turned_objects(const Description& d) {
+    std::vector<bool> turned(d.objects.size(), false);
+    for (std::size_t k = 0; k < d.objects.size(); ++k) {
+        const std::array<int, 4>& nodes = d.objects[k].nodes;
+        turned[k] = std::ranges::any_of(d.torques, [&](const TorqueLoad& load) {
+            return std::ranges::find(load.nodes, nodes[0]) != load.nodes.end();
+        });
+    }
+    for (const Joint& joint : d.joints) {
+        if (joint.law.stiffness == 0 && joint.law.drive != JointLaw::Drive::force) continue;
+        for (const int object : joint.objects)
+            if (object >= 0) turned[static_cast<std::size_t>(object)] = true;
+    }
+    return turned;
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const Step& step) {
@@ -113,15 +130,16 @@ std::string closed_gap_text(const Model& model, const ClosedGap& gap) {
         gap.segment + 1, gap.segment + 2, model.description().cables[gap.cable].name);
 }
 
-std::string braked_turns(const Program& program, const std::vector<Step>& steps) {
+std::string braked_turns(const Model& model, const Program& program, const std::vector<Step>& steps) {
     constexpr double noticeable = 0.3;  // rad a step, where a ball that rolls down a slope comes some 2 % too short
     if (!program.dynamics) return {};
+    const std::vector<bool> is_turned = turned_objects(model.description());
     double largest = noticeable;
     const ObjectState* fastest = nullptr;
     for (std::size_t k = 1; k < steps.size(); ++k) {
         for (std::size_t i = 0; i < steps[k].objects.size(); ++i) {
             const ObjectState& object = steps[k].objects[i];
-            if (norm(object.force_N) == 0) continue;
+            if (norm(object.force_N) == 0 && !is_turned[i]) continue;
             const double turn = angle_between(steps[k - 1].objects[i], object) / steps[k].substeps;
             if (turn <= largest) continue;
             largest = turn;
@@ -130,8 +148,9 @@ std::string braked_turns(const Program& program, const std::vector<Step>& steps)
     }
     if (fastest == nullptr) return {};
     return fmt::format(
-        "object \"{}\" touches something and turns by up to {:.2g} rad in a step of time: above {:g} rad the effect of "
-        "contact on what rolls is noticeably too small; give a smaller program.time_step",
+        "object \"{}\" turns by up to {:.2g} rad in a step of time: above {:g} rad the effect of contact and of "
+        "torques "
+        "on what turns is noticeably too small; give a smaller program.time_step",
         fastest->name, largest, noticeable);
 }
 

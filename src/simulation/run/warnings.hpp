@@ -28,9 +28,9 @@ struct ClosedGap {
 /// Explanation for people.
 [[nodiscard]] std::string closed_gap_text(const Model& model, const ClosedGap& gap);
 
-/// Names the object that turns the most in a step of a motion in time while it touches something, where that is so much
-/// that the time integration renders the effect of contact badly; empty if none does.
-[[nodiscard]] std::string braked_turns(const Program& program, const std::vector<Step>& steps);
+/// Names the object that turns the most in a step of a motion in time while it touches something or a torque acts on
+/// it, where that is so much that the time integration renders the effect badly; empty if none does.
+[[nodiscard]] std::string braked_turns(const Model& model, const Program& program, const std::vector<Step>& steps);
 
 /// Names the chambers whose pressure falls below a vacuum, which no air can do.
 [[nodiscard]] std::vector<std::string> impossible_vacuums(const Model& model, const std::vector<Step>& steps);

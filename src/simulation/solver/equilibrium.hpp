@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -54,11 +55,13 @@ struct State {
 
 /// What presses on what at a state, each once, ascending.
 struct Touching {
-    std::vector<std::array<int, 2>> surfaces;  ///< contact::Contact::partners()
-    std::vector<std::array<int, 2>> stops;     ///< joint, and which of its limits it is at: 0 the lower, 1 the upper
+    std::vector<std::array<int, 2>> surfaces;        ///< contact::Contact::partners()
+    std::vector<std::array<std::int64_t, 3>> faces;  ///< contact::Contact::faces_met()
+    std::vector<std::array<int, 2>> stops;  ///< joint, and which of its limits it is at: 0 the lower, 1 the upper
     [[nodiscard]] bool none() const { return surfaces.empty() && stops.empty(); }
     [[nodiscard]] bool is_part_of(const Touching& other) const {
-        return std::ranges::includes(other.surfaces, surfaces) && std::ranges::includes(other.stops, stops);
+        return std::ranges::includes(other.surfaces, surfaces) && std::ranges::includes(other.faces, faces) &&
+               std::ranges::includes(other.stops, stops);
     }
 };
 

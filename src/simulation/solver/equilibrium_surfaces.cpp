@@ -171,8 +171,11 @@ bool Equilibrium::touches(const State& state, const Controls& controls) const {
 
 Touching Equilibrium::touching(const State& state, const Controls& controls) const {
     Touching found;
-    if (const contact::Contact* contact = this->contact(controls))
-        found.surfaces = contact->partners(contact->find(with_obstacles(state.x, controls.obstacles)));
+    if (const contact::Contact* contact = this->contact(controls)) {
+        const contact::Pairs pairs = contact->find(with_obstacles(state.x, controls.obstacles));
+        found.surfaces = contact->partners(pairs);
+        found.faces = contact->faces_met(pairs);
+    }
     const std::vector<double> places = joint_coordinates(state.x, controls);
     for (std::size_t j = 0; j < places.size(); ++j) {
         const JointLaw& law = model_->description().joints[j].law;

@@ -125,6 +125,9 @@ private:
         const Eigen::VectorXd start = in.vector("start", 3 * nodes);
         const double slip_m = in.number("slip_m");
         if (whole.size() % wholes != 0 || !(slip_m > 0)) in.fail("friction");
+        Eigen::VectorXd faces = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(count), -1);
+        if (in.has("flat_faces")) faces = in.vector("flat_faces", static_cast<Eigen::Index>(count));
+        if (!(faces.array().abs() < 1e15).all()) in.fail("friction on faces that do not exist");
         take(in);
         std::vector<contact::FrozenPair> pairs;
         for (std::size_t k = 0; status_ && k < count; ++k) {
@@ -140,6 +143,7 @@ private:
             pair.first_count = i[5];
             pair.obstacle = i[6];
             pair.robot_first = i[7] != 0;
+            pair.flat_face = static_cast<std::int64_t>(faces[static_cast<Eigen::Index>(k)]);
             if (!is_pair(pair, nodes)) fail("friction between nodes that do not exist");
             pairs.push_back(pair);
         }

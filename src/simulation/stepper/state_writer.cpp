@@ -44,18 +44,23 @@ Json json_of(const History& history) {
 
 Json json_of(const contact::Friction& friction) {
     std::vector<int> whole;
-    std::vector<double> real;
+    std::vector<double> real, faces;
+    bool has_faces = false;
     for (const contact::FrozenPair& pair : friction.pairs()) {
+        faces.push_back(static_cast<double>(pair.flat_face));
+        has_faces = has_faces || pair.flat_face >= 0;
         whole.insert(whole.end(), pair.nodes.begin(), pair.nodes.end());
         whole.insert(whole.end(), {pair.node_count, pair.first_count, pair.obstacle, pair.robot_first ? 1 : 0});
         real.insert(real.end(), pair.weights.begin(), pair.weights.end());
         for (const Vec3& t : pair.tangents) real.insert(real.end(), {t.x, t.y, t.z});
         real.insert(real.end(), {pair.limit_N, pair.carried_m[0], pair.carried_m[1]});
     }
-    return {{"pairs", packed(std::span<const int>(whole))},
-            {"numbers", packed(std::span<const double>(real))},
-            {"start", packed(friction.start())},
-            {"slip_m", friction.slip_m()}};
+    Json json{{"pairs", packed(std::span<const int>(whole))},
+              {"numbers", packed(std::span<const double>(real))},
+              {"start", packed(friction.start())},
+              {"slip_m", friction.slip_m()}};
+    if (has_faces) json["flat_faces"] = packed(std::span<const double>(faces));
+    return json;
 }
 
 /// Nine numbers for each object.

@@ -1,4 +1,4 @@
-#include "simulation/elements/object_rotation.hpp"
+#include "simulation/elements/free_rotation.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -10,7 +10,7 @@ namespace {
 
 using linalg::Matrix3;
 using linalg::Vector3;
-using Nodes = ObjectRotation::Nodes;
+using Nodes = FreeRotation::Nodes;
 
 /// A vector and its derivative.
 using Pair = Eigen::Matrix<double, 3, 2>;
@@ -64,38 +64,25 @@ Attitude turned(const Pair& k, const Attitude& from) {
 
 }  // namespace
 
-ObjectRotation::ObjectRotation(const Nodes& x, const Nodes& v, const Vector3& torque)
+FreeRotation::FreeRotation(const Nodes& x, const Nodes& v)
     : arms_(from_centre(x)),
       velocity_(from_centre(v)),
       momentum_(sum_of_moments(arms_, velocity_)),
-      torque_(torque),
       inertia_(arms_.squaredNorm() * Matrix3::Identity() - arms_ * arms_.transpose()),
       inverse_(inertia_.inverse()) {}
 
-Vector3 ObjectRotation::momentum(const Nodes& x, const Nodes& v) {
-    return sum_of_moments(from_centre(x), from_centre(v));
-}
-
-Vector3 ObjectRotation::momentum_change(const Nodes& x, const Nodes& v, const Nodes& dx, const Nodes& dv) {
-    return sum_of_moments(from_centre(dx), from_centre(v)) + sum_of_moments(from_centre(x), from_centre(dv));
-}
-
-ObjectRotation::Motion ObjectRotation::change(double time, const Nodes& dx, const Nodes& dv,
-                                              const Vector3& dtorque) const {
+FreeRotation::Motion FreeRotation::change(double time, const Nodes& dx, const Nodes& dv) const {
     Change by;
-    by.torque = dtorque;
     by.arms = from_centre(dx);
-    by.momentum = momentum_change(arms_, velocity_, dx, dv);
+    by.momentum = sum_of_moments(by.arms, velocity_) + sum_of_moments(arms_, from_centre(dv));
     const Matrix3 product = by.arms * arms_.transpose();
     by.inertia = 2 * product.trace() * Matrix3::Identity() - product - product.transpose();
     return move(time, by).change;
 }
 
-ObjectRotation::Varied ObjectRotation::move(double time, const Change& by) const {
-    Pair start, torque;
-    start << momentum_, by.momentum;
-    torque << torque_, by.torque;
-    const auto momentum = [&](double t) -> Pair { return start + t * torque; };
+FreeRotation::Varied FreeRotation::move(double time, const Change& by) const {
+    Pair momentum;
+    momentum << momentum_, by.momentum;
     // I(t)^-1 w
     const auto over_inertia = [&](const Attitude& turn, const Pair& w) {
         const Matrix3 inverse = turn.R * inverse_ * turn.R.transpose();
@@ -105,27 +92,23 @@ ObjectRotation::Varied ObjectRotation::move(double time, const Change& by) const
         result << value, s.cross(value) + inverse * (w.col(1) - s.cross(w.col(0)) - heavier);
         return result;
     };
-    const auto spin = [&](double t, const Attitude& turn) { return over_inertia(turn, momentum(t)); };
-    const auto spin_rate = [&](double t, const Attitude& turn) {
-        return over_inertia(turn, torque + cross(momentum(t), spin(t, turn)));
-    };
+    const auto spin = [&](const Attitude& turn) { return over_inertia(turn, momentum); };
+    const auto spin_rate = [&](const Attitude& turn) { return over_inertia(turn, cross(momentum, spin(turn))); };
 
     constexpr double fine = 0.02, most = 10000;  // rad and steps
-    const double quickness = spin(0, {}).col(0).norm() + std::sqrt(spin_rate(0, {}).col(0).norm()) +
-                             std::fabs(time) * (inverse_ * torque_).norm();
+    const double quickness = spin({}).col(0).norm() + std::sqrt(spin_rate({}).col(0).norm());
     const int steps = static_cast<int>(std::clamp(std::ceil(std::fabs(time) * quickness / fine), 1.0, most));
     const double h = time / steps;
     Attitude turn;
     for (int step = 0; step < steps; ++step) {
-        const double begin = step * h, half = begin + 0.5 * h;
-        const Pair a = h * spin(begin, turn);
+        const Pair a = h * spin(turn);
         const Attitude middle = turned(0.5 * a, turn);
-        const Pair b = h * spin(half, middle), c = h * spin(half, turned(0.5 * b, turn));
-        const Pair d = h * spin(begin + h, turned(c - 0.5 * a, middle));
+        const Pair b = h * spin(middle), c = h * spin(turned(0.5 * b, turn));
+        const Pair d = h * spin(turned(c - 0.5 * a, middle));
         turn = turned((3 * a + 2 * (b + c) - d) / 12, turn);
         turn = turned((2 * (b + c) - a + 3 * d) / 12, turn);
     }
-    const Pair omega = spin(time, turn), rate = spin_rate(time, turn);
+    const Pair omega = spin(turn), rate = spin_rate(turn);
     Varied at;
     at.now.x = turn.R * arms_;
     at.now.v = cross(omega.col(0), at.now.x);
