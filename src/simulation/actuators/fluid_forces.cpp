@@ -32,10 +32,12 @@ struct Weight {
     }
 };
 
-Weight weight_of(const Fluid& fluid, const Vector3& gravity) {
-    const double g = gravity.norm();
+Weight weight_of(const Fluid& fluid, const FluidForces::Gravity& gravity) {
+    const double g = gravity.full_m_s2.norm();
     Weight weight;
-    if (g > 0) weight = {gravity / g, fluid.density_kg_m3 * g, fluid.level_m.value_or(0), fluid.level_m.has_value()};
+    if (g > 0)
+        weight = {gravity.full_m_s2 / g, fluid.density_kg_m3 * gravity.share * g, fluid.level_m.value_or(0),
+                  fluid.level_m.has_value()};
     return weight;
 }
 
@@ -87,7 +89,7 @@ Matrix9 second_change(const Weight& weight, const Sunk& sunk) {
 
 }  // namespace
 
-double FluidForces::buoyancy_energy(std::span<const double> x, const Vector3& gravity) const {
+double FluidForces::buoyancy_energy(std::span<const double> x, const Gravity& gravity) const {
     const Weight weight = weight_of(fluid_, gravity);
     double sum = 0;
     for (const auto& t : skin_) {
@@ -97,7 +99,7 @@ double FluidForces::buoyancy_energy(std::span<const double> x, const Vector3& gr
     return weight.N_m3 * sum;
 }
 
-void FluidForces::add_buoyancy(std::span<const double> x, const Vector3& gravity, std::span<double> forces) const {
+void FluidForces::add_buoyancy(std::span<const double> x, const Gravity& gravity, std::span<double> forces) const {
     const Weight weight = weight_of(fluid_, gravity);
     if (weight.N_m3 == 0) return;
     for (const auto& t : skin_) {
@@ -110,7 +112,7 @@ void FluidForces::add_buoyancy(std::span<const double> x, const Vector3& gravity
     }
 }
 
-void FluidForces::visit_buoyancy(std::span<const double> x, const Vector3& gravity, bool project,
+void FluidForces::visit_buoyancy(std::span<const double> x, const Gravity& gravity, bool project,
                                  const Blocks& visit) const {
     const Weight weight = weight_of(fluid_, gravity);
     if (weight.N_m3 == 0) return;

@@ -32,19 +32,23 @@ public:
 
     using Blocks = std::function<void(int, int, const linalg::Matrix3&)>;
 
-    /// Energy, J; x (3 nodes), gravity m/s^2.
-    [[nodiscard]] double buoyancy_energy(std::span<const double> x, const linalg::Vector3& gravity) const;
+    /// The level and the weight of the fluid: which way is down does not depend on how much of gravity acts.
+    struct Gravity {
+        linalg::Vector3 full_m_s2 = linalg::Vector3::Zero();
+        double share = 1;  ///< of it that acts; may be 0 or negative
+    };
+    /// Energy, J; x (3 nodes).
+    [[nodiscard]] double buoyancy_energy(std::span<const double> x, const Gravity& gravity) const;
     /// forces (3 nodes) += gradient of the energy.
-    void add_buoyancy(std::span<const double> x, const linalg::Vector3& gravity, std::span<double> forces) const;
+    void add_buoyancy(std::span<const double> x, const Gravity& gravity, std::span<double> forces) const;
     /// Visits the 3 x 3 blocks of each triangle; `project`: each triangle without negative eigenvalues.
-    void visit_buoyancy(std::span<const double> x, const linalg::Vector3& gravity, bool project,
-                        const Blocks& visit) const;
+    void visit_buoyancy(std::span<const double> x, const Gravity& gravity, bool project, const Blocks& visit) const;
 
     /// Motion in a step that begins at `start`: velocities v (3 nodes), dv/dx = `rate`.
     struct Motion {
         std::span<const double> start, v;
         double rate;
-        linalg::Vector3 gravity;  ///< defines the direction of the level
+        Gravity gravity;  ///< its direction is that of the level; drag acts without its weight, too
     };
     [[nodiscard]] double drag_energy(const Motion& motion) const;
     void add_drag(const Motion& motion, std::span<double> forces) const;

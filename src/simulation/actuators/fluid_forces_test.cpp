@@ -41,7 +41,7 @@ void compare(std::vector<double> x, const Force& force, const Visit& visit) {
 }  // namespace
 
 TEST_CASE("buoyancy is the derivative of the displaced water's energy") {
-    const linalg::Vector3 gravity(0.5, -1, -9);
+    const FluidForces::Gravity gravity{{0.5, -1, -9}};
     for (const bool level : {false, true}) {
         Fluid fluid{1000, 0, 0, {}, {}, {}};
         if (level) fluid.level_m = 0.05;
@@ -74,7 +74,7 @@ TEST_CASE("buoyancy is the derivative of the displaced water's energy") {
         const double volume = arms(0, 0) * (arms(1, 1) * arms(2, 2) - arms(2, 1) * arms(1, 2)) -
                               arms(0, 1) * (arms(1, 0) * arms(2, 2) - arms(2, 0) * arms(1, 2)) +
                               arms(0, 2) * (arms(1, 0) * arms(2, 1) - arms(2, 0) * arms(1, 1));
-        CHECK((sum - 1000 * volume / 6 * gravity).norm() < 1e-9 * sum.norm());
+        CHECK((sum - 1000 * volume / 6 * gravity.full_m_s2).norm() < 1e-9 * sum.norm());
     }
 }
 
@@ -114,4 +114,21 @@ TEST_CASE("drag is the gradient of its potential, and dissipates energy") {
         power += on[k] * (v[k] - fluid.current_m_s[k % 3]);
     }
     CHECK(power > 0);  // `on` is the resistance, minus the force on the body
+}
+
+TEST_CASE("where the level is, and so what the drag acts on, does not depend on the share of gravity") {
+    Fluid fluid{1000, 0.7, 0.2, {}, {}, {}};
+    fluid.level_m = 0.05;
+    const FluidForces forces(fluid, faces);
+    std::vector<double> v(12, 0.0);
+    for (std::size_t k = 0; k < 4; ++k) v[3 * k] = 1;
+    const linalg::Vector3 full(0, 0, -9.81);
+    const auto drag = [&](double share) { return forces.drag_energy({corners, v, 40, {full, share}}); };
+    CHECK(drag(1) > 0);
+    for (const double share : {0.0, 0.5, -1.0}) {
+        CAPTURE(share);
+        CHECK(drag(share) == drag(1));
+        CHECK(forces.buoyancy_energy(corners, {full, share}) ==
+              near(share * forces.buoyancy_energy(corners, {full, 1}), {.absolute = 1e-12}));
+    }
 }

@@ -58,29 +58,68 @@ public:
         return fmt::format("{}", fmt::join(texts, ", "));
     }
 
-    /// The first body that its weight and loads have moved very far since the positions `before` (3n) against nothing
-    /// but the tether; null: none.
+    /// The first body that its weight and loads have moved very far since the positions `before` (3n) in a direction
+    /// that nothing but the tether resists; null: none.
     [[nodiscard]] const Body* falling(const Eigen::VectorXd& before) const {
-        constexpr double far = 10;              // robot sizes, for which the tether takes a hundredth of the weight
-        constexpr double share_of_load = 0.01;  // that the tether carries
         if (!controls_.inertia) return nullptr;
-        const double size_m = bounds_of(system_.model().mesh().points).diagonal();
+        const std::vector<Eigen::Vector3d> ways = ways_since(before);
+        // What lands on a floor went as far as what falls for ever, but is held there. This costs more to find out.
+        return first_far(ways) == nullptr ? nullptr : first_far(left_to_tether(ways));
+    }
+
+private:
+    /// (bodies) of the centres of mass.
+    [[nodiscard]] std::vector<Eigen::Vector3d> ways_since(const Eigen::VectorXd& before) const {
         const auto& masses = system_.model().elements().node_mass_kg();
+        std::vector<Eigen::Vector3d> ways;
         for (const Body& body : bodies_) {
-            Eigen::Vector3d load = Eigen::Vector3d::Zero(), way = Eigen::Vector3d::Zero();
-            for (const int node : body.nodes) {
-                load += controls_.external_N.segment<3>(3 * node);
+            Eigen::Vector3d way = Eigen::Vector3d::Zero();
+            for (const int node : body.nodes)
                 way += masses[static_cast<std::size_t>(node)] / body.mass_kg *
                        (state_.x.segment<3>(3 * node) - before.segment<3>(3 * node));
-            }
-            // What something pushes is moved across its load. Buoyancy lifts against it.
-            const double along = load.norm() > 0 ? std::fabs(way.dot(load)) / load.norm() : 0;
-            if (along > far * size_m && body.mass_kg * tether() * along > share_of_load * load.norm()) return &body;
+            ways.push_back(way);
+        }
+        return ways;
+    }
+
+    [[nodiscard]] Eigen::Vector3d load(const Body& body) const {
+        Eigen::Vector3d load = Eigen::Vector3d::Zero();
+        for (const int node : body.nodes) load += controls_.external_N.segment<3>(3 * node);
+        return load;
+    }
+
+    /// The first body that one of these ways (bodies) leads far along its load, or against it: what something pushes is
+    /// moved across its load, and buoyancy lifts against it. Null: none.
+    [[nodiscard]] const Body* first_far(const std::vector<Eigen::Vector3d>& ways) const {
+        constexpr double far = 10;  // robot sizes, for which the tether takes a hundredth of the weight
+        const double far_m = far * bounds_of(system_.model().mesh().points).diagonal();
+        for (std::size_t b = 0; b < bodies_.size(); ++b) {
+            const Eigen::Vector3d load = this->load(bodies_[b]);
+            if (std::fabs(ways[b].dot(load)) > far_m * load.norm()) return &bodies_[b];
         }
         return nullptr;
     }
 
-private:
+    /// The parts of these ways that nothing but the tether resists. With too many bodies for their open motions: those
+    /// ways for which it takes most of the load.
+    [[nodiscard]] std::vector<Eigen::Vector3d> left_to_tether(std::vector<Eigen::Vector3d> ways) const {
+        if (bodies_.size() > most_bodies) {
+            for (std::size_t b = 0; b < bodies_.size(); ++b) {
+                const Body& body = bodies_[b];
+                if (body.mass_kg * tether() * ways[b].norm() < 0.5 * load(body).norm()) ways[b].setZero();
+            }
+            return ways;
+        }
+        Eigen::VectorXd all = Eigen::VectorXd::Zero(row(bodies_.size()));
+        for (std::size_t b = 0; b < bodies_.size(); ++b)
+            all.segment<3>(row(b)) = std::sqrt(bodies_[b].mass_kg) * ways[b];
+        const Eigen::MatrixXd open = open_motions();
+        const Eigen::VectorXd left = open * (open.transpose() * all);
+        for (std::size_t b = 0; b < bodies_.size(); ++b)
+            ways[b] = left.segment<3>(row(b)) / std::sqrt(bodies_[b].mass_kg);
+        return ways;
+    }
+
     [[nodiscard]] static Eigen::Index row(std::size_t body) { return 6 * static_cast<Eigen::Index>(body); }
 
     [[nodiscard]] std::string piece_name(const std::vector<int>& piece) const {

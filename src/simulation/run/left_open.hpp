@@ -13,8 +13,8 @@ namespace pliant::sim {
 [[nodiscard]] std::string left_open(const Equilibrium& system, const State& state, const Controls& controls);
 
 /// Names a piece or an object that falls: in the quasi-static step from `before` (3n) to `state` its weight and loads
-/// moved it by many times the robot's size, because only the tether carries it. A sentence without a full stop; "" if
-/// none does.
+/// moved it by many times the robot's size, in a direction that only the tether resists at `state`. A sentence without
+/// a full stop; "" if none does. Cost, once something has moved so far: that of left_open().
 [[nodiscard]] std::string falling(const Equilibrium& system, const State& state, const Controls& controls,
                                   const Eigen::VectorXd& before);
 

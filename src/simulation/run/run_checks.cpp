@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include "base/core/boxes.hpp"
@@ -225,8 +226,9 @@ bool RunChecks::is_unstable(const RobotState& robot, const Step& step) {
 
 namespace {
 
-/// What touches what, as "object "a" touches obstacle "wall"", at most three of them.
-std::string touching_text(const Description& d, std::span<const std::array<int, 2>> surfaces) {
+/// What touches what, as "object "a" touches obstacle "wall"", at most three of them; `how`: "touches", or what they do
+/// instead.
+std::string touching_text(const Description& d, std::span<const std::array<int, 2>> surfaces, std::string_view how) {
     constexpr std::size_t most = 3;
     const auto name = [&](int owner) {
         if (owner == 0) return std::string("the robot");
@@ -235,9 +237,36 @@ std::string touching_text(const Description& d, std::span<const std::array<int, 
     };
     std::vector<std::string> texts;
     for (const auto& [low, high] : surfaces.first(std::min(most, surfaces.size())))
-        texts.push_back(low == 0 && high == 0 ? "the robot touches itself" : name(high) + " touches " + name(low));
+        texts.push_back(low == 0 && high == 0 ? fmt::format("the robot {} itself", how)
+                                              : fmt::format("{} {} {}", name(high), how, name(low)));
     if (surfaces.size() > most) texts.push_back("and more");
     return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+/// What the motion of everything, obstacles too, leads to within two steps: what meets first, as of Touching::surfaces.
+/// The search for the end of a free motion takes no memory for what is merely near, and each pair its own velocity. The
+/// robot with itself does not count: its own velocities are those of a deformation, which does not go on.
+std::vector<std::array<int, 2>> meeting_next(const Stepper& stepper, const RobotState& robot) {
+    constexpr double steps = 2;
+    constexpr int most_rounds = 12;  // each ends at a tenth of the distance
+    const Equilibrium& system = stepper.system();
+    State state = robot.now.state;
+    Controls controls = robot.controls;
+    const double ahead_s = steps * stepper.options().time_unit;
+    Eigen::VectorXd way = ahead_s * robot.history.v;
+    Eigen::VectorXd obstacles = stepper.controls(robot, controls.time + ahead_s).obstacles - controls.obstacles;
+    for (int round = 0; round < most_rounds; ++round) {
+        const double free = system.largest_step(state.x, way, controls, obstacles);
+        if (!(free < 1)) return {};
+        state.x += free * way;
+        controls.obstacles += free * obstacles;
+        way *= 1 - free;
+        obstacles *= 1 - free;
+        std::vector<std::array<int, 2>> surfaces = system.touching(state, controls).surfaces;
+        std::erase(surfaces, std::array{0, 0});
+        if (!surfaces.empty()) return surfaces;
+    }
+    return {};
 }
 
 /// For a motion in time that stops: a contact that is too soft and too thin to stop what hits it is squeezed until the
@@ -248,17 +277,14 @@ std::string advice_on_impact(const Stepper& stepper, const RobotState& robot) {
     const contact::Contact* contact = stepper.model().contact(robot.controls.met);
     if (contact == nullptr || !robot.controls.inertia) return {};
     auto surfaces = system.touching(robot.now.state, robot.controls).surfaces;
-    if (surfaces.empty()) {  // so near that they meet within two steps
-        const Eigen::VectorXd way = 2 * stepper.options().time_unit * robot.history.v;
-        const std::vector<double> x = system.with_obstacles(robot.x(), robot.controls.obstacles);
-        surfaces =
-            contact->partners(contact->find_near(x, contact->settings().distance_m + way.lpNorm<Eigen::Infinity>()));
-    }
+    const bool touches = !surfaces.empty();
+    if (!touches) surfaces = meeting_next(stepper, robot);
     if (surfaces.empty()) return {};
     return fmt::format(
         ". Here {}, and the contact may be too soft and too thin to stop what moves: a larger contact.stiffness (now "
         "{:.3g} kPa) or contact.distance (now {:.3g} mm) helps, sometimes also a smaller program.time_step",
-        touching_text(d, surfaces), 1e-3 * contact->settings().stiffness_Pa, 1e3 * contact->settings().distance_m);
+        touching_text(d, surfaces, touches ? "touches" : "is about to touch"), 1e-3 * contact->settings().stiffness_Pa,
+        1e3 * contact->settings().distance_m);
 }
 
 }  // namespace

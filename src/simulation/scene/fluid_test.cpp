@@ -171,6 +171,20 @@ TEST_CASE("a current carries bodies, and skin friction slows what slides edge-on
     CHECK(slides.steps.back().objects[0].position_m.x - 0.02 == near(std::log(1 + q * 0.2) / q, {.relative = 0.005}));
 }
 
+TEST_CASE("a fluid with a level brakes also while no gravity acts") {
+    const auto way = [](const std::string& level) {
+        const sim::Trajectory result = run_text(fluid_world(
+            "density = \"1000 kg/m^3\"\ndrag_normal = 1\n" + level,
+            "geometry = { box = [[0, 0, -40], [20, 20, -20]] }\ndensity = \"1000 kg/m^3\"\nvelocity = [1, 0, 0]\n",
+            "duration = \"0.1 s\"\ntime_step = \"2 ms\"\nkey = [{ time = \"0 s\", gravity = 0 }]\n" + down));
+        return result.steps.back().objects[0].position_m.x - result.steps.front().objects[0].position_m.x;
+    };
+    // m v' = -rho c A v^2 with both ends across it: x = ln(1 + k t)/k.
+    const double k = 1000 * 4e-4 / 8e-3;
+    CHECK(way("") == near(std::log(1 + k * 0.1) / k, {.relative = 0.02}));
+    CHECK(way("level = 0\n") == near(way(""), {.relative = 1e-9}));
+}
+
 TEST_CASE("a fluid at rest never adds energy to a soft body, with large steps and both integrators") {
     for (const char* integrator : {"bdf2", "energy-conserving"}) {
         for (const double step : {0.002, 0.02}) {

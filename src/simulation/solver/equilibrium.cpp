@@ -150,9 +150,9 @@ void Equilibrium::add_fluid() {
     fluid_.emplace(*d.fluid, model_->object_points().with_objects(std::move(skin), d.objects).triangles);
 }
 
-Eigen::Vector3d Equilibrium::gravity_at(double time) const {
+FluidForces::Gravity Equilibrium::gravity_at(double time) const {
     const Description& d = model_->description();
-    return d.gravity_share.at(time) * linalg::vector(d.gravity_m_s2);
+    return {linalg::vector(d.gravity_m_s2), d.gravity_share.at(time)};
 }
 
 /// Of the tets of a gap that several cables pass, each cable has those that are nearest to it.
@@ -421,7 +421,7 @@ double Equilibrium::potential_energy(const State& state, const Controls& control
         if (actuator.gaps() != nullptr) springs += actuator.gaps()->energy(view(state.x));
     }
     if (fluid_) {
-        const Eigen::Vector3d gravity = gravity_at(controls.time);
+        const FluidForces::Gravity gravity = gravity_at(controls.time);
         springs += fluid_->buoyancy_energy(with_obstacles(state.x, {}), gravity) -
                    fluid_->buoyancy_energy(with_obstacles(rest_, {}), gravity);
     }

@@ -254,7 +254,7 @@ private:
     void add_contact(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces, double& energy) const;
     [[nodiscard]] Eigen::VectorXd obstacles_at(double time) const;
     void add_fluid();
-    [[nodiscard]] Eigen::Vector3d gravity_at(double time) const;
+    [[nodiscard]] FluidForces::Gravity gravity_at(double time) const;
     /// Transfers forces on all of contact's nodes to the nodes of the mesh.
     void add_carried(const std::vector<double>& on_all, Eigen::VectorXd& forces) const;
     void add_buoyancy(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces,

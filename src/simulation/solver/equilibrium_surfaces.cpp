@@ -86,7 +86,7 @@ void Equilibrium::add_carried(const std::vector<double>& on_all, Eigen::VectorXd
 void Equilibrium::add_buoyancy(const Eigen::VectorXd& x, const Controls& controls, Eigen::VectorXd& forces,
                                double& energy) const {
     const std::vector<double> all = with_obstacles(x, {});
-    const Eigen::Vector3d gravity = gravity_at(controls.time);
+    const FluidForces::Gravity gravity = gravity_at(controls.time);
     std::vector<double> on_all(all.size(), 0.0);
     fluid_->add_buoyancy(all, gravity, on_all);
     energy += fluid_->buoyancy_energy(all, gravity);
