@@ -52,7 +52,7 @@ struct Job {
 };
 
 fs::path kept_folder(const Options& options) {
-    return options.folder + ".checkpoint";
+    return beside_folder(options.folder, ".checkpoint");
 }
 
 std::string digest_of(const Options& options, const std::string& text, const mesh::TetMesh& mesh) {
