@@ -85,6 +85,7 @@ std::vector<KeyChoice> read_keys(Reader& root, const std::vector<std::string>& c
         KeyChoice key{read_key(name, table, command), read_choice(table)};
         key.key.unit = key.choice.unit;
         key.key.numeric = key.choice.numeric;
+        key.key.gap = key.choice.gap;
         table.finish();
         keys.push_back(std::move(key));
     }

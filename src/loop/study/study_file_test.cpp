@@ -59,6 +59,18 @@ TEST_CASE("keys may also be options and words of the command") {
                                                                  "/o/1/job.zip", "--layer=50 um", "--json"});
 }
 
+TEST_CASE("the command gets listed values as they are written") {
+    const auto words = [](const std::string& values) {
+        return row_words(plan_of("command = [\"simulate\", \"robot_{n}.toml\"]\nplan = \"grid\"\nkey.n = { values = " +
+                                 values + " }\n" + tension),
+                         0, "/o")[1];
+    };
+    CHECK(words("[\"001\", \"002\"]") == "robot_001.toml");
+    CHECK(words("[\"10mm\", \"20mm\"]") == "robot_10mm.toml");
+    CHECK(words("[\"10 mm\", \"20 mm\"]") == "robot_10 mm.toml");
+    CHECK(words("[\"30A\", \"50A\"]") == "robot_30A.toml");
+}
+
 TEST_CASE("samples cover the ranges; a sensitivity plan has n (k + 2) rows") {
     const std::string keys = modulus + "key.pull = { set = \"p\", range = [0.8, 0.9] }\n" + tension;
     for (const std::string design : {"sobol", "latin-hypercube", "sensitivity"}) {
