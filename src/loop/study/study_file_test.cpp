@@ -210,3 +210,24 @@ TEST_CASE("a change of text, table, robot file or version gives another fingerpr
     REQUIRE(write_file(folder / "finger.toml", "name = \"b\"\n"));
     CHECK(fingerprint(text, "1.0") != first);
 }
+
+TEST_CASE("a change of a robot that a file stands on, or of a file that an option names, gives another fingerprint") {
+    const pliant::test::Folder folder("study");
+    REQUIRE(write_file(folder / "finger.toml", "robot = \"base.toml\"\n"));
+    REQUIRE(write_file(folder / "base.toml", "name = \"a\"\n"));
+    REQUIRE(write_file(folder / "seen.csv", "tip_x_mm\n1\n"));
+    const auto fingerprint = [&] {
+        const auto plan = parsed(
+            "command = [\"simulate\", \"finger.toml\", \"--measured=seen.csv\"]\nplan = \"grid\"\n" + modulus + tension,
+            folder / "s.toml");
+        REQUIRE(plan);
+        return plan->fingerprint;
+    };
+    const std::string first = fingerprint();
+    CHECK(fingerprint() == first);
+    REQUIRE(write_file(folder / "base.toml", "name = \"b\"\n"));
+    const std::string second = fingerprint();
+    CHECK(second != first);
+    REQUIRE(write_file(folder / "seen.csv", "tip_x_mm\n2\n"));
+    CHECK(fingerprint() != second);
+}
