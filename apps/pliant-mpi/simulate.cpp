@@ -18,6 +18,7 @@
 #include "presentation/report/summary.hpp"
 #include "results.hpp"
 #include "robot/bodies/build.hpp"
+#include "robot/file/robot_document.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/distributed/abilities.hpp"
 #include "simulation/distributed/checkpoint.hpp"
@@ -52,12 +53,15 @@ struct Job {
 };
 
 fs::path kept_folder(const Options& options) {
-    return options.folder + ".checkpoint";
+    return beside_folder(options.folder, ".checkpoint");
 }
 
-std::string digest_of(const Options& options, const std::string& text, const mesh::TetMesh& mesh) {
+/// `base`: text of the robot that the file stands on.
+std::string digest_of(const Options& options, const std::string& text, const std::optional<std::string>& base,
+                      const mesh::TetMesh& mesh) {
     Digest digest;
     digest.add(text.data(), text.size());
+    if (base) digest.add(base->data(), base->size());
     for (const std::string& change : options.assignments) digest.add(change.data(), change.size());
     digest.add(mesh.points.data(), mesh.points.size() * sizeof(Vec3));
     digest.add(mesh.nodes.data(), mesh.nodes.size() * sizeof(int));
@@ -72,11 +76,13 @@ Result<sim::Description> read(const Options& options, Job& job, RobotData& data)
     if (!robot) return tl::unexpected(robot.error());
     const Result<std::string> text = read_file(options.robot);
     if (!text) return tl::unexpected(text.error());
+    const Result<std::optional<std::string>> base = robot::base_text(*text, options.robot);
+    if (!base) return tl::unexpected(base.error());
     Stopwatch watch;
     Progress silent;
     Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, silent);
     if (!mesh) return tl::unexpected(mesh.error());
-    job = {robot->program, digest_of(options, *text, *mesh)};
+    job = {robot->program, digest_of(options, *text, *base, *mesh)};
     data.name = robot->name;
     data.notes = mesh->notes;
     Result<sim::Description> description = robot::build_description(*robot, std::move(*mesh));

@@ -181,7 +181,7 @@ RunOptions run_options(const SimulateOptions& options, const Robot& robot) {
     RunOptions run{
         .measured = options.measured, .checkpoint_every = options.checkpoint_every, .resume = options.resume};
     if (options.checkpoint_every == 0 && !options.resume) return run;
-    run.checkpoint = options.folder + ".checkpoint";
+    run.checkpoint = beside_folder(options.folder, ".checkpoint");
     if (!options.output.quiet && !options.output.json)
         run.on_resume = [steps = robot.steps()](int step) {
             fmt::print("resuming after step {} of {}\n", step, steps);
@@ -194,7 +194,8 @@ void put_away(const SimulateOptions& options, const ProgramResult& result) {
     if (!interrupted()) return result.remove_checkpoint();
     if (options.checkpoint_every == 0 && !options.resume) return;
     if (!options.output.quiet && !options.output.json)
-        fmt::print("checkpoint: {}.checkpoint; the same command with --resume continues from there\n", options.folder);
+        fmt::print("checkpoint: {}; the same command with --resume continues from there\n",
+                   beside_folder(options.folder, ".checkpoint").string());
 }
 
 Status check_options(const SimulateOptions& options, const std::vector<sim::Solver>& solvers) {

@@ -38,7 +38,7 @@ Result<WorkspaceOptions> search_options(const WorkspaceArguments& options) {
     search.between = options.between.value_or(search.between);
     if (options.folder.empty() && search.resume)
         return input_error("--resume needs --output: the checkpoint is kept next to that folder");
-    if (!options.folder.empty()) search.checkpoint = options.folder + ".checkpoint";
+    if (!options.folder.empty()) search.checkpoint = beside_folder(options.folder, ".checkpoint");
     return search;
 }
 

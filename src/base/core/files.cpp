@@ -206,6 +206,14 @@ Status check_folder_place(const fs::path& path, std::string_view marker) {
     return check_parent(made.parent_path(), made);
 }
 
+fs::path beside_folder(const fs::path& folder, std::string_view ending) {
+    fs::path place = folder;
+    while (!place.has_filename() && place.has_relative_path()) place = place.parent_path();
+    if (place.filename() == "." || place.filename() == "..") place = absolute_place(place);
+    place += ending;
+    return place;
+}
+
 fs::path aside_of(const fs::path& target) {
     return target.string() + aside_ending;
 }

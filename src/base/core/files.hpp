@@ -30,6 +30,9 @@ namespace pliant {
 /// `TARGET.partial`: what is written there is renamed to `target` once it is whole.
 [[nodiscard]] std::filesystem::path aside_of(const std::filesystem::path& target);
 
+/// The name of the folder with this ending, as of `DIR.checkpoint`: beside it, also of "DIR/" and ".".
+[[nodiscard]] std::filesystem::path beside_folder(const std::filesystem::path& folder, std::string_view ending);
+
 enum class AsideKind { file, folder };
 /// Makes a file or folder that will be renamed to `target`, or empties what a program that was killed left there. No
 /// other program gets it before the handle is closed; waits for one that has it, at most for `patience`.

@@ -197,3 +197,12 @@ TEST_CASE("a folder is written whole or not at all, and folders with other files
     CHECK(write_folder(foreign, "summary.json", good).error().cause == Cause::input);
     CHECK(*read_file(foreign / "thesis.txt") == "years of work");
 }
+
+TEST_CASE("what is kept beside a folder lies outside it, however the folder is named") {
+    for (const char* name : {"out", "out/", "out//"})
+        CHECK(beside_folder(name, ".checkpoint").string() == "out.checkpoint");
+    CHECK(beside_folder("/some/out/", ".checkpoint").string() == "/some/out.checkpoint");
+    const fs::path here = fs::current_path();
+    for (const char* name : {".", "./", "here/.."})
+        CHECK(beside_folder(name, ".checkpoint").string() == here.string() + ".checkpoint");
+}

@@ -153,4 +153,11 @@ Result<double> parse_quantity(std::string_view text, Dimension dimension) {
     return value * *factor;
 }
 
+bool is_unit(std::string_view unit) {
+    for (int k = 0; k <= static_cast<int>(Dimension::torsional_stiffness); ++k) {
+        if (unit_factor(unit, static_cast<Dimension>(k))) return true;
+    }
+    return false;
+}
+
 }  // namespace pliant

@@ -25,7 +25,7 @@ enum class Dimension {
     stiffness,
     torque,
     inertia,
-    torsional_stiffness
+    torsional_stiffness  ///< the last one: is_unit() goes up to it
 };
 
 /// The name of a dimension and an example of it, for messages: `"a length such as \"2.5 mm\""`.
@@ -38,5 +38,8 @@ enum class Dimension {
 /// The factor from a unit's name to SI, as in `length_unit = "mm"`. A product is written with a space or a star:
 /// "N mm" is "N*mm".
 [[nodiscard]] Result<double> unit_factor(std::string_view unit, Dimension dimension);
+
+/// True if quantities of some dimension are written in it, as robot and printer files write them.
+[[nodiscard]] bool is_unit(std::string_view unit);
 
 }  // namespace pliant

@@ -67,6 +67,23 @@ TEST_CASE("a cancelled run resumes from its checkpoint to the same steps") {
                          Failure);
 }
 
+TEST_CASE("a checkpoint is of the robot that the file stands on, too") {
+    const test::Folder folder;
+    const fs::path file = folder / "program.toml", base = folder / "bar.toml";
+    test::write(base, test::bar_text());
+    test::write(file, "robot = \"bar.toml\"\nprogram.steps = 6\n");
+    int reached = 0;
+    RunOptions options{.on_step = [&](const ProgramStep& step) { reached = step.index; },
+                       .checkpoint = folder / "kept",
+                       .checkpoint_every = 1};
+    CHECK_FALSE(run(Model(Robot::load(file)), options, until(3, reached)).converged());
+    options.resume = true;
+    test::write(base, test::bar_text("program.gravity = [0, 0, -9.81]\n"));
+    CHECK_THROWS_AS((void)run(Model(Robot::load(file)), options), Failure);
+    test::write(base, test::bar_text());
+    CHECK(run(Model(Robot::load(file)), options).converged());
+}
+
 TEST_CASE("results are written whole, without pictures if they are not wanted, or not at all") {
     const test::Folder folder;
     ProgramResult result = run(Model(bar(six_steps)));

@@ -14,7 +14,7 @@ namespace pliant {
 Robot::Robot(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
 std::string Robot::Data::origin() const {
-    return fmt::format("{}\n{}", fmt::join(changes, "\n"), text);
+    return fmt::format("{}\n{}{}", fmt::join(changes, "\n"), text, base ? "\nstands on\n" + *base : "");
 }
 
 Result<robot::Robot> library::read_again(const Robot::Data& robot, const std::vector<std::string>& more) {
@@ -26,14 +26,18 @@ Result<robot::Robot> library::read_again(const Robot::Data& robot, const std::ve
 Robot Robot::load(const std::filesystem::path& file, const std::vector<std::string>& changes) {
     auto robot = library::value_of(robot::load_robot(file, changes));
     std::string text = library::value_of(read_file(file));
-    return Robot(std::make_shared<const Data>(Data{std::move(robot), std::move(text), file, changes, true}));
+    auto base = library::value_of(robot::base_text(text, file));
+    return Robot(
+        std::make_shared<const Data>(Data{std::move(robot), std::move(text), std::move(base), file, changes, true}));
 }
 
 Robot Robot::parse(std::string_view toml, const std::filesystem::path& folder,
                    const std::vector<std::string>& changes) {
     const std::filesystem::path file = folder / "robot text";
     auto robot = library::value_of(robot::parse_robot(toml, file, changes));
-    return Robot(std::make_shared<const Data>(Data{std::move(robot), std::string(toml), file, changes, false}));
+    auto base = library::value_of(robot::base_text(toml, file));
+    return Robot(
+        std::make_shared<const Data>(Data{std::move(robot), std::string(toml), std::move(base), file, changes, false}));
 }
 
 const std::string& Robot::name() const {

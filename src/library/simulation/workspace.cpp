@@ -14,6 +14,7 @@
 #include "simulation/inverse/workspace_record.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/scene/build_goals.hpp"
+#include "simulation/stepper/state_file.hpp"
 
 namespace pliant {
 namespace {
@@ -37,11 +38,12 @@ public:
         library::check(write_file(folder / origin_name, origin));
         return KeptPieces(folder);
     }
-    static KeptPieces open(const fs::path& folder, const std::string& origin) {
+    /// `older`: how the same search was identified before its mesh was.
+    static KeptPieces open(const fs::path& folder, const std::string& origin, const std::string& older) {
         const Result<std::string> known = read_file(folder / origin_name);
         if (!known)
             throw Failure(Failure::Kind::input, folder.string() + ": holds no search to go on with", folder.string());
-        if (*known != origin)
+        if (*known != origin && *known != older)
             throw Failure(Failure::Kind::input, folder.string() + ": is of another robot file, or of other options",
                           folder.string());
         return KeptPieces(folder);
@@ -71,8 +73,9 @@ std::optional<KeptPieces> open_pieces(const Model::Data& model, const WorkspaceO
             throw Failure(Failure::Kind::input, "a search is to be gone on with, but no checkpoint is named");
         return std::nullopt;
     }
-    const std::string origin = fmt::format("{} {}\n{}", options.side, options.between, model.robot->origin());
-    return options.resume ? KeptPieces::open(options.checkpoint, origin)
+    const std::string search = fmt::format("{} {}\n{}", options.side, options.between, model.robot->origin());
+    const std::string origin = search + "\n" + sim::mesh_digest(model.scene.model.mesh());
+    return options.resume ? KeptPieces::open(options.checkpoint, origin, search)
                           : KeptPieces::create(options.checkpoint, origin);
 }
 

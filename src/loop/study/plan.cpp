@@ -56,7 +56,7 @@ Plan plan_of(const nlohmann::json& json) {
     for (const auto& key : json.at("keys"))
         plan.keys.push_back({key.at("name").get<std::string>(), key.at("set").get<std::string>(),
                              key.at("option").get<std::string>(), key.at("unit").get<std::string>(),
-                             key.at("numeric").get<bool>()});
+                             key.at("numeric").get<bool>(), key.value("gap", " ")});
     for (const auto& result : json.at("results"))
         plan.results.push_back(
             {result.at("name").get<std::string>(), result.at("path").get<std::string>(), result.at("line").get<int>()});
@@ -82,7 +82,7 @@ std::vector<std::string> row_words(const Plan& plan, std::size_t row, const std:
     for (std::string& word : words) word = replaced(std::move(word), "{row}", row_folder.string());
     for (std::size_t k = 0; k < plan.keys.size(); ++k) {
         const Key& key = plan.keys[k];
-        const std::string value = plan.rows[row][k] + (key.unit.empty() ? "" : " " + key.unit);
+        const std::string value = plan.rows[row][k] + (key.unit.empty() ? "" : key.gap + key.unit);
         if (!key.set.empty())
             words.insert(words.end(), {"--set", key.set + "=" + value});
         else if (!key.option.empty())
@@ -112,7 +112,8 @@ std::string plan_json(const Plan& plan) {
                         {"set", key.set},
                         {"option", key.option},
                         {"unit", key.unit},
-                        {"numeric", key.numeric}});
+                        {"numeric", key.numeric},
+                        {"gap", key.gap}});
     for (const Wanted& wanted : plan.results)
         results.push_back({{"name", wanted.name}, {"path", wanted.path}, {"line", wanted.line}});
     const nlohmann::json json = {{"study", plan.study},

@@ -25,11 +25,12 @@ enum class Design {
 
 /// A quantity that changes from row to row, and how it is passed to the command.
 struct Key {
-    std::string name;     ///< name of its column
-    std::string set;      ///< key for `--set`, or
-    std::string option;   ///< option of the command, such as --layer; if neither, the command contains {NAME}
-    std::string unit;     ///< appended to each value; "" for pure numbers and words
-    bool numeric = true;  ///< every value is a number (plus the unit)
+    std::string name;       ///< name of its column
+    std::string set;        ///< key for `--set`, or
+    std::string option;     ///< option of the command, such as --layer; if neither, the command contains {NAME}
+    std::string unit;       ///< appended to each value; "" for pure numbers and words
+    bool numeric = true;    ///< every value is a number (plus the unit)
+    std::string gap = " ";  ///< between a value and the unit
 };
 
 /// A number to be read from the command's JSON.

@@ -85,6 +85,7 @@ std::vector<KeyChoice> read_keys(Reader& root, const std::vector<std::string>& c
         KeyChoice key{read_key(name, table, command), read_choice(table)};
         key.key.unit = key.choice.unit;
         key.key.numeric = key.choice.numeric;
+        key.key.gap = key.choice.gap;
         table.finish();
         keys.push_back(std::move(key));
     }
@@ -301,6 +302,27 @@ Draft read_draft(Reader& root, const StudyContext& context, const fs::path& file
     return draft;
 }
 
+/// The files that a word of the command names: FILE, --x=FILE or NAME=FILE, and the robot that such a file stands on.
+std::vector<fs::path> files_of(const std::string& word, const fs::path& folder) {
+    std::vector<fs::path> files{folder / word};
+    if (const std::size_t sign = word.find('='); sign != std::string::npos)
+        files.push_back(folder / word.substr(sign + 1));
+    std::erase_if(files, [](const fs::path& file) {
+        std::error_code error;
+        return !fs::is_regular_file(file, error);
+    });
+    for (std::size_t k = 0, count = files.size(); k < count; ++k) {
+        if (files[k].extension() != ".toml") continue;
+        const Result<config::Document> document = config::load(files[k]);
+        if (!document) continue;  // the command tells what is wrong with it
+        for (const auto& [key, value] : std::get<config::Table>(document->root.data)) {
+            const auto* name = key == "robot" ? std::get_if<std::string>(&value.data) : nullptr;
+            if (name != nullptr) files.push_back(files[k].parent_path() / *name);
+        }
+    }
+    return files;
+}
+
 /// Rows depend on these bytes: any change makes a different study.
 std::string fingerprint_of(std::string_view text, std::string_view table, const Plan& plan) {
     Digest digest;
@@ -314,10 +336,11 @@ std::string fingerprint_of(std::string_view text, std::string_view table, const 
     add(table);
     constexpr std::uintmax_t largest = std::uintmax_t{64} << 20;
     for (const std::string& word : plan.command) {
-        std::error_code error;
-        const fs::path path = plan.folder / word;
-        if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > largest) continue;
-        if (const auto bytes = read_file(path, largest); bytes) add(*bytes);
+        for (const fs::path& path : files_of(word, plan.folder)) {
+            std::error_code error;
+            if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > largest) continue;
+            if (const auto bytes = read_file(path, largest); bytes) add(*bytes);
+        }
     }
     return digest.text();
 }

@@ -59,6 +59,18 @@ TEST_CASE("keys may also be options and words of the command") {
                                                                  "/o/1/job.zip", "--layer=50 um", "--json"});
 }
 
+TEST_CASE("the command gets listed values as they are written") {
+    const auto words = [](const std::string& values) {
+        return row_words(plan_of("command = [\"simulate\", \"robot_{n}.toml\"]\nplan = \"grid\"\nkey.n = { values = " +
+                                 values + " }\n" + tension),
+                         0, "/o")[1];
+    };
+    CHECK(words("[\"001\", \"002\"]") == "robot_001.toml");
+    CHECK(words("[\"10mm\", \"20mm\"]") == "robot_10mm.toml");
+    CHECK(words("[\"10 mm\", \"20 mm\"]") == "robot_10 mm.toml");
+    CHECK(words("[\"30A\", \"50A\"]") == "robot_30A.toml");
+}
+
 TEST_CASE("samples cover the ranges; a sensitivity plan has n (k + 2) rows") {
     const std::string keys = modulus + "key.pull = { set = \"p\", range = [0.8, 0.9] }\n" + tension;
     for (const std::string design : {"sobol", "latin-hypercube", "sensitivity"}) {
@@ -197,4 +209,25 @@ TEST_CASE("a change of text, table, robot file or version gives another fingerpr
     CHECK(fingerprint(text, "1.1") != first);
     REQUIRE(write_file(folder / "finger.toml", "name = \"b\"\n"));
     CHECK(fingerprint(text, "1.0") != first);
+}
+
+TEST_CASE("a change of a robot that a file stands on, or of a file that an option names, gives another fingerprint") {
+    const pliant::test::Folder folder("study");
+    REQUIRE(write_file(folder / "finger.toml", "robot = \"base.toml\"\n"));
+    REQUIRE(write_file(folder / "base.toml", "name = \"a\"\n"));
+    REQUIRE(write_file(folder / "seen.csv", "tip_x_mm\n1\n"));
+    const auto fingerprint = [&] {
+        const auto plan = parsed(
+            "command = [\"simulate\", \"finger.toml\", \"--measured=seen.csv\"]\nplan = \"grid\"\n" + modulus + tension,
+            folder / "s.toml");
+        REQUIRE(plan);
+        return plan->fingerprint;
+    };
+    const std::string first = fingerprint();
+    CHECK(fingerprint() == first);
+    REQUIRE(write_file(folder / "base.toml", "name = \"b\"\n"));
+    const std::string second = fingerprint();
+    CHECK(second != first);
+    REQUIRE(write_file(folder / "seen.csv", "tip_x_mm\n2\n"));
+    CHECK(fingerprint() != second);
 }

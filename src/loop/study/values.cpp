@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/core/letters.hpp"
+#include "base/core/units.hpp"
 
 namespace pliant::study {
 namespace {
@@ -40,7 +41,8 @@ std::vector<std::string> texts_of(config::Reader& table, std::string_view key) {
     return texts;
 }
 
-/// Splits off the unit if all values are numbers with the same unit.
+/// Splits off the unit if all values are numbers with the same unit. What is left is as written: a value may be part of
+/// a file's name.
 void find_common_unit(Choice& choice) {
     std::vector<Measure> measures;
     for (const std::string& value : choice.values) {
@@ -50,7 +52,9 @@ void find_common_unit(Choice& choice) {
         measures.push_back(*measure);
     }
     choice.unit = measures.front().unit;
-    for (std::size_t k = 0; k < measures.size(); ++k) choice.values[k] = number_text(measures[k].number);
+    const std::string& gap = measures.front().gap;
+    if (std::ranges::all_of(measures, [&](const Measure& m) { return m.gap == gap; })) choice.gap = gap;
+    for (std::size_t k = 0; k < measures.size(); ++k) choice.values[k] = measures[k].written;
 }
 
 void read_range(config::Reader& table, Choice& choice) {
@@ -89,16 +93,16 @@ double number_at(const Choice& choice, double share) {
 
 std::optional<Measure> read_measure(std::string_view text) {
     text = trimmed(text);
-    if (text.starts_with('+')) text.remove_prefix(1);
+    const std::size_t sign = text.starts_with('+') ? 1 : 0;
     double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const auto [end, error] = std::from_chars(text.data() + sign, text.data() + text.size(), number);
     if (error != std::errc{} || !std::isfinite(number)) return std::nullopt;
-    const std::string_view unit = trimmed(text.substr(static_cast<std::size_t>(end - text.data())));
-    // Digits, points or commas after a number mean a version, a list or a date.
-    if (unit.find_first_of(" \t,;:=[]{}\"'") != std::string_view::npos) return std::nullopt;
-    if (!unit.empty() && (unit.front() == '.' || unit.front() == '-' || (unit.front() >= '0' && unit.front() <= '9')))
-        return std::nullopt;
-    return Measure{number, std::string(unit)};
+    const auto digits = static_cast<std::size_t>(end - text.data());
+    const std::string_view rest = text.substr(digits), unit = trimmed(rest);
+    // Anything else behind a number makes it a word: a version, a date, a shore hardness, the name of a file.
+    if (!unit.empty() && !is_unit(unit)) return std::nullopt;
+    return Measure{number, std::string(unit), std::string(text.substr(0, digits)),
+                   std::string(rest.substr(0, rest.size() - unit.size()))};
 }
 
 std::string number_text(double number) {

@@ -10,11 +10,13 @@
 
 namespace pliant::study {
 
-/// "12.5 MPa" as 12.5 and "MPa"; a pure number has no unit. Nothing if the text is not a finite number followed by at
-/// most one word.
+/// "12.5 MPa" as 12.5 and "MPa"; a pure number has no unit. Nothing if the text is not a finite number, alone or before
+/// one unit.
 struct Measure {
     double number = 0;
     std::string unit;
+    std::string written{};  ///< the number as it stands in the text, such as "001"
+    std::string gap{};      ///< what stands between the two
 };
 [[nodiscard]] std::optional<Measure> read_measure(std::string_view text);
 
@@ -23,9 +25,10 @@ struct Measure {
 
 /// The values of a key as given in its table of the study file.
 struct Choice {
-    std::vector<std::string> values;  ///< listed values, without the common unit; if empty, from `low` to `high`
+    std::vector<std::string> values;  ///< listed, as written, without the common unit; if empty, from `low` to `high`
     double low = 0, high = 0;
     std::string unit;
+    std::string gap = " ";  ///< between a value and its unit
     bool numeric = true;
     bool log = false;    ///< equal ratios instead of equal steps
     bool whole = false;  ///< rounded to integers, all equally likely

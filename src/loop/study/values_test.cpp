@@ -44,7 +44,8 @@ TEST_CASE("numbers with units are read") {
     CHECK(measure(" -3e-2mm ") == std::pair(-0.03, std::string("mm")));
     CHECK(measure("+7") == std::pair(7.0, std::string()));
     CHECK(measure("1040 kg/m^3") == std::pair(1040.0, std::string("kg/m^3")));
-    for (const char* text : {"", "neo-hookean", "1.2.3", "1, 2", "[1, 2]", "nan", "inf", "3 mm long", "2026-01-01"}) {
+    for (const char* text : {"", "neo-hookean", "1.2.3", "1, 2", "[1, 2]", "nan", "inf", "3 mm long", "2026-01-01",
+                             "30A", "3D", "1/2", "0x10", "5%", "10mm.stl"}) {
         CAPTURE(text);
         CHECK_FALSE(read_measure(text));
     }
@@ -64,6 +65,17 @@ TEST_CASE("listed numbers of one unit are numeric; others are words") {
     CHECK(one.choice.unit == "MPa");
     CHECK(one.choice.numeric);
     CHECK(one.choice.values == Texts{"5", "12"});
+    const Read written = read("values = [\"001\", \"1e3\", \"+7\"]");
+    CHECK(written.choice.numeric);
+    CHECK(written.choice.values == Texts{"001", "1e3", "+7"});
+    const Read joined = read("values = [\"5.0mm\", \"6.0mm\"]");
+    CHECK(joined.choice.values == Texts{"5.0", "6.0"});
+    CHECK(joined.choice.unit == "mm");
+    CHECK(joined.choice.gap == "");
+    const Read words = read("values = [\"30A\", \"50A\"]");
+    CHECK_FALSE(words.choice.numeric);
+    CHECK(words.choice.unit == "");
+    CHECK(words.choice.values == Texts{"30A", "50A"});
     const Read mixed = read("values = [\"5 MPa\", \"12 kPa\", true]");
     CHECK_FALSE(mixed.choice.numeric);
     CHECK(mixed.choice.values == Texts{"5 MPa", "12 kPa", "true"});

@@ -58,14 +58,6 @@ Result<std::vector<Columns>> read_header(const CsvTable& table, const std::vecto
     return found;
 }
 
-Status check_rows(const CsvTable& table) {
-    for (const CsvRow& row : table.rows)
-        if (row.cells.size() > table.columns.size())
-            return input_error_at(table.file, row.line, "{} columns, the first line names {}", row.cells.size(),
-                                  table.columns.size());
-    return {};
-}
-
 /// The point in a row; empty if one of its cells is.
 Result<std::optional<Vec3>> read_point(const CsvTable& table, const CsvRow& row, const Columns& columns,
                                        const sim::MarkerState& marker) {
@@ -102,7 +94,6 @@ Result<std::vector<MeasuredPath>> parse_measured(std::string_view text, const st
     if (!table) return tl::unexpected(table.error());
     const auto columns = read_header(*table, rest.markers);
     if (!columns) return tl::unexpected(columns.error());
-    if (Status rows = check_rows(*table); !rows) return tl::unexpected(rows.error());
     std::vector<MeasuredPath> paths;
     for (const Columns& of : *columns) {
         const sim::MarkerState& marker = rest.markers[of.marker];

@@ -1,5 +1,8 @@
 #include "presentation/report/workspace_results.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,11 +56,27 @@ Result<std::string> picture(const robot::Robot& robot, const WorkspaceReport& re
     return pictures->front().png;
 }
 
-Status write_marker(const WorkspaceReport& report, std::size_t marker, const fs::path& folder) {
-    std::string name = report.model.description().markers[marker].name;
-    for (char& c : name) {
-        if (c == '/' || c == '\\' || c == '\0') c = '_';
+/// (markers) file names without their ending: the names of the markers where these can be, else with underscores, and
+/// a number where another marker has that name.
+std::vector<std::string> names_of_files(const std::vector<sim::Marker>& markers) {
+    std::vector<std::string> names;
+    for (const sim::Marker& marker : markers) {
+        names.push_back(marker.name);
+        for (char& c : names.back()) {
+            if (c == '/' || c == '\\' || c == '\0') c = '_';
+        }
     }
+    for (std::size_t m = 0; m < names.size(); ++m) {
+        if (names[m] == markers[m].name) continue;
+        const std::string plain = names[m];
+        const auto taken = [&] { return std::ranges::count(names, names[m]) > 1; };
+        for (int number = 2; taken(); ++number) names[m] = fmt::format("{}_{}", plain, number);
+    }
+    return names;
+}
+
+Status write_marker(const WorkspaceReport& report, std::size_t marker, const std::string& name,
+                    const fs::path& folder) {
     const mesh::TriMesh surface = workspace_surface(report.workspace, marker);
     if (!surface.triangles.empty()) {
         Status written = mesh::write_stl(folder / (name + ".stl"), mesh::scaled(surface, mm_per_m));
@@ -73,8 +92,8 @@ Status write_workspace(const fs::path& folder, const robot::Robot& robot, const 
                        Progress& progress) {
     return write_folder(folder, "workspace.json", [&](const fs::path& aside) -> Status {
         Status status = write_file(aside / "workspace.csv", workspace_csv(report));
-        for (std::size_t m = 0; status && m < report.model.description().markers.size(); ++m)
-            status = write_marker(report, m, aside);
+        const std::vector<std::string> names = names_of_files(report.model.description().markers);
+        for (std::size_t m = 0; status && m < names.size(); ++m) status = write_marker(report, m, names[m], aside);
         if (!status) return status;
         if (!report.model.description().markers.empty() && !lines_of(report, 0).empty()) {
             const Result<std::string> png = picture(robot, report, progress);

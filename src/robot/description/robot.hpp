@@ -27,6 +27,7 @@ struct MaterialSpec {
     material::Law law = material::NeoHookean{};
     double youngs_modulus_Pa = 0;
     double poisson_ratio = 0;
+    bool has_bulk_modulus = false;  ///< the file gives bulk_modulus, which determines the Poisson ratio
     double density_kg_m3 = 0;
     std::string resin;                             ///< default: the material's own name
     std::optional<std::array<double, 3>> colour;   ///< sRGB, each in [0, 1]

@@ -205,6 +205,7 @@ void read_hyperelastic(Reader& reader, const std::string& law, MaterialSpec& mat
                                                                   "MPa; a stable solid needs one above zero",
                                                                   shear_formula(law), shear / 1e6));
     const double K = read_bulk(reader, shear > 0 ? shear : 1);
+    material.has_bulk_modulus = reader.has("bulk_modulus");
     if (!constants) return;
     material::Law elastic = *constants;
     if (auto* l = std::get_if<material::MooneyRivlin>(&elastic)) l->bulk_Pa = K;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/core/config_text.hpp"
+#include "base/core/files.hpp"
 #include "base/core/text.hpp"
 
 namespace pliant::robot {
@@ -132,11 +133,30 @@ Status set_all(config::Document& document, const std::vector<std::string>& assig
     return {};
 }
 
+namespace {
+
+fs::path beside(const fs::path& file, const std::string& name) {
+    return (file.parent_path() / name).lexically_normal();
+}
+
+}  // namespace
+
+Result<std::optional<std::string>> base_text(std::string_view text, const fs::path& file) {
+    const Result<config::Document> document = config::parse(text, file);
+    if (!document) return tl::unexpected(document.error());
+    const config::Value* named = entry_of(document->root, "robot");
+    const auto* name = named == nullptr ? nullptr : std::get_if<std::string>(&named->data);
+    if (name == nullptr) return std::nullopt;
+    Result<std::string> base = read_file(beside(file, *name));
+    if (!base) return tl::unexpected(base.error());
+    return std::optional(std::move(*base));
+}
+
 Result<config::Document> on_base(config::Document document) {
     Problems problems(document.file.string());
     Reader root(document.root, problems);
     if (!root.has("robot")) return document;
-    const fs::path file = (document.file.parent_path() / root.text("robot")).lexically_normal();
+    const fs::path file = beside(document.file, root.text("robot"));
     const std::vector<std::string> changes = root.texts("set");
     const config::Value* program = root.raw("program");
     if (program != nullptr && !std::holds_alternative<config::Table>(program->data))

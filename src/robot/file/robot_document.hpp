@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,10 @@ namespace pliant::robot {
 /// Of robot = "FILE.toml" that robot, changed by set = ["KEY=VALUE", ...], with what [program] says here in place of
 /// what it says there. Without that key the document as it is. Errors: of either file; any other key beside those.
 [[nodiscard]] Result<config::Document> on_base(config::Document document);
+
+/// `text` is that of `file`. The text of the robot that it names as robot = "FILE.toml"; none without that key. Errors:
+/// of the text; the named file cannot be read.
+[[nodiscard]] Result<std::optional<std::string>> base_text(std::string_view text, const std::filesystem::path& file);
 
 /// Applies each "KEY=VALUE". Errors: those of config::set(); a material, parameter or shape that the document does not
 /// have and nothing in it uses.

@@ -106,7 +106,8 @@ Slope of_pressure(const Place& at, std::size_t a) {
     return slope;
 }
 
-/// The length of a spring, or its force. Without a given free length, the force depends on the rest length.
+/// The length of a spring, or its force. The free length counts as a number of its own; where none is given, the force
+/// also follows the rest length, which it then is.
 Slope of_spring(const Place& at, std::size_t s, bool force) {
     const SpringPath& path = at.system().springs()[s];
     const Spring& spring = at.system().model().description().springs[s];
@@ -122,10 +123,8 @@ Slope of_spring(const Place& at, std::size_t s, bool force) {
     slope.by_springs.push_back({s, by_length, force && !spring.free_length_m ? -by_length : 0});
     if (!force) return slope;
     slope.direct.push_back({{Parameter::Kind::spring_stiffness, s, "", "", 0, 0}, pull / spring.stiffness_N_m});
-    if (spring.free_length_m) {
-        slope.direct.push_back({{Parameter::Kind::spring_free_length, s, "", "", 0, 0}, -spring.stiffness_N_m});
-        return slope;
-    }
+    slope.direct.push_back({{Parameter::Kind::spring_free_length, s, "", "", 0, 0}, -spring.stiffness_N_m});
+    if (spring.free_length_m) return slope;
     if (slope.by_rest.size() == 0) slope.by_rest = Eigen::VectorXd::Zero(at.state().x.size());
     path.add_length_gradient(view(rest), -spring.stiffness_N_m, view(slope.by_rest));
     return slope;

@@ -15,7 +15,8 @@ namespace pliant::sim {
 struct ProgramGradient {
     double value = 0;                         ///< of the objective
     std::vector<std::vector<double>> values;  ///< (steps, measures)
-    /// With respect to everything except the inputs, which have values of their own at each instant.
+    /// With respect to everything except the inputs, which have values of their own at each instant. Gas that is
+    /// prescribed as a ratio follows the ambient pressure.
     Variation by;
     /// An equilibrium that was solved for: the end of each step and, if a step was halved, the states in between, which
     /// only matter with friction or inertia.

@@ -143,6 +143,16 @@ TEST_CASE("the gradient of a quasi-static program is the sum over its steps") {
     }
 }
 
+TEST_CASE("gas that a program prescribes as a ratio follows the ambient pressure") {
+    Description d = block(1, material::neo_hookean(1e6, 0.4));
+    d.chambers[0].target = {ChamberTarget::Kind::gas_ratio, 1.3};
+    d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.96})};
+    d.cables[0].target.keys = Curve{{0, 1}, {1, 0.96}};
+    d.markers = {{"tip", d.cables[0].points.back()}};
+    const double worst = worst_error(d, {.steps = 2, .tolerance = 1e-11, .solver = Solver::newton, .checks = false});
+    MESSAGE("with sealed gas: ", worst);
+}
+
 TEST_CASE("the gradient of a program in dynamics") {
     for (const Damping& damping : {Damping{20, 0}, Damping{20, 0.004}}) {
         const Program program{.steps = 5,

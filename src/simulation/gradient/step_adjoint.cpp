@@ -61,6 +61,19 @@ void carry_joints(const Linearisation& at, const Eigen::VectorXd& force_weights,
     }
 }
 
+/// A program prescribes gas as a ratio to what the chamber holds at rest: the amount is proportional to the ambient
+/// pressure, whose own derivative holds the amount fixed.
+void add_gas_amounts(Linearisation& at, const Adjoint& adjoint, Eigen::VectorXd& by_parameters) {
+    const std::vector<Parameter> all = parameters(at);
+    const auto ambient = std::ranges::find(all, Parameter::Kind::ambient_pressure, &Parameter::kind);
+    if (ambient == all.end()) return;
+    for (const Parameter& input : inputs(at)) {
+        if (input.kind == Parameter::Kind::gas)
+            by_parameters[ambient - all.begin()] +=
+                input.value / ambient->value * adjoint.derivative(derivative(at, input));
+    }
+}
+
 void carry_nothing(Carried& carried) {
     carried.x.setZero();
     carried.v.setZero();
@@ -132,6 +145,7 @@ Result<Variation> go_back_over(Linearisation& at, const Slope& own, const By& by
     const Result<Adjoint> adjoint = at.adjoint(worth.state);
     if (!adjoint) return tl::unexpected(adjoint.error());
     Variation result = gradient(at, *adjoint, worth, by);
+    if (by.parameters) add_gas_amounts(at, *adjoint, result.parameters);
     add_obstacles(at, carried.obstacles, result.inputs);
     const Eigen::VectorXd weights = at.force_weights(*adjoint);
     if (inertia)

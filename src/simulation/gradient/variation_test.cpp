@@ -85,7 +85,8 @@ Description everything(int order) {
     d.chambers[0].target = {ChamberTarget::Kind::gas_ratio, 1.2};
     d.cables = {flexor(d.mesh, {CableTarget::Kind::length_ratio, 0.97})};
     d.springs = {{"coil", d.cables[0].points, 30, 0.8 * 3 * edge},
-                 {"band", {d.cables[0].points[0], d.cables[0].points[1]}, 10, std::nullopt, true}};
+                 {"band", {d.cables[0].points[0], d.cables[0].points[1]}, 10, std::nullopt, true},
+                 {"tie", {d.cables[0].points[0], d.cables[0].points.back()}, 20}};  // its length at rest is free
     const std::vector<int> end = end_of(d.mesh);
     d.loads = {{"hook", end, std::vector<double>(end.size(), 1.0 / static_cast<double>(end.size())), {0.1, 0, -0.3}}};
     d.pressures = {patch(d.mesh, -1)};

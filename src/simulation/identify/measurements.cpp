@@ -79,13 +79,13 @@ Result<Header> read_header(const CsvTable& table, const sim::Description& robot)
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
         if (Status status = read_column(table, c, robot, header); !status) return tl::unexpected(status.error());
     }
-    if (!header.time && !header.step) {
+    if (!header.step) {
         const auto index = std::ranges::find(table.columns, "index");
-        if (index == table.columns.end())
-            return input_error_at(table.file, table.header_line,
-                                  "no column \"time\" or \"step\" says when each row was measured");
-        header.step = static_cast<std::size_t>(index - table.columns.begin());
+        if (index != table.columns.end()) header.step = static_cast<std::size_t>(index - table.columns.begin());
     }
+    if (!header.time && !header.step)
+        return input_error_at(table.file, table.header_line,
+                              "no column \"time\" or \"step\" says when each row was measured");
     if (header.channels.empty()) {
         std::vector<std::string> names;
         for (const Channel& channel : plain_channels(robot)) names.push_back(channel.column);
@@ -98,12 +98,23 @@ Result<Header> read_header(const CsvTable& table, const sim::Description& robot)
 
 Result<double> read_time(const CsvTable& table, const CsvRow& row, const Header& header,
                          const robot::Program& program) {
-    const bool in_time = header.time.has_value();
-    const std::size_t column = in_time ? *header.time : *header.step;
+    const std::optional<std::size_t> columns[] = {header.time, header.step};
+    std::optional<std::size_t> filled;
+    for (const auto& column : columns) {
+        if (!column || filled) continue;
+        const auto cell = table.cell(row, *column);
+        if (!cell) return tl::unexpected(cell.error());
+        if (!cell->empty()) filled = column;
+    }
+    if (!filled && header.time && header.step)
+        return input_error_at(table.file, row.line, "{} and {} are empty; every row needs one of them",
+                              table.columns[*header.time], table.columns[*header.step]);
+    if (!filled)
+        return input_error_at(table.file, row.line, "{} is empty; every row needs one",
+                              table.columns[header.time ? *header.time : *header.step]);
+    const std::size_t column = *filled;
+    const bool in_time = header.time && column == *header.time;
     const std::string& name = table.columns[column];
-    const auto cell = table.cell(row, column);
-    if (!cell) return tl::unexpected(cell.error());
-    if (cell->empty()) return input_error_at(table.file, row.line, "{} is empty; every row needs one", name);
     const auto number = table.number(row, column, name);
     if (!number) return number;
     const double end = in_time ? program.duration : program.steps;
@@ -149,9 +160,6 @@ bool is_judged(JudgeOn judge, std::size_t row, std::size_t rows) {
 Status read_row(const CsvTable& table, std::size_t r, const Header& header, const robot::Program& program,
                 JudgeOn judge, std::vector<MeasuredValue>& values) {
     const CsvRow& row = table.rows[r];
-    if (row.cells.size() > table.columns.size())
-        return input_error_at(table.file, row.line, "{} columns, the first line names {}", row.cells.size(),
-                              table.columns.size());
     const auto time = read_time(table, row, header, program);
     if (!time) return tl::unexpected(time.error());
     bool judged = is_judged(judge, r, table.rows.size());

@@ -46,6 +46,11 @@ TEST_CASE("rows are read by time or by step, with empty cells and scatters") {
     CHECK(m.values[1].scatter == 0);
     const Measurements steps = bar.read("step,tip_x_mm\n1,59\n2.5,58\n");
     CHECK(steps.values[1].time == near(1.25, {.relative = 1e-12}));
+    const Measurements either = bar.read("time,step,tip_x_mm\n0.5,,59\n,3,58,,\n1,1,57\n");
+    REQUIRE(either.values.size() == 3);
+    CHECK(either.values[0].time == near(0.5, {.relative = 1e-12}));
+    CHECK(either.values[1].time == near(1.5, {.relative = 1e-12}));
+    CHECK(either.values[2].time == near(1, {.relative = 1e-12}));
 }
 
 TEST_CASE("rows can be held out for validation") {
@@ -82,6 +87,8 @@ TEST_CASE("errors in measurements name file and line") {
         "time,tip_x_mm,tip_z_mm_scatter\n1,59,0.1\n",
         "m.csv:1: column \"tip_z_mm_scatter\" is the scatter of \"tip_z_mm\", which is not a column of the table");
     check_problem("time,tip_x_mm\n0.5,59\n,58\n", "m.csv:3: time is empty; every row needs one");
+    check_problem("time,step,tip_x_mm\n0.5,,59\n,,58\n",
+                  "m.csv:3: time and step are empty; every row needs one of them");
     check_problem("time,tip_x_mm\n3,59\n", "m.csv:2: time 3 is outside the program, which goes from 0 to 2");
     check_problem("step,tip_x_mm\n-1,59\n", "m.csv:2: step -1 is outside the program, which goes from 0 to 4");
     check_problem("time,tip_x_mm\n1,5 9\n", "m.csv:2: tip_x_mm \"5 9\" is not a number");

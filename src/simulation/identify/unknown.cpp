@@ -89,14 +89,17 @@ void add_material(const robot::MaterialSpec& m, Collector& to) {
         const double shear = material::moduli(m.law).shear_Pa;
         for (const auto& constant : material::parameters(m.law)) {
             const std::string key = owner + key_of_constant(constant.name);
-            if (constant.name == "bulk_modulus")
-                to.positive(key, "Pa", constant.value);
-            else if (constant.value > 0)
+            if (constant.name == "bulk_modulus") continue;
+            if (constant.value > 0)
                 to.positive(key, constant.unit, constant.value);
             else
                 to.any(key, constant.unit, constant.value, constant.unit.empty() ? 1 : shear);
         }
-        to.poisson(owner + "poisson_ratio", m.poisson_ratio);
+        // A file that has one of them refuses the other.
+        if (m.has_bulk_modulus)
+            to.positive(owner + "bulk_modulus", "Pa", material::moduli(m.law).bulk_Pa);
+        else
+            to.poisson(owner + "poisson_ratio", m.poisson_ratio);
     }
     to.positive(owner + "density", "kg/m^3", m.density_kg_m3);
 }

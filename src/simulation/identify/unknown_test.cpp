@@ -50,6 +50,24 @@ TEST_CASE("every number that a robot offers as unknown can be set with --set") {
     }
 }
 
+TEST_CASE("of the bulk modulus and Poisson's ratio that one is offered which the file uses") {
+    const std::string two_moduli = "youngs_modulus = \"0.7 MPa\", poisson_ratio = 0.42";
+    const std::string constants = "law = \"yeoh\", c10 = \"0.2 MPa\", ";
+    for (const std::string given : {"bulk_modulus = \"2 MPa\"", "poisson_ratio = 0.42"}) {
+        Bar bar(many_parameters);
+        bar.text.replace(bar.text.find(two_moduli), two_moduli.size(), constants + given);
+        const auto robot = robot::parse_robot(bar.text, "bar.toml");
+        REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+        std::vector<std::string> offered;
+        for (const Unknown& unknown : possible_unknowns(*robot)) {
+            if (!unknown.key.ends_with("soft.bulk_modulus") && !unknown.key.ends_with("soft.poisson_ratio")) continue;
+            offered.push_back(unknown.key);
+            CHECK(robot::parse_robot(bar.text, "bar.toml", {unknown.assignment(unknown.value)}));
+        }
+        CHECK(offered == std::vector<std::string>{"material.soft." + given.substr(0, given.find(' '))});
+    }
+}
+
 TEST_CASE("the free length of a spring begins at its path as drawn where the file gives none") {
     const Bar bar(many_parameters);
     CHECK(find_unknown(bar.robot(), "spring.bow.free_length")->value == near(0.07, {.relative = 1e-12}));
