@@ -117,6 +117,13 @@ void lead_paths(config::Value& value, const fs::path& from, const fs::path& to) 
     }
 }
 
+/// Without ".." where that is the same file: behind a folder that is a link it is another one.
+fs::path readable_path(const fs::path& path) {
+    std::error_code ignored;
+    fs::path shorter = path.lexically_normal();
+    return fs::equivalent(path, shorter, ignored) ? shorter : path;
+}
+
 }  // namespace
 
 Status set_all(config::Document& document, const std::vector<std::string>& assignments) {
@@ -136,7 +143,7 @@ Result<config::Document> on_base(config::Document document) {
     Problems problems(document.file.string());
     Reader root(document.root, problems);
     if (!root.has("robot")) return document;
-    const fs::path file = (document.file.parent_path() / root.text("robot")).lexically_normal();
+    const fs::path file = readable_path(document.file.parent_path() / root.text("robot"));
     const std::vector<std::string> changes = root.texts("set");
     const config::Value* program = root.raw("program");
     if (program != nullptr && !std::holds_alternative<config::Table>(program->data))
