@@ -142,6 +142,19 @@ TEST_CASE("whether an extension can be written is known before there is a mesh")
     CHECK_FALSE(check_tet_ending("a.inp", Encoding::text));
 }
 
+TEST_CASE("a byte order mark in front of a text is no part of it") {
+    const pliant::test::Folder folder("marked");
+    const std::string mark = "\xEF\xBB\xBF";
+    for (const char* name : {"a.vtk", "a.msh", "a.mesh", "a.inp"}) {
+        const bool two_forms = check_tet_ending(name, Encoding::text).has_value();
+        REQUIRE(write_tet_mesh(folder / name, curved_tets(), two_forms ? Encoding::text : Encoding::binary));
+        check_same(parse_tet_mesh(mark + read_file(folder / name).value(), "a"), curved_tets());
+    }
+    REQUIRE(write_file(folder / "t.node", mark + tetgen_nodes));
+    REQUIRE(write_file(folder / "t.ele", mark + tetgen_tets));
+    CHECK(read_tet_mesh(folder / "t.node"));
+}
+
 TEST_CASE("formats are recognised by their first words") {
     CHECK(tet_format(tetgen_nodes) == TetFormat::tetgen_nodes);
     CHECK(tet_format(tetgen_tets) == TetFormat::tetgen_tets);
