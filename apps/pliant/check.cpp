@@ -71,10 +71,6 @@ Result<std::string> check_printer(const std::string& file) {
                        counted(printer->vats.size(), "vat"), printer->projector.width_px, printer->projector.height_px);
 }
 
-tl::unexpected<Error> no_assignments(const std::string& file) {
-    return input_error("{}: is no robot file; --set changes the keys of one", file);
-}
-
 /// Robot and printer files are distinguished by keys that only one of them has.
 Result<std::string> check_toml(const std::string& file, const CheckOptions& options, Progress& progress) {
     const Result<config::Document> document = config::load(file);
@@ -161,7 +157,7 @@ Result<std::string> check_geometry(const std::string& file) {
 
 Result<std::string> check(const std::string& file, const CheckOptions& options, Progress& progress) {
     if (options.firmware) return check_boards(file, options);
-    const std::string extension = std::filesystem::path(file).extension().string();
+    const std::string extension = lower_extension(file);
     if (extension == ".toml") return check_toml(file, options, progress);
     if (!options.assignments.empty()) return no_assignments(file);
     if (extension == ".zip") return check_job(file, options);

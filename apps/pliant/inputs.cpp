@@ -21,13 +21,6 @@ bool one_of(std::string_view word, const std::array<std::string_view, N>& words)
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-std::string lower_extension(const fs::path& file) {
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
-    return extension;
-}
-
 /// `parameters`, `name` and `material` are not used: both kinds may have the first two, a typing error the last.
 FileKind kind_of_toml(const fs::path& file) {
     constexpr std::array<std::string_view, 10> of_printers{"axis",  "projector", "vat",      "tower",    "vat_shape",
@@ -180,6 +173,10 @@ Result<robot::Robot> read_robot(const std::string& file, const std::vector<std::
     return robot::load_robot(file, assignments);
 }
 
+tl::unexpected<Error> no_assignments(const std::string& file) {
+    return input_error("{}: is no robot file; --set changes the keys of one", file);
+}
+
 Result<operate::OpenJob> read_job(const std::string& file) {
     Result<operate::OpenJob> job = operate::open_job(file);
     if (job) return job;
@@ -203,7 +200,7 @@ Result<job::Archive> read_archive(const std::string& file) {
 
 Status check_ending(std::string_view option, const std::string& file, std::string_view what, std::string_view ending) {
     const fs::path path(file);
-    if (file.empty() || path.extension() == ending) return {};
+    if (file.empty() || lower_extension(path) == ending) return {};
     return input_error("{} {}: {} ends in {}, as in {}", option, file, what, ending,
                        fs::path(path).replace_extension(ending).string());
 }

@@ -38,6 +38,9 @@ struct PrinterText {
 /// Errors: those of robot::load_robot; another kind of file.
 [[nodiscard]] Result<robot::Robot> read_robot(const std::string& file, const std::vector<std::string>& assignments);
 
+/// For `--set` with a file that is no robot file.
+[[nodiscard]] tl::unexpected<Error> no_assignments(const std::string& file);
+
 /// Errors: those of operate::open_job; another kind of file.
 [[nodiscard]] Result<operate::OpenJob> read_job(const std::string& file);
 /// Errors: those of operate::prove_job; another kind of file.

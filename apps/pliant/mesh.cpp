@@ -41,7 +41,7 @@ mesh::Encoding encoding(const MeshOptions& options) {
 }
 
 bool is_robot_file(const std::string& file) {
-    return std::filesystem::path(file).extension() == ".toml";
+    return lower_extension(file) == ".toml";
 }
 
 Result<robot::Robot> load(const MeshOptions& options) {
@@ -52,7 +52,7 @@ Result<robot::Robot> load(const MeshOptions& options) {
 
 /// A robot is more than its mesh: as .inp it is written as a deck that CalculiX can run.
 Status write_robot(const MeshOptions& options, const robot::Robot& robot, const mesh::TetMesh& mesh_m) {
-    if (std::filesystem::path(options.output_file).extension() != ".inp") {
+    if (lower_extension(options.output_file) != ".inp") {
         // Files use the robot's own length unit, as the drawing did.
         return mesh::write_tet_mesh(options.output_file, mesh::scaled(mesh_m, 1 / robot.unit_m), encoding(options));
     }
@@ -153,7 +153,12 @@ Status mesh_file(const MeshOptions& options) {
         (!options.output_file.empty() || !options.picture_file.empty() || options.output.json))
         return input_error("-o, --picture and --json need exactly one robot or mesh file");
     if (Status places = check_file_places({options.output_file, options.picture_file}); !places) return places;
-    if (!options.output_file.empty()) return is_robot_file(options.files.front()) ? build(options) : convert(options);
+    for (const std::string& file : options.files)
+        if (!options.assignments.empty() && !is_robot_file(file)) return no_assignments(file);
+    if (!options.output_file.empty()) {
+        if (Status known = mesh::check_tet_ending(options.output_file, encoding(options)); !known) return known;
+        return is_robot_file(options.files.front()) ? build(options) : convert(options);
+    }
     if (options.text) return input_error("--text is the encoding of a mesh that is written; name it with -o");
     for (const std::string& file : options.files) {
         if (is_robot_file(file))

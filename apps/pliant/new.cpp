@@ -1,6 +1,7 @@
 // pliant new: creates a robot or printer file from a built-in one.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/core/config.hpp"
 #include "base/core/files.hpp"
 #include "base/core/letters.hpp"
 #include "base/core/text.hpp"
@@ -77,8 +79,11 @@ tl::unexpected<Error> no_such_template(const std::string& name, std::span<const 
 Status check_name(const std::optional<std::string>& wanted) {
     const std::string name = wanted.value_or("-");
     if (trimmed(name).empty()) return input_error("--name: the name is empty");
-    if (name.find_first_of("\"\\\n\r") == std::string::npos) return {};
-    return input_error("--name {}: must have no quotes, backslashes or line breaks", name);
+    if (name.find_first_of("\"\\") != std::string::npos || std::ranges::any_of(name, is_control))
+        return input_error("--name {}: must have no quotes, backslashes, line breaks or control characters",
+                           one_line(name));
+    if (!config::parse("name = \"" + name + "\"", "--name")) return input_error("--name: is not UTF-8 text");
+    return {};
 }
 
 Status make(const NewOptions& options) {

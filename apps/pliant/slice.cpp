@@ -148,7 +148,7 @@ Status slice(SliceOptions& options) {
     on_signal(OnSignal::leave);  // no output is written while reading and meshing
     const prepare::Order& order = options.order;
     for (const std::string& input : order.inputs) {
-        if (!input.ends_with(".toml")) continue;
+        if (lower_extension(input) != ".toml") continue;
         if (Status status = expect(FileKind::robot, input); !status) return status;
     }
     Result<prepare::Drawing> drawing = prepare::read_drawing(order.inputs, order.assignments, *progress);

@@ -9,6 +9,7 @@
 
 #include "base/core/config.hpp"
 #include "base/core/files.hpp"
+#include "base/core/letters.hpp"
 #include "base/core/parse_all.hpp"
 #include "base/core/text.hpp"
 #include "base/core/toml_nesting.hpp"
@@ -102,6 +103,14 @@ std::vector<std::string> child_names(const Value& parent) {
     return names;
 }
 
+/// As in 100,5: a comma between two digits.
+bool has_decimal_comma(std::string_view text) {
+    for (std::size_t i = 1; i + 1 < text.size(); ++i) {
+        if (text[i] == ',' && is_digit(text[i - 1]) && is_digit(text[i + 1])) return true;
+    }
+    return false;
+}
+
 bool is_formula(const Value& value) {
     const auto* text = std::get_if<std::string>(&value.data);
     return text != nullptr && !text->empty() && text->front() == '=';
@@ -118,7 +127,13 @@ public:
         const std::string formula = std::get<std::string>(value.data).substr(1);
         try {
             parser_.SetExpr(formula);
-            const double result = parser_.Eval();
+            // Between commas outside of a function muParser sees several formulas; Eval() would give the last one.
+            int count = 0;
+            const double result = *parser_.Eval(count);
+            if (count != 1)
+                return input_error_at(file_, value.line, "{}: \"={}\" {}", key, formula,
+                                      has_decimal_comma(formula) ? "has a decimal comma; write a point"
+                                                                 : "has several values; one is needed");
             if (std::isfinite(result)) return result;
             return input_error_at(file_, value.line, "{}: \"={}\" is not a finite number", key, formula);
         } catch (const mu::ParserError& error) {

@@ -260,6 +260,21 @@ TEST_CASE("a formula that names what is no parameter says where it stands and wh
           "test.toml:4: body[0].at[1]: \"= ptch / 2\": there is no parameter \"ptch\"; did you mean \"pitch\"?");
 }
 
+TEST_CASE("a formula with a decimal comma, or with several values, is refused") {
+    const auto refused = [](const std::string& text) {
+        Document document = document_of(text);
+        return resolve_parameters(document).error().message;
+    };
+    CHECK(refused("x = [\"= 100,5\", 10]\n") == "test.toml:1: x[0]: \"= 100,5\" has a decimal comma; write a point");
+    CHECK(refused("[parameters]\na = \"= 1,5 * 2\"\n") ==
+          "test.toml:2: parameters.a: \"= 1,5 * 2\" has a decimal comma; write a point");
+    CHECK(refused("[parameters]\na = 1\n[body]\nx = \"= a, 2\"\n") ==
+          "test.toml:4: body.x: \"= a, 2\" has several values; one is needed");
+    Document document = document_of("x = \"= max(1,5) + min(2, 3)\"\n");
+    REQUIRE(resolve_parameters(document));
+    CHECK(std::get<double>(std::get<Table>(document.root.data).front().second.data) == 7);
+}
+
 TEST_CASE("the beginning of one known key is taken for that key") {
     Document document = document_of("fix = 1\n");
     Problems problems("test.toml");

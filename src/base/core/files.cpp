@@ -11,6 +11,8 @@
 #include <system_error>
 #include <thread>
 
+#include "base/core/letters.hpp"
+
 namespace pliant {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
@@ -33,6 +35,10 @@ tl::unexpected<Error> unknown_place(const fs::path& path, const std::error_code&
 }
 
 }  // namespace
+
+std::string lower_extension(const fs::path& path) {
+    return lower_case(path.extension().string());
+}
 
 Result<std::string> read_file(const fs::path& path, std::uintmax_t limit_bytes) {
     if (path.empty()) return no_name();

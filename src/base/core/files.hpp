@@ -13,6 +13,9 @@
 
 namespace pliant {
 
+/// ".toml", also of PART.TOML.
+[[nodiscard]] std::string lower_extension(const std::filesystem::path& path);
+
 /// The contents of a regular file of at most `limit_bytes`.
 [[nodiscard]] Result<std::string> read_file(const std::filesystem::path& path,
                                             std::uintmax_t limit_bytes = std::uintmax_t{4} << 30);

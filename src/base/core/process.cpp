@@ -89,6 +89,10 @@ std::string end_text(const ProcessEnd& end) {
     return fmt::format("exit status {}", WIFEXITED(end.status) ? WEXITSTATUS(end.status) : end.status);
 }
 
+bool was_killed(const ProcessEnd& end) {
+    return WIFSIGNALED(end.status) && WTERMSIG(end.status) == SIGKILL;
+}
+
 ProcessEnd ChildProcess::end() {
     if (process_ < 0) return end_;
     ::kill(process_, SIGKILL);

@@ -37,6 +37,9 @@ struct ProcessEnd {
 /// "signal 9: Killed" or "exit status 1".
 [[nodiscard]] std::string end_text(const ProcessEnd& end);
 
+/// By a signal that it cannot catch, as the system does when memory is short.
+[[nodiscard]] bool was_killed(const ProcessEnd& end);
+
 /// A process from start_process(), killed with its owner.
 class ChildProcess {
 public:

@@ -32,13 +32,6 @@ bool looks_like_ply(std::string_view bytes) {
     return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
 }
 
-/// Without the byte order mark that some editors put in front of a text.
-std::string_view without_mark(std::string_view bytes) {
-    constexpr std::string_view mark = "\xEF\xBB\xBF";
-    const bool text = bytes.substr(0, 4096).find('\0') == std::string_view::npos;
-    return bytes.substr(text && bytes.starts_with(mark) ? mark.size() : 0);
-}
-
 Result<SurfaceFile> parse_any(std::string_view bytes, const std::string& name) {
     if (looks_like_ply(bytes)) return parse_ply(bytes, name);
     if (looks_like_off(bytes)) return parse_off(bytes, name);

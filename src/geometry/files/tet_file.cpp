@@ -2,6 +2,7 @@
 
 #include "base/core/files.hpp"
 #include "geometry/files/tet_format.hpp"
+#include "geometry/files/text_scanner.hpp"
 
 namespace pliant::mesh {
 namespace {
@@ -20,13 +21,15 @@ Result<TetMesh> read_tetgen_pair(const std::filesystem::path& path, const std::s
         return input_error("{}: holds the {} of a TetGen mesh; the {} are missing: {}", path.string(),
                            has_nodes ? "points" : "tetrahedra", has_nodes ? "tetrahedra" : "points",
                            rest.error().message);
-    if (has_nodes) return parse_tetgen(bytes, path.string(), *rest, other.string());
-    return parse_tetgen(*rest, other.string(), bytes, path.string());
+    const std::string_view here = without_mark(bytes), there = without_mark(*rest);
+    if (has_nodes) return parse_tetgen(here, path.string(), there, other.string());
+    return parse_tetgen(there, other.string(), here, path.string());
 }
 
 }  // namespace
 
 Result<TetMesh> parse_tet_mesh(std::string_view bytes, const std::string& name) {
+    bytes = without_mark(bytes);
     const std::optional<TetFormat> format = tet_format(bytes);
     if (!format) return unknown_format(name);
     switch (*format) {

@@ -66,6 +66,7 @@ std::optional<TetFormat> text_format(std::string_view head) {
 }  // namespace
 
 std::optional<TetFormat> tet_format(std::string_view bytes) {
+    bytes = without_mark(bytes);
     if (bytes.starts_with("# vtk")) return TetFormat::vtk;
     const std::string_view head = bytes.substr(0, head_bytes);
     if (head.substr(0, 4096).find("<VTKFile") != std::string_view::npos) return TetFormat::vtu;

@@ -119,7 +119,7 @@ TEST_CASE("a file of tets of 4 and 10 nodes becomes one quadratic mesh that shar
 
 TEST_CASE("a file's extension decides how it is written, its content how it is read") {
     const pliant::test::Folder folder("formats");
-    for (const char* name : {"a.vtk", "a.vtu", "a.msh", "a.mesh", "a.inp"}) {
+    for (const char* name : {"a.vtk", "a.vtu", "a.msh", "a.mesh", "a.inp", "B.VTK", "B.Mesh"}) {
         REQUIRE(write_tet_mesh(folder / name, curved_tets()));
         std::filesystem::rename(folder / name, folder / "nameless");
         check_same(read_tet_mesh(folder / "nameless"), curved_tets());
@@ -132,6 +132,27 @@ TEST_CASE("a file's extension decides how it is written, its content how it is r
         REQUIRE(mesh);
         CHECK(mesh->region_names == std::vector<std::string>{"-4"});
     }
+}
+
+TEST_CASE("whether an extension can be written is known before there is a mesh") {
+    for (const char* name : {"a.vtk", "a.vtu", "a.msh", "a.mesh", "a.inp", "B.VTK"})
+        CHECK(check_tet_ending(name, Encoding::binary));
+    for (const char* name : {"a", "a.xyz", "vtk"}) CHECK_FALSE(check_tet_ending(name, Encoding::binary));
+    CHECK(check_tet_ending("a.msh", Encoding::text));
+    CHECK_FALSE(check_tet_ending("a.inp", Encoding::text));
+}
+
+TEST_CASE("a byte order mark in front of a text is no part of it") {
+    const pliant::test::Folder folder("marked");
+    const std::string mark = "\xEF\xBB\xBF";
+    for (const char* name : {"a.vtk", "a.msh", "a.mesh", "a.inp"}) {
+        const bool two_forms = check_tet_ending(name, Encoding::text).has_value();
+        REQUIRE(write_tet_mesh(folder / name, curved_tets(), two_forms ? Encoding::text : Encoding::binary));
+        check_same(parse_tet_mesh(mark + read_file(folder / name).value(), "a"), curved_tets());
+    }
+    REQUIRE(write_file(folder / "t.node", mark + tetgen_nodes));
+    REQUIRE(write_file(folder / "t.ele", mark + tetgen_tets));
+    CHECK(read_tet_mesh(folder / "t.node"));
 }
 
 TEST_CASE("formats are recognised by their first words") {

@@ -13,10 +13,15 @@ namespace pliant::mesh {
 /// Number encoding of .vtk and .msh files. The other formats have only one.
 enum class Encoding { binary, text };
 
-/// The format follows the extension: .vtk (legacy), .vtu, .msh (Gmsh 4.1), .mesh (Medit) or .inp (Abaqus and CalculiX:
-/// nodes, elements and sets, no materials). Coordinates are written without loss, regions with their names.
+/// The format follows the extension, in capitals too: .vtk (legacy), .vtu, .msh (Gmsh 4.1), .mesh (Medit) or .inp
+/// (Abaqus and CalculiX: nodes, elements and sets, no materials). Coordinates are written without loss, regions with
+/// their names.
 [[nodiscard]] Status write_tet_mesh(const std::filesystem::path& path, const TetMesh& mesh,
                                     Encoding encoding = Encoding::binary);
+
+/// Whether write_tet_mesh() knows the extension, and whether it has the encoding `text` if that is asked for: before
+/// the mesh is made.
+[[nodiscard]] Status check_tet_ending(const std::filesystem::path& path, Encoding encoding);
 
 /// For messages.
 inline constexpr std::string_view tet_writer_list = ".vtk, .vtu, .msh, .mesh or .inp";

@@ -17,6 +17,12 @@ std::string_view shortened(std::string_view word) {
 
 }  // namespace
 
+std::string_view without_mark(std::string_view bytes) {
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    const bool text = bytes.substr(0, 4096).find('\0') == std::string_view::npos;
+    return bytes.substr(text && bytes.starts_with(mark) ? mark.size() : 0);
+}
+
 /// In "\r\n" the second character ends the line; the first counts as a blank.
 bool TextScanner::at_line_end() const {
     return text_[at_] == '\n' || (text_[at_] == '\r' && text_.substr(at_ + 1, 1) != "\n");

@@ -9,6 +9,9 @@
 
 namespace pliant::mesh {
 
+/// Without the byte order mark that some editors put in front of a text; any other bytes unchanged.
+[[nodiscard]] std::string_view without_mark(std::string_view bytes);
+
 class TextScanner {
 public:
     TextScanner(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {}

@@ -30,7 +30,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int look_every_ms = 50;  // interval of checks for cancellation
-constexpr double start_s = 60;     // allows for loading Open CASCADE from a slow disk
+constexpr double start_s = 600;    // allows for loading Open CASCADE from a slow disk of a machine with much to do
 
 constexpr double longest_s = 1e9, most_gigabytes = 1e9;  // more is as good as no limit
 constexpr const char* seconds_name = "PLIANT_MESH_SECONDS";
@@ -158,6 +158,14 @@ struct Patience {
     std::uint64_t most_bytes = std::numeric_limits<std::uint64_t>::max();
 };
 
+/// Why it closed its pipe. `crash`: what to say if it ended by itself.
+tl::unexpected<Error> ended(const ProcessEnd& end, const std::string& crash) {
+    if (!was_killed(end)) return failure("{} ({})", crash, end_text(end));
+    return failure(
+        "pliant-mesh was killed, as happens when memory runs out; take a larger mesh size, or end other programs ({})",
+        end_text(end));
+}
+
 Clock::time_point in_seconds(double s) {
     return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
 }
@@ -171,7 +179,7 @@ Result<Message> next_message(Worker& worker, const Patience& patience, const std
         const Received received = worker.pipe().receive(message, look_every_ms, patience.most_bytes);
         if (received == Received::too_large) return failure("{}", other_program);
         if (received == Received::message) return message;
-        if (received == Received::closed) return failure("{} ({})", crash, end_text(worker.process().let_end()));
+        if (received == Received::closed) return ended(worker.process().let_end(), crash);
         if (Clock::now() > patience.until) return failure("{}", patience.late);
     }
 }

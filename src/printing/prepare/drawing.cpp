@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/core/files.hpp"
 #include "base/core/text.hpp"
 #include "geometry/mesher/mesher.hpp"
 #include "geometry/mesher/step_file.hpp"
@@ -166,7 +167,7 @@ Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress) {
 
 Result<Drawing> read_drawing(const std::vector<std::string>& inputs, const std::vector<std::string>& assignments,
                              Progress& progress) {
-    if (inputs.size() == 1 && std::filesystem::path(inputs.front()).extension() == ".toml") {
+    if (inputs.size() == 1 && lower_extension(inputs.front()) == ".toml") {
         const Result<robot::Robot> robot = robot::load_robot(inputs.front(), assignments);
         if (!robot) return tl::unexpected(robot.error());
         return drawing_of(*robot, progress);
@@ -175,7 +176,7 @@ Result<Drawing> read_drawing(const std::vector<std::string>& inputs, const std::
         return input_error("--set {}: changes the keys of a robot file, and there is none", assignments.front());
     Drawing drawing;
     for (const std::string& input : inputs) {
-        if (std::filesystem::path(input).extension() == ".toml")
+        if (lower_extension(input) == ".toml")
             return input_error("{}: a robot file must be the only input; for other files write MATERIAL=FILE", input);
         if (auto status = add_file(input, drawing); !status) return tl::unexpected(status.error());
     }

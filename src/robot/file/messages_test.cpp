@@ -1,9 +1,12 @@
 // Robot files with one mistake: one message, at the key, that the value does not satisfy.
 #include <doctest/doctest.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "base/core/files.hpp"
+#include "base/core/test_folder.hpp"
 #include "base/core/test_text.hpp"
 #include "robot/file/robot_file.hpp"
 
@@ -196,6 +199,21 @@ TEST_CASE("names that are blank, or that of the key of a time, are refused") {
     CHECK(only(neo, load + "[[program.key]]\ntime = \"1 s\"\n")
               .starts_with("program.key[0].time: says when the key holds"));
     CHECK(only(neo, load).empty());
+}
+
+TEST_CASE("a base robot is found through a folder that is a link, and named without detours otherwise") {
+    namespace fs = std::filesystem;
+    const pliant::test::Folder folder("linked");
+    fs::create_directories(folder / "real" / "sub");
+    fs::create_directory_symlink(folder / "real" / "sub", folder / "link");
+    REQUIRE(write_file(folder / "real" / "robot.toml", head + neo + body));
+    REQUIRE(write_file(folder / "real" / "sub" / "changed.toml", "robot = \"../robot.toml\"\nset = [\"name=7\"]\n"));
+    for (const std::string sub : {"real/sub", "link"}) {
+        const Result<Robot> robot = load_robot(folder / sub / "changed.toml");
+        REQUIRE_FALSE(robot);
+        const std::string shown = (sub == "link" ? folder / "link" / ".." : folder / "real").string();
+        CHECK(robot.error().message.starts_with(shown + "/robot.toml"));
+    }
 }
 
 TEST_CASE("a table where a list of tables belongs is the only thing told") {

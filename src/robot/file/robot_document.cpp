@@ -118,6 +118,17 @@ void lead_paths(config::Value& value, const fs::path& from, const fs::path& to) 
     }
 }
 
+/// Without ".." where that is the same file: behind a folder that is a link it is another one.
+fs::path readable_path(const fs::path& path) {
+    std::error_code ignored;
+    fs::path shorter = path.lexically_normal();
+    return fs::equivalent(path, shorter, ignored) ? shorter : path;
+}
+
+fs::path beside(const fs::path& file, const std::string& name) {
+    return readable_path(file.parent_path() / name);
+}
+
 }  // namespace
 
 Status set_all(config::Document& document, const std::vector<std::string>& assignments) {
@@ -132,14 +143,6 @@ Status set_all(config::Document& document, const std::vector<std::string>& assig
     }
     return {};
 }
-
-namespace {
-
-fs::path beside(const fs::path& file, const std::string& name) {
-    return (file.parent_path() / name).lexically_normal();
-}
-
-}  // namespace
 
 Result<std::optional<std::string>> base_text(std::string_view text, const fs::path& file) {
     const Result<config::Document> document = config::parse(text, file);
