@@ -156,12 +156,15 @@ Result<std::string> check_geometry(const std::string& file) {
 }
 
 Result<std::string> check(const std::string& file, const CheckOptions& options, Progress& progress) {
-    if (options.firmware) return check_boards(file, options);
     const std::string extension = lower_extension(file);
+    const bool is_program = extension == ".gcode" || extension == ".g" || extension == ".gco";
+    if (options.cancel_after >= 0 && (options.firmware || !is_program))
+        return input_error("{}: is no G-code file; --cancel-after ends a G-code program", file);
+    if (options.firmware) return check_boards(file, options);
     if (extension == ".toml") return check_toml(file, options, progress);
     if (!options.assignments.empty()) return no_assignments(file);
     if (extension == ".zip") return check_job(file, options);
-    if (extension == ".gcode" || extension == ".g" || extension == ".gco") return check_program(file, options);
+    if (is_program) return check_program(file, options);
     return check_geometry(file);
 }
 
@@ -192,7 +195,12 @@ void add_check(CLI::App& app, int& status) {
     command->footer("Example: pliant check examples/cable_gripper/gripper.toml examples/printers/tower.toml");
     command->callback([options, &status] {
         if (!options->port.empty() && options->firmware) options->files.push_back(options->port);
-        if (options->files.empty()) status = report({Cause::input, "give files to check, or --firmware with --port"});
+        if (options->files.empty()) {
+            status = report({Cause::input, "give files to check, or --firmware with --port"});
+        } else if (!options->port.empty() && !options->firmware) {
+            status = report({Cause::input, "--port goes with --firmware"});
+            options->files.clear();
+        }
         nlohmann::json results = nlohmann::json::array();
         for (const std::string& file : options->files) {
             auto progress = terminal_progress(options->output);

@@ -65,6 +65,29 @@ int list_ports(const Output& output) {
     return exit_done;
 }
 
+/// An option that would do nothing is a mistake.
+Status check_given_options(const PrintOptions& options) {
+    const LiveOptions& live = options.live;
+    const auto refuse = [](const char* option, const char* needed) {
+        return input_error("{} goes with {}", option, needed);
+    };
+    if (options.twin) {
+        if (!live.clock_file.empty()) return refuse("--clock", "--port");
+        if (!live.emergency_line.empty()) return refuse("--emergency-line", "--port");
+        if (!live.projector.empty()) return refuse("--projector", "--port");
+        if (live.resume)
+            return input_error("--resume needs --port DEVICE; the virtual printer of --twin ends with its command");
+    } else {
+        if (!options.accepted.empty()) return refuse("--accept", "--twin");
+        if (!options.faults.empty()) return refuse("--fault", "--twin, or with pliant twin");
+        if (!live.verdict.empty()) return refuse("-o", "--twin");
+        if (live.projector.empty()) return input_error("say where the light comes from: --projector DISPLAY or FOLDER");
+    }
+    if (!live.resume && live.assume_lit_s) return refuse("--assume-lit", "--resume");
+    if (!live.resume && live.assume_vats_untouched) return refuse("--assume-vats-untouched", "--resume");
+    return {};
+}
+
 Result<int> print(PrintOptions& options) {
     if (options.list_ports) return list_ports(options.live.output);
     if (options.live.job.empty()) return input_error("name the job to print, such as gripper.zip");
@@ -73,22 +96,15 @@ Result<int> print(PrintOptions& options) {
         return report_on_journal(options.live);
     if (options.twin == !options.live.port.empty())
         return input_error("say where to print: --port DEVICE (see --list-ports) or --twin");
-    if (options.twin && !options.live.clock_file.empty()) return input_error("--clock goes with --port");
-    if (options.twin && !options.live.emergency_line.empty()) return input_error("--emergency-line goes with --port");
-    if (!options.twin && !options.accepted.empty()) return input_error("--accept goes with --twin");
+    if (Status given = check_given_options(options); !given) return tl::unexpected(given.error());
     auto accepted = twin::accepted_findings(options.accepted);
     if (!accepted) return input_error("--accept: {}", accepted.error().message);
     options.live.accepted = std::move(*accepted);
-    if (!options.twin && !options.faults.empty()) return input_error("--fault goes with --twin, or with pliant twin");
     for (const std::string& text : options.faults) {
         const Result<twin::Fault> fault = twin::parse_fault(text);
         if (!fault) return tl::unexpected(fault.error());
         options.live.faults.push_back(*fault);
     }
-    if (options.twin && options.live.resume)
-        return input_error("--resume needs --port DEVICE; the virtual printer of --twin ends with its command");
-    if (!options.twin && options.live.projector.empty())
-        return input_error("say where the light comes from: --projector DISPLAY or FOLDER");
     outlive_readers();
     if (options.twin && !options.given_speed) return print_virtual(options.live);
     return print_live(options.live);

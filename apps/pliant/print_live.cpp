@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "interrupt.hpp"
 #include "presentation/print_report/print_report.hpp"
 #include "print_vats.hpp"
+#include "printed.hpp"
 #include "printing/host/control.hpp"
 #include "printing/host/replace_journal.hpp"
 #include "printing/operate/job_file.hpp"
@@ -270,6 +272,13 @@ void show_hint(const operate::PrintCall& call, const operate::ReadyJob& ready, s
     fmt::print(stderr, "resume with: {}\n", operate::resume_command(call));
 }
 
+nlohmann::json result_at_port(const Ended& ended) {
+    const host::Snapshot& last = ended.last;
+    return {{"finished", last.finished},     {"can_resume", last.can_resume},  {"message", last.message},
+            {"layers", last.layers},         {"layers_begun", last.layer + 1}, {"seconds", last.seconds_done},
+            {"lines_sent", last.lines_sent}, {"resends", last.resends}};
+}
+
 Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready) {
     if (options.resume) {
         if (Status there = operate::expect_journal(ready.job.journal, options.job); !there)
@@ -288,8 +297,11 @@ Result<int> print_on_port(const LiveOptions& options, operate::ReadyJob& ready) 
     if (!ended->last.finished && !options.output.quiet)
         show_hint({options.job, port, options.journal, options.after_layer, options.report, options.resume}, ready,
                   before);
-    if (Status written = write_report(options, ready, ended->last, nullptr); !written)
-        return tl::unexpected(written.error());
+    if (ended->last.begun_s) {  // else the journal and an older page are of another print
+        if (Status written = write_report(options, ready, ended->last, nullptr); !written)
+            return tl::unexpected(written.error());
+    }
+    if (options.output.json) print_json(result_at_port(*ended));
     return ended->status;
 }
 

@@ -137,6 +137,12 @@ Status run_twin(const TwinOptions& options) {
     }
     Result<twin::Pty> pty = twin::Pty::open(options.link);
     if (!pty) return tl::unexpected(pty.error());
+    std::optional<operate::ClockFile> clock;  // there before the twin says that it is
+    if (!options.clock.empty()) {
+        auto made = operate::ClockFile::create(options.clock);
+        if (!made) return tl::unexpected(made.error());
+        clock.emplace(std::move(*made));
+    }
     twin::Twin twin(*printer, *wanted);
     if (!options.output.quiet && !options.output.json) {
         fmt::print("{} on {}, {} baud; Ctrl-C ends it\n", printer->name,
@@ -149,11 +155,7 @@ Status run_twin(const TwinOptions& options) {
     serve.stop = [&] { return interrupted() || (options.seconds && twin.now() > *options.seconds); };
     FolderProjector projector(std::filesystem::path(options.projector) / "shown.png");
     if (!options.projector.empty()) serve.lights = [&](twin::Twin& t) { return projector.look(t); };
-    std::optional<operate::ClockFile> clock;
-    if (!options.clock.empty()) {
-        auto made = operate::ClockFile::create(options.clock);
-        if (!made) return tl::unexpected(made.error());
-        clock.emplace(std::move(*made));
+    if (clock) {
         serve.longest_step_s = 0.1 / options.speed;  // on the machine's clock
         serve.tick = [&](double now_s) { clock->set(now_s); };
     }

@@ -558,6 +558,19 @@ TEST_CASE("a failed start at the wrong port leaves no journal: the next start pr
     killed.must_finish();
 }
 
+TEST_CASE("a failed start leaves the journal of the print that finished before it") {
+    ControlBench b;
+    b.must_finish();
+    const std::string finished = read_file(b.journal()).value();
+    REQUIRE_FALSE(finished.empty());
+    b.life->unplugged = true;
+    b.start();
+    CHECK(b.last_error().find("the device is gone") != std::string::npos);
+    CHECK_FALSE(b.snapshot().begun_s);
+    CHECK(read_file(b.journal()).value() == finished);
+    CHECK_FALSE(b.snapshot().can_resume);
+}
+
 TEST_CASE("a board just started, one that resets when its port opens, and one losing 10 % of its oks all print") {
     for (const auto release : both_releases) {
         CAPTURE(machine::name_of(release));

@@ -216,6 +216,25 @@ TEST_CASE("a virtual print replaces neither the journal of an interrupted print 
     CHECK(b.text("job.json") == job);
 }
 
+TEST_CASE("an option that would do nothing is refused") {
+    const Bench b("tower");
+    for (const auto& [call, said] : {
+             std::pair<std::string, std::string>{"print halves.zip --twin --projector .",
+                                                 "--projector goes with --port"},
+             {"print halves.zip --twin --assume-lit 1", "--assume-lit goes with --resume"},
+             {"print halves.zip --port none --projector . --assume-lit 1", "--assume-lit goes with --resume"},
+             {"print halves.zip --port none --projector . --assume-vats-untouched",
+              "--assume-vats-untouched goes with --resume"},
+             {"print halves.zip --port none --projector . -o r.json", "-o goes with --twin"},
+             {"check halves.zip --cancel-after 3", "--cancel-after ends a G-code program"},
+             {"check halves.zip --port none", "--port goes with --firmware"},
+         }) {
+        CAPTURE(call);
+        CHECK(b.shell("$PLIANT " + call, "said") == 2);
+        CHECK(test::holds(b.text("said"), said));
+    }
+}
+
 TEST_CASE("-o writes the verdict of a virtual print, in real time too") {
     const Bench b("tower");
     REQUIRE(b.shell("$PLIANT print halves.zip --twin -q --speed 200 -o verdict.json", "said") == 0);

@@ -36,6 +36,7 @@ public:
     [[nodiscard]] std::optional<double> lit_s(long light) override {
         return light == last_ ? std::nullopt : std::optional(0.0);
     }
+    void forget() override { last_ = 0; }
 
 private:
     long last_ = 0;

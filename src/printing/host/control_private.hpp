@@ -82,7 +82,10 @@ struct Control::Private {
     [[nodiscard]] Status find_last_line();
     [[nodiscard]] Status keep_line_numbers();
     void forget_line();
-    [[nodiscard]] Status new_session(Journal* journal, const JournalFacts& facts, const Standing& standing);
+    [[nodiscard]] long begin_numbers(const JournalFacts& facts, const Standing& standing);
+    [[nodiscard]] Status note_session(Journal& journal, long base, const Standing& standing) const;
+    [[nodiscard]] Status connect_machine(long base, Journal* journal);
+    [[nodiscard]] Status begin_journal(Journal& journal, long base, const Standing& standing);
     void close();
     void do_connect();
     void do_start(const StartOptions& options, bool abandon);

@@ -193,19 +193,23 @@ void Control::Private::look_at_journal() {
     desk.update([&](Snapshot& s) { s.can_resume = interrupted; });
 }
 
-/// Sets new line numbers, and records them in the journal before the controller gets them.
-Status Control::Private::new_session(Journal* journal, const JournalFacts& facts, const Standing& standing) {
-    const long base = new_base(setup.clock, std::max({last_line, last_base, facts.base}));
-    last_base = base;
+/// The first line number of a new session of the machine, which then stands there.
+long Control::Private::begin_numbers(const JournalFacts& facts, const Standing& standing) {
+    last_base = new_base(setup.clock, std::max({last_line, last_base, facts.base}));
     machine->stand(standing.state);
-    if (journal != nullptr) {
-        const auto noted =
-            journal->append("session", {{"base", fmt::format("{}", base)},
-                                        {"before", fmt::format("{}", wire_line > 0 ? wire_line : -1)},
-                                        {"boot", setup.clock_name ? *setup.clock_name : boot_name().value_or("")},
-                                        {"state", write_state(standing.state.state())}});
-        if (!noted) return tl::unexpected(noted.error());
-    }
+    return last_base;
+}
+
+Status Control::Private::note_session(Journal& journal, long base, const Standing& standing) const {
+    const auto noted =
+        journal.append("session", {{"base", fmt::format("{}", base)},
+                                   {"before", fmt::format("{}", wire_line > 0 ? wire_line : -1)},
+                                   {"boot", setup.clock_name ? *setup.clock_name : boot_name().value_or("")},
+                                   {"state", write_state(standing.state.state())}});
+    return noted ? Status{} : tl::unexpected(noted.error());
+}
+
+Status Control::Private::connect_machine(long base, Journal* journal) {
     if (Status status = machine->connect(base); !status) return status;
     note_firmware();
     machine->keep(journal);
@@ -234,6 +238,17 @@ Status Control::Private::check_journal(const JournalFacts& facts) const {
     return {};
 }
 
+/// The journal of the previous print gives way to that of this one. Call when the machine is ready: a start that fails
+/// before leaves the old one.
+Status Control::Private::begin_journal(Journal& journal, long base, const Standing& standing) {
+    if (Status status = journal.clear(); !status) return status;
+    if (setup.guard != nullptr) setup.guard->forget();
+    JournalValues values{{"job", job->name}, {"digest", job->digest}, {"printer", setup.printer.name}, {"format", "1"}};
+    if (!job->vats.empty()) values.emplace_back("vats", job->vats);
+    if (const auto begun = journal.append("begin", values); !begun) return tl::unexpected(begun.error());
+    return note_session(journal, base, standing);
+}
+
 Result<Ending> Control::Private::print_anew(Journal* journal) {
     if (journal != nullptr) {
         const auto facts = facts_of(journal->records());
@@ -247,18 +262,15 @@ Result<Ending> Control::Private::print_anew(Journal* journal) {
                 job->journal.string());
         }
         may_be_halted = may_be_halted || facts->halted;
-        if (Status status = journal->clear(); !status) return tl::unexpected(status.error());
-        JournalValues values{
-            {"job", job->name}, {"digest", job->digest}, {"printer", setup.printer.name}, {"format", "1"}};
-        if (!job->vats.empty()) values.emplace_back("vats", job->vats);
-        if (const auto begun = journal->append("begin", values); !begun) return tl::unexpected(begun.error());
     }
-    Status ready = open();
-    if (ready) ready = new_session(journal, {}, {machine::Interlock(setup.printer), false});
-    if (ready) ready = preflight();
-    if (!ready) {
-        if (journal != nullptr) (void)journal->clear();  // nothing has begun yet
-        return tl::unexpected(ready.error());
+    if (Status status = open(); !status) return tl::unexpected(status.error());
+    const Standing standing{machine::Interlock(setup.printer), false};
+    const long base = begin_numbers({}, standing);
+    if (Status status = connect_machine(base, nullptr); !status) return tl::unexpected(status.error());
+    if (Status status = preflight(); !status) return tl::unexpected(status.error());
+    if (journal != nullptr) {
+        if (Status status = begin_journal(*journal, base, standing); !status) return tl::unexpected(status.error());
+        machine->keep(journal);
     }
     PrintRun run({setup, *job, script, times, *machine, journal, desk}, {});
     Result<Ending> ending = run.print();
@@ -286,8 +298,11 @@ Result<Ending> Control::Private::go_on(const StartOptions& options, bool abandon
     const auto recovery = recovery_of(*facts, script, setup.printer, *standing);
     if (!recovery) return tl::unexpected(recovery.error());
     if (const auto possible = setup.programs.resume(*recovery); !possible) return tl::unexpected(possible.error());
-    if (Status status = new_session(&journal, *facts, {recovery->state, false}); !status)
-        return tl::unexpected(status.error());
+    const Standing from{recovery->state, false};
+    const long base = begin_numbers(*facts, from);
+    // Before the controller gets its new line numbers, the journal knows them.
+    if (Status status = note_session(journal, base, from); !status) return tl::unexpected(status.error());
+    if (Status status = connect_machine(base, &journal); !status) return tl::unexpected(status.error());
     if (Status status = preflight(); !status) return tl::unexpected(status.error());
     PrintRun run({setup, *job, script, times, *machine, &journal, desk}, std::move(*facts));
     Result<Ending> ending = abandon ? run.abandon(*recovery) : run.resume(*recovery);

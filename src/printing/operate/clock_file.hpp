@@ -11,7 +11,7 @@ namespace pliant::operate {
 
 class ClockFile final : public host::Clock {
 public:
-    /// For the printer: creates the file.
+    /// For the printer: creates the file, in place of an older clock. Errors: the file is there and is no clock.
     [[nodiscard]] static Result<ClockFile> create(const std::filesystem::path& path);
     /// For the host. Errors: no such file, or not a clock.
     [[nodiscard]] static Result<ClockFile> open(const std::filesystem::path& path);
@@ -25,7 +25,6 @@ public:
 
 private:
     explicit ClockFile(double* seconds) : seconds_(seconds) {}
-    [[nodiscard]] static Result<ClockFile> map(const std::filesystem::path& path, bool make);
     double* seconds_ = nullptr;
 };
 

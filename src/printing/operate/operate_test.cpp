@@ -92,6 +92,23 @@ TEST_CASE("host and virtual printer share a clock through a file") {
     CHECK(moved.now() == 14.5);
 }
 
+TEST_CASE("a new clock takes the place of an old one, which a host may still read") {
+    const pliant::test::Folder folder;
+    const auto path = folder.path() / "clock";
+    {
+        const auto before = ClockFile::create(path);
+        REQUIRE(before.has_value());
+        before->set(3);
+    }
+    const auto host = ClockFile::open(path);
+    REQUIRE(host.has_value());
+    const auto printer = ClockFile::create(path);
+    REQUIRE(printer.has_value());
+    CHECK(printer->now() == 0);
+    printer->set(7);
+    CHECK(host->now() == 3);
+}
+
 TEST_CASE("waiting for an answer ends by the printer's clock, and does not outlast the printer") {
     const pliant::test::Folder folder;
     const auto clock = ClockFile::create(folder.path() / "clock");
@@ -112,6 +129,7 @@ TEST_CASE("a file that is not a clock is refused, and not changed") {
         const auto clock = ClockFile::open(path);
         REQUIRE_FALSE(clock.has_value());
         CHECK(clock.error().message == path.string() + ": not the clock of a virtual printer");
+        CHECK_FALSE(ClockFile::create(path).has_value());
         CHECK(read_file(path).value() == text);
     }
     CHECK_FALSE(ClockFile::create(folder.path() / "none/clock").has_value());

@@ -153,4 +153,8 @@ std::optional<double> ProcessGuard::lit_s(long light) {
     return found;
 }
 
+void ProcessGuard::forget() {
+    ::unlink(options_.witness.c_str());
+}
+
 }  // namespace pliant::operate

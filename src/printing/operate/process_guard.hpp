@@ -33,6 +33,7 @@ public:
     void lit(double now_s) override;
     void dark(double now_s) override;
     [[nodiscard]] std::optional<double> lit_s(long light) override;
+    void forget() override;
 
 private:
     ProcessGuard(FileHandle line, int process, Options options)

@@ -210,6 +210,10 @@ Status set_exposure(const std::string& text, const machine::Printer& printer, jo
     if (!choice) return tl::unexpected(choice.error());
     if (!choice->layers && !given.insert(choice->material).second)
         return input_error("--exposure {}: the exposure of \"{}\" is given twice", text, choice->material);
+    const double most_s = std::max(choice->seconds, choice->bottom_s.value_or(0));
+    if (most_s > printer.limits.exposure_s)
+        return input_error("--exposure {}: {:g} s for \"{}\", the limit of {} is {:g} s", text, most_s,
+                           choice->material, printer.name, printer.limits.exposure_s);
     job::Material& material = *std::ranges::find(settings.materials, choice->material, &job::Material::name);
     apply(*choice, material, settings);
     const machine::Resin* resin = printer.find_resin(material.resin);

@@ -264,6 +264,18 @@ TEST_CASE("--exposure sets all layers of a material, its first layers, or some l
     for (const char* wrong : {"soft:5-2=3 s", "soft:-1-2=3 s", "soft:=3 s", "soft:1-=3 s", "soft:1-2=3 s,4 s"})
         CHECK(refused_settings([&](Order& o) { o.exposures = {wrong}; }).find("layers are FIRST-LAST") !=
               std::string::npos);
+    for (const char* wrong : {"soft=61 s", "soft=3 s,61 s", "soft:2-4=61 s"}) {
+        Order order;
+        order.exposures = {wrong};
+        Drawing drawing = two_blocks();
+        machine::Printer limited = printer();
+        limited.name = "small";
+        limited.limits.exposure_s = 60;
+        const auto refused = job_settings(order, limited, {}, drawing);
+        REQUIRE(!refused.has_value());
+        CHECK(refused.error().message ==
+              fmt::format("--exposure {}: 61 s for \"soft\", the limit of small is 60 s", wrong));
+    }
     CHECK(refused_settings([](Order& o) { o.exposures = {"hard=3 s"}; }).find("there is no material \"hard\"") !=
           std::string::npos);
     CHECK(refused_settings([](Order& o) { o.exposures = {"soft=3 mm"}; }).find("--exposure soft=3 mm: ") == 0);

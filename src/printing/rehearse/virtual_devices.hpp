@@ -55,6 +55,7 @@ public:
     void lit(double now_s) override;
     void dark(double now_s) override;
     [[nodiscard]] std::optional<double> lit_s(long light) override;
+    void forget() override { seen_ = -1; }
     /// Simulates the host's death at this moment; the light goes off.
     void host_died();
 

@@ -60,7 +60,30 @@ private:
     std::vector<double> border_;
 };
 
+/// Of `count` cells, `step` apart from the first at `from`: keeps those that are marked, as both of their neighbours
+/// are.
+void keep_surrounded(std::vector<std::uint8_t>& cells, std::size_t from, std::size_t step, int count) {
+    std::uint8_t before = 0;
+    for (int i = 0; i < count; ++i, from += step) {
+        const std::uint8_t here = cells[from], after = i + 1 < count ? cells[from + step] : 0;
+        cells[from] = before != 0 && here != 0 && after != 0 ? 1 : 0;
+        before = here;
+    }
+}
+
 }  // namespace
+
+std::vector<std::uint8_t> surrounded(const CellGrid& grid, std::vector<std::uint8_t> solid) {
+    const std::size_t row = static_cast<std::size_t>(grid.nx), slab = row * static_cast<std::size_t>(grid.ny);
+    for (int z = 0; z < grid.nz; ++z) {
+        for (int y = 0; y < grid.ny; ++y) keep_surrounded(solid, grid.at(0, y, z), 1, grid.nx);
+        for (int x = 0; x < grid.nx; ++x) keep_surrounded(solid, grid.at(x, 0, z), row, grid.ny);
+    }
+    for (int y = 0; y < grid.ny; ++y) {
+        for (int x = 0; x < grid.nx; ++x) keep_surrounded(solid, grid.at(x, y, 0), slab, grid.nz);
+    }
+    return solid;
+}
 
 std::vector<float> squared_distances(const CellGrid& grid, const std::vector<std::uint8_t>& solid, double height) {
     std::vector<float> d(grid.size());

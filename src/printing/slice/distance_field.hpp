@@ -23,4 +23,7 @@ struct CellGrid {
 [[nodiscard]] std::vector<float> squared_distances(const CellGrid& grid, const std::vector<std::uint8_t>& solid,
                                                    double height);
 
+/// The cells that are `solid`, as all of the 26 around them are; cells outside the grid are not.
+[[nodiscard]] std::vector<std::uint8_t> surrounded(const CellGrid& grid, std::vector<std::uint8_t> solid);
+
 }  // namespace pliant::slice

@@ -11,7 +11,13 @@
 namespace pliant::slice {
 namespace {
 
-/// The grid of cells over pixels and layers.
+/// The first and the last slab of cells that a layer reaches into.
+struct Slabs {
+    int first = 0, last = 0;
+};
+
+/// The grid of cells over pixels and layers. If all layers are of one thickness, a slab of cells is some of them;
+/// else a layer may reach into two slabs.
 struct Cells {
     CellGrid grid;
     int edge_px = 1;
@@ -19,8 +25,19 @@ struct Cells {
     double height_um = 0;
     int layer_count = 0;
 
-    [[nodiscard]] int slab_of(const Layers& layers, int k) const {
-        return static_cast<int>(layers.middle2_um(k) / 2.0 / height_um);
+    [[nodiscard]] Slabs slabs_of(const Layers& layers, int k) const {
+        constexpr double rounding = 1e-6;
+        const int first = std::min(static_cast<int>(layers.bottom_um(k) / height_um + rounding), grid.nz - 1);
+        const int end = static_cast<int>(std::ceil(layers.top_um(k) / height_um - rounding));
+        return {first, std::clamp(end - 1, first, grid.nz - 1)};
+    }
+    /// Whether the cavity takes the pixels of this cell from a layer: a wall must not get thinner by a layer that
+    /// reaches into it.
+    [[nodiscard]] bool takes(const std::vector<std::uint8_t>& hollow, int x, int y, Slabs slabs) const {
+        for (int z = slabs.first; z <= slabs.last; ++z) {
+            if (hollow[grid.at(x, y, z)] == 0) return false;
+        }
+        return true;
     }
 };
 
@@ -56,19 +73,19 @@ public:
 private:
     [[nodiscard]] RunSet cavity(int layer) const {
         RunSet set(raster_.width_px, raster_.height_px);
-        const int z = cells_.slab_of(layers_, layer);
-        if (z >= cells_.grid.nz || layer >= cells_.layer_count) return set;
+        if (layer >= cells_.layer_count) return set;
+        const Slabs slabs = cells_.slabs_of(layers_, layer);
         for (int y = 0; y < cells_.grid.ny; ++y) {
-            const std::vector<PixelSpan> spans = row_of(y, z);
+            const std::vector<PixelSpan> spans = row_of(y, slabs);
             for (int r = 0; r < cells_.edge_px; ++r) set.append_row(cells_.top_px + y * cells_.edge_px + r, spans);
         }
         return set;
     }
 
-    [[nodiscard]] std::vector<PixelSpan> row_of(int y, int z) const {
+    [[nodiscard]] std::vector<PixelSpan> row_of(int y, Slabs slabs) const {
         std::vector<PixelSpan> spans;
         for (int x = 0; x < cells_.grid.nx; ++x) {
-            if (hollow_[cells_.grid.at(x, y, z)] == 0) continue;
+            if (!cells_.takes(hollow_, x, y, slabs)) continue;
             const int begin = cells_.left_px + x * cells_.edge_px, end = begin + cells_.edge_px;
             if (!spans.empty() && spans.back().end == begin)
                 spans.back().end = end;
@@ -112,7 +129,8 @@ public:
         mark_hollow();
         Hollowing result;
         std::vector<Drain> drains = find_cavities(result);
-        if (result.cavities == 0)
+        result.volume_mm3 = volume_mm3();
+        if (result.volume_mm3 == 0)
             return input_error("hollow: nothing of the part lies {:.4g} mm deep inside of it", wanted_.wall_um / 1000);
         result.drains = static_cast<int>(drains.size());
         result.removed = std::make_shared<CavityRemoval>(raster_, layers_, cells_, std::move(hollow_),
@@ -151,7 +169,7 @@ private:
         cells_.edge_px = std::max(1, static_cast<int>(wanted_.wall_um / 10 / raster_.pixel_um));
         for (;; ++cells_.edge_px) {
             const double edge_um = cells_.edge_px * raster_.pixel_um;
-            cells_.height_um = std::max<double>(edge_um, layers_.thickness_um(0));
+            cells_.height_um = height_of(edge_um);
             cells_.grid = {std::max(0, right - left) / cells_.edge_px + 1,
                            std::max(0, bottom - top) / cells_.edge_px + 1,
                            static_cast<int>(height_um / cells_.height_um) + 1};
@@ -161,13 +179,27 @@ private:
         cells_.top_px = std::min(top, bottom);
     }
 
-    /// A cell is solid if every pixel of every layer in it is.
+    /// Of a cell: about its edge, but whole layers if all are of one thickness, and no less than the thickest.
+    [[nodiscard]] double height_of(double edge_um) const {
+        constexpr double rounding = 1e-6;
+        int thickest_um = layers_.thickness_um(0);
+        for (int k = 0; k < cells_.layer_count; ++k) thickest_um = std::max(thickest_um, layers_.thickness_um(k));
+        if (layers_.alike()) return thickest_um * std::max(1.0, std::ceil(edge_um / thickest_um - rounding));
+        return std::max<double>(edge_um, thickest_um);
+    }
+
+    /// A cell is solid if every pixel of every layer that reaches into it is. One that the part's top ends in is not.
     Status fill_solid(Progress& progress) {
         const CellGrid& g = cells_.grid;
         solid_.assign(g.size(), 0);
         std::vector<std::vector<int>> layers_of(static_cast<std::size_t>(g.nz));
-        for (int k = 0; k < cells_.layer_count; ++k)
-            layers_of[static_cast<std::size_t>(cells_.slab_of(layers_, k))].push_back(k);
+        for (int k = 0; k < cells_.layer_count; ++k) {
+            const Slabs slabs = cells_.slabs_of(layers_, k);
+            for (int z = slabs.first; z <= slabs.last; ++z) layers_of[static_cast<std::size_t>(z)].push_back(k);
+        }
+        constexpr double rounding_um = 1e-3;
+        const int top_um = layers_.top_um(cells_.layer_count - 1);
+        if (g.nz * cells_.height_um > top_um + rounding_um) layers_of.back().clear();
         constexpr std::size_t batch = layers_at_once;
         for (std::size_t first = 0; first < layers_of.size(); first += batch) {
             if (progress.cancelled()) return cancelled();
@@ -202,14 +234,32 @@ private:
         });
     }
 
-    /// Half a cell because a cavity extends to the border of its cells, and one more because a wall may end anywhere in
-    /// its last cell.
+    /// A cell is hollow if the way from its border to that of any cell that is not solid is as long as the wall, in
+    /// every direction: the way between the centres of this cell and a neighbour of that one.
     void mark_hollow() {
+        constexpr double rounding = 1e-5;
         const double edge_um = cells_.edge_px * raster_.pixel_um;
-        const double least = wanted_.wall_um / edge_um + 1.5;
-        const std::vector<float> squares = squared_distances(cells_.grid, solid_, cells_.height_um / edge_um);
+        const double least = wanted_.wall_um / edge_um * (1 - rounding);
+        const std::vector<float> squares =
+            squared_distances(cells_.grid, surrounded(cells_.grid, solid_), cells_.height_um / edge_um);
         hollow_.assign(squares.size(), 0);
         for (std::size_t i = 0; i < squares.size(); ++i) hollow_[i] = squares[i] >= least * least ? 1 : 0;
+    }
+
+    /// What the cavities take from the layers.
+    [[nodiscard]] double volume_mm3() const {
+        const CellGrid& g = cells_.grid;
+        const double cell_mm2 = std::pow(cells_.edge_px * raster_.pixel_um / 1000, 2);
+        double volume = 0;
+        for (int k = 0; k < cells_.layer_count; ++k) {
+            const Slabs slabs = cells_.slabs_of(layers_, k);
+            long taken = 0;
+            for (int y = 0; y < g.ny; ++y) {
+                for (int x = 0; x < g.nx; ++x) taken += cells_.takes(hollow_, x, y, slabs) ? 1 : 0;
+            }
+            volume += cell_mm2 * static_cast<double>(taken) * layers_.thickness_um(k) / 1000;
+        }
+        return volume;
     }
 
     struct Cell {
@@ -220,14 +270,12 @@ private:
         std::vector<Drain> drains;
         std::vector<std::uint8_t> seen(hollow_.size(), 0);
         const CellGrid& g = cells_.grid;
-        const double cell_mm3 = std::pow(cells_.edge_px * raster_.pixel_um, 2) * cells_.height_um / 1e9;
         for (int z = 0; z < g.nz; ++z) {
             for (int y = 0; y < g.ny; ++y) {
                 for (int x = 0; x < g.nx; ++x) {
                     if (hollow_[g.at(x, y, z)] == 0 || seen[g.at(x, y, z)] != 0) continue;
                     const std::vector<Cell> cavity = flood({x, y, z}, seen);
                     ++result.cavities;
-                    result.volume_mm3 += cell_mm3 * static_cast<double>(cavity.size());
                     if (wanted_.drain_um > 0) drill(cavity, drains, result);
                 }
             }

@@ -28,11 +28,11 @@ struct Hollowing {
 
 /// The volume to remove from a part that is sliced with `settings`: everything at least the wall thickness away from
 /// all space outside the part (the platform counts as outside), whatever the material. Computed on cells of about a
-/// tenth of the wall (exact squared distances by Felzenszwalb and Huttenlocher 2012), rounded to the safe side: no wall
-/// is thinner than requested, some are up to a quarter thicker. Every cavity that is high enough gets two drains, at
-/// its lowest and its highest place, sideways by the shortest way along x or y of the image. Errors: check(), what
-/// Slicer::prepare rejects, no place thick enough, cancellation. Memory: 13 bytes per cell, at most 60 million cells
-/// (beyond, coarser cells are used).
+/// tenth of the wall, no lower than a layer (exact squared distances by Felzenszwalb and Huttenlocher 2012), rounded to
+/// the safe side: no wall, floor or ceiling is thinner than requested, some are up to two cells thicker. Every cavity
+/// that is high enough gets two drains, at its lowest and its highest place, sideways by the shortest way along x or y
+/// of the image. Errors: check(), what Slicer::prepare rejects, no place thick enough, cancellation. Memory: 14 bytes
+/// per cell, at most 60 million cells (beyond, coarser cells are used).
 [[nodiscard]] Result<Hollowing> hollow_out(std::span<const Body> part, const Settings& settings,
                                            const HollowSettings& hollow, Progress& progress);
 

@@ -23,11 +23,12 @@ struct HollowOutcome {
     Hollowing hollowing;
 };
 
-HollowOutcome hollowed(const std::vector<Body>& part, const HollowSettings& wanted) {
+HollowOutcome hollowed(const std::vector<Body>& part, const HollowSettings& wanted,
+                       const Settings& settings = hollow_slicing) {
     Progress progress;
-    auto made = hollow_out(part, hollow_slicing, wanted, progress);
+    auto made = hollow_out(part, settings, wanted, progress);
     REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
-    Settings with = hollow_slicing;
+    Settings with = settings;
     with.removed = made->removed;
     const auto slicer = Slicer::prepare(part, with);
     REQUIRE(slicer.has_value());
@@ -36,7 +37,8 @@ HollowOutcome hollowed(const std::vector<Body>& part, const HollowSettings& want
     for (int k = 0; k < slicer->layer_count(); ++k) {
         const SlicedLayer layer = slicer->layer(k);
         for (const MaterialImage& m : layer.images)
-            outcome.volume_mm3 += static_cast<double>(m.value_sum) / 255 * 0.001;
+            outcome.volume_mm3 +=
+                static_cast<double>(m.value_sum) / 255 * 0.01 * slicer->layers().thickness_um(k) / 1000;
         inspector.add(shape_of(layer, hollow_slicing.raster.width_px));
     }
     outcome.findings = inspector.finish();
@@ -82,16 +84,54 @@ TEST_CASE("a block becomes a closed box whose walls have at least the given thic
     CHECK(cavity.first_layer >= 20);
     CHECK(cavity.last_layer <= 79);
     const double most = 12 * 8 * 6, least = 11 * 7 * 5;  // walls of 2 mm, and of 2.5
-    CHECK(16 * 12 * 10 - o.volume_mm3 <= most);
+    CHECK(16 * 12 * 10 - o.volume_mm3 <= most * (1 + 1e-9));
     CHECK(16 * 12 * 10 - o.volume_mm3 >= least);
     CHECK(16 * 12 * 10 - o.volume_mm3 == near(o.hollowing.volume_mm3, {.relative = 1e-9}));
+}
+
+TEST_CASE("floors and ceilings have the given thickness, too, where layers are thick") {
+    for (const int layer_um : {100, 200, 250, 400}) {
+        for (const double wall_um : {500.0, 600.0, 1000.0}) {
+            CAPTURE(layer_um);
+            CAPTURE(wall_um);
+            Settings settings = hollow_slicing;
+            settings.layer_um = layer_um;
+            const HollowOutcome o = hollowed(block, {wall_um, 0}, settings);
+            REQUIRE(o.findings.cavities.size() == 1);
+            const Cavity& cavity = o.findings.cavities[0];
+            const int floor_um = cavity.first_layer * layer_um, ceiling_um = 10000 - (cavity.last_layer + 1) * layer_um;
+            CHECK(floor_um >= wall_um);
+            CHECK(floor_um < wall_um + layer_um);
+            CHECK(ceiling_um >= wall_um);
+            CHECK(ceiling_um < wall_um + 2 * layer_um);
+        }
+    }
+}
+
+TEST_CASE("a part whose layers differ in thickness is hollowed, and its walls are thick enough") {
+    Settings settings = hollow_slicing;
+    for (int top_um = 0; top_um < 10000;) {
+        top_um += top_um < 2000 ? 100 : top_um < 6000 ? 330 : 170;
+        settings.tops_um.push_back(top_um);
+    }
+    const HollowOutcome o = hollowed(block, {1000, 0}, settings);
+    REQUIRE(o.findings.cavities.size() == 1);
+    const Cavity& cavity = o.findings.cavities[0];
+    CHECK(cavity.end == Cavity::End::closed);
+    const Layers layers(settings.tops_um);
+    CHECK(layers.bottom_um(cavity.first_layer) >= 1000);
+    CHECK(layers.bottom_um(cavity.first_layer) <= 1700);
+    CHECK(layers.top_um(cavity.last_layer) <= 9000);
+    CHECK(layers.top_um(cavity.last_layer) >= 8000);
+    CHECK(o.hollowing.volume_mm3 <= 14 * 10 * 8 * (1 + 1e-9));
+    CHECK(o.hollowing.volume_mm3 >= 14 * 10 * 6.5);
 }
 
 TEST_CASE("drains open the box: no closed cavity is left, and the holes have their cylinders' size") {
     const HollowOutcome closed = hollowed(block, {2000, 0}), open = hollowed(block, {2000, 1500});
     CHECK(open.hollowing.drains == 2);
     for (const Cavity& c : open.findings.cavities) CHECK(c.end != Cavity::End::closed);
-    const double wall = 2.1, hole = 3.14159 * 0.75 * 0.75 * wall;
+    const double wall = 2, hole = 3.14159 * 0.75 * 0.75 * wall;
     const double drilled = closed.volume_mm3 - open.volume_mm3;
     CHECK(drilled > 2 * hole * 0.9);
     CHECK(drilled < 2 * hole * 1.3);

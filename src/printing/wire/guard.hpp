@@ -21,6 +21,8 @@ public:
     /// How long exposure number `light` lasted if its host died, as observed by that host's guard; 0: it had not
     /// started. nullopt: not observed.
     [[nodiscard]] virtual std::optional<double> lit_s(long light) = 0;
+    /// A new print begins, which counts its exposures anew: nothing observed before is about them.
+    virtual void forget() = 0;
 };
 
 }  // namespace pliant::host
