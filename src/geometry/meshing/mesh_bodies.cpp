@@ -254,6 +254,11 @@ Result<Part> mesh_group(std::span<const BodyGeometry> bodies, const TouchingGrou
         return tl::unexpected(joint.error());
     }
     TetMesh& mesh = joint->mesh;
+    for (std::size_t s = 0; s < names.size(); ++s) {
+        const BodyGeometry& body = bodies[group.bodies[s]];
+        if (body.air || std::ranges::find(mesh.region, static_cast<int>(s)) != mesh.region.end()) continue;
+        return about(body.name, {Cause::input, fmt::format("{} is empty: all of it belongs to later ones", names[s])});
+    }
     std::string list;
     for (std::size_t s = 0; s < names.size(); ++s) {
         const std::string damage = describe(joint->damage[s]);

@@ -1,74 +1,73 @@
 #include "geometry/repair/cavity.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <tuple>
+#include <cstddef>
+#include <utility>
 
-#include "base/core/disjoint_sets.hpp"
 #include "geometry/repair/surface_shells.hpp"
 
 namespace pliant::mesh {
 namespace {
 
-/// Sets of faces connected by edges: (faces) the first face of each face's set.
-std::vector<int> components(const std::vector<Face>& faces) {
-    struct Edge {
-        int low, high, face;
-        bool operator<(const Edge& o) const { return std::tie(low, high, face) < std::tie(o.low, o.high, o.face); }
-    };
-    std::vector<Edge> edges;
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto [low, high] = std::minmax(faces[f].nodes[k], faces[f].nodes[(k + 1) % 3]);
-            edges.push_back({low, high, static_cast<int>(f)});
-        }
+/// Faces connected by edges. Normals point out of the material: a shell around empty space is inside out.
+struct SkinShell {
+    std::vector<std::size_t> faces;
+    TriMesh surface;
+    Box3 box;
+    double volume;
+    Vec3 on_it;  ///< in the middle of a face, so on no other shell
+
+    [[nodiscard]] bool surrounds(const Vec3& p) const {
+        return box.contains(p) && std::fabs(winding_number(surface, p)) > 0.5;
     }
-    std::sort(edges.begin(), edges.end());
-    DisjointSets sets(faces.size());
-    for (std::size_t e = 1; e < edges.size(); ++e) {
-        if (edges[e].low == edges[e - 1].low && edges[e].high == edges[e - 1].high)
-            sets.join(edges[e].face, edges[e - 1].face);
+};
+
+std::vector<SkinShell> shells_of(const TetMesh& mesh, const std::vector<Face>& faces) {
+    TriMesh skin{mesh.points, {}};
+    for (const Face& face : faces) skin.triangles.push_back({face.nodes[0], face.nodes[1], face.nodes[2]});
+    std::vector<SkinShell> shells;
+    for (std::vector<std::size_t>& triangles : shell_triangles(skin)) {
+        TriMesh surface = part_of(skin, triangles);
+        const Box3 box = bounds(surface);
+        const double volume = signed_volume(surface);
+        const auto& [a, b, c] = surface.triangles.front();
+        const Vec3 middle = (surface.points[a] + surface.points[b] + surface.points[c]) / 3;
+        shells.push_back({std::move(triangles), std::move(surface), box, volume, middle});
     }
-    std::vector<int> first(faces.size());
-    for (std::size_t f = 0; f < faces.size(); ++f) first[f] = sets.find(static_cast<int>(f));
-    return first;
+    return shells;
 }
 
-TriMesh surface_of(const TetMesh& mesh, const std::vector<Face>& faces, const std::vector<int>& component, int wanted) {
-    TriMesh surface{mesh.points, {}};
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        if (component[f] == wanted)
-            surface.triangles.push_back({faces[f].nodes[0], faces[f].nodes[1], faces[f].nodes[2]});
+/// The smallest shell around a point, if it is around empty space there; else null. `except`: not looked at.
+const SkinShell* smallest_around(const std::vector<SkinShell>& shells, const Vec3& p, const SkinShell* except) {
+    const SkinShell* smallest = nullptr;
+    for (const SkinShell& shell : shells) {
+        const bool larger = smallest != nullptr && std::fabs(shell.volume) >= std::fabs(smallest->volume);
+        if (&shell != except && !larger && shell.surrounds(p)) smallest = &shell;
     }
-    return surface;
+    return smallest != nullptr && smallest->volume < 0 ? smallest : nullptr;
 }
 
 }  // namespace
 
 Result<std::vector<Face>> cavity_faces(const TetMesh& mesh, const Vec3& point) {
     const std::vector<Face> faces = boundary_faces(mesh);
-    const std::vector<int> component = components(faces);
-    int nearest = -1;
-    double least = std::numeric_limits<double>::infinity();
+    const std::vector<SkinShell> shells = shells_of(mesh, faces);
     double winding = 0;
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        if (component[f] != static_cast<int>(f)) continue;
-        const TriMesh surface = surface_of(mesh, faces, component, static_cast<int>(f));
-        const double turns = winding_number(surface, point);
-        winding += turns;
-        const double volume = -signed_volume(surface);  // normals point out of the material, so a cavity is inside out
-        if (turns > -0.5 || volume >= least) continue;
-        nearest = static_cast<int>(f);
-        least = volume;
-    }
+    for (const SkinShell& shell : shells) winding += winding_number(shell.surface, point);
     if (winding > 0.5) return input_error("lies in the material");
-    if (nearest < 0)
+    const SkinShell* enclosing = smallest_around(shells, point, nullptr);
+    if (enclosing == nullptr)
         return input_error(
             "lies in no closed cavity: the space around it is open to the outside; close each mouth with cap = SHAPE");
+    std::vector<bool> taken(faces.size(), false);
+    for (const SkinShell& shell : shells) {
+        const bool floats = shell.volume > 0 && smallest_around(shells, shell.on_it, &shell) == enclosing;
+        if (&shell != enclosing && !floats) continue;
+        for (const std::size_t f : shell.faces) taken[f] = true;
+    }
     std::vector<Face> wall;
     for (std::size_t f = 0; f < faces.size(); ++f) {
-        if (component[f] == nearest) wall.push_back(faces[f]);
+        if (taken[f]) wall.push_back(faces[f]);
     }
     return wall;
 }

@@ -8,9 +8,9 @@
 
 namespace pliant::mesh {
 
-/// The faces of the outer surface that enclose the empty space around a point, normals pointing into it, in the order
-/// of boundary_faces(). Errors: the point lies in the material, or the space around it is open to the outside.
-/// Cost: all faces.
+/// The faces of the outer surface that bound the empty space around a point, those of bodies that float in it included,
+/// normals pointing into it, in the order of boundary_faces(). Errors: the point lies in the material, or the space
+/// around it is open to the outside. Cost: all faces.
 [[nodiscard]] Result<std::vector<Face>> cavity_faces(const TetMesh& mesh, const Vec3& point);
 
 }  // namespace pliant::mesh

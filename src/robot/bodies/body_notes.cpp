@@ -3,10 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <string_view>
 
 #include "base/core/boxes.hpp"
 #include "geometry/files/surface_file.hpp"
 #include "geometry/repair/narrow_gaps.hpp"
+#include "geometry/repair/surface_seams.hpp"
 #include "geometry/shapes/overlap_note.hpp"
 #include "robot/bodies/body_shape.hpp"
 
@@ -37,16 +40,59 @@ bool cuts_nothing(const mesh::Solid& solid) {
                        [&](const mesh::Solid& part) { return !boxes_meet(whole, mesh::bounds(part)); });
 }
 
+/// A surface file that the model reads, and who names it.
+struct NamedFile {
+    std::string_view kind;
+    const std::string& name;
+    const std::filesystem::path& path;
+    bool obstacle = false;
+};
+
+std::vector<NamedFile> files_of_model(const Robot& robot) {
+    std::vector<NamedFile> files;
+    const auto add_selector = [&](std::string_view kind, const std::string& name, const Selector& selector) {
+        if (const auto* on = std::get_if<SurfaceSelector>(&selector)) files.push_back({kind, name, on->path});
+    };
+    for (const FixedSpec& fixed : robot.fixed) add_selector("fixed", fixed.name, fixed.selector);
+    for (const PlateSpec& plate : robot.plates) add_selector("plate", plate.name, plate.selector);
+    for (const LoadSpec& load : robot.loads) {
+        if (const auto* faces = std::get_if<Selector>(&load.place)) add_selector("load", load.name, *faces);
+        if (const auto* nodes = std::get_if<LoadOnNodes>(&load.place)) add_selector("load", load.name, nodes->selector);
+    }
+    for (const SensorSpec& sensor : robot.sensors) {
+        if (const auto* patch = std::get_if<ContactSensorSpec>(&sensor.what))
+            add_selector("sensor", sensor.name, patch->selector);
+    }
+    for (const ObstacleSpec& obstacle : robot.obstacles) {
+        if (const auto* file = std::get_if<SurfaceFile>(&obstacle.shape))
+            files.push_back({"obstacle", obstacle.name, file->path, true});
+    }
+    for (const ObjectSpec& object : robot.objects) {
+        if (const auto* file = std::get_if<SurfaceFile>(&object.shape))
+            files.push_back({"object", object.name, file->path});
+    }
+    for (const ChamberSpec& chamber : robot.chambers) {
+        if (const auto* file = std::get_if<SurfaceFile>(&chamber.air))
+            files.push_back({"chamber", chamber.name, file->path});
+    }
+    return files;
+}
+
 }  // namespace
 
-std::vector<std::string> notes_on_chambers(const Robot& robot) {
+std::vector<std::string> notes_on_surfaces(const Robot& robot) {
     std::vector<std::string> notes;
-    for (const ChamberSpec& chamber : robot.chambers) {
-        const auto* file = std::get_if<SurfaceFile>(&chamber.air);
-        const auto surface = file == nullptr ? Result<mesh::SurfaceFile>() : mesh::read_surface(file->path);
+    for (const NamedFile& file : files_of_model(robot)) {
+        const Result<mesh::SurfaceFile> surface = mesh::read_surface(file.path);
         if (!surface) continue;
         for (const std::string& note : surface->warnings)
-            notes.push_back(fmt::format("chamber \"{}\": {}", chamber.name, note));
+            notes.push_back(fmt::format("{} \"{}\": {}", file.kind, file.name, note));
+        const std::size_t open = file.obstacle ? mesh::border_edges(surface->mesh).size() : 0;
+        if (open > 0)
+            notes.push_back(
+                fmt::format("obstacle \"{}\": its surface is not closed: {} edges have no neighbour; it is "
+                            "no solid but a thin sheet, which is touched from both sides",
+                            file.name, open));
     }
     return notes;
 }

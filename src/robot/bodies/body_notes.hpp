@@ -10,8 +10,9 @@
 
 namespace pliant::robot {
 
-/// Defects and repairs in the surfaces of chambers, which are read again when the model is built.
-[[nodiscard]] std::vector<std::string> notes_on_chambers(const Robot& robot);
+/// Defects and repairs in the surface files of chambers, obstacles, objects and selectors, which are read again when
+/// the model is built.
+[[nodiscard]] std::vector<std::string> notes_on_surfaces(const Robot& robot);
 
 /// Cuts that cut nothing, and a mesh size that is longer than the robot.
 [[nodiscard]] std::vector<std::string> notes_on_shapes(const Robot& robot,

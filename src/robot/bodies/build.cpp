@@ -87,7 +87,7 @@ Result<mesh::TetMesh> mesh_drawn_bodies(const Robot& robot, Progress& progress) 
 Result<mesh::TetMesh> build_mesh(const Robot& robot, Progress& progress) {
     Result<mesh::TetMesh> mesh = robot.mesh.file ? read_mesh_file(robot) : mesh_drawn_bodies(robot, progress);
     if (!mesh) return mesh;
-    const std::vector<std::string> notes = notes_on_chambers(robot);
+    const std::vector<std::string> notes = notes_on_surfaces(robot);
     mesh->notes.insert(mesh->notes.end(), notes.begin(), notes.end());
     return mesh::scaled(std::move(*mesh), robot.unit_m);
 }

@@ -64,6 +64,26 @@ std::vector<int> select_on_surface(ModelDraft& draft, const SurfaceSelector& sel
     return nodes;
 }
 
+/// The numbers are those of the mesh as it is written to a file: with the air, which the robot itself lacks.
+std::vector<int> numbered_nodes(ModelDraft& draft, const NodeSelector& selector, std::string_view kind,
+                                const std::string& name, int line) {
+    std::vector<int> nodes;
+    for (const int number : selector.nodes) {
+        const auto n = static_cast<std::size_t>(number);
+        if (n >= draft.node_of_whole.size()) {
+            draft.problem(line, kind, name,
+                          fmt::format("node {} does not exist, the mesh has {}", number, draft.node_of_whole.size()));
+            return {};
+        }
+        if (draft.node_of_whole[n] < 0) {
+            draft.problem(line, kind, name, fmt::format("node {} lies in the air of a chamber or gap only", number));
+            return {};
+        }
+        nodes.push_back(draft.node_of_whole[n]);
+    }
+    return nodes;
+}
+
 /// caught_nodes(), with a problem if there are none.
 std::vector<int> some_caught_nodes(ModelDraft& draft, const Selector& selector, std::string_view kind,
                                    const std::string& name, int line) {
@@ -326,13 +346,7 @@ std::vector<int> caught_nodes(ModelDraft& draft, const Selector& selector, std::
     } else if (const auto* surface = std::get_if<SurfaceSelector>(&selector)) {
         nodes = select_on_surface(draft, *surface, kind, name, line);
     } else {
-        nodes = std::get<NodeSelector>(selector).nodes;
-        for (const int node : nodes) {
-            if (node < static_cast<int>(points.size())) continue;
-            draft.problem(line, kind, name,
-                          fmt::format("node {} does not exist, the mesh has {}", node, points.size()));
-            return {};
-        }
+        nodes = numbered_nodes(draft, std::get<NodeSelector>(selector), kind, name, line);
     }
     return nodes;
 }
