@@ -141,6 +141,7 @@ function Helm() {
 }
 
 export function App() {
+  const ofFile = problems.value.filter((p) => p.line > 0).length; // the others are no error in it, as when the mesher did not start
   const sections: [Section, string][] = [
     ['simulate', 'Simulate'],
     ['make', 'Prepare'],
@@ -174,7 +175,7 @@ export function App() {
           <span class="grow" />
           {problems.value.length > 0 && (
             <span class="helm lost" data-testid="file-wrong">
-              <Icon name="warn" /> {counted(problems.value.length, 'error')} in the file
+              <Icon name="warn" /> {ofFile > 0 ? `${counted(ofFile, 'error')} in the file` : 'the robot could not be built'}
             </span>
           )}
           <Helm />

@@ -5,6 +5,8 @@ export interface Material {
   name: string;
   colour: string;
   law: string;
+  from_library?: boolean; // the file has no table of it
+  has_youngs_modulus?: boolean; // among the constants of its law
   youngs_modulus_MPa: number;
   poisson_ratio: number;
   density_kg_m3: number;

@@ -33,9 +33,9 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 let page;
 before(async () => {
   pretendBrowser();
-  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/fit', 'simulate/robot_keys', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'counted', 'make/gantt', 'make/plan', 'make/place', 'make/order', 'make/paint', 'make/stale', 'print/telling', 'orbit_keys', 'simulate/gif', 'simulate/response', 'simulate/geometry', 'simulate/motion', 'simulate/workspace'];
+  const modules = ['packet', 'simulate/toml_edit', 'simulate/colormap', 'simulate/tracks', 'simulate/fit', 'simulate/robot_keys', 'simulate/recorder', 'print/stopped', 'print/state', 'store', 'number_field', 'counted', 'make/gantt', 'make/plan', 'make/place', 'make/order', 'make/paint', 'make/stale', 'print/telling', 'orbit_keys', 'simulate/gif', 'simulate/response', 'simulate/geometry', 'simulate/motion', 'simulate/workspace', 'simulate/goal', 'simulate/editor'];
   const entry = join(folder, 'entry.ts');
-  writeFileSync(entry, modules.map((m) => `export * from ${JSON.stringify(join(sources, m))};`).join('\n'));
+  writeFileSync(entry, modules.map((m) => `export * from ${JSON.stringify(join(sources, m))};`).concat(`export { setParameter } from ${JSON.stringify(join(sources, 'simulate/build'))};`).join('\n'));
   const outfile = join(folder, 'units.mjs');
   await require('esbuild').build({ entryPoints: [entry], outfile, bundle: true, format: 'esm', platform: 'neutral', mainFields: ['module', 'main'], nodePaths: [join(web, 'node_modules')], jsx: 'automatic', jsxImportSource: 'preact', logLevel: 'error' });
   page = await import(pathToFileURL(outfile));
@@ -69,45 +69,62 @@ test('data that are not a packet, or that end early, are refused', () => {
   assert.throws(() => page.readPacket(whole.slice(0, whole.byteLength - 4)).f32('x'));
 });
 
-const robot = `name = "x"
-[material.soft]  # the finger
-youngs_modulus = "1 MPa"  # measured
-poisson_ratio=0.45
-curve = ["1 MPa", "2 MPa"] # two
-[material.softer]
-youngs_modulus = "9 MPa"
-`;
-
-test('one number of a table changes, and nothing else', () => {
-  assert.equal(page.setKey(robot, 'material.soft', 'youngs_modulus', '"2 MPa"'), robot.replace('"1 MPa"  #', '"2 MPa"  #'));
-  assert.equal(page.setKey(robot, 'material.soft', 'poisson_ratio', '0.3'), robot.replace('0.45', '0.3'));
-  assert.equal(page.setKey(robot, 'material.soft', 'curve', '3'), robot.replace('["1 MPa", "2 MPa"]', '3'));
-  assert.equal(page.setKey(robot, 'material.softer', 'youngs_modulus', '"2 MPa"'), robot.replace('"9 MPa"', '"2 MPa"'));
+test('names with dots are parts of a key in quotes', () => {
+  assert.equal(page.keyOf('material', 'soft', 'density'), 'material.soft.density');
+  assert.equal(page.keyOf('body', 'finger v1.2', 'material'), 'body."finger v1.2".material');
+  assert.equal(page.keyOf('a', '"b"\\.c'), 'a."\\"b\\"\\\\.c"');
 });
 
-test('a missing key is added to its own table, not to the next one', () => {
-  const changed = page.setKey(robot, 'material.soft', 'density', '"1 g/cm^3"');
-  assert.equal(changed, robot.replace('# the finger\n', '# the finger\ndensity = "1 g/cm^3"\n'));
-  assert.equal(page.setKey(robot, 'material.hard', 'density', '1'), null);
-  assert.equal(page.setKey(robot, 'material.sof.', 'density', '1'), null); // no pattern
+test('found values become changes of the file, with 6 digits and their unit', () => {
+  assert.deepEqual(page.changeOf('cable.flexor.target.tension="4.5678901234 N"'), { key: 'cable.flexor.target.tension', value: '4.56789 N' });
+  assert.deepEqual(page.changeOf('material."a=1.5".mu.0="2e6 Pa"'), { key: 'material."a=1.5".mu.0', value: '2000000 Pa' });
+  assert.deepEqual(page.changeOf('cable.flexor.friction=0.123456789'), { key: 'cable.flexor.friction', value: 0.123457 });
 });
 
-test('inline tables and quoted names are edited too', () => {
-  const line = 'material.soft = { youngs_modulus = "1 MPa", poisson_ratio = 0.45 } # x';
-  assert.equal(page.setKey(line, 'material.soft', 'poisson_ratio', '0.3'), line.replace('0.45', '0.3'));
-  assert.equal(page.setKey(line, 'material.soft', 'youngs_modulus', '"3 MPa"'), line.replace('"1 MPa"', '"3 MPa"'));
-  assert.equal(page.setKey(line, 'material.soft', 'density', '5'), line.replace('0.45 }', '0.45, density = 5 }'));
-  assert.equal(page.setKey('[material."soft"]\na = 1', 'material.soft', 'a', '2'), '[material."soft"]\na = 2');
+test('two parameters moved right after each other are both sent', async () => {
+  const sent = [];
+  globalThis.fetch = async (path, options) => (sent.push([path, JSON.parse(options.body)]), { ok: true });
+  page.setParameter('width', 2);
+  page.setParameter('height', 3);
+  page.setParameter('width', 4);
+  await new Promise((r) => setTimeout(r, 400));
+  assert.deepEqual(sent, [['/api/robot/set', { changes: [{ key: 'parameters.width', value: 4 }, { key: 'parameters.height', value: 3 }] }]]);
 });
 
-test('a number is set by the path that --set takes, in tables and in named list entries', () => {
-  const file = '[material.soft]\nyoungs_modulus = "1 MPa"\n\n[[cable]]\nname = "left"\nfriction = 0.1\n\n[[cable]]\nname = "right" # the other\nfriction = 0.2\n[contact]\nfriction = 0.3\n';
-  assert.equal(page.assign(file, 'material.soft.youngs_modulus', '"2 MPa"'), file.replace('1 MPa', '2 MPa'));
-  assert.equal(page.assign(file, 'cable.right.friction', '0.5'), file.replace('0.2', '0.5'));
-  assert.equal(page.assign(file, 'cable.left.target.offset', '"1 mm"'), file.replace('name = "left"\n', 'name = "left"\ntarget.offset = "1 mm"\n'));
-  assert.equal(page.assign(file, 'contact.friction', '0'), file.replace('0.3', '0'));
-  assert.equal(page.assign(file, 'cable.middle.friction', '0'), null);
-  assert.equal(page.assign(file, 'chamber.left.friction', '0'), null);
+test('ranges of a robot that has changed are its own, but for what the user has typed', () => {
+  const before = [{ name: 'a', kind: 'tension_N', low: 0, high: 7, used: false, own: { high: 7 } }, { name: 'b', kind: 'tension_N', low: 0, high: 5, used: true }];
+  const now = [{ name: 'a', kind: 'tension_N', low: 1, high: 9 }, { name: 'b', kind: 'length_ratio', low: 0.5, high: 1 }];
+  const next = page.renewed(now, before);
+  assert.deepEqual(next.map(({ low, high, used }) => [low, high, used]), [[1, 7, false], [0.5, 1, true]]);
+});
+
+test('ticks that are near each other have as many digits as tell them apart', () => {
+  const ticks = (low, high) => [0, 0.25, 0.5, 0.75, 1].map((t) => page.tickText(low + t * (high - low), (high - low) / 4));
+  assert.deepEqual(ticks(0, 2), ['0', '0.5', '1', '1.5', '2']);
+  assert.deepEqual(ticks(100, 100.01), ['100', '100.0025', '100.005', '100.0075', '100.01']);
+  assert.equal(new Set(ticks(-0.99999, -0.99998)).size, 5);
+  assert.equal(new Set(ticks(12345.6, 12345.7)).size, 5);
+  assert.equal(page.tickText(3, 0), '3');
+});
+
+test('a decimal comma is refused in exposures, where it would separate two', () => {
+  assert.equal(page.commaProblem({ a: { resin: '', time: '2.5', bottom: '9' } }, ['a']), '');
+  assert.match(page.commaProblem({ a: { resin: '', time: '2,5', bottom: '' } }, ['a']), /^--exposure a: "2,5" has a comma/);
+  assert.equal(page.commaProblem({ b: { resin: '', time: '2,5', bottom: '' } }, ['a']), '');
+});
+
+test('another robot does not begin with the placement, bonds and supports of the last one', () => {
+  page.setOrder({ printer: 'tower', copies: 2, turn: [90, 0, 0], scale: 2, at: [3, 4], overlap: ['a+b=3,1'], support: 'a' });
+  page.forgetPart();
+  assert.deepEqual(page.orderJson(['a', 'b']), { printer: 'tower', copies: 2, resin: [], exposure: [], overlap: [], interlock: [] });
+  page.setOrder({});
+});
+
+test('a material from the library, or one whose law has other constants, says why it cannot be changed', () => {
+  const soft = { name: 'soft', law: 'neo-hookean', from_library: false, has_youngs_modulus: true };
+  assert.equal(page.whyFixed(soft, 'youngs_modulus'), '');
+  assert.match(page.whyFixed({ ...soft, from_library: true }, 'poisson_ratio'), /library/);
+  assert.match(page.whyFixed({ ...soft, law: 'yeoh', has_youngs_modulus: false }, 'youngs_modulus'), /constants of the yeoh law/);
 });
 
 const withKeys = `name = "x" # a robot
@@ -340,6 +357,9 @@ test('a table of measurements is read, or refused with its line', () => {
   assert.match(page.readTable('m.csv', 'a,b\n1,2\n3\n'), /^m\.csv:3: 1 columns, but the header line names 2/);
   assert.match(page.readTable('m.csv', 'a,b\n1,two\n'), /^m\.csv:2: "two" is not a number/);
   assert.match(page.readTable('m.csv', 'a,b\n'), /no rows/);
+  assert.deepEqual(page.readTable('m.csv', '# measured\na,b\n# x\n1,2\n').columns, { a: [1], b: [2] });
+  assert.match(page.readTable('m.csv', '# measured\na,b\n\n# x\n1\n'), /^m\.csv:5: 1 columns/);
+  assert.equal(page.judgeRows('# x\nuse,b\n#judge,1\njudge,2\n'), 1);
 });
 
 test('a stop is reported by its cause: requested, by the firmware, or none', () => {

@@ -45,8 +45,8 @@ struct Document {
 [[nodiscard]] Result<Document> load(const std::filesystem::path& file);
 
 /// `KEY=VALUE` of the command line: KEY is a dotted path (`cable.flexor.target.length_ratio`; entries of an array of
-/// tables are found by `name` or by index from 0), VALUE is TOML or, failing that, plain text. Missing tables and keys
-/// are added.
+/// tables are found by `name` or by index from 0; names with dots are put in quotes), VALUE is TOML or, failing that,
+/// plain text. Missing tables and keys are added.
 [[nodiscard]] Status set(Document& document, std::string_view assignment);
 
 /// Evaluates `[parameters]` in order (numbers, or text "= formula" over earlier ones), removes that table, and replaces

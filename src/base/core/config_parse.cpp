@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/core/config.hpp"
+#include "base/core/config_text.hpp"
 #include "base/core/files.hpp"
 #include "base/core/letters.hpp"
 #include "base/core/parse_all.hpp"
@@ -250,8 +251,8 @@ Status set(Document& document, std::string_view assignment) {
         return input_error("--set {}: write KEY=VALUE, as in program.steps=10", assignment);
     }
     const std::string_view key = assignment.substr(0, equals);
-    if (std::ranges::count(key, '.') > max_depth)
-        return input_error("--set {}...: the key has too many parts", key.substr(0, 40));
+    const std::vector<std::string> parts = path_parts(key);
+    if (parts.size() > max_depth + 1) return input_error("--set {}...: the key has too many parts", key.substr(0, 40));
     const std::string text(assignment.substr(equals + 1));
     Result<Document> parsed = parse("value = " + text, "--set");
     Value value;
@@ -261,9 +262,7 @@ Status set(Document& document, std::string_view assignment) {
     }
 
     Value* node = &document.root;
-    for (std::size_t begin = 0; begin <= key.size();) {
-        const std::size_t end = std::min(key.find('.', begin), key.size());
-        const std::string_view part = key.substr(begin, end - begin);
+    for (const std::string& part : parts) {
         Value* child = find_part(*node, part);
         if (child == nullptr) {
             // A table missing from the file may still be valid, as in program.steps; if not, it is reported as an
@@ -275,11 +274,10 @@ Status set(Document& document, std::string_view assignment) {
                 return input_error("--set {}: there is no \"{}\" in {}{}", key, part, document.file.string(),
                                    near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near));
             }
-            table->emplace_back(std::string(part), Value{});
+            table->emplace_back(part, Value{});
             child = &table->back().second;
         }
         node = child;
-        begin = end + 1;
     }
     set_lines(value, node->line);
     *node = std::move(value);

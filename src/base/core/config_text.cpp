@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/core/letters.hpp"
 
@@ -61,6 +62,23 @@ std::string lines_of(const Table& table) {
     return text;
 }
 
+/// The text in the quotes that the path begins with, and where its part ends. Nothing unless they are closed where a
+/// part may end.
+std::optional<std::string> quoted_part(std::string_view path, std::size_t& end) {
+    if (!path.starts_with('"') && !path.starts_with('\'')) return std::nullopt;
+    const char quote = path.front();
+    std::string text;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        if (path[i] == quote) {
+            end = i + 1;
+            return end == path.size() || path[end] == '.' ? std::optional(std::move(text)) : std::nullopt;
+        }
+        if (quote == '"' && path[i] == '\\' && i + 1 < path.size()) ++i;
+        text += path[i];
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 std::string toml_string(std::string_view text) {
@@ -79,6 +97,26 @@ std::string toml_string(std::string_view text) {
 std::string key_text(std::string_view key) {
     const auto bare = [](char c) { return is_letter(c) || is_digit(c) || c == '-' || c == '_'; };
     return !key.empty() && std::ranges::all_of(key, bare) ? std::string(key) : toml_string(key);
+}
+
+std::vector<std::string> path_parts(std::string_view path) {
+    std::vector<std::string> parts;
+    while (true) {
+        std::size_t end = 0;
+        if (std::optional<std::string> quoted = quoted_part(path, end)) {
+            parts.push_back(std::move(*quoted));
+        } else {
+            end = std::min(path.find('.'), path.size());
+            parts.emplace_back(path.substr(0, end));
+        }
+        if (end == path.size()) return parts;
+        path.remove_prefix(end + 1);
+    }
+}
+
+std::string path_part(std::string_view name) {
+    const bool plain = name.find('.') == std::string_view::npos && !name.starts_with('"') && !name.starts_with('\'');
+    return plain ? std::string(name) : toml_string(name);
 }
 
 std::string toml_text(const Value& root) {

@@ -109,16 +109,6 @@ toml::node* entry_named(toml::array& list, std::string_view name) {
     return nullptr;
 }
 
-std::vector<std::string> parts_of(std::string_view path) {
-    std::vector<std::string> parts;
-    while (true) {
-        const std::size_t dot = path.find('.');
-        parts.emplace_back(path.substr(0, dot));
-        if (dot == std::string_view::npos) return parts;
-        path.remove_prefix(dot + 1);
-    }
-}
-
 /// Appends a header for a table that does not exist yet.
 std::string with_new_table(std::string_view text, const std::vector<std::string>& parts, std::string_view value) {
     std::string header;
@@ -149,8 +139,9 @@ Result<std::string> with_value(std::string_view text, std::string_view path, std
     if (Status status = is_value(value); !status) return tl::unexpected(status.error());
     Result<toml::table> root = parsed(text);
     if (!root) return tl::unexpected(root.error());
-    const std::vector<std::string> parts = parts_of(path);
+    const std::vector<std::string> parts = path_parts(path);
     toml::node* at = &*root;
+    std::string dotted;  // from the table's header to the table, as of target in `target.tension = "5 N"`
     for (std::size_t k = 0; k < parts.size(); ++k) {
         if (toml::array* list = at->as_array()) {
             at = entry_named(*list, parts[k]);
@@ -162,6 +153,9 @@ Result<std::string> with_value(std::string_view text, std::string_view path, std
         toml::node* next = table->get(parts[k]);
         if (next != nullptr) {
             at = next;
+            const bool table_of_keys = at->is_table() && !at->as_table()->is_inline() &&
+                                       !text.substr(offset_of(text, at->source().begin)).starts_with('[');
+            dotted = table_of_keys ? dotted + key_text(parts[k]) + "." : "";
             continue;
         }
         if (k + 1 < parts.size()) {
@@ -172,7 +166,8 @@ Result<std::string> with_value(std::string_view text, std::string_view path, std
         if (table->is_inline()) return checked(insert_at_end(text, *table, line));
         // The top level has no header that tells where it begins.
         const std::size_t after = at == &*root && table->source().begin.line <= 1 ? 0 : table->source().begin.line;
-        return checked(insert_line(text, std::max(after, at == &*root ? std::size_t{0} : last_own_line(*table)), line));
+        return checked(
+            insert_line(text, std::max(after, at == &*root ? std::size_t{0} : last_own_line(*table)), dotted + line));
     }
     if (at->is_table() && !at->as_table()->is_inline()) return input_error("{} is a table", path);
     const toml::array* list = at->as_array();

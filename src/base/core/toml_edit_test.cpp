@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "base/core/config_text.hpp"
 #include "base/core/test_text.hpp"
 
 using namespace pliant;
@@ -93,6 +94,29 @@ TEST_CASE("a new entry is added after the last of its list, in the list's style"
     CHECK(with_entry("m = [ # none, yet ]\n]\n", "m", entry).value() ==
           "m = [ { name = \"tip\", point = [1, 2, 3] } # none, yet ]\n]\n");
     CHECK(with_entry("m = []\n", "m", entry).value() == "m = [ { name = \"tip\", point = [1, 2, 3] }]\n");
+}
+
+TEST_CASE("a key beside one that is written with dots is written with dots too") {
+    const std::string text = "[[cable]]\nname = \"a\"\ntarget.tension = 5\nfriction = 1\n";
+    CHECK(with_value(text, "cable.a.target.offset", "2").value() == replaced(text, "= 5", "= 5\ntarget.offset = 2"));
+    CHECK(with_value("m.soft.a = 1\n", "m.soft.b", "2").value() == "m.soft.a = 1\nm.soft.b = 2\n");
+    CHECK(with_value("[m.soft]\na = 1\n", "m.soft.b", "2").value() == "[m.soft]\na = 1\nb = 2\n");
+}
+
+TEST_CASE("names with dots are parts of a path in quotes") {
+    const std::string text =
+        "[material.\"ecoflex 00.30\"]\ndensity = 1\n\n[[body]]\nname = \"finger v1.2\"\nmaterial = \"a\"\n";
+    CHECK(with_value(text, R"(body."finger v1.2".material)", R"("ecoflex 00.30")").value() ==
+          replaced(text, "\"a\"", "\"ecoflex 00.30\""));
+    CHECK(with_value(text, "material.'ecoflex 00.30'.density", "2").value() == replaced(text, "= 1", "= 2"));
+    CHECK(holds(with_value(text, "material.ecoflex 00.30.density", "2").error().message, "no \"ecoflex 00\""));
+    CHECK(with_value("a = 1\n", R"(m."x.y")", "2").value() == "a = 1\n\n[m]\n\"x.y\" = 2\n");
+    for (const char* name : {"plain", "v1.2", "\"", "'a'", "a\\.b", "5\" wide.2", ""}) {
+        CAPTURE(name);
+        const std::string path = "a." + config::path_part(name) + ".b";
+        CHECK(config::path_parts(path) == std::vector<std::string>{"a", name, "b"});
+    }
+    CHECK(config::path_parts("\"a.b") == std::vector<std::string>{"\"a", "b"});
 }
 
 TEST_CASE("invalid edits are refused with a reason") {

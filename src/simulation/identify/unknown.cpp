@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "base/core/config_text.hpp"
 #include "base/core/letters.hpp"
 #include "base/core/parse_all.hpp"
 #include "base/core/text.hpp"
@@ -17,6 +18,8 @@
 
 namespace pliant::sim::identify {
 namespace {
+
+using config::path_part;
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 /// Default bounds of positive numbers: this factor around the initial value.
@@ -79,7 +82,7 @@ std::string key_of_constant(const std::string& name) {
 }
 
 void add_material(const robot::MaterialSpec& m, Collector& to) {
-    const std::string owner = "material." + m.name + ".";
+    const std::string owner = "material." + path_part(m.name) + ".";
     const bool two_moduli =
         std::ranges::any_of(material::parameters(m.law), [](const auto& p) { return p.name == "youngs_modulus"; });
     if (two_moduli) {
@@ -106,7 +109,7 @@ void add_material(const robot::MaterialSpec& m, Collector& to) {
 
 void add_cable(const robot::CableSpec& cable, Collector& to) {
     using Kind = robot::CableTarget::Kind;
-    const std::string owner = "cable." + cable.name + ".", target = owner + "target.";
+    const std::string owner = "cable." + path_part(cable.name) + ".", target = owner + "target.";
     const robot::CableTarget& t = cable.target;
     const bool force = t.kind == Kind::tension_N;
     if (!cable.gap_elements) to.from_zero(owner + "friction", "", cable.friction, 10);
@@ -123,7 +126,7 @@ void add_cable(const robot::CableSpec& cable, Collector& to) {
 
 void add_chamber(const robot::ChamberSpec& chamber, Collector& to) {
     using Kind = robot::ChamberTarget::Kind;
-    const std::string target = "chamber." + chamber.name + ".target.";
+    const std::string target = "chamber." + path_part(chamber.name) + ".target.";
     const robot::ChamberTarget& t = chamber.target;
     const double share = 0.1 * std::fabs(t.value);
     if (t.kind == Kind::volume_ratio) to.positive(target + "volume_ratio", "", t.value);
@@ -148,17 +151,17 @@ void add_contact(const robot::Robot& robot, Collector& to) {
         if (robot.contact->stiffness_Pa) to.positive("contact.stiffness", "Pa", *robot.contact->stiffness_Pa);
     }
     for (const auto& obstacle : robot.obstacles)
-        to.from_zero("obstacle." + obstacle.name + ".friction", "", obstacle.friction, 10);
+        to.from_zero("obstacle." + path_part(obstacle.name) + ".friction", "", obstacle.friction, 10);
 }
 
 void add_masses(const robot::Robot& robot, Collector& to) {
     for (const auto& object : robot.objects) {
-        const std::string owner = "object." + object.name + ".";
+        const std::string owner = "object." + path_part(object.name) + ".";
         if (object.mass_kg > 0) to.positive(owner + "mass", "kg", object.mass_kg);
         if (object.density_kg_m3 > 0) to.positive(owner + "density", "kg/m^3", object.density_kg_m3);
         to.from_zero(owner + "friction", "", object.friction, 10);
     }
-    for (const auto& mass : robot.masses) to.positive("mass." + mass.name + ".mass", "kg", mass.mass_kg);
+    for (const auto& mass : robot.masses) to.positive("mass." + path_part(mass.name) + ".mass", "kg", mass.mass_kg);
 }
 
 /// One end of "LOW..HIGH".
@@ -247,19 +250,19 @@ std::vector<Unknown> possible_unknowns(const robot::Robot& robot) {
     for (const auto& cable : robot.cables) add_cable(cable, to);
     for (const auto& chamber : robot.chambers) add_chamber(chamber, to);
     for (const auto& spring : robot.springs) {
-        to.positive("spring." + spring.name + ".stiffness", "N/m", spring.stiffness_N_m);
-        to.positive("spring." + spring.name + ".free_length", "m",
+        to.positive("spring." + path_part(spring.name) + ".stiffness", "N/m", spring.stiffness_N_m);
+        to.positive("spring." + path_part(spring.name) + ".free_length", "m",
                     robot.unit_m * spring.free_length.value_or(drawn_length(spring)));
     }
     for (const auto& load : robot.loads) {
         if (load.pressure_Pa) {
-            to.any("load." + load.name + ".pressure", "Pa", *load.pressure_Pa,
+            to.any("load." + path_part(load.name) + ".pressure", "Pa", *load.pressure_Pa,
                    std::max(1e3, 0.1 * std::fabs(*load.pressure_Pa)));
             continue;
         }
         if (load.force_N == Vec3{} && !(load.torque_Nm == Vec3{})) continue;  // the file need not have the key
         for (std::size_t axis = 0; axis < 3; ++axis)
-            to.any(fmt::format("load.{}.force.{}", load.name, axis), "N", load.force_N[axis],
+            to.any(fmt::format("load.{}.force.{}", path_part(load.name), axis), "N", load.force_N[axis],
                    std::max(0.1, 0.1 * std::fabs(load.force_N[axis])));
     }
     add_contact(robot, to);

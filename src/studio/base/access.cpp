@@ -43,7 +43,7 @@ Access check_access(const AccessRules& rules, const Credentials& c) {
     if (c.origin.empty() ? c.websocket : c.origin != fmt::format("http://{}", c.host)) return Access::wrong_origin;
     if (rules.token.empty()) return Access::granted;
     bool some = false;
-    for (const std::string_view offered : {c.query_token, c.bearer, cookie_value(c.cookie, cookie_name)}) {
+    for (const std::string_view offered : {c.query_token, c.bearer, cookie_value(c.cookie, cookie_name(rules))}) {
         if (equal(offered, rules.token)) return Access::granted;
         some = some || !offered.empty();
     }
@@ -68,6 +68,10 @@ const char* refusal_text(const AccessRules& rules, Access access) {
                        : "the token is wrong: use the address that the studio printed when it was started";
     }
     return "";
+}
+
+std::string cookie_name(const AccessRules& rules) {
+    return fmt::format("pliant_token_{}", rules.port);
 }
 
 std::string random_key() {

@@ -36,7 +36,9 @@ enum class Access { granted, wrong_host, wrong_origin, no_token, wrong_token };
 /// 32 letters and digits from the system's source of randomness.
 [[nodiscard]] std::string random_key();
 
-inline constexpr std::string_view cookie_name = "pliant_token";
+/// Of the cookie with the token. Cookies of a host are shared by all its ports, so that its studios would take each
+/// other's: each has a name of its own.
+[[nodiscard]] std::string cookie_name(const AccessRules& rules);
 
 /// "http://camera:8080" for "http://camera:8080/stream?fps=5"; "" if it is not a plain http or https address: letters,
 /// digits, dots, hyphens, a port.

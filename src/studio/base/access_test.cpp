@@ -69,13 +69,15 @@ TEST_CASE("bound to another address, access needs the right token, however it is
     c.query_token = "abcDEF123";
     CHECK(check_access(rules, c) == Access::granted);
     c = from("printer.lan:7117");
-    c.cookie = "a=b; pliant_token=abcDEF123; c=d";
+    c.cookie = "a=b; pliant_token_7117=abcDEF123; c=d";
     CHECK(check_access(rules, c) == Access::granted);
-    c.cookie = "xpliant_token=abcDEF123";
+    c.cookie = "xpliant_token_7117=abcDEF123";
     CHECK(check_access(rules, c) == Access::no_token);
-    c.cookie = "pliant_token=abcDEF124";
+    c.cookie = "pliant_token_7117=abcDEF124";
     CHECK(check_access(rules, c) == Access::wrong_token);
-    c.cookie = "pliant_token=abcDEF123";
+    c.cookie = "pliant_token_7117=abcDEF123";
+    c.cookie = "pliant_token_7118=abcDEF124; pliant_token_7117=abcDEF123";  // of another studio on this host
+    CHECK(check_access(rules, c) == Access::granted);
     c.origin = "http://evil.example";
     CHECK(check_access(rules, c) == Access::wrong_origin);
 }

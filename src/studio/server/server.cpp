@@ -189,9 +189,9 @@ struct Server::State {
         response.location = "/";
         const bool is_ours = !rules.token.empty() && token == rules.token;
         write(wire, response,
-              is_ours
-                  ? fmt::format("Set-Cookie: {}={}; HttpOnly; SameSite=Strict; Path=/\r\n", cookie_name, rules.token)
-                  : std::string());
+              is_ours ? fmt::format("Set-Cookie: {}={}; HttpOnly; SameSite=Strict; Path=/\r\n", cookie_name(rules),
+                                    rules.token)
+                      : std::string());
         return 302;
     }
 

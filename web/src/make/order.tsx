@@ -5,7 +5,8 @@ import { useEffect, useState } from 'preact/hooks';
 import { counted } from '../counted';
 import { Icon } from '../icons';
 import { NumberField } from '../number_field';
-import { api, documentState, mayDrive, post, say, scene, sliceError, slicing } from '../store';
+import { api, documentState, mayDrive, onEvent, post, say, scene, sliceError, slicing } from '../store';
+import { keyOf } from '../simulate/toml_edit';
 import { orderProblem, useEstimate } from './estimate';
 import { paintTable, readPaint, strokes, touches } from './paint';
 
@@ -52,7 +53,8 @@ const lights = signal<Record<string, Light>>({});
 export const support = signal('');
 
 /// The error of the last slicing, or what the studio finds wrong with the form as it is.
-const problem = computed(() => sliceError.value || orderProblem.value);
+const commas = computed(() => commaProblem(lights.value, scene.value?.head.materials.map((m) => m.name) ?? []));
+const problem = computed(() => sliceError.value || commas.value || orderProblem.value);
 /// The option that it refers to, and its message.
 const wrong = computed(() => {
   const match = /^--([a-z-]+)(?: ([^:]*))?: (.*)$/s.exec(problem.value);
@@ -133,6 +135,34 @@ export function adoptOrder(order: Record<string, unknown>) {
   if (formText() !== given) return;
   setOrder(order);
   given = formText();
+}
+
+/// What belongs to one robot, not to the printer: another one does not begin with it.
+export function forgetPart() {
+  const untouched = formText() === given;
+  batch(() => {
+    turn.value = [0, 0, 0];
+    scale.value = 1;
+    shift.value = [0, 0];
+    bonds.value = [];
+    support.value = '';
+    strokes.value = [];
+  });
+  if (untouched) given = formText();
+}
+
+let opened: unknown; // number of the open document
+onEvent((event) => {
+  if (event.type !== 'document') return;
+  if (opened !== undefined && event.opened !== opened) forgetPart();
+  opened = event.opened;
+});
+
+/// In an order a comma separates two exposures: a decimal one would be taken for that.
+export function commaProblem(all: Record<string, Light>, materials: string[]): string {
+  for (const m of materials)
+    for (const typed of [all[m]?.time, all[m]?.bottom]) if (typed?.includes(',')) return `--exposure ${m}: "${typed}" has a comma; the decimal sign is a point, as in 2.5`;
+  return '';
 }
 
 export function orderJson(materials: string[]) {
@@ -217,7 +247,7 @@ function Group({ name, options, given, children }: { name: string; options: stri
 /// The colour in which a material is shown, here and in its job: a key of the robot file.
 function ColourOf({ material }: { material: string }) {
   const colour = scene.value?.head.materials.find((x) => x.name === material)?.colour ?? '#888888';
-  const set = (value: string) => void post('/api/robot/set', { changes: [{ key: `material.${material}.colour`, value }] });
+  const set = (value: string) => void post('/api/robot/set', { changes: [{ key: keyOf('material', material, 'colour'), value }] });
   return <input type="color" class="colour" aria-label={`Colour of ${material}`} title="Colour in the views, here and in the job" value={colour} disabled={!mayDrive.value} onChange={(e) => set(e.currentTarget.value)} data-testid={`colour-of-${material}`} />;
 }
 
@@ -458,7 +488,7 @@ export function SliceForm() {
   const materials = scene.value?.head.materials.map((m) => m.name) ?? [];
   const placed = ['layer', 'least-layer', 'least-feature', 'threshold', 'turn', 'scale', 'at', 'copies', 'spacing', 'hollow', 'drain', 'overlap', 'interlock', 'resin', 'exposure', 'support', 'support-angle', 'support-spacing', 'support-tip', 'support-pillar', 'support-paint', 'lift', 'raft'];
   const elsewhere = problem.value && !(wrong.value && placed.includes(wrong.value.option));
-  useEstimate(JSON.stringify(orderJson(materials)), documentState.value.digest, scene.value !== null && mayDrive.value && !busy);
+  useEstimate(JSON.stringify(orderJson(materials)), documentState.value.digest, scene.value !== null && mayDrive.value && !busy && !commas.value);
   return (
     <form
       class="slice-form"
@@ -472,6 +502,7 @@ export function SliceForm() {
       onSubmit={(e) => {
         e.preventDefault();
         forget();
+        if (commas.value) return;
         // Errors in the order itself are shown at their field too.
         const form = e.currentTarget;
         void post('/api/job/slice', wholeOrder(materials), (text) => {

@@ -8,7 +8,7 @@ import { api, documentState, mayDrive, post, problems, scene } from '../store';
 import { text, theirs } from './editor';
 import { PickGeometry } from './geometry';
 import { theView } from './the_view';
-import { parametersOf } from './toml_edit';
+import { keyOf, parametersOf } from './toml_edit';
 
 type Point = [number, number, number];
 type Kind = 'marker' | 'support' | 'cable' | 'chamber';
@@ -172,10 +172,16 @@ function Placing() {
 }
 
 let waiting = 0;
-/// Only the latest of several slider moves is sent.
-function setParameter(name: string, value: number) {
+const moved = new Map<string, number>(); // not sent yet
+/// Only the latest of several moves of a slider is sent.
+export function setParameter(name: string, value: number) {
+  moved.set(name, value);
   clearTimeout(waiting);
-  waiting = window.setTimeout(() => void post('/api/robot/set', { changes: [{ key: `parameters.${name}`, value }] }), 150);
+  waiting = window.setTimeout(() => {
+    const changes = [...moved].map(([of, v]) => ({ key: `parameters.${of}`, value: v }));
+    moved.clear();
+    void post('/api/robot/set', { changes });
+  }, 150);
 }
 
 /// Whole numbers stay whole; the slider ranges from zero to twice the value first seen.
@@ -226,7 +232,7 @@ function BodyMaterials() {
         return (
           <label class="row" key={b.name}>
             {b.name}
-            <select value={now} disabled={!mayDrive.value} data-testid={`material-of-${b.name}`} onChange={(e) => void post('/api/robot/set', { changes: [{ key: `body.${b.name}.material`, value: e.currentTarget.value }] })}>
+            <select value={now} disabled={!mayDrive.value} data-testid={`material-of-${b.name}`} onChange={(e) => void post('/api/robot/set', { changes: [{ key: keyOf('body', b.name, 'material'), value: e.currentTarget.value }] })}>
               <optgroup label="In the file">
                 {head.materials.map((m) => (
                   <option value={m.name} key={m.name}>
@@ -274,7 +280,7 @@ export function Build() {
         <span class="grow" />
         <PickGeometry label="Add geometry…" testId="build-geometry" />
       </div>
-      {problems.value.length > 0 && (
+      {problems.value.length > 0 && scene.value && (
         <div class="problems" role="alert" data-testid="build-problems">
           <p>With the last change the file has an error, and the robot is still the one before:</p>
           <ul>

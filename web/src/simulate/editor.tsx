@@ -4,9 +4,9 @@ import { useState } from 'preact/hooks';
 import { Icon } from '../icons';
 import { NumberField } from '../number_field';
 import { api, building, documentState, frame, helm, lines, mayDrive, onEvent, post, problems, say, scene } from '../store';
-import type { Problem } from '../types';
+import type { Material, Problem } from '../types';
 import { CodeArea } from './code_area';
-import { setKey } from './toml_edit';
+import { keyOf } from './toml_edit';
 import { pinned } from './view_state';
 
 export const text = signal('');
@@ -66,15 +66,33 @@ export function pinNow(label: string) {
   if (now) pinned.value = { label, positions: new Float32Array(now.f32('positions')), frame: now };
 }
 
-function change(material: string, key: string, value: string, label: string): boolean | Promise<boolean> {
-  const next = setKey(text.value, `material.${material}`, key, value);
-  if (next === null) {
-    say(`the file has no table [material.${material}]: add it, or edit the text`);
-    return false;
-  }
+/// Values of the robot file; what has been typed into it is applied first.
+export async function setValues(changes: { key: string; value: string | number }[]): Promise<boolean> {
+  if (text.value !== theirs.value && !(await apply(text.value))) return false;
+  return post('/api/robot/set', { changes });
+}
+
+function change(material: string, key: string, value: string | number, label: string): Promise<boolean> {
   pinNow(label);
-  text.value = next;
-  return apply(next);
+  return setValues([{ key: keyOf('material', material, key), value }]);
+}
+
+/// Why a material's numbers cannot be changed here; '': they can.
+export function whyFixed(m: Material, key: 'youngs_modulus' | 'poisson_ratio'): string {
+  if (m.from_library) return `${m.name} comes from the library: to change it, give it a table [material] of its own in the file.`;
+  if (key === 'youngs_modulus' && m.has_youngs_modulus === false) return `It follows from the constants of the ${m.law} law, which are in the file.`;
+  return '';
+}
+
+function Fixed({ label, value, unit, why, testId }: { label: string; value: number; unit: string; why: string; testId: string }) {
+  return (
+    <p class="row" title={why} data-testid={testId}>
+      <span>{label}</span>
+      <span>
+        {value} <span class="unit">{unit}</span>
+      </span>
+    </p>
+  );
 }
 
 export function Materials() {
@@ -89,6 +107,9 @@ export function Materials() {
             {m.name}
             <span class="quiet">{m.law}</span>
           </legend>
+          {whyFixed(m, 'youngs_modulus') ? (
+            <Fixed label="Young's modulus" value={+m.youngs_modulus_MPa.toPrecision(6)} unit="MPa" why={whyFixed(m, 'youngs_modulus')} testId={`fixed-modulus-${m.name}`} />
+          ) : (
           <label>
             <span>Young's modulus</span>
             <NumberField
@@ -96,9 +117,13 @@ export function Materials() {
               range={{ from: 0, to: Infinity, open: true }}
               unit="MPa"
               testId={`modulus-${m.name}`}
-              onValue={(v) => change(m.name, 'youngs_modulus', `"${v} MPa"`, `${m.name}: ${+m.youngs_modulus_MPa.toPrecision(4)} MPa`)}
+              onValue={(v) => change(m.name, 'youngs_modulus', `${v} MPa`, `${m.name}: ${+m.youngs_modulus_MPa.toPrecision(4)} MPa`)}
             />
           </label>
+          )}
+          {whyFixed(m, 'poisson_ratio') ? (
+            <Fixed label="Poisson ratio" value={+m.poisson_ratio.toPrecision(6)} unit="" why={whyFixed(m, 'poisson_ratio')} testId={`fixed-poisson-${m.name}`} />
+          ) : (
           <label>
             <span>Poisson ratio</span>
             <NumberField
@@ -107,9 +132,11 @@ export function Materials() {
               unit=""
               step={0.01}
               testId={`poisson-${m.name}`}
-              onValue={(v) => change(m.name, 'poisson_ratio', `${v}`, `${m.name}: Poisson ratio ${m.poisson_ratio}`)}
+              onValue={(v) => change(m.name, 'poisson_ratio', v, `${m.name}: Poisson ratio ${m.poisson_ratio}`)}
             />
           </label>
+          )}
+          {whyFixed(m, 'youngs_modulus') && <p class="quiet small-print">{whyFixed(m, 'youngs_modulus')}</p>}
         </fieldset>
       ))}
     </div>
@@ -150,6 +177,11 @@ export function Editor() {
         <button class="primary small" disabled={!changed || !mayDrive.value} onClick={() => apply(text.value)} data-testid="apply">
           Apply
         </button>
+        {!changed && problems.value.length > 0 && (
+          <button class="small" disabled={!mayDrive.value || building.value !== null} onClick={() => apply(text.value)} data-testid="build-again">
+            Build again
+          </button>
+        )}
         {changed && (
           <button class="small" onClick={revert} data-testid="revert">
             Revert

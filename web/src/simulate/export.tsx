@@ -2,12 +2,19 @@
 import { useRef, useState } from 'preact/hooks';
 import { useDismiss } from '../dismiss';
 import { Icon } from '../icons';
-import { say, scene } from '../store';
+import { api, say, scene } from '../store';
 import { film, filming, gif, stopFilming } from './film';
 import { linkText } from './link';
 import { saveBlob as save } from './save';
 import { theView } from './the_view';
 import { tracksCsv } from './tracks';
+
+/// Fetched first, since a navigation would show a refusal in the place of the page.
+const fetched = (name: string) =>
+  void api(`/api/export/${name}`)
+    .then((r) => r.blob())
+    .then((b) => save(b, name))
+    .catch((e: Error) => say(e.message));
 
 export function Export() {
   const [open, setOpen] = useState(false);
@@ -22,10 +29,10 @@ export function Export() {
     ['Video for slides and chats, 640 pixels wide', 'GIF', () => void gif().then((b) => (b ? save(b, 'robot.gif') : say('There is no motion to record yet: move the robot first.')))],
     ['Link to this state', 'copy', () => void navigator.clipboard.writeText(linkText()).then(() => say('Link copied to the clipboard.'), () => say(linkText()))],
     ['Plot data', 'CSV', () => save(new Blob([tracksCsv()], { type: 'text/csv' }), 'plots.csv')],
-    ['Force history', 'CSV', () => (location.href = '/api/export/steps.csv')],
-    ['Marker history', 'CSV', () => (location.href = '/api/export/markers.csv')],
-    ['Animation', 'GLB', () => (location.href = '/api/export/robot.glb')],
-    ['Current state with fields', 'VTU', () => (location.href = '/api/export/robot.vtu')],
+    ['Force history', 'CSV', () => fetched('steps.csv')],
+    ['Marker history', 'CSV', () => fetched('markers.csv')],
+    ['Animation', 'GLB', () => fetched('robot.glb')],
+    ['Current state with fields', 'VTU', () => fetched('robot.vtu')],
   ];
   return (
     <div class="menu" ref={box}>

@@ -31,6 +31,15 @@ export function fitPoints(points: ArrayLike<number>, right: Vec, up: Vec, forwar
   return { camera: place(back), target: place((near + far) / 2) };
 }
 
+/// A number on an axis whose ticks are this far apart, with as many digits as tell it from its neighbours, at least 3.
+export function tickText(x: number, apart: number): string {
+  const place = (v: number) => Math.floor(Math.log10(Math.abs(v)));
+  const needed = x !== 0 && apart > 0 ? place(x) - place(apart) + 2 : 3;
+  const digits = Math.min(Math.max(needed, 3), 12);
+  const long = Math.abs(x) >= 1e4 || (x !== 0 && Math.abs(x) < 1e-3);
+  return long ? x.toExponential(digits - 1) : `${+x.toPrecision(digits)}`;
+}
+
 /// 1, 2 or 5 times a power of ten, at most `most`.
 export function niceBelow(most: number): number {
   const power = 10 ** Math.floor(Math.log10(most));

@@ -15,6 +15,15 @@ interface Input {
   low: number;
   high: number;
   used: boolean;
+  own?: { low?: number; high?: number }; // typed by the user
+}
+
+/// Ranges as the robot has them now, with what the user has changed in those before.
+export function renewed(list: Omit<Input, 'used' | 'own'>[], before: Input[]): Input[] {
+  return list.map((input) => {
+    const old = before.find((b) => b.name === input.name && b.kind === input.kind);
+    return { ...input, ...old?.own, own: old?.own, used: old?.used ?? true };
+  });
 }
 
 /// The search uses the element order of the current robot.
@@ -31,15 +40,20 @@ effect(() => {
   const head = scene.value?.head;
   if (!head) return;
   const now = JSON.stringify([head.robot, head.actuators.map((a) => [a.name, a.kind]), head.markers.map((m) => m.name)]);
-  if (now === known) return;
+  const another = now !== known;
   known = now;
-  batch(() => {
-    marker.value = head.markers[0]?.name ?? '';
-    path.value = [];
-  });
+  if (another)
+    batch(() => {
+      marker.value = head.markers[0]?.name ?? '';
+      path.value = [];
+      inputs.value = [];
+    });
+  // The ranges may be others even if the names are the same.
   api('/api/goal/inputs')
     .then((r) => r.json())
-    .then((list: Omit<Input, 'used'>[]) => (inputs.value = list.map((input) => ({ ...input, used: true }))))
+    .then((list: Omit<Input, 'used' | 'own'>[]) => {
+      if (scene.peek()?.head.revision === head.revision) inputs.value = renewed(list, inputs.peek());
+    })
     .catch((e: Error) => say(e.message));
 });
 
@@ -141,7 +155,7 @@ export function Ranges() {
                 testId={`goal-${end}-${input.name}`}
                 disabled={!input.used}
                 onValue={(v) => {
-                  inputs.value = change(inputs.value, k, { [end]: v });
+                  inputs.value = change(inputs.value, k, { [end]: v, own: { ...input.own, [end]: v } });
                 }}
               />
             ))}

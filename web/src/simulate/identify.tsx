@@ -3,10 +3,10 @@ import { effect, signal } from '@preact/signals';
 import { counted } from '../counted';
 import { enlarged } from '../print/enlarged';
 import { api, mayDrive, say, scene } from '../store';
-import { apply, pinNow, text } from './editor';
+import { pinNow, setValues } from './editor';
 import { begin, type IdentifyFound, resultNumber, resultOf, Search } from './search';
+import { changeOf } from './toml_edit';
 import { judgeRows } from './tracks';
-import { assign } from './toml_edit';
 
 interface Unknown {
   key: string;
@@ -86,19 +86,10 @@ function Table() {
   );
 }
 
-/// Writes the results into the text of the file.
+/// Writes the results into the robot file.
 function take(found: IdentifyFound) {
-  let next: string | null = text.value;
-  for (const assignment of found.assignments) {
-    const at = assignment.indexOf('=');
-    const [, number, unit] = /^"?([^" ]+)(?: ([^"]+))?"?$/.exec(assignment.slice(at + 1)) ?? [];
-    const value = unit ? `"${+Number(number).toPrecision(6)} ${unit}"` : `${+Number(number).toPrecision(6)}`;
-    next = assign(next, assignment.slice(0, at), value);
-    if (next === null) return say(`${assignment.slice(0, at)} has no line of its own in the file: set it to ${value} by hand`);
-  }
   pinNow('before');
-  text.value = next;
-  void apply(next);
+  void setValues(found.assignments.map(changeOf));
 }
 
 function Errors({ of, errors }: { of: string; errors: IdentifyFound['fitted'] }) {

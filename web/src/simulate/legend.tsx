@@ -4,6 +4,7 @@ import { useDismiss } from '../dismiss';
 import { NumberField } from '../number_field';
 import { scene } from '../store';
 import { gradientCss, maps } from './colormap';
+import { tickText } from './fit';
 import * as look from './view_state';
 
 function Materials() {
@@ -27,8 +28,6 @@ function Materials() {
     </ul>
   );
 }
-
-const number = (x: number) => (Math.abs(x) >= 1e4 || (x !== 0 && Math.abs(x) < 1e-3) ? x.toExponential(2) : `${+x.toPrecision(3)}`);
 
 function Settings({ f }: { f: (typeof look.fieldNames)[number] }) {
   const [low, high] = look.fieldRange.value;
@@ -89,7 +88,7 @@ export function Legend() {
         <span class="bar" style={{ background: gradientCss(look.map.value, look.bands.value, 'var(--along, to top)') }} />
         <span class="ticks">
           {[1, 0.75, 0.5, 0.25, 0].map((t) => (
-            <span key={t}>{number(low + t * (high - low))}</span>
+            <span key={t}>{tickText(low + t * (high - low), (high - low) / 4)}</span>
           ))}
         </span>
         <span class="what">

@@ -1,4 +1,5 @@
 // A link that restores robot, view and state.
+import { unlessLost } from '../discard';
 import { documentState, driveAll, following, inProgram, post, scene, say, sendInput, wanted, wantedTime, type Wanted } from '../store';
 import { theView } from './the_view';
 import * as look from './view_state';
@@ -54,9 +55,10 @@ export async function restoreLink() {
   pending = null;
   history.replaceState(null, '', '#simulate');
   if (kept.file !== documentState.peek().name && kept.file) {
-    pending = kept;
-    if (!(await post('/api/open', { name: kept.file }))) pending = null;
-    return;
+    return unlessLost(`Opening the link to ${kept.file}`, async () => {
+      pending = kept;
+      if (!(await post('/api/open', { name: kept.file }))) pending = null;
+    });
   }
   if (head.robot !== kept.robot) return say(`The link is for "${kept.robot}", but the open robot is "${head.robot}".`);
   view.pose = kept.pose;

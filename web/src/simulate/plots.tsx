@@ -7,7 +7,7 @@ import { counted } from '../counted';
 import { Icon } from '../icons';
 import { say, scene } from '../store';
 import { cssColour, theme } from '../theme';
-import { axisRange, keepRun, plottedVersion, readTable, runs, tracks, valuesOf, type Channel } from './tracks';
+import { axisRange, freeRunName, keepRun, plottedVersion, readTable, runs, tracks, valuesOf, type Channel } from './tracks';
 
 /// Powers of ten, thinned out: grid lines of a logarithmic axis over many decades would merge into a grey block.
 function decades(least: number, most: number): number[] {
@@ -261,7 +261,7 @@ function Runs() {
   return (
     <div class="runs">
       <div class="row left wrap">
-        <button class="small" data-testid="keep-run" onClick={() => keepRun(`run ${runs.value.length + 1}`)}>
+        <button class="small" data-testid="keep-run" onClick={() => keepRun(freeRunName('run'))}>
           Keep this run
         </button>
         <label class="button small">
@@ -277,6 +277,7 @@ function Runs() {
             <span class="quiet">
               {counted(Object.values(run.columns)[0].length, 'state')}{' '}
               {known.length === 0 && `· none of its columns (${Object.keys(run.columns).join(', ')}) is a result of this robot: columns are named as in ${[...keys].slice(0, 2).join(', ')}`}
+              {known.length > 0 && !run.columns.seconds && !run.columns.time && '· it has no column time: choose another horizontal axis to see it'}
             </span>
             <button class="bare" aria-label={`Remove ${run.name}`} onClick={() => (runs.value = runs.value.filter((r) => r !== run))}>
               <Icon name="close" />

@@ -1,6 +1,6 @@
 // The interactive robot: 3D view, panels, timeline.
 import { Lost } from '../lost';
-import { lines, online, problems } from '../store';
+import { lines, online, problems, scene } from '../store';
 import { Accuracies } from './accuracy';
 import { Actuators } from './actuators';
 import { CanvasBeside, Compare, Compared, comparing } from './beside';
@@ -14,6 +14,7 @@ import { Hints } from './hints';
 import { Identify } from './identify';
 import { Legend } from './legend';
 import { LookBar } from './look_bar';
+import { NoRobot } from './no_robot';
 import { panel } from './panel';
 import { Pin } from './pin';
 import { Plots } from './plots';
@@ -64,11 +65,11 @@ export function Simulate() {
           </div>
         </div>
         <Legend />
-        <ViewCube />
+        {scene.value && <ViewCube />}
         <Measure />
         <div class="stage-foot">
-          {online.value || lines.value === 0 ? <Hints /> : <Lost text="so the robot is shown as it was last known." />}
-          <ScaleBar />
+          {online.value || lines.value === 0 ? scene.value && <Hints /> : <Lost text="so the robot is shown as it was last known." />}
+          {scene.value && <ScaleBar />}
           <Status />
         </div>
       </section>
@@ -88,7 +89,8 @@ export function Simulate() {
           </div>
         </div>
         <div class="panel" key={panel.value} id="panel" role="tabpanel" aria-labelledby={`tab-${panel.value}`}>
-          {panel.value === 'move' && (
+          {!scene.value && panel.value !== 'file' && <NoRobot />}
+          {panel.value === 'move' && scene.value && (
             <>
               <Actuators />
               <Readings />
@@ -100,8 +102,8 @@ export function Simulate() {
           {panel.value === 'goal' && <Goal />}
           {panel.value === 'workspace' && <Workspace />}
           {panel.value === 'identify' && <Identify />}
-          {panel.value === 'sweep' && <Sweep />}
-          {panel.value === 'plots' && <Plots all />}
+          {panel.value === 'sweep' && scene.value && <Sweep />}
+          {panel.value === 'plots' && scene.value && <Plots all />}
           {panel.value === 'file' && (
             <>
               <Materials />

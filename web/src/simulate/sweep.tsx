@@ -9,8 +9,8 @@ import { theirs } from './editor';
 import { columnOf, evenly, extent, quantity, sweepCsv, ticks, type SweepFound } from './response';
 import { saveBlob } from './save';
 import { begin, result, Search } from './search';
-import { parametersOf } from './toml_edit';
-import { runs } from './tracks';
+import { keyOf, parametersOf } from './toml_edit';
+import { freeRunName, runs } from './tracks';
 import * as look from './view_state';
 
 interface Known {
@@ -49,7 +49,7 @@ async function learn() {
   const list: Known[] = parametersOf(theirs.peek()).map((p) => ({ key: `parameters.${p.name}`, value: p.value, unit: '' }));
   for (const a of head.actuators) {
     const [name, unit] = targets[a.kind] ?? [];
-    if (name !== undefined) list.push({ key: `${a.type}.${a.name}.target.${name}`, value: a.target, unit });
+    if (name !== undefined) list.push({ key: keyOf(a.type, a.name, 'target', name), value: a.target, unit });
   }
   const more = (await (await api('/api/unknowns')).json()) as { key: string; shown: string }[];
   for (const one of more) {
@@ -229,7 +229,7 @@ function Chosen({ found }: { found: SweepFound }) {
 function overlay(found: SweepFound) {
   const columns: Record<string, number[]> = Object.fromEntries(found.columns.map((c, k) => [c.key, columnOf(found, k)]));
   found.axes.forEach((a, k) => (columns[a.key] = found.runs.map((r) => r.inputs[k])));
-  runs.value = [...runs.value, { name: `sweep ${runs.value.length + 1}`, columns }];
+  runs.value = [...runs.value, { name: freeRunName('sweep'), columns }];
 }
 
 function Found() {

@@ -153,6 +153,11 @@ export interface Run {
 }
 export const runs = signal<Run[]>([]);
 
+/// "run 2": the first of its kind that no run has. Runs may have been removed meanwhile.
+export function freeRunName(kind: string): string {
+  for (let k = 1; ; ++k) if (!runs.value.some((run) => run.name === `${kind} ${k}`)) return `${kind} ${k}`;
+}
+
 export function keepRun(name: string) {
   const fine = tracks.rough.map((r, i) => (r ? -1 : i)).filter((i) => i >= 0);
   const pick = (list: number[]) => fine.map((i) => list[i]);
@@ -163,20 +168,27 @@ export function keepRun(name: string) {
 /// The cells of a line, separated by commas, semicolons or tabs.
 const cells = (l: string) => [...l.matchAll(/(?:"((?:[^"]|"")*)"|([^,;\t"]*))(?:[,;\t]|$)/g)].map((m) => (m[1]?.replace(/""/g, '"') ?? m[2]).trim()).slice(0, l.match(/[,;\t]$/) ? undefined : -1);
 
+/// The lines of a table, with their numbers; those that begin with # are comments.
+const linesOf = (text: string) =>
+  text
+    .split(/\r?\n/)
+    .map((line, i) => ({ line, number: i + 1 }))
+    .filter(({ line }) => line.trim() !== '' && !line.trimStart().startsWith('#'));
+
 /// Parses a table of measurements: a header of names, then numbers. Errors name the line.
 export function readTable(name: string, text: string): Run | string {
-  const lines = text.split(/\r?\n/);
-  const head = cells(lines[0] ?? '');
-  if (head.length < 2 || head.some((h) => h === '')) return `${name}:1: a header line with at least two column names is needed`;
-  if (head.every((h) => Number.isFinite(Number(h)))) return `${name}:1: the first line must name the columns, as in shortening_mm,tension_N`;
+  const [header, ...lines] = linesOf(text);
+  const head = cells(header?.line ?? '');
+  const first = header?.number ?? 1;
+  if (head.length < 2 || head.some((h) => h === '')) return `${name}:${first}: a header line with at least two column names is needed`;
+  if (head.every((h) => Number.isFinite(Number(h)))) return `${name}:${first}: the first line must name the columns, as in shortening_mm,tension_N`;
   const columns: Record<string, number[]> = Object.fromEntries(head.map((h) => [h, []]));
-  for (const [i, line] of lines.slice(1).entries()) {
-    if (line.trim() === '') continue;
+  for (const { line, number } of lines) {
     const row = cells(line);
-    if (row.length !== head.length) return `${name}:${i + 2}: ${row.length} columns, but the header line names ${head.length}`;
+    if (row.length !== head.length) return `${name}:${number}: ${row.length} columns, but the header line names ${head.length}`;
     for (const [k, text] of row.entries()) {
       const value = text === '' ? NaN : Number(text);
-      if (text !== '' && !Number.isFinite(value)) return `${name}:${i + 2}: "${text}" is not a number`;
+      if (text !== '' && !Number.isFinite(value)) return `${name}:${number}: "${text}" is not a number`;
       columns[head[k]].push(value);
     }
   }
@@ -185,8 +197,8 @@ export function readTable(name: string, text: string): Run | string {
 
 /// Rows that a table holds out itself: "judge" in its column use.
 export function judgeRows(csv: string): number {
-  const rows = csv.split(/\r?\n/).map(cells);
-  const use = rows[0].indexOf('use');
+  const rows = linesOf(csv).map(({ line }) => cells(line));
+  const use = rows[0]?.indexOf('use') ?? -1;
   return use < 0 ? 0 : rows.filter((row) => row[use] === 'judge').length;
 }
 

@@ -112,12 +112,22 @@ export class RobotView {
   setScene(scene: Scene) {
     const first = this.drawn?.scene.head.robot !== scene.head.robot;
     this.frame = null;
-    this.root.clear();
+    this.forget();
     this.build(scene);
     this.setPath(this.path);
     if (first) this.lookAt('home', 0.62); // leaves room for bending
     if (this.options) this.setOptions(this.options);
     this.invalidate();
+  }
+
+  /// Frees what the last scene has on the graphics card.
+  private forget() {
+    this.root.traverse((o) => {
+      const { geometry, material } = o as Partial<THREE.Mesh>;
+      geometry?.dispose();
+      for (const m of [material ?? []].flat()) m.dispose();
+    });
+    this.root.clear();
   }
 
   private build(scene: Scene) {

@@ -1,6 +1,6 @@
 // A small job for a wizard: sliced, saved if a real machine needs that, and connected.
 import { effect } from '@preact/signals';
-import { api, job, post, sliceError, slicing } from '../store';
+import { api, job, onEvent, post, sliceError, slicing } from '../store';
 import { file, setup } from './state';
 
 /// Resolves when slicing has ended, with its error: "" if there is a new job.
@@ -17,6 +17,11 @@ function endOfSlicing(before: number): Promise<string> {
       resolve(failed ? sliceError.value : '');
     };
     stop.now = effect(check);
+    const deaf = onEvent((event) => {
+      if (event.type !== 'slicing' || event.stage) return;
+      deaf(); // whatever has been made, its job is announced
+      if (event.cancelled) stop.now?.(), resolve('slicing was cancelled');
+    });
   });
 }
 
