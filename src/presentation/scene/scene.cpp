@@ -8,6 +8,7 @@
 #include "base/core/json.hpp"
 #include "base/core/share.hpp"
 #include "presentation/scene/actuator_kind.hpp"
+#include "simulation/material/law_parameters.hpp"
 #include "simulation/run/describe.hpp"
 #include "simulation/run/fields.hpp"
 #include "simulation/run/sensors.hpp"
@@ -110,9 +111,13 @@ Json materials_json(const robot::Robot& robot) {
     Json materials = Json::array();
     for (std::size_t m = 0; m < robot.materials.size(); ++m) {
         const robot::MaterialSpec& spec = robot.materials[m];
+        const bool has_modulus = std::ranges::any_of(material::parameters(spec.law),
+                                                     [](const auto& p) { return p.name == "youngs_modulus"; });
         materials.push_back({{"name", spec.name},
                              {"colour", report::hex(colour_of(robot, m))},
                              {"law", law_text(spec)},
+                             {"from_library", spec.from_library},
+                             {"has_youngs_modulus", has_modulus},
                              {"youngs_modulus_MPa", 1e-6 * spec.youngs_modulus_Pa},
                              {"poisson_ratio", spec.poisson_ratio},
                              {"density_kg_m3", spec.density_kg_m3},

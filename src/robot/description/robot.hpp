@@ -32,6 +32,7 @@ struct MaterialSpec {
     std::string resin;                             ///< default: the material's own name
     std::optional<std::array<double, 3>> colour;   ///< sRGB, each in [0, 1]
     double exposure_s = 0, bottom_exposure_s = 0;  ///< per layer when printed; 0: the printer file's default
+    bool from_library = false;                     ///< the file has no table of it
 };
 
 /// In length units.

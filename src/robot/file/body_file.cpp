@@ -120,6 +120,7 @@ int find_material(Reader& reader, Context& context) {
     }
     if (Result<LibraryMaterial> found = library_material(wanted)) {
         materials.push_back(std::move(found->spec));
+        materials.back().from_library = true;
         return static_cast<int>(materials.size()) - 1;
     }
     const std::string near = nearest_name(wanted, names);

@@ -119,10 +119,12 @@ void MakeSession::work(const SliceOrder& order) {
                             : Status(tl::unexpected(colours.error()));
     under_way_.clear();
     slicing_ = false;  // before the pages are told: they may start the next one at once
+    const bool was_cancelled = !status && status.error().cause == Cause::cancelled;
     tell_(dumped({{"type", "slicing"},
                   {"stage", ""},
                   {"fraction", 1},
-                  {"error", status || status.error().cause == Cause::cancelled ? "" : status.error().message}}));
+                  {"cancelled", was_cancelled},
+                  {"error", status || was_cancelled ? "" : status.error().message}}));
 }
 
 Result<std::shared_ptr<OpenJob>> MakeSession::other(const std::filesystem::path& file) {

@@ -39,6 +39,7 @@ Response receive(Studio& studio, const Request& request) {
     if (!received) return error_response(received.error());
     if (received->how == Received::name_is_taken)
         return error_response(409, name + ": a file of this name is there already, with other content");
+    studio.look_at_files();
     return json_response(content_json(name, received->content));
 }
 

@@ -4,7 +4,6 @@
 
 #include "base/core/files.hpp"
 #include "base/core/json.hpp"
-#include "printing/job/sha256.hpp"
 #include "printing/plan/plan.hpp"
 #include "printing/plan/timeline.hpp"
 #include "studio/base/dumped.hpp"
@@ -167,11 +166,12 @@ Result<SliceOrder> read_order(Studio& studio, const Request& request) {
             return input_error("robot: names a file outside of the project folder");
     }
     order->inputs = {d.file.filename().string()};
-    std::string source = *own ? "" : dumped({{"robot", job::sha256_hex(d.text)}, {"order", parse_json(request.body)}});
+    std::string source = *own ? "" : dumped({{"robot", d.digest()}, {"order", parse_json(request.body)}});
     return SliceOrder{d.text, d.file, std::move(*printer), std::move(*order), std::move(source)};
 }
 
 Response slice(Studio& studio, const Request& request) {
+    studio.look_at_files();  // what is sliced is also what is shown
     Result<SliceOrder> order = read_order(studio, request);
     if (!order) return error_response(order.error());
     return done(studio.make().slice(std::move(*order)));

@@ -24,14 +24,10 @@ constexpr std::string_view first_example = "cable_gripper";
 constexpr std::string_view host_path = "/api/print/host/";  // its interface has statuses of its own
 
 std::string document_event(const Studio::Document& d) {
-    const nlohmann::json json = {{"type", "document"},
-                                 {"name", d.name},
-                                 {"unsaved", d.text != d.saved},
-                                 {"undo", d.undo.size()},
-                                 {"redo", d.redo.size()},
-                                 {"accuracy", name(d.accuracy)},
-                                 {"digest", job::sha256_hex(d.text)},
-                                 {"title", d.name.empty() ? d.title : d.name}};
+    const nlohmann::json json = {
+        {"type", "document"},    {"name", d.name},        {"unsaved", d.text != d.saved},
+        {"undo", d.undo.size()}, {"redo", d.redo.size()}, {"accuracy", name(d.accuracy)},
+        {"opened", d.opened},    {"digest", d.digest()},  {"title", d.name.empty() ? d.title : d.name}};
     return dumped(json);
 }
 
@@ -107,6 +103,10 @@ Status Studio::start(const std::filesystem::path& file) {
     return {};
 }
 
+std::string Studio::Document::digest() const {
+    return job::sha256_hex(text + stamps);
+}
+
 std::shared_ptr<const std::string> Studio::first_picture(bool dark, const std::stop_token& stop) {
     const Document d = document();
     return thumbnails_.of(d.text, d.file, folder_, first_picture_style(dark), d.outside, stop);
@@ -118,6 +118,9 @@ Studio::Document Studio::document() {
 }
 
 void Studio::rebuild(After after) {
+    if (after == After::from_rest) ++opened_;
+    document_.opened = opened_;
+    document_.stamps = folder_.stamps_of(document_.text, document_.file);
     simulation_->open({document_.file, document_.text, document_.accuracy}, after);
     hub_.send_text(document_event(document_));
 }
@@ -139,6 +142,11 @@ Status Studio::edit(const std::string& text) {
     }
     rebuild(After::as_before);
     return {};
+}
+
+void Studio::look_at_files() {
+    const std::lock_guard lock(mutex_);
+    if (folder_.stamps_of(document_.text, document_.file) != document_.stamps) rebuild(After::as_before);
 }
 
 Status Studio::check(const std::string& text) {

@@ -75,10 +75,17 @@ public:
         Accuracy accuracy = Accuracy::automatic;
         std::vector<std::string> outside{};  ///< paths outside the folder in the file with which the studio was started
         std::string title = "new";           ///< what pages call it while it has no name
+        int opened = 0;                      ///< number of the documents opened so far
+        std::string stamps{};                ///< ProjectFolder::stamps_of() it when it was built last
+
+        /// SHA-256 of the text, and of the stamps if it names files.
+        [[nodiscard]] std::string digest() const;
     };
     [[nodiscard]] Document document();
     /// Checks and builds the new text. `because` tells the pages the cause of the change.
     [[nodiscard]] Status edit(const std::string& text);
+    /// Builds the robot again if a file that it names is not the one that it was built from.
+    void look_at_files();
     /// The errors of a text, without building it.
     [[nodiscard]] Status check(const std::string& text);
     [[nodiscard]] Status undo();
@@ -124,6 +131,7 @@ private:
     std::vector<Route> routes_;
     std::mutex mutex_;  ///< guards what follows
     Document document_;
+    int opened_ = 0;  ///< see Document::opened
     RobotText text_beside_;
     std::string title_beside_;                   ///< file that the second robot was opened from
     std::shared_ptr<SimulationSession> beside_;  ///< null: no second robot

@@ -726,6 +726,22 @@ TEST_CASE("a job tells which robot text and which options it was sliced from, an
     CHECK(digest() != before);
     REQUIRE(studio->undo().has_value());
     CHECK(digest() == before);
+    REQUIRE(studio->open_file("bar.toml").has_value());
+    CHECK(digest() == before);
+    // Another file of geometry is another robot, although its text is the same.
+    put_file(*studio, "part.stl", tetra_stl(), false, "page_aaaa");
+    const std::string part =
+        "name = \"part\"\n[mesh]\nsize = \"12 mm\"\n[material.m]\nyoungs_modulus = \"1 MPa\"\n"
+        "poisson_ratio = 0.4\ndensity = \"1 g/cm^3\"\n[[body]]\nname = \"b\"\nmaterial = \"m\"\n"
+        "geometry = { surface = \"part.stl\" }\n[[fixed]]\nname = \"f\"\nat = [0, 0, 0]\n";
+    REQUIRE(studio->edit(part).has_value());
+    const std::string with_part = digest();
+    std::string other = tetra_stl();
+    other.replace(other.find("30"), 2, "31.5");
+    REQUIRE(put_file(*studio, "part.stl", other, true, "page_aaaa").status == 200);
+    CHECK(digest() != with_part);
+    REQUIRE(studio->undo().has_value());
+    CHECK(digest() == before);
     // A robot of its own, as a wizard's, is not the one in the editor.
     CHECK(slice(Json{{"printer", "tower"}, {"layer", "100 um"}, {"robot", project_bar}}.dump()).is_null());
 }
