@@ -83,6 +83,16 @@ TEST_CASE("an overlap of a drawn solid and a surface goes to the later one; sepa
     CHECK(outer_area(apart) == near(whole, {.relative = 0.02}));
 }
 
+TEST_CASE("a body of a surface that later ones cover is refused by name") {
+    const TriMesh ball = fine(solid(SphereSolid{{5, 5, 5}, 3}), 0.005);
+    const std::vector<BodyGeometry> bodies{
+        {"ball", ball}, {"left", box({0, 0, 0}, {5, 10, 10})}, {"right", box({5, 0, 0}, {10, 10, 10})}};
+    Progress silent;
+    const auto covered = mesh_bodies(bodies, {.size = 2, .order = 1}, silent);
+    REQUIRE_FALSE(covered);
+    CHECK(covered.error().message.starts_with("body \"ball\" is empty: all of it belongs to later ones"));
+}
+
 TEST_CASE("a group holds all bodies that touch, and no other") {
     const TriMesh ball = fine(solid(SphereSolid{{5, 5, 14}, 4}), 0.005);  // standing on the first box
     const std::vector<BodyGeometry> bodies{{"alone", box({50, 0, 0}, {60, 10, 10})},

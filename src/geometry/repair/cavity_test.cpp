@@ -50,6 +50,26 @@ TEST_CASE("the cavity around a point is found, with walls of several bodies") {
     CHECK(enclosed(mesh, *small) == near(2 * 36, {.relative = 1e-12}));
 }
 
+TEST_CASE("bodies that float in a cavity bound it too, and their own cavities do not") {
+    const auto box = [](double low, double high) { return node(BoxSolid{{low, low, low}, {high, high, high}}); };
+    const auto hollow = [&](double low, double high, double from, double to) {
+        return node(CombinedSolid{CombinedSolid::Operation::subtract, {box(low, high), box(from, to)}});
+    };
+    // One in the other: walls of 1, gaps of 1, and a core of 2.
+    const std::vector<BodyGeometry> bodies = {
+        {"shell", hollow(0, 10, 1, 9)}, {"ball", hollow(2, 8, 3, 7)}, {"core", box(4, 6)}};
+    Progress silent;
+    const Result<TetMesh> mesh = mesh_bodies(bodies, {.size = 3, .order = 1}, silent);
+    REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+    const auto outer = cavity_faces(*mesh, {1.5, 5, 5});
+    REQUIRE_MESSAGE(outer, (outer ? "" : outer.error().message));
+    CHECK(enclosed(*mesh, *outer) == near(512 - 216, {.relative = 1e-12}));
+    const auto inner = cavity_faces(*mesh, {3.5, 5, 5});
+    REQUIRE(inner);
+    CHECK(enclosed(*mesh, *inner) == near(64 - 8, {.relative = 1e-12}));
+    CHECK(cavity_faces(*mesh, {5, 5, 5}).error().message.find("in the material") != std::string::npos);
+}
+
 TEST_CASE("a point in material, outside, or in an open space is refused") {
     CHECK(cavity_faces(house(false), {0.5, 5, 5}).error().message.find("in the material") != std::string::npos);
     CHECK(cavity_faces(house(false), {50, 5, 5}).error().message.find("no closed cavity") != std::string::npos);

@@ -154,6 +154,7 @@ Result<Drawing> drawing_of(const robot::Robot& robot, Progress& progress) {
         drawing.warnings.insert(drawing.warnings.end(), body.notes.begin(), body.notes.end());
         drawing.bodies.push_back({name, mesh::scaled(std::move(body.surface_m), 1e6), body.body});
         drawing.bodies.back().chord_um = body.chord_m * 1e6;
+        for (mesh::TriMesh& air : body.air_m) drawing.bodies.back().air_um.push_back(mesh::scaled(std::move(air), 1e6));
         if (spec.blend) drawing.bodies.back().blend = blend_of(robot, *spec.blend);
     }
     drawing.notes = robot::overlap_notes(robot, progress);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/mesh/tri_mesh.hpp"
+#include "geometry/mesh/triangle_tree.hpp"
 #include "printing/job/exposure.hpp"
 #include "printing/prepare/option_text.hpp"
 #include "printing/prepare/settings.hpp"
@@ -53,12 +54,36 @@ void fill(job::Manifest& manifest, int material, double bottom_um, double top_um
     }
 }
 
+/// The volume that is cut out of a body, by the points of a grid in each piece of air: as rough as an estimate is.
+double air_um3(const slice::Body& body) {
+    constexpr int cells = 16;
+    if (body.air_um.empty()) return 0;
+    const mesh::TriangleTree part(body.surface_um);
+    double sum = 0;
+    for (const mesh::TriMesh& surface : body.air_um) {
+        const mesh::TriangleTree air(surface);
+        const Box3 box = mesh::bounds(surface);
+        const Vec3 step = box.size() / cells;
+        int inside = 0, common = 0;
+        for (int k = 0; k < cells * cells * cells; ++k) {
+            const Vec3 p = box.low + Vec3{(k % cells + 0.5) * step.x, (k / cells % cells + 0.5) * step.y,
+                                          (k / (cells * cells) + 0.5) * step.z};
+            if (std::fabs(air.winding_number(p)) < 0.5) continue;
+            ++inside;
+            common += std::fabs(part.winding_number(p)) < 0.5 ? 0 : 1;
+        }
+        if (inside > 0) sum += std::fabs(mesh::signed_volume(surface)) * common / inside;
+    }
+    return sum;
+}
+
 Status add_body(const slice::Body& body, std::size_t index, job::Manifest& manifest) {
     if (!body.slices.empty()) return input_error("{}: is made of slices: no estimate", slice::describe(body, index));
     const Result<Box3> box = slice::bounds(body, slice::describe(body, index));
     if (!box) return tl::unexpected(box.error());
     constexpr double um3_in_mm3 = 1e9;
-    const double volume_mm3 = std::fabs(mesh::signed_volume(body.surface_um)) / um3_in_mm3;
+    const double volume_mm3 =
+        std::max(0.0, std::fabs(mesh::signed_volume(body.surface_um)) - air_um3(body)) / um3_in_mm3;
     const double height_mm = (box->high.z - box->low.z) / 1000;
     const double area_mm2 = height_mm > 0 ? volume_mm3 / height_mm : 0;
     const double share = body.blend ? 0.5 : 1;

@@ -58,6 +58,29 @@ TEST_CASE("the estimate of prisms equals the plan of the sliced job") {
     }
 }
 
+TEST_CASE("air that is cut out of a body is in no estimate and in no job") {
+    const pliant::test::Folder folder;
+    const PrinterFile printer = tower();
+    Order order;
+    order.inputs = {"blocks"};
+    order.layer = "100 um";
+    Drawing drawing = blocks();
+    const auto slab = prepare::test::box_um({9000, 1000, 5000}, {13000, 3000, 8000});  // 3 x 2 x 3 of 4 x 4 x 3 mm
+    drawing.bodies[0].air_um.push_back(slab);
+    Progress silent;
+    const auto made = slice_job(order, printer, drawing, folder / "blocks.zip", silent);
+    REQUIRE_MESSAGE(made, (made ? "" : made.error().message));
+    const auto guess = estimate(order, printer.printer, drawing);
+    REQUIRE_MESSAGE(guess, (guess ? "" : guess.error().message));
+    const auto whole = estimate(order, printer.printer, blocks());
+    REQUIRE(whole);
+    CHECK(made->manifest.materials[0].model_volume_mm3 == near(30, {.relative = 1e-6}));
+    CHECK(guess->seconds.total == near(made->plan.seconds.total, {.relative = 1e-6}));
+    for (std::size_t v = 0; v < guess->vats.size(); ++v)
+        CHECK(guess->vats[v].resin_ml == near(made->plan.vats[v].resin_ml, {.relative = 0.01}));
+    CHECK(guess->vats[0].resin_ml < 0.9 * whole->vats[0].resin_ml);
+}
+
 TEST_CASE("the estimate of a real robot is close to the plan of its sliced job") {
     const pliant::test::Folder folder;
     const PrinterFile printer = tower();

@@ -100,12 +100,13 @@ void add_drawn(const std::string& name, double volume_mm3, double area_mm2, std:
     }
 }
 
-/// The drawn amount of each material: volumes minus what other bodies keep, those of a blend as divided.
+/// The drawn amount of each material: volumes minus air and what other bodies keep, those of a blend as divided.
 void measure(std::span<const slice::Body> bodies, const slice::Slicer& slicer, const slice::Summary& summary,
              std::vector<Material>& materials) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const slice::Measures& drawn = slicer.measures()[b];
-        const double volume_mm3 = std::max(0.0, drawn.volume_mm3 - summary.lost_mm3[b] - summary.doubled_mm3[b]);
+        const double taken_mm3 = summary.lost_mm3[b] + summary.doubled_mm3[b] + summary.air_mm3[b];
+        const double volume_mm3 = std::max(0.0, drawn.volume_mm3 - taken_mm3);
         const double second = summary.second_share[b];
         add_drawn(bodies[b].material, volume_mm3 * (1 - second), drawn.area_mm2, materials);
         if (bodies[b].blend) add_drawn(bodies[b].blend->second, volume_mm3 * second, drawn.area_mm2, materials);

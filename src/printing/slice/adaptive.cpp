@@ -40,17 +40,29 @@ bool is_flat(double low_um, double high_um) {
     return high_um - low_um < 1e-3;
 }
 
-void limit_by(const Body& body, const AdaptiveHeights& heights, Limits& limits) {
-    for (const OutlineSlice& s : body.slices) limits.limit(s.bottom_um, s.top_um, s.top_um - s.bottom_um);
-    if (!body.slices.empty()) return;
-    for (const auto& t : body.surface_um.triangles) {
-        const Vec3 &a = body.surface_um.points[t[0]], &b = body.surface_um.points[t[1]],
-                   &c = body.surface_um.points[t[2]];
+void limit_by(const mesh::TriMesh& surface, const AdaptiveHeights& heights, Limits& limits) {
+    for (const auto& t : surface.triangles) {
+        const Vec3 &a = surface.points[t[0]], &b = surface.points[t[1]], &c = surface.points[t[2]];
         const Vec3 normal = cross(b - a, c - a);
         const double length = norm(normal), low = std::min({a.z, b.z, c.z}), high = std::max({a.z, b.z, c.z});
         // Horizontal faces cause no steps: a layer ends at them.
         if (!(length > 0) || is_flat(low, high)) continue;
         limits.limit(low, high, heights.least_um * length / std::max(1e-9 * length, std::fabs(normal.z)));
+    }
+}
+
+void limit_by(const Body& body, const AdaptiveHeights& heights, Limits& limits) {
+    for (const OutlineSlice& s : body.slices) limits.limit(s.bottom_um, s.top_um, s.top_um - s.bottom_um);
+    if (!body.slices.empty()) return;
+    limit_by(body.surface_um, heights, limits);
+    for (const mesh::TriMesh& air : body.air_um) limit_by(air, heights, limits);
+}
+
+void add_flats(const mesh::TriMesh& surface, std::vector<double>& flats_um) {
+    const std::vector<Vec3>& points = surface.points;
+    for (const auto& t : surface.triangles) {
+        const auto [low, high] = std::minmax({points[t[0]].z, points[t[1]].z, points[t[2]].z});
+        if (is_flat(low, high)) flats_um.push_back(high);
     }
 }
 
@@ -60,11 +72,8 @@ void add_flats(const Body& body, std::vector<double>& flats_um) {
         flats_um.push_back(body.slices.back().top_um);
         return;
     }
-    const std::vector<Vec3>& points = body.surface_um.points;
-    for (const auto& t : body.surface_um.triangles) {
-        const auto [low, high] = std::minmax({points[t[0]].z, points[t[1]].z, points[t[2]].z});
-        if (is_flat(low, high)) flats_um.push_back(high);
-    }
+    add_flats(body.surface_um, flats_um);
+    for (const mesh::TriMesh& air : body.air_um) add_flats(air, flats_um);
 }
 
 /// Heights at which layers should end, ascending: those of horizontal faces, and the top of the part.

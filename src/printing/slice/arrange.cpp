@@ -36,7 +36,7 @@ Status scale(std::vector<Body>& bodies, double factor) {
     if (!(factor >= least && factor <= most))
         return input_error("a scale of {:.6g}: must be {} to {}", factor, least, most);
     for (Body& body : bodies) {
-        for (Vec3& p : body.surface_um.points) p *= factor;
+        each_point(body, [&](Vec3& p) { p *= factor; });
         body.chord_um *= factor;
         if (body.blend) {
             body.blend->from_um *= factor;
@@ -67,7 +67,7 @@ Status turn(std::vector<Body>& bodies, const Vec3& degrees) {
             turn_pair(p.z, p.x, degrees.y);
             turn_pair(p.x, p.y, degrees.z);
         };
-        for (Vec3& p : bodies[i].surface_um.points) turn_point(p);
+        each_point(bodies[i], turn_point);
         if (bodies[i].blend) {
             turn_point(bodies[i].blend->from_um);
             turn_point(bodies[i].blend->to_um);

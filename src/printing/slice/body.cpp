@@ -22,7 +22,7 @@ Status check(const Raster& raster) {
 }
 
 void move(Body& body, const Vec3& shift_um) {
-    for (Vec3& p : body.surface_um.points) p += shift_um;
+    each_point(body, [&](Vec3& p) { p += shift_um; });
     if (body.blend) {
         body.blend->from_um += shift_um;
         body.blend->to_um += shift_um;

@@ -40,6 +40,7 @@ struct Body {
     bool filler = false;  ///< yields to the part without a warning (put it first)
     /// Later bodies are cut out of it, but chords of common curved faces deviate by up to this; 0: they are not.
     double chord_um = 0;
+    std::vector<mesh::TriMesh> air_um{};  ///< closed surfaces of space that is cut out of it; may reach beyond it
 };
 
 /// The projector's image on the platform. x runs to the right and row 0 is at the greatest y, unless mirrored. The part
@@ -61,6 +62,15 @@ struct Raster {
 /// Errors: a raster of no pixels or more than 2^28, a pixel outside (0, 10] mm, a rotation or offset that is not finite
 /// or unreasonably large.
 [[nodiscard]] Status check(const Raster& raster);
+
+/// Of its surface and of what is cut out of it.
+template <class Visit>
+void each_point(Body& body, const Visit& visit) {
+    for (Vec3& p : body.surface_um.points) visit(p);
+    for (mesh::TriMesh& air : body.air_um) {
+        for (Vec3& p : air.points) visit(p);
+    }
+}
 
 void move(Body& body, const Vec3& shift_um);
 

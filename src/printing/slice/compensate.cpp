@@ -184,6 +184,8 @@ ComposedLayer compensated(const ComposedLayer& fine, int factor, std::span<const
                          (closed + fine_per_pixel - 1) / fine_per_pixel, fine.overlapping, fine.doubled_px};
     for (double& lost : result.lost_px) lost /= fine_per_pixel;
     for (double& doubled : result.doubled_px) doubled /= fine_per_pixel;
+    result.air_px = fine.air_px;
+    for (double& air : result.air_px) air /= fine_per_pixel;
     return result;
 }
 

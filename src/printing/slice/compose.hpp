@@ -37,6 +37,7 @@ struct ComposedLayer {
     std::vector<double> doubled_px{};  ///< (bodies) area also covered by later bodies of the same material or by the
                                        ///< body itself
     std::vector<DealtBody> dealt{};    ///< of bodies that have a blend
+    std::vector<double> air_px{};      ///< (bodies, or empty) area that was cut out of each
 };
 
 /// The non-blank ones of the images (one per material).

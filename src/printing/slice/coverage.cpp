@@ -32,16 +32,19 @@ void sort_row(Cell* begin, Cell* end) {
 
 }  // namespace
 
-std::vector<Segment> in_image(const std::vector<Segment>& segments, const Raster& raster) {
+std::vector<Segment> in_image(const std::vector<Segment>& segments, const Raster& raster, Beyond beyond) {
     const RasterFrame frame(raster, 1.0 / grid_per_um);
     const double width = raster.width_px, height = raster.height_px;
+    const auto within = [&](double value, double most) {
+        return beyond == Beyond::kept ? value : std::clamp(value, 0.0, most);
+    };
     std::vector<Segment> lines;
     lines.reserve(segments.size());
     for (const Segment& s : segments) {
-        const double u0 = std::clamp(frame.column(s.x0, s.y0), 0.0, width);
-        const double v0 = std::clamp(frame.row(s.x0, s.y0), 0.0, height);
-        const double u1 = std::clamp(frame.column(s.x1, s.y1), 0.0, width);
-        const double v1 = std::clamp(frame.row(s.x1, s.y1), 0.0, height);
+        const double u0 = within(frame.column(s.x0, s.y0), width);
+        const double v0 = within(frame.row(s.x0, s.y0), height);
+        const double u1 = within(frame.column(s.x1, s.y1), width);
+        const double v1 = within(frame.row(s.x1, s.y1), height);
         lines.push_back(frame.mirrored() ? Segment{u1, v1, u0, v0} : Segment{u0, v0, u1, v1});
     }
     return lines;

@@ -28,9 +28,11 @@ struct Cell {
     [[nodiscard]] int body() const { return static_cast<int>(key & 0x7FFFFFFF); }
 };
 
+enum class Beyond { clamped, kept };
 /// Transforms outlines from the platform to the image (x: columns, y: rows), with the solid to the right of those that
-/// run to higher rows. They must be inside the raster up to rounding (they are clamped to it).
-[[nodiscard]] std::vector<Segment> in_image(const std::vector<Segment>& segments, const Raster& raster);
+/// run to higher rows. Those of bodies must be inside the raster up to rounding, and are clamped to it.
+[[nodiscard]] std::vector<Segment> in_image(const std::vector<Segment>& segments, const Raster& raster,
+                                            Beyond beyond = Beyond::clamped);
 
 /// Collects the cells of one layer.
 class CellBuffer {

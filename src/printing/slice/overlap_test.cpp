@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "base/core/near.hpp"
+#include "printing/slice/arrange.hpp"
+#include "printing/slice/place.hpp"
 #include "printing/slice/slicer.hpp"
 #include "printing/slice/test_shapes.hpp"
 
@@ -84,6 +86,37 @@ TEST_CASE("what the chords of a common curved face leave of an overlap that was 
     CHECK(warnings(10, 5) == 0);
     // More than 20 um over the 16 mm^2 of the block's surface is no residue of chords of 10 um.
     CHECK(warnings(10, 200) == 1);
+}
+
+TEST_CASE("air is cut out of a body, also where it reaches beyond it, and follows it") {
+    // A block of 4 x 4 x 3 mm; a room of 1 x 2 x 1 mm, of which a tenth of 1 mm lies beyond the block, twice.
+    Body block{"soft", box({10000, 0, 5000}, {14000, 4000, 8000}), "block"};
+    const mesh::TriMesh room = box({13100, 1000, 6000}, {14100, 3000, 7000});
+    block.air_um = {room, room};
+    std::vector<Body> bodies{block, {"firm", box({13000, 0, 8000}, {14000, 4000, 9000}), "peg"}};
+    REQUIRE(scale(bodies, 0.5));
+    REQUIRE(turn(bodies, {0, 0, 90}));
+    const Raster raster{100, 80, 50};
+    REQUIRE(place_on_platform(bodies, raster));
+    for (const double rotation : {0.0, 30.0}) {
+        Raster turned = raster;
+        turned.rotation_deg = rotation;
+        double lit_mm3 = 0;
+        pliant::Progress progress;
+        const auto summary = slice_bodies(
+            bodies, {turned, 50, {}},
+            [&](int, int material, const RunImage& image) {
+                if (material == 0) lit_mm3 += static_cast<double>(image.value_sum()) / 255 * 0.05 * 0.05 * 0.05;
+                return pliant::Status{};
+            },
+            progress);
+        REQUIRE_MESSAGE(summary.has_value(), (summary ? "" : summary.error().message));
+        CHECK(lit_mm3 == near((48 - 1.8) / 8, {.relative = 2e-3}));
+        CHECK(summary->air_mm3[0] == near(1.8 / 8, {.relative = 1e-6}));
+        CHECK(summary->air_mm3[1] == 0);
+        CHECK(summary->lost_mm3[0] == near(0, {.absolute = 1e-9}));
+        CHECK(summary->warnings.empty());
+    }
 }
 
 TEST_CASE("an overlap in partly filled pixels counts fully") {

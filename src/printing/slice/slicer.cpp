@@ -9,7 +9,6 @@
 #include "printing/slice/blend.hpp"
 #include "printing/slice/layer_text.hpp"
 #include "printing/slice/mask.hpp"
-#include "printing/slice/overlap.hpp"
 #include "printing/slice/raster_frame.hpp"
 #include "printing/slice/repair.hpp"
 
@@ -126,6 +125,14 @@ Status Slicer::add_body(const Body& body, const std::string& label) {
         measures_.push_back({volume_mm3(repaired->surface), slice::area_mm2(repaired->surface)});
         shapes_.emplace_back(Sectioner(std::move(repaired->surface), layers_));
     }
+    air_.emplace_back();
+    for (const mesh::TriMesh& air_um : body.air_um) {
+        auto air = repair(air_um, "the air in " + label, layers_, join_px * settings_.raster.pixel_um);
+        if (!air) return tl::unexpected(air.error());
+        std::move(air->warnings.begin(), air->warnings.end(), std::back_inserter(warnings_));
+        measures_.back().area_mm2 += slice::area_mm2(air->surface);
+        air_.back().emplace_back(std::move(air->surface), layers_);
+    }
     // The chords of both bodies deviate from their common face, which is at most all of the surface.
     residues_mm3_.push_back(2 * body.chord_um / 1000 * measures_.back().area_mm2);
     if (!box) return tl::unexpected(box.error());
@@ -181,20 +188,48 @@ void Slicer::section(std::size_t body, int layer, std::vector<Segment>& segments
     std::visit([&](const auto& shape) { shape.section(layer, segments); }, shapes_[body]);
 }
 
+/// Returns the area that `lines`, of the body in an image, lose.
+Overlap Slicer::cut_air(std::size_t body, int layer, const Raster& raster, std::vector<Segment>& lines) const {
+    std::vector<std::vector<Segment>> outlines{lines};
+    std::vector<Segment> segments;
+    for (const Sectioner& air : air_[body]) {
+        segments.clear();
+        air.section(layer, segments);
+        if (!segments.empty()) outlines.push_back(in_image(segments, raster, Beyond::kept));
+    }
+    if (lines.empty() || outlines.size() == 1) return {};
+    std::vector<int> material_of(outlines.size(), 1);
+    material_of[0] = 0;
+    DividedLayer divided = slice::divided(outlines, material_of);
+    lines = std::move(divided.kept[0]);
+    return divided.areas[0];
+}
+
 /// Overlapping bodies are separated as outlines before rasterisation: the coverage of a pixel does not tell whether two
 /// outlines cover the same part of it.
 ComposedLayer Slicer::composed(int k, const Raster& raster, const ComposeRules& rules) const {
     std::vector<std::vector<Segment>> lines(shapes_.size());
     std::vector<Segment> segments;
+    std::vector<Overlap> cut(shapes_.size());
     CellBuffer cells;
     for (std::size_t b = 0; b < shapes_.size(); ++b) {
         segments.clear();
         section(b, k, segments);
         lines[b] = in_image(segments, raster);
+        if (!air_[b].empty()) cut[b] = cut_air(b, k, raster, lines[b]);
         cells.add(static_cast<int>(b), lines[b]);
     }
+    const auto count_cuts = [&](ComposedLayer& layer) {
+        for (std::size_t b = 0; b < shapes_.size(); ++b) {
+            layer.air_px.push_back(cut[b].others);
+            layer.doubled_px[b] += cut[b].own;
+        }
+    };
     ComposedLayer layer = compose(cells.sorted(), zone_of_, raster, rules);
-    if (!layer.overlapping) return layer;
+    if (!layer.overlapping) {
+        count_cuts(layer);
+        return layer;
+    }
     const DividedLayer divided = slice::divided(lines, material_of_);
     CellBuffer apart;
     for (std::size_t b = 0; b < shapes_.size(); ++b) apart.add(static_cast<int>(b), divided.kept[b]);
@@ -203,6 +238,7 @@ ComposedLayer Slicer::composed(int k, const Raster& raster, const ComposeRules& 
         layer.lost_px[b] = divided.areas[b].others;
         layer.doubled_px[b] = divided.areas[b].own;
     }
+    count_cuts(layer);
     return layer;
 }
 
@@ -355,6 +391,7 @@ Tally::Tally(const Slicer& slicer)
     : slicer_(slicer),
       lost_mm3_(slicer.body_labels().size(), 0.0),
       doubled_mm3_(lost_mm3_),
+      air_mm3_(lost_mm3_),
       first_mm3_(lost_mm3_),
       second_mm3_(lost_mm3_) {}
 
@@ -364,6 +401,7 @@ void Tally::add(int k, const SlicedLayer& layer) {
     for (std::size_t b = 0; b < lost_mm3_.size(); ++b) {
         lost_mm3_[b] += layer.lost_px[b] * voxel_mm3;
         doubled_mm3_[b] += layer.doubled_px[b] * voxel_mm3;
+        if (b < layer.air_px.size()) air_mm3_[b] += layer.air_px[b] * voxel_mm3;
     }
     for (const DealtBody& d : layer.dealt) {
         first_mm3_[static_cast<std::size_t>(d.body)] += d.first_px * voxel_mm3;
@@ -389,6 +427,7 @@ Summary Tally::summary() const {
         const double lost_mm3 = lost_mm3_[b];
         summary.lost_mm3.push_back(lost_mm3);
         summary.doubled_mm3.push_back(doubled_mm3_[b]);
+        summary.air_mm3.push_back(air_mm3_[b]);
         const double all = first_mm3_[b] + second_mm3_[b];
         summary.second_share.push_back(all > 0 ? second_mm3_[b] / all : 0);
         if (lost_mm3 < std::max(voxel_mm3, slicer_.residues_mm3()[b]) || slicer_.fillers()[b]) continue;

@@ -24,6 +24,7 @@
 #include "printing/slice/compose.hpp"
 #include "printing/slice/layers.hpp"
 #include "printing/slice/outline_stack.hpp"
+#include "printing/slice/overlap.hpp"
 #include "printing/slice/removal.hpp"
 #include "printing/slice/run_image.hpp"
 #include "printing/slice/section.hpp"
@@ -49,8 +50,8 @@ using SlicedLayer = ComposedLayer;
 
 /// Of a repaired body as drawn, before rasterisation.
 struct Measures {
-    double volume_mm3 = 0;
-    double area_mm2 = 0;
+    double volume_mm3 = 0;  ///< with what is cut out of it
+    double area_mm2 = 0;    ///< with that of the air
 };
 
 /// Repaired bodies, ready for slicing; immutable.
@@ -87,6 +88,7 @@ private:
     void add_shape(const Body& body, const Vec3& size_um);
     void section(std::size_t body, int layer, std::vector<Segment>& segments) const;
     enum class Foot { drawn, left_out };  ///< the ring of the first layers that an elephant foot would fill
+    [[nodiscard]] Overlap cut_air(std::size_t body, int layer, const Raster& raster, std::vector<Segment>& lines) const;
     [[nodiscard]] std::vector<double> offsets_um(int layer, Foot foot) const;
     [[nodiscard]] int material(const std::string& name) const;
     [[nodiscard]] Status check_pairs() const;
@@ -104,6 +106,7 @@ private:
     Settings settings_;
     Layers layers_ = 1;
     std::vector<std::variant<Sectioner, OutlineStack>> shapes_;  ///< per body
+    std::vector<std::vector<Sectioner>> air_;                    ///< per body, cut out of it
     /// Bodies rasterised together: all of one material without blend, or a single one with a blend.
     struct Zone {
         int material = 0;
@@ -131,6 +134,7 @@ struct Summary {
                                          ///< blend
     std::vector<double> doubled_mm3{};   ///< per body: volume also filled by a later one of the same material, or by
                                          ///< itself again
+    std::vector<double> air_mm3{};       ///< per body: volume that was cut out of it
 };
 
 /// Collects the remarks of all layers, which are added in order.
@@ -142,7 +146,7 @@ public:
 
 private:
     const Slicer& slicer_;
-    std::vector<double> lost_mm3_, doubled_mm3_, first_mm3_, second_mm3_;  ///< per body
+    std::vector<double> lost_mm3_, doubled_mm3_, air_mm3_, first_mm3_, second_mm3_;  ///< per body
     std::int64_t closed_gap_pixels_ = 0;
     int first_filled_ = -1, last_filled_ = -1, empty_between_ = 0, first_empty_ = -1, pending_empty_ = 0;
 };

@@ -31,6 +31,19 @@ bool loses_to_drawn_only(const Robot& robot, std::size_t body) {
                        [](const BodySpec& b) { return std::holds_alternative<mesh::Solid>(b.geometry); });
 }
 
+/// The surfaces of air whose boxes overlap that of a body.
+Result<std::vector<mesh::TriMesh>> air_near(const Box3& body, const std::vector<mesh::Solid>& air, double tolerance,
+                                            Progress& progress) {
+    std::vector<mesh::TriMesh> surfaces;
+    for (const mesh::Solid& solid : air) {
+        if (!boxes_overlap(body, mesh::bounds(solid))) continue;
+        Result<mesh::TriMesh> surface = mesh::tessellate(solid, tolerance, progress);
+        if (!surface) return tl::unexpected(surface.error());
+        surfaces.push_back(std::move(*surface));
+    }
+    return surfaces;
+}
+
 Result<mesh::Solid> notches_of(const Robot& robot, const std::vector<mesh::BodyGeometry>& bodies,
                                const std::vector<mesh::Solid>& air) {
     std::vector<mesh::Solid> walls;
@@ -118,20 +131,28 @@ Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& pro
         const BodySpec& body = robot.bodies[b];
         Result<mesh::TriMesh> surface;
         std::vector<std::string> notes;
+        Result<std::vector<mesh::TriMesh>> beside;
         if (const auto* solid = std::get_if<mesh::Solid>(&body.geometry)) {
             surface = mesh::tessellate(without_air(*solid, cut_from(robot, b, air)), tolerance, progress);
         } else if (std::holds_alternative<SurfaceFile>(body.geometry)) {
             const Result<Shape> shape = body_shape(robot, body, air, notes);
             if (!shape) return tl::unexpected(shape.error());
-            const auto* cut = std::get_if<mesh::Solid>(&*shape);
-            surface = cut != nullptr ? mesh::tessellate(*cut, tolerance, progress) : std::get<mesh::TriMesh>(*shape);
+            if (const auto* cut = std::get_if<mesh::Solid>(&*shape)) {
+                surface = mesh::tessellate(*cut, tolerance, progress);
+            } else {
+                surface = std::get<mesh::TriMesh>(*shape);
+                beside = air_near(mesh::bounds(*surface), air, tolerance, progress);
+            }
         } else {
             surface = mesh::region_surface(*regions, static_cast<int>(b));
         }
-        if (!surface && progress.cancelled()) return cancelled();
+        if (!(surface && beside) && progress.cancelled()) return cancelled();
+        if (!beside) return tl::unexpected(at(place(robot, body.line, "body", body.name), beside.error()));
         if (!surface) return tl::unexpected(at(place(robot, body.line, "body", body.name), surface.error()));
         surfaces.push_back({body.name, body.material, mesh::scaled(std::move(*surface), robot.unit_m), std::move(notes),
                             loses_to_drawn_only(robot, b) ? tolerance * robot.unit_m : 0});
+        for (mesh::TriMesh& space : *beside)
+            surfaces.back().air_m.push_back(mesh::scaled(std::move(space), robot.unit_m));
     }
     return surfaces;
 }

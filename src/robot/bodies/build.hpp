@@ -26,8 +26,12 @@ struct BodySurface {
     /// Only drawn bodies, which are cut out of it, can share space with it; chords deviate by this from common curved
     /// faces. 0: a shared space is one of the bodies as given.
     double chord_m = 0;
+    /// The air of chambers and gaps in the body of a surface file that has too many faces to cut it out; may reach
+    /// beyond it.
+    std::vector<mesh::TriMesh> air_m{};
 };
-/// One for every body, in order, without the air of chambers and gaps. Errors name the body and its line.
+/// One for every body, in order, without the air of chambers and gaps, or with it beside. Errors name the body and its
+/// line.
 [[nodiscard]] Result<std::vector<BodySurface>> body_surfaces(const Robot& robot, Progress& progress);
 
 }  // namespace pliant::robot

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <set>
 
 #include "base/core/files.hpp"
@@ -13,6 +14,7 @@
 #include "base/core/test_variable.hpp"
 #include "base/zip/zip_file.hpp"
 #include "geometry/files/surface_file.hpp"
+#include "geometry/mesher/mesher.hpp"
 #include "robot/bodies/body_notes.hpp"
 #include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
@@ -366,6 +368,29 @@ TEST_CASE("an STL body with jittered corners and an inverted cavity is meshed; i
     REQUIRE(printed);
     CHECK((*printed)[0].notes.size() == 2);
     CHECK(1e9 * mesh::signed_volume((*printed)[0].surface_m) == near(3680, {.relative = 1e-5}));
+}
+
+TEST_CASE("who prints a round STL body gets the air of its chamber with it") {
+    const test::Folder folder("round");
+    const auto ball = [](double radius) {
+        return std::make_shared<const mesh::SolidNode>(mesh::SolidNode{mesh::SphereSolid{{0, 0, 0}, radius}});
+    };
+    const Result<mesh::TriMesh> surface = mesh::tessellate(ball(20), 0.05);
+    REQUIRE(surface);
+    REQUIRE(mesh::write_stl(folder.file("ball.stl"), *surface));
+    const Result<Robot> robot =
+        parse_robot(head + body("ball", fmt::format("geometry = \"{}\"", folder.file("ball.stl"))) +
+                        "[[chamber]]\nname = \"air\"\ngeometry = { sphere = { center = [0, 0, 0], radius = 10 } }\n"
+                        "target = { volume_ratio = 1.1 }\n[[chamber]]\nname = \"far\"\ngeometry = { sphere = { center "
+                        "= [0, 0, 90], "
+                        "radius = 10 } }\ntarget = { volume_ratio = 1.1 }\n",
+                    "ball.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    const auto printed = body_surfaces(*robot, silent);
+    REQUIRE_MESSAGE(printed, (printed ? "" : printed.error().message));
+    REQUIRE((*printed)[0].air_m.size() == 1);
+    CHECK(1e9 * mesh::signed_volume((*printed)[0].air_m[0]) == near(4000 * std::numbers::pi / 3, {.relative = 0.01}));
 }
 
 TEST_CASE("drawn bodies that overlap are told to who prints them in the words of the mesh") {

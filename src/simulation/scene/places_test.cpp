@@ -1,6 +1,8 @@
 // Supports in single directions, springs, loads by any selector, and meshes from files that are placed.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -11,6 +13,7 @@
 #include "geometry/files/surface_file.hpp"
 #include "geometry/files/tet_writer.hpp"
 #include "geometry/mesh/test_shapes.hpp"
+#include "robot/bodies/build.hpp"
 #include "robot/file/robot_file.hpp"
 #include "simulation/scene/test_run.hpp"
 
@@ -53,6 +56,53 @@ TEST_CASE("rollers and symmetry planes hold single directions: a stretched block
     CHECK(corner.y > 0.0090);
     CHECK(last.supports[3].force_N.x == near(-last.supports[0].force_N.x, {.relative = 1e-9}));
     CHECK(std::fabs(last.supports[3].force_N.y) < 1e-12);  // a roller has no force across
+}
+
+TEST_CASE("node numbers are those of the written mesh, with the air of a chamber, which no robot has") {
+    const std::string cushion = block_head + R"(mesh = { size = "5 mm" }
+body = [
+  { name = "base", material = "soft", geometry = { box = [[0, 0, 0], [10, 10, 10]] } },
+  { name = "end", material = "soft", geometry = { box = [[10, 0, 0], [20, 10, 10]] } },
+]
+chamber = [{ name = "air", geometry = { box = [[2, 2, 2], [18, 8, 8]] }, target = { volume_ratio = 1.1 } }]
+fixed = [{ name = "clamp", nodes = [0] }]
+program = { steps = 1 }
+)";
+    const Result<Robot> robot = parse_robot(cushion, "bar.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    Progress silent;
+    const Result<mesh::TetMesh> whole = build_mesh(*robot, silent);
+    REQUIRE_MESSAGE(whole, (whole ? "" : whole.error().message));
+    std::vector<bool> has_material(whole->points.size(), false);
+    for (std::size_t t = 0; t < whole->tet_count(); ++t) {
+        for (const int node : whole->tet(t))
+            if (whole->region[t] < 2) has_material[static_cast<std::size_t>(node)] = true;
+    }
+    const auto numbers_where = [&](const auto& wanted) {
+        std::vector<std::size_t> numbers;
+        for (std::size_t n = 0; n < whole->points.size(); ++n)
+            if (wanted(n)) numbers.push_back(n);
+        REQUIRE_FALSE(numbers.empty());
+        return numbers;
+    };
+    const auto holding = [&](const std::vector<std::size_t>& numbers) {
+        return replaced(cushion, "nodes = [0]", fmt::format("nodes = [{}]", fmt::join(numbers, ", ")));
+    };
+    const auto of_end = numbers_where([&](std::size_t n) { return has_material[n] && whole->points[n].x > 0.011; });
+    const Built built = build_text(holding(of_end));
+    const sim::Description& description = built.model.description();
+    const std::vector<int>& held = description.supports.at(0).nodes;
+    REQUIRE(held.size() == of_end.size());
+    double farthest = 0;
+    for (std::size_t i = 0; i < held.size(); ++i) {
+        const Vec3& p = description.mesh.points[static_cast<std::size_t>(held[i])];
+        farthest = std::max(farthest, norm(p - whole->points[of_end[i]]));
+    }
+    CHECK(farthest == 0);
+    check_problem(holding(numbers_where([&](std::size_t n) { return !has_material[n]; })),
+                  "lies in the air of a chamber or gap only");
+    check_problem(holding({whole->points.size()}),
+                  fmt::format("does not exist, the mesh has {}", whole->points.size()));
 }
 
 TEST_CASE("invalid directions are refused with their line") {
@@ -128,6 +178,35 @@ TEST_CASE("mesh and surface files can be scaled, mirrored, rotated, moved and re
     CHECK(message(replaced(text, "count = 3", "count = 100000")).find("1 to 1000 are possible") != std::string::npos);
     CHECK(message(replaced(eighth, "[10, 10, 10]] } }]", "[10, 10, 10]] }, place = { scale = 2 } }]"))
               .find("a shape is placed by translate, rotate and repeat") != std::string::npos);
+}
+
+TEST_CASE("an obstacle that is a sheet is told, as are repairs in the files of obstacles and selectors") {
+    const test::Folder folder("sheet");
+    mesh::TriMesh lid = mesh::test::cube();
+    REQUIRE(mesh::write_stl(folder.path() / "cube.stl", lid));
+    for (auto& t : lid.triangles) std::swap(t[1], t[2]);
+    REQUIRE(mesh::write_stl(folder.path() / "inverted.stl", lid));
+    lid.triangles.resize(lid.triangles.size() - 1);
+    REQUIRE(mesh::write_stl(folder.path() / "open.stl", lid));
+    const std::string text = block_head + R"(mesh = { size = "10 mm", order = 1 }
+body = [{ name = "block", material = "soft", geometry = { box = [[0, 0, 0], [1, 1, 1]] } }]
+fixed = [{ name = "floor", surface = "inverted.stl" }]
+obstacle = [{ name = "lid", surface = "cube.stl", place = { move = [0, 0, 2] } }]
+)";
+    const auto notes = [&](const std::string& file) {
+        const Result<Robot> robot = parse_robot(replaced(text, "cube.stl", file), folder.path() / "block.toml");
+        REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+        Progress silent;
+        const Result<mesh::TetMesh> mesh = build_mesh(*robot, silent);
+        REQUIRE_MESSAGE(mesh, (mesh ? "" : mesh.error().message));
+        return fmt::format("{}", fmt::join(mesh->notes, "\n"));
+    };
+    CHECK(notes("cube.stl").find("fixed \"floor\": ") != std::string::npos);
+    CHECK(notes("cube.stl").find("obstacle") == std::string::npos);
+    CHECK(notes("inverted.stl").find("obstacle \"lid\": ") != std::string::npos);
+    CHECK(notes("inverted.stl").find("not closed") == std::string::npos);
+    CHECK(notes("open.stl").find("obstacle \"lid\": its surface is not closed: 3 edges have no neighbour") !=
+          std::string::npos);
 }
 
 TEST_CASE("surfaces of chambers and obstacles can be placed too") {
