@@ -371,7 +371,7 @@ TEST_CASE("an STL body with jittered corners and an inverted cavity is meshed; i
 }
 
 TEST_CASE("who prints a round STL body gets the air of its chamber with it") {
-    const test::Folder folder("round");
+    const Folder folder;
     const auto ball = [](double radius) {
         return std::make_shared<const mesh::SolidNode>(mesh::SolidNode{mesh::SphereSolid{{0, 0, 0}, radius}});
     };
