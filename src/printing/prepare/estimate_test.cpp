@@ -64,13 +64,16 @@ TEST_CASE("air that is cut out of a body is in no estimate and in no job") {
     Order order;
     order.inputs = {"blocks"};
     order.layer = "100 um";
-    Drawing drawing = blocks();
-    const auto slab = prepare::test::box_um({9000, 1000, 5000}, {13000, 3000, 8000});  // 3 x 2 x 3 of 4 x 4 x 3 mm
-    drawing.bodies[0].air_um.push_back(slab);
+    const auto cut = [] {
+        Drawing drawing = blocks();
+        // 3 x 2 x 3 of 4 x 4 x 3 mm
+        drawing.bodies[0].air_um.push_back(prepare::test::box_um({9000, 1000, 5000}, {13000, 3000, 8000}));
+        return drawing;
+    };
     Progress silent;
-    const auto made = slice_job(order, printer, drawing, folder / "blocks.zip", silent);
+    const auto made = slice_job(order, printer, cut(), folder / "blocks.zip", silent);
     REQUIRE_MESSAGE(made, (made ? "" : made.error().message));
-    const auto guess = estimate(order, printer.printer, drawing);
+    const auto guess = estimate(order, printer.printer, cut());
     REQUIRE_MESSAGE(guess, (guess ? "" : guess.error().message));
     const auto whole = estimate(order, printer.printer, blocks());
     REQUIRE(whole);
