@@ -220,7 +220,8 @@ StepReport Stepper::step_by_error(RobotState& robot, const StepPath& path, const
     StepReport report;
     std::string off;  // why the last solved step was rejected
     FailedAttempt last;
-    int in_vain = 0;  // iterations of the attempts that failed since the last step that was not very short
+    int in_vain = 0;    // iterations of the attempts that failed since the last step that was not ever shorter
+    double solved = 0;  // length of the last step that was solved
     const double very_short = smallest_share * options_.time_unit;
     double piece = robot.history.next_dt;
     if (!(piece > 0)) piece = first_share * (path.end - robot.now.along);
@@ -241,7 +242,8 @@ StepReport Stepper::step_by_error(RobotState& robot, const StepPath& path, const
         if (outcome.converged) {
             robot.history.next_dt = dt < piece && growth >= 1 ? std::max(piece, growth * dt) : growth * dt;
             piece = robot.history.next_dt;
-            if (dt > very_short) in_vain = 0;
+            if (dt > very_short || dt >= solved) in_vain = 0;
+            solved = dt;
             if (path.after_piece) path.after_piece(robot);
             continue;
         }

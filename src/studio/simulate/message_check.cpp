@@ -15,8 +15,8 @@ namespace {
 
 Status check_time(const Built& built, double time) {
     const double end = built.robot.program.duration;
-    constexpr double rounding = 1e-9;
-    if (time >= 0 && time <= end * (1 + rounding)) return {};
+    constexpr double slack = 1e-9;
+    if (time >= 0 && time <= end * (1 + slack)) return {};
     return input_error("message: time is {:g}; the program goes from 0 to {:g}", time, end);
 }
 
