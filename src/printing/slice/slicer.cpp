@@ -219,26 +219,21 @@ ComposedLayer Slicer::composed(int k, const Raster& raster, const ComposeRules& 
         if (!air_[b].empty()) cut[b] = cut_air(b, k, raster, lines[b]);
         cells.add(static_cast<int>(b), lines[b]);
     }
-    const auto count_cuts = [&](ComposedLayer& layer) {
-        for (std::size_t b = 0; b < shapes_.size(); ++b) {
-            layer.air_px.push_back(cut[b].others);
-            layer.doubled_px[b] += cut[b].own;
-        }
-    };
     ComposedLayer layer = compose(cells.sorted(), zone_of_, raster, rules);
-    if (!layer.overlapping) {
-        count_cuts(layer);
-        return layer;
+    if (layer.overlapping) {
+        const DividedLayer divided = slice::divided(lines, material_of_);
+        CellBuffer apart;
+        for (std::size_t b = 0; b < shapes_.size(); ++b) apart.add(static_cast<int>(b), divided.kept[b]);
+        layer = compose(apart.sorted(), zone_of_, raster, rules);
+        for (std::size_t b = 0; b < shapes_.size(); ++b) {
+            layer.lost_px[b] = divided.areas[b].others;
+            layer.doubled_px[b] = divided.areas[b].own;
+        }
     }
-    const DividedLayer divided = slice::divided(lines, material_of_);
-    CellBuffer apart;
-    for (std::size_t b = 0; b < shapes_.size(); ++b) apart.add(static_cast<int>(b), divided.kept[b]);
-    layer = compose(apart.sorted(), zone_of_, raster, rules);
     for (std::size_t b = 0; b < shapes_.size(); ++b) {
-        layer.lost_px[b] = divided.areas[b].others;
-        layer.doubled_px[b] = divided.areas[b].own;
+        layer.air_px.push_back(cut[b].others);
+        layer.doubled_px[b] += cut[b].own;
     }
-    count_cuts(layer);
     return layer;
 }
 
