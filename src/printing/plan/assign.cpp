@@ -110,8 +110,9 @@ double usable_ml(const Printer& printer, int vat) {
 /// Tracks consumption from layer to layer, and which resin runs out when.
 class Consumption {
 public:
-    Consumption(const job::Manifest& job, const Printer& printer, std::vector<Supply> supplies, Assignment& assignment)
-        : job_(job), printer_(printer), supplies_(std::move(supplies)), assignment_(assignment) {
+    Consumption(const job::Manifest& job, const Printer& printer, const CarriedOff& carried,
+                std::vector<Supply> supplies, Assignment& assignment)
+        : job_(job), printer_(printer), carried_(carried), supplies_(std::move(supplies)), assignment_(assignment) {
         for (Supply& s : supplies_) s.left_ml = usable_ml(printer, s.vats.front());
         refills_.resize(supplies_.size());
         refilled_.resize(printer.vats.size());
@@ -130,7 +131,9 @@ public:
             const job::Layer& layer = job_.layers[i];
             std::fill(needed.begin(), needed.end(), 0);
             for (const job::LayerImage& image : layer.images) needed[supply_of(image)] += volume_ml(layer, image);
-            for (std::size_t s = 0; s < needed.size(); ++s) draw(s, needed[s], static_cast<int>(i));
+            for (std::size_t s = 0; s < needed.size(); ++s) {
+                if (needed[s] > 0) draw(s, needed[s], i);
+            }
             use(layer, static_cast<int>(i));
         }
         for (VatUse& use : uses_) {
@@ -147,20 +150,32 @@ private:
         return supply_of_[static_cast<std::size_t>(image.material)];
     }
 
+    /// What the part carries off the vat after its share of the layer.
+    double carried_ml(std::size_t layer, int vat) const {
+        return carried_.empty() ? 0 : carried_[layer][static_cast<std::size_t>(vat)];
+    }
+
+    /// What the part may carry off after a refill that comes before it has left the vat.
+    double late_ml(int vat) const {
+        const VatUse& use = uses_[static_cast<std::size_t>(vat)];
+        return use.materials.empty() ? 0 : carried_ml(static_cast<std::size_t>(use.last_layer), vat);
+    }
+
     /// Takes the layer's resin from the vat in use, from the next one, or after a refill.
-    void draw(std::size_t s, double ml, int layer) {
+    void draw(std::size_t s, double printed_ml, std::size_t layer) {
         Supply& supply = supplies_[s];
-        while (ml > supply.left_ml && supply.in_use + 1 < supply.vats.size()) {
+        const auto ml = [&] { return printed_ml + carried_ml(layer, supply.vats[supply.in_use]); };
+        while (ml() > supply.left_ml && supply.in_use + 1 < supply.vats.size()) {
             supply.left_ml = usable_ml(printer_, supply.vats[++supply.in_use]);
         }
-        if (ml > supply.left_ml) {
-            refills_[s].push_back(layer);
-            const int vat = supply.vats[supply.in_use];
-            assignment_.refills.push_back({layer, vat_at(printer_, vat).slot, supply.resin});
+        const int vat = supply.vats[supply.in_use];
+        if (ml() > supply.left_ml) {
+            refills_[s].push_back(static_cast<int>(layer));
+            assignment_.refills.push_back({static_cast<int>(layer), vat_at(printer_, vat).slot, supply.resin});
             refilled_[static_cast<std::size_t>(vat)] = true;
-            supply.left_ml = std::max(ml, usable_ml(printer_, vat));
+            supply.left_ml = std::max(ml(), usable_ml(printer_, vat) - late_ml(vat));
         }
-        supply.left_ml -= ml;
+        supply.left_ml -= ml();
     }
 
     void use(const job::Layer& layer, int index) {
@@ -170,6 +185,7 @@ private:
             const int vat = supply.vats[supply.in_use];
             vats.push_back(vat);
             VatUse& use = uses_[static_cast<std::size_t>(vat)];
+            const bool first_in_layer = use.materials.empty() || use.last_layer != index;
             if (use.materials.empty()) {
                 use.vat = vat;
                 use.slot = vat_at(printer_, vat).slot;
@@ -183,7 +199,9 @@ private:
                                      image.material);
             use.last_layer = index;
             use.resin_ml += volume_ml(layer, image);
-            if (!refilled_[static_cast<std::size_t>(vat)]) use.needed_ml += volume_ml(layer, image);
+            if (!refilled_[static_cast<std::size_t>(vat)])
+                use.needed_ml +=
+                    volume_ml(layer, image) + (first_in_layer ? carried_ml(static_cast<std::size_t>(index), vat) : 0);
             int& first = assignment_.vat_of_material[static_cast<std::size_t>(image.material)];
             if (first < 0) first = vat;
         }
@@ -208,6 +226,7 @@ private:
 
     const job::Manifest& job_;
     const Printer& printer_;
+    const CarriedOff& carried_;
     std::vector<Supply> supplies_;
     std::vector<std::size_t> supply_of_;  ///< by material
     std::vector<std::vector<int>> refills_;
@@ -228,7 +247,7 @@ Status check_resins(const std::vector<job::Material>& materials, const Printer& 
     return {};
 }
 
-Result<Assignment> assign_vats(const job::Manifest& job, const Printer& printer) {
+Result<Assignment> assign_vats(const job::Manifest& job, const Printer& printer, const CarriedOff& carried) {
     const std::vector<bool> printed = printed_materials(job);
     std::vector<Supply> supplies = needed_resins(job, printed);
     if (supplies.size() > printer.vats.size()) {
@@ -249,7 +268,7 @@ Result<Assignment> assign_vats(const job::Manifest& job, const Printer& printer)
         supply.vats.push_back(vat);
         assignment.warnings.push_back(fill_warning(supply.resin, vat_at(printer, vat)));
     }
-    Consumption(job, printer, std::move(supplies), assignment).follow();
+    Consumption(job, printer, carried, std::move(supplies), assignment).follow();
     return assignment;
 }
 

@@ -7,6 +7,7 @@
 #include "base/core/error.hpp"
 #include "printing/job/job.hpp"
 #include "printing/machine/printer.hpp"
+#include "printing/plan/departures.hpp"
 #include "printing/plan/plan.hpp"
 
 namespace pliant::plan {
@@ -23,7 +24,8 @@ struct Assignment {
 [[nodiscard]] Status check_resins(const std::vector<job::Material>& materials, const machine::Printer& printer);
 
 /// See make_plan. Materials of the same resin share a vat; if several vats hold a resin, the next one takes over at the
-/// layer for which the previous one has too little left.
-[[nodiscard]] Result<Assignment> assign_vats(const job::Manifest& job, const machine::Printer& printer);
+/// layer for which the previous one has too little left. `carried`: what the part carries off counts as used.
+[[nodiscard]] Result<Assignment> assign_vats(const job::Manifest& job, const machine::Printer& printer,
+                                             const CarriedOff& carried = {});
 
 }  // namespace pliant::plan

@@ -156,7 +156,7 @@ TEST_CASE("two vats of one resin: the second takes over at the layer that the fi
     machine::Printer printer = plan::test::tower();
     printer.vat_shape.least_ml = 0;
     printer.vats[2].resin = "semi-flex";
-    printer.vats[0].fill_ml = 0.012;  // two layers of 5 ul
+    printer.vats[0].fill_ml = 0.015;  // two layers of 5 ul, and 4.3 ul that the part carries off
     printer.vats[2].fill_ml = 0.011;
     const Plan plan = make_plan(plan::test::make_job({{0}, {0}, {0}, {0}, {0}}, {"semi-flex"}), printer).value();
     CHECK(plan.order == std::vector<VatList>{{0}, {0}, {2}, {2}, {2}});

@@ -10,6 +10,7 @@
 #include "printing/job/exposure.hpp"
 #include "printing/machine/working_curve.hpp"
 #include "printing/plan/assign.hpp"
+#include "printing/plan/departures.hpp"
 #include "printing/plan/least_cost.hpp"
 #include "printing/plan/print_sequence.hpp"
 #include "printing/plan/solution_use.hpp"
@@ -144,6 +145,48 @@ void choose_order(Plan& plan, const std::vector<VatList>& layers, const Printer&
     plan.swap_lower_bound = fewest_swaps(layers);
 }
 
+/// The vats of every image, and their order.
+Plan ordered(Assignment assignment, const job::Manifest& job, const Printer& printer, OrderRule rule) {
+    Plan plan;
+    plan.job = job.name;
+    plan.printer = printer.name;
+    plan.layers = static_cast<int>(job.layers.size());
+    plan.vats = std::move(assignment.vats);
+    plan.vat_of_material = std::move(assignment.vat_of_material);
+    plan.refills = std::move(assignment.refills);
+    plan.warnings = std::move(assignment.warnings);
+    plan.vat_of_image = std::move(assignment.vat_of_image);
+    choose_order(plan, vats_by_layer(plan.vat_of_image), with_resins(plan, printer), rule);
+    return plan;
+}
+
+/// Whether `more` allows for at least what is carried off by `ml`.
+bool covers(const CarriedOff& more, const CarriedOff& ml) {
+    constexpr double rounding = 1 + 1e-9;
+    for (std::size_t i = 0; i < ml.size(); ++i) {
+        for (std::size_t v = 0; v < ml[i].size(); ++v) {
+            if (ml[i][v] > rounding * (more.empty() ? 0 : more[i][v])) return false;
+        }
+    }
+    return true;
+}
+
+/// The resin that the part carries off decides how long a vat lasts, and so which vats a layer uses; their order
+/// decides what is carried off. Repeated until what was allowed for covers what is carried off.
+Result<Plan> assign_and_order(const job::Manifest& job, const Printer& printer, OrderRule rule) {
+    constexpr int rounds = 6;
+    CarriedOff allowed;
+    for (int round = 1;; ++round) {
+        auto assignment = assign_vats(job, printer, allowed);
+        if (!assignment) return tl::unexpected(assignment.error());
+        Plan plan = ordered(std::move(*assignment), job, printer, rule);
+        CarriedOff carried =
+            carried_off(departures(plan.order, plan.vat_of_image, job, printer), job.layers.size(), printer);
+        if (covers(allowed, carried)) return plan;
+        allowed = round < rounds ? std::move(carried) : most_carried_off(job, printer);
+    }
+}
+
 /// How deep the k-th image of a layer cures: by the resin's working curve, so that longer exposures count.
 double depth_of_image_um(const job::Manifest& job, std::size_t layer, std::size_t k, const Printer& printer,
                          const machine::Resin& resin) {
@@ -201,18 +244,9 @@ std::vector<int> Plan::refills_of(int slot) const {
 
 Result<Plan> make_plan(const job::Manifest& job, const Printer& printer, OrderRule rule) {
     if (Status status = check_job(job, printer); !status) return tl::unexpected(status.error());
-    auto assignment = assign_vats(job, printer);
-    if (!assignment) return tl::unexpected(assignment.error());
-    Plan plan;
-    plan.job = job.name;
-    plan.printer = printer.name;
-    plan.layers = static_cast<int>(job.layers.size());
-    plan.vats = std::move(assignment->vats);
-    plan.vat_of_material = std::move(assignment->vat_of_material);
-    plan.refills = std::move(assignment->refills);
-    plan.warnings = std::move(assignment->warnings);
-    plan.vat_of_image = std::move(assignment->vat_of_image);
-    choose_order(plan, vats_by_layer(plan.vat_of_image), with_resins(plan, printer), rule);
+    auto assigned = assign_and_order(job, printer, rule);
+    if (!assigned) return assigned;
+    Plan plan = std::move(*assigned);
     warn_of_gaps(job, printer, plan);
     warn_of_curves(job, printer, plan);
     PrintTimes times = print_times(plan, job, with_resins(plan, printer));

@@ -8,6 +8,7 @@
 #include "base/core/test_text.hpp"
 #include "printing/machine/working_curve.hpp"
 #include "printing/plan/check.hpp"
+#include "printing/plan/departures.hpp"
 #include "printing/plan/test_jobs.hpp"
 
 using namespace pliant;
@@ -250,6 +251,60 @@ TEST_CASE("a vat needs what is printed and wasted before its first refill, and w
     CHECK(holds(vat_lines(refilled)[0], "slot 1: semi-flex, at least 68 ml (10.0 ml printed, "));
     CHECK(holds(vat_lines(refilled)[0], " wasted), refilled 1 time during the print"));
     CHECK(nlohmann::json::parse(plan_json(refilled))["vats"][0]["needed_ml"] == 67.5);
+}
+
+TEST_CASE("what the part carries off counts in how long a vat lasts") {
+    machine::Printer printer = plan::test::tower();
+    job::Manifest job = plan::test::make_job(repeated({0}, 4), two);
+    for (job::Layer& layer : job.layers) layer.images[0].area_mm2 = 5e4;
+    printer.vats[0].fill_ml = 71;  // enough for the 10 ml that are printed, not for the 2.1 ml on the finished part
+    const Plan plan = planned(job, printer);
+    CHECK(plan.refills_of(1) == std::vector<int>{3});
+    CHECK(plan.vats.front().needed_ml == near(67.5, {.relative = 1e-12}));
+}
+
+TEST_CASE("no vat falls below its least while vats change in every layer") {
+    machine::Printer printer = plan::test::tower();
+    job::Manifest job = plan::test::make_job(repeated({0, 1}, 9), two);
+    for (std::size_t i = 0; i < job.layers.size(); ++i) {
+        for (job::LayerImage& image : job.layers[i].images) image.area_mm2 = 3e4 + 1e4 * static_cast<double>(i % 3);
+    }
+    std::size_t refills = 0;
+    for (double fill_ml = 72; fill_ml < 110; fill_ml += 0.7) {  // above what a layer takes at most
+        CAPTURE(fill_ml);
+        for (machine::Vat& vat : printer.vats) vat.fill_ml = fill_ml;
+        if (printer.vats.size() > 2) printer.vats[2].resin = printer.vats[0].resin;  // takes over
+        const Plan plan = planned(job, printer);
+        refills += plan.refills.size();
+        std::vector<double> left_ml(printer.vats.size(), fill_ml);
+        const std::vector<Departure> all = departures(plan.order, plan.vat_of_image, job, printer);
+        auto next = all.begin();
+        const auto leave = [&](std::size_t layer, int vat) {
+            if (next == all.end() || next->layer != layer || next->next != vat) return;
+            left_ml[static_cast<std::size_t>(next->vat)] -= next->film_ml * (1 - printer.brushed_share());
+            ++next;
+        };
+        for (std::size_t i = 0; i < plan.order.size(); ++i) {
+            for (const RefillBefore& refill : plan.refills) {
+                for (std::size_t v = 0; v < left_ml.size(); ++v) {
+                    if (refill.layer == static_cast<int>(i) && printer.vats[v].slot == refill.slot)
+                        left_ml[v] = fill_ml;
+                }
+            }
+            for (const int vat : plan.order[i]) {
+                leave(i, vat);
+                for (std::size_t k = 0; k < job.layers[i].images.size(); ++k) {
+                    if (plan.vat_of_image[i][k] == vat)
+                        left_ml[static_cast<std::size_t>(vat)] -= job.layers[i].images[k].area_mm2 * 50 / 1e6;
+                }
+            }
+            leave(i, -1);
+            for (const double ml : left_ml) CHECK(ml >= printer.vat_shape.least_ml - 1e-9);
+        }
+        CHECK(next == all.end());
+        for (const VatUse& use : plan.vats) CHECK(use.needed_ml <= fill_ml + 1e-9);
+    }
+    CHECK(refills > 20);
 }
 
 TEST_CASE("an amount that is not none is not printed as none") {
