@@ -3,6 +3,7 @@ import { useRef, useState } from 'preact/hooks';
 import { counted } from './counted';
 import { DiscardQuestion, unlessLost } from './discard';
 import { dialogs, useDismiss } from './dismiss';
+import { hasEnding } from './file_names';
 import { Icon } from './icons';
 import { Make } from './make/make';
 import { EmergencyStop } from './print/emergency';
@@ -74,7 +75,7 @@ function Open() {
           {own.length === 0 && <p class="quiet none">no robot files or jobs</p>}
           <div class="gallery">
             {own.map((name) => (
-              <button class="item" key={name} onClick={() => (name.endsWith('.toml') ? unlessLost(`Opening ${name}`, () => void post('/api/open', { name })) : void post('/api/open', { name }))}>
+              <button class="item" key={name} onClick={() => (hasEnding(name, '.toml') ? unlessLost(`Opening ${name}`, () => void post('/api/open', { name })) : void post('/api/open', { name }))}>
                 <Thumbnail of={`file=${encodeURIComponent(name)}`} />
                 <span class="item-name">{name}</span>
               </button>

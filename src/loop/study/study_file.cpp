@@ -312,7 +312,7 @@ std::vector<fs::path> files_of(const std::string& word, const fs::path& folder) 
         return !fs::is_regular_file(file, error);
     });
     for (std::size_t k = 0, count = files.size(); k < count; ++k) {
-        if (files[k].extension() != ".toml") continue;
+        if (lower_extension(files[k]) != ".toml") continue;
         const Result<config::Document> document = config::load(files[k]);
         if (!document) continue;  // the command tells what is wrong with it
         for (const auto& [key, value] : std::get<config::Table>(document->root.data)) {

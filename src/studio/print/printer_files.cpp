@@ -68,7 +68,7 @@ Result<std::filesystem::path> own_file(const ProjectFolder& folder, const std::s
     if (find_file(example_printers(), name) != nullptr)
         return input_error("{}: is built in; make a printer file of your own from it", name);
     Result<std::filesystem::path> path = folder.resolve(name);
-    if (path && path->extension() != ".toml") return input_error("\"{}\": a printer file ends with .toml", name);
+    if (path && lower_extension(*path) != ".toml") return input_error("\"{}\": a printer file ends with .toml", name);
     return path;
 }
 

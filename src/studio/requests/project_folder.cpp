@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "base/core/config.hpp"
+#include "base/core/files.hpp"
 
 namespace pliant::studio {
 namespace {
@@ -14,7 +15,7 @@ constexpr std::size_t longest_path = 400, longest_name = 255, most_files = 500;
 constexpr int deepest_folder = 2;
 
 bool is_robot_or_job(const fs::path& path) {
-    const std::string extension = path.extension().string();
+    const std::string extension = lower_extension(path);
     return extension == ".toml" || extension == ".zip";
 }
 

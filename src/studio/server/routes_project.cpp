@@ -16,7 +16,7 @@ using Json = nlohmann::json;
 void add_own_printers(const ProjectFolder& folder, Json& printers) {
     constexpr std::uintmax_t largest = 1 << 20;
     for (const std::string& name : folder.files()) {
-        if (!name.ends_with(".toml")) continue;
+        if (lower_extension(name) != ".toml") continue;
         const Result<std::string> text = read_file(folder.path() / name, largest);
         if (text && text->find("[projector]") != std::string::npos) printers.push_back(name);
     }

@@ -85,10 +85,10 @@ Studio::~Studio() {
 }
 
 Status Studio::start(const std::filesystem::path& file) {
-    if (file.extension() == ".zip") {
+    if (lower_extension(file) == ".zip") {
         if (Status status = make_->open(file); !status) return status;
     }
-    if (file.empty() || file.extension() == ".zip") {
+    if (file.empty() || lower_extension(file) == ".zip") {
         open_example(std::string(first_example));
         return {};
     }
@@ -180,7 +180,7 @@ Status Studio::save(const std::string& name) {
     const std::lock_guard lock(mutex_);
     const Result<std::filesystem::path> path = folder_.resolve(name.empty() ? document_.name : name);
     if (!path) return tl::unexpected(path.error());
-    if (path->extension() != ".toml") return not_a_robot(name);
+    if (lower_extension(*path) != ".toml") return not_a_robot(name);
     std::error_code ignored;
     // An example or a new robot has a place in the folder, where another file may be.
     const bool is_its_own = !document_.name.empty() && *path == document_.file;
@@ -198,7 +198,7 @@ Status Studio::open_file(const std::string& name) {
     const Result<std::filesystem::path> path = folder_.resolve(name);
     if (!path) return tl::unexpected(path.error());
     if (path->extension() == ".zip") return make_->open(*path);
-    if (path->extension() != ".toml")
+    if (lower_extension(*path) != ".toml")
         return input_error("\"{}\": a robot file (.toml) or a job (.zip) is needed", name);
     const Result<std::string> text = read_file(*path, largest_robot);
     if (!text) return tl::unexpected(text.error());
@@ -226,7 +226,7 @@ void Studio::open_example(const std::string& name) {
 Status Studio::open_new(const std::string& text, const std::string& name) {
     const Result<std::filesystem::path> place = folder_.resolve(name.empty() ? "robot.toml" : name);
     if (!place) return tl::unexpected(place.error());
-    if (place->extension() != ".toml") return not_a_robot(name);
+    if (lower_extension(*place) != ".toml") return not_a_robot(name);
     const std::lock_guard lock(mutex_);
     Document fresh{"", *place, text, "", {}, {}, document_.accuracy, {}};
     if (!name.empty()) fresh.title = name;
@@ -266,7 +266,7 @@ Status Studio::compare(const std::string& name, const std::string& example) {
     } else if (!name.empty()) {
         const Result<std::filesystem::path> path = folder_.resolve(name);
         if (!path) return tl::unexpected(path.error());
-        if (path->extension() != ".toml") return input_error("\"{}\": a robot file (.toml) is needed", name);
+        if (lower_extension(*path) != ".toml") return input_error("\"{}\": a robot file (.toml) is needed", name);
         Result<std::string> text = read_file(*path, largest_robot);
         if (!text) return tl::unexpected(text.error());
         if (Status status = check_kind(*text, *path); !status) return status;

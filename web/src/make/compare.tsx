@@ -1,6 +1,7 @@
 // Compares two jobs: time and resin, and the differences of their layers.
 import { signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
+import { hasEnding } from '../file_names';
 import { api } from '../store';
 import { cssColour, theme } from '../theme';
 import type { Job, Plan } from '../types';
@@ -146,7 +147,7 @@ export function Compare({ job }: { job: Job }) {
   useEffect(() => {
     void api('/api/project')
       .then((r) => r.json())
-      .then((p: { files: string[] }) => setNames(p.files.filter((f) => f.endsWith('.zip') && f !== job.file)))
+      .then((p: { files: string[] }) => setNames(p.files.filter((f) => hasEnding(f, '.zip') && f !== job.file)))
       .catch(() => setNames([]));
   }, [job.revision]);
   useEffect(() => {

@@ -2,6 +2,7 @@
 import { batch, computed, effect, signal } from '@preact/signals';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import { useDismiss } from '../dismiss';
+import { hasEnding } from '../file_names';
 import { Icon } from '../icons';
 import { readPacket } from '../packet';
 import { api, driveAll, frame, isRough, lines, mayDrive, onBesideFrame, onEvent, post, say, scene } from '../store';
@@ -90,7 +91,7 @@ export function Compare() {
       {label}
     </button>
   );
-  const robots = (project?.files ?? []).filter((f) => f.endsWith('.toml') && !project!.printers.includes(f));
+  const robots = (project?.files ?? []).filter((f) => hasEnding(f, '.toml') && !project!.printers.includes(f));
   return (
     <div class="menu" ref={box}>
       <button class="chip" aria-expanded={project !== null} disabled={!mayDrive.value} onClick={() => void open().catch((e: Error) => say(e.message))} data-testid="compare">

@@ -2,6 +2,7 @@
 import { signal } from '@preact/signals';
 import { useEffect, useState } from 'preact/hooks';
 import { counted } from '../counted';
+import { hasEnding } from '../file_names';
 import { Icon } from '../icons';
 import { printer } from '../make/order';
 import { api, mayDrive, post, say, section } from '../store';
@@ -39,7 +40,7 @@ function Choose() {
       .catch((e: Error) => say(e.message));
     api('/api/project')
       .then((r) => r.json())
-      .then((p: { printers: string[] }) => setMine(p.printers.filter((n) => n.endsWith('.toml'))))
+      .then((p: { printers: string[] }) => setMine(p.printers.filter((n) => hasEnding(n, '.toml'))))
       .catch((e: Error) => say(e.message));
   }, []);
   return (
@@ -69,7 +70,7 @@ function Choose() {
           </label>
         ))}
       </div>
-      {!from.value.endsWith('.toml') && (
+      {!hasEnding(from.value, '.toml') && (
         <>
           <label class="wizard-field">
             <span>File</span>
@@ -86,7 +87,7 @@ function Choose() {
 }
 
 async function begin(tell: (why: string) => void): Promise<boolean> {
-  if (from.value.endsWith('.toml')) {
+  if (hasEnding(from.value, '.toml')) {
     file.value = from.value;
     return true;
   }
@@ -311,7 +312,7 @@ function Done() {
 }
 
 export const machineSteps = (): Step[] => [
-  { name: 'Machine', body: () => <Choose />, leave: begin, lacks: () => (from.value.endsWith('.toml') || /\.toml$/.test(fileName.value) ? '' : 'the name of a printer file ends with .toml') },
+  { name: 'Machine', body: () => <Choose />, leave: begin, lacks: () => (hasEnding(from.value, '.toml') || /\.toml$/.test(fileName.value) ? '' : 'the name of a printer file ends with .toml') },
   {
     name: 'Port',
     body: () => <Port />,

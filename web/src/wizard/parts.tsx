@@ -1,5 +1,6 @@
 // Components shared by several wizards.
 import { useEffect, useState } from 'preact/hooks';
+import { hasEnding } from '../file_names';
 import { api, say } from '../store';
 import { device, file, projectorAt } from './state';
 
@@ -34,7 +35,7 @@ export function PickFile({ builtIn }: { builtIn?: boolean }) {
     api('/api/project')
       .then((r) => r.json())
       .then((p: { printers: string[] }) => {
-        const mine = p.printers.filter((n) => n.endsWith('.toml'));
+        const mine = p.printers.filter((n) => hasEnding(n, '.toml'));
         const all = builtIn ? p.printers : mine;
         setNames(all);
         if (!all.includes(file.value)) file.value = mine[0] ?? all[0] ?? '';
