@@ -34,6 +34,40 @@ struct Misfit {
     }
 };
 
+/// Where contact friction is frozen for the next round: at the last solution or, where solutions alternate between two
+/// states, at the point between them that Aitken's relaxation gives (Irons and Tuck 1969, for vectors).
+class FrozenState {
+public:
+    explicit FrozenState(Eigen::VectorXd x) : x_(std::move(x)) {}
+
+    /// `solution`: with friction frozen at x(). Whether x() then lies between solutions.
+    [[nodiscard]] bool advance(const Eigen::VectorXd& solution) {
+        const Eigen::VectorXd off = solution - x_;
+        // The first one includes the motion of the step itself.
+        if (rounds_++ > 1) {
+            const Eigen::VectorXd change = off - off_;
+            const double squared = change.squaredNorm();
+            if (squared > 0) share_ = std::clamp(-share_ * off_.dot(change) / squared, least_share, 1.0);
+            if (share_ > settles_anyway) share_ = 1;
+        }
+        off_ = off;
+        if (share_ == 1)
+            x_ = solution;
+        else
+            x_ += share_ * off;
+        return share_ < 1;
+    }
+    [[nodiscard]] const Eigen::VectorXd& x() const { return x_; }
+    /// Friction is frozen at that solution after all.
+    void restart(const Eigen::VectorXd& solution) { *this = FrozenState(solution); }
+
+private:
+    static constexpr double least_share = 0.3, settles_anyway = 0.75;
+    Eigen::VectorXd x_, off_;
+    double share_ = 1;
+    int rounds_ = 0;
+};
+
 /// What lets sliding contact settle.
 std::string remedy(const Equilibrium& system) {
     const contact::Contact* contact = system.model().contact(true);
@@ -64,6 +98,7 @@ StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, con
     if (rubs) known.reset();
     StepOutcome total;
     std::vector<double> misfits;
+    FrozenState frozen(start.state.x);
     StepSettings of_round = settings;
     if (cables_drag || (controls.friction && !controls.friction->pairs().empty()))
         of_round.tolerance *= first_tolerance;
@@ -85,7 +120,16 @@ StepOutcome settle_friction(const Equilibrium& system, SolverChain& solvers, con
         misfits.push_back(misfit.residual);
         of_round.tolerance =
             std::clamp(share_of_misfit * misfit.residual, settings.tolerance, first_tolerance * settings.tolerance);
-        if (round < rounds && !rounds_are_vain(misfits, rounds, loose_residual * settings.tolerance)) continue;
+        if (round < rounds && !rounds_are_vain(misfits, rounds, loose_residual * settings.tolerance)) {
+            if (controls.friction && frozen.advance(next.x)) {
+                if (system.is_free(next.x, frozen.x() - next.x, controls))
+                    controls.friction =
+                        system.freeze_friction({frozen.x(), next.multiplier}, start.state, controls, start.controls);
+                else
+                    frozen.restart(next.x);
+            }
+            continue;
+        }
         total.converged = total.loose = misfit.within(settings.tolerance, loose_residual, loose_cable_length);
         total.reason = misfit.text(settings.tolerance) + remedy(system);
         break;
