@@ -1,5 +1,7 @@
 #include "simulation/elements/plate.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -41,8 +43,9 @@ void Plate::add_gradient(std::span<const double> x, std::span<double> forces) co
 }
 
 void Plate::add_hessian(std::span<const double> x, const std::vector<int>& free_index,
-                        const linalg::SymmetricPattern& pattern, std::span<double> values) const {
-    const linalg::Matrix9 dR = linalg::nearest_rotation_gradient(linalg::signed_svd(pose(x).A));
+                        const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const {
+    linalg::Matrix9 dR = linalg::nearest_rotation_gradient(linalg::signed_svd(pose(x).A));
+    if (project) dR = without_negative_curvature(dR);
     const double share = 1.0 / static_cast<double>(nodes_.size());
     // d(R X_i) = dR (dx_j X_j^T) X_i; vec() stacks columns, so that vec(a b^T) = b (x) a.
     std::vector<Eigen::Matrix<double, 3, 9>> turned(nodes_.size());
@@ -61,6 +64,36 @@ void Plate::add_hessian(std::span<const double> x, const std::vector<int>& free_
             pattern.add_block(values, i, j, [&](int r, int c) { return stiffness_ * block(r, c); });
         }
     }
+}
+
+/// A motion u of the nodes, with dA = sum_i u_i X_i^T, has the curvature k (|u|^2 - dA : dR dA), at least if u has the
+/// mean zero. Of all motions with this dA the shortest has |u|^2 = |dA S^(-1/2)|^2, S = sum_i X_i X_i^T; so the
+/// eigenvalues of S^(1/2) dR S^(1/2) must not exceed 1.
+linalg::Matrix9 Plate::without_negative_curvature(const linalg::Matrix9& rotation_gradient) const {
+    linalg::Matrix3 S = linalg::Matrix3::Zero();
+    for (const linalg::Vector3& X : rest_) S += X * X.transpose();
+    const Eigen::SelfAdjointEigenSolver<linalg::Matrix3> axes(S);
+    constexpr double flat = 1e-12;  // nodes in a plane span no third direction
+    Eigen::Vector3d root, inverse;
+    for (int i = 0; i < 3; ++i) {
+        const double value = axes.eigenvalues()[i];
+        root[i] = value > flat * axes.eigenvalues()[2] ? std::sqrt(value) : 0;
+        inverse[i] = root[i] > 0 ? 1 / root[i] : 0;
+    }
+    // (B (x) I) vec(M) = vec(M B) for symmetric B.
+    const auto on_columns = [&](const Eigen::Vector3d& factors) {
+        const linalg::Matrix3 B = axes.eigenvectors() * factors.asDiagonal() * axes.eigenvectors().transpose();
+        linalg::Matrix9 product;
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) product.block<3, 3>(3 * r, 3 * c) = B(r, c) * linalg::Matrix3::Identity();
+        return product;
+    };
+    const linalg::Matrix9 K = on_columns(root), K_inverse = on_columns(inverse);
+    const Eigen::SelfAdjointEigenSolver<linalg::Matrix9> modes(K * rotation_gradient * K);
+    if (!(modes.eigenvalues()[8] > 1)) return rotation_gradient;
+    const linalg::Matrix9 kept =
+        modes.eigenvectors() * modes.eigenvalues().cwiseMin(1.0).asDiagonal() * modes.eigenvectors().transpose();
+    return K_inverse * kept * K_inverse;
 }
 
 void Plate::add_rest_product(std::span<const double> x, std::span<const double> motion,

@@ -23,9 +23,10 @@ public:
     [[nodiscard]] double energy(std::span<const double> x) const;
     /// forces (3n) += gradient of the energy.
     void add_gradient(std::span<const double> x, std::span<double> forces) const;
-    /// For a pattern over free nodes (block 3) that holds all pairs of the plate's nodes.
+    /// For a pattern over free nodes (block 3) that holds all pairs of the plate's nodes. `project`: without the
+    /// negative curvature that rotations have where the nodes are nearer to their mean than at rest.
     void add_hessian(std::span<const double> x, const std::vector<int>& free_index,
-                     const linalg::SymmetricPattern& pattern, std::span<double> values) const;
+                     const linalg::SymmetricPattern& pattern, std::span<double> values, bool project) const;
     /// forces (3n) += the change of that gradient with a motion (3n) of the rest positions, at the same stiffness.
     void add_rest_product(std::span<const double> x, std::span<const double> motion, std::span<double> forces) const;
     /// result (3n) += the transpose of that product with `weights` (3n) of the forces.
@@ -38,6 +39,7 @@ private:
         linalg::Matrix3 A;  ///< sum of x_i X_i^T
     };
     [[nodiscard]] Pose pose(std::span<const double> x) const;
+    [[nodiscard]] linalg::Matrix9 without_negative_curvature(const linalg::Matrix9& rotation_gradient) const;
 
     std::vector<int> nodes_;
     std::vector<linalg::Vector3> rest_;  ///< from their mean

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numeric>
@@ -44,7 +45,7 @@ TEST_CASE("a rigidly moved plate has no energy; gradient and Hessian agree with 
     plate.append_clique(free_index, cliques);
     const auto pattern = linalg::make_pattern(static_cast<int>(count), 3, cliques);
     std::vector<double> hessian(pattern.entries(), 0.0);
-    plate.add_hessian(x, free_index, pattern, hessian);
+    plate.add_hessian(x, free_index, pattern, hessian, false);
     std::vector<double> gradient(x.size(), 0.0);
     plate.add_gradient(x, gradient);
     const double h = 1e-6;
@@ -65,6 +66,47 @@ TEST_CASE("a rigidly moved plate has no energy; gradient and Hessian agree with 
         linalg::add_product(pattern, hessian, direction, 1, product);
         for (std::size_t row = 0; row < x.size(); ++row)
             CHECK(std::fabs((up[row] - down[row]) / (2 * h) - product[row]) < 1e-6);
+    }
+}
+
+TEST_CASE("the projected Hessian of a plate has no negative eigenvalues, and is the exact one where that has none") {
+    for (const bool flat : {false, true}) {
+        for (const double stretch : {0.7, 1.0, 1.3}) {
+            CAPTURE(flat);
+            CAPTURE(stretch);
+            const std::size_t count = 6;
+            std::vector<double> rest = some_positions(count);
+            for (std::size_t i = 0; flat && i < count; ++i) rest[3 * i + 2] = 0;
+            std::vector<int> nodes(count);
+            std::iota(nodes.begin(), nodes.end(), 0);
+            const Plate plate(nodes, 3.0, rest);
+            std::vector<double> x = rest;
+            for (double& value : x) value *= stretch;
+            linalg::Lists cliques;
+            plate.append_clique(nodes, cliques);
+            const auto pattern = linalg::make_pattern(static_cast<int>(count), 3, cliques);
+            const auto hessian = [&](bool project) {
+                std::vector<double> values(pattern.entries(), 0.0);
+                plate.add_hessian(x, nodes, pattern, values, project);
+                Eigen::MatrixXd dense(pattern.size(), pattern.size());
+                for (int column = 0; column < pattern.size(); ++column) {
+                    std::vector<double> unit(x.size(), 0.0), product(x.size(), 0.0);
+                    unit[static_cast<std::size_t>(column)] = 1;
+                    linalg::add_product(pattern, values, unit, 1, product);
+                    dense.col(column) = Eigen::Map<const Eigen::VectorXd>(product.data(), pattern.size());
+                }
+                return dense;
+            };
+            const Eigen::MatrixXd exact = hessian(false), projected = hessian(true);
+            const auto lowest = [](const Eigen::MatrixXd& matrix) {
+                return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvalues()[0];
+            };
+            CHECK(lowest(projected) > -1e-12);
+            if (stretch < 1)
+                CHECK(lowest(exact) < -0.1);
+            else
+                CHECK((exact - projected).norm() < 1e-9);
+        }
     }
 }
 

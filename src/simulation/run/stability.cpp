@@ -112,7 +112,7 @@ void Stability::collect_constraints(const State& state, const Controls& controls
         Eigen::VectorXd full = Eigen::VectorXd::Zero(state.x.size());
         const bool sealed = drive.kind == Drive::Kind::gas;
         const double scale = sealed ? 1 / std::sqrt(system_->gas_compliance(drive, multiplier)) : 1;
-        actuators[a].add_gradient(view(state.x), scale, view(full));
+        actuators[a].add_gradient(view(state.x), scale, view(full), controls.shares[a]);
         (sealed ? gas : fixed).push_back(system_->restrict_to_free(full));
     }
     const auto columns = [&](const std::vector<Eigen::VectorXd>& list) {

@@ -82,8 +82,10 @@ private:
         Eigen::MatrixXd gradients(3 * system_.model().free_count(), solved_.count());
         for (Eigen::Index k = 0; k < solved_.count(); ++k) {
             Eigen::VectorXd full = Eigen::VectorXd::Zero(state_.x.size());
-            const Actuator& one = actuator(solved_.actuators()[static_cast<std::size_t>(k)]);
-            (one.*add_gradient)(view(x), 1 / one.rest_measure(), view(full), {});
+            const Eigen::Index a = solved_.actuators()[static_cast<std::size_t>(k)];
+            const Actuator& one = actuator(a);
+            (one.*add_gradient)(view(x), 1 / one.rest_measure(), view(full),
+                                controls_.shares[static_cast<std::size_t>(a)]);
             gradients.col(k) = system_.restrict_to_free(full);
         }
         return gradients;
