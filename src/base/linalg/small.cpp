@@ -45,12 +45,11 @@ Matrix9 nearest_rotation_gradient(const Svd3& svd) {
     return gradient;
 }
 
-Matrix9 project_to_positive(const Matrix9& H) {
+Matrix9 with_absolute_eigenvalues(const Matrix9& H) {
     const Matrix9 symmetric = 0.5 * (H + H.transpose());
     const Eigen::SelfAdjointEigenSolver<Matrix9> eigen(symmetric);
     if (eigen.eigenvalues()[0] >= 0) return symmetric;
-    const auto positive = eigen.eigenvalues().cwiseMax(0.0);
-    return eigen.eigenvectors() * positive.asDiagonal() * eigen.eigenvectors().transpose();
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseAbs().asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 }  // namespace pliant::linalg

@@ -25,7 +25,7 @@ struct Svd3 {
 /// sum is kept away from zero, so the result stays finite.
 [[nodiscard]] Matrix9 nearest_rotation_gradient(const Svd3& svd);
 
-/// The nearest positive semi-definite matrix to the symmetric part of H.
-[[nodiscard]] Matrix9 project_to_positive(const Matrix9& H);
+/// The symmetric part of H with the absolute values of its eigenvalues.
+[[nodiscard]] Matrix9 with_absolute_eigenvalues(const Matrix9& H);
 
 }  // namespace pliant::linalg

@@ -1,10 +1,12 @@
 // Compiled once for each instruction set; the one that the machine has is chosen when the program runs.
 //
-// Positive semi-definite stiffness. With F = U diag(l) V^T, in the frames of U and V, the derivative of P couples the
+// Positive stiffness. With F = U diag(l) V^T, in the frames of U and V, the derivative of P couples the
 // three stretches with one another (A below) and each pair of shears ij, ji only with each other: their sum has the
 // eigenvalue (P_i - P_j) / (l_i - l_j), their difference (P_i + P_j) / (l_i + l_j), with P_i the derivative of the
-// energy with respect to l_i. Negative eigenvalues are set to zero (Smith, de Goes and Kim 2019, "Analytic eigensystems
-// for isotropic distortion energies").
+// energy with respect to l_i. (Smith, de Goes and Kim 2019, "Analytic eigensystems for isotropic distortion energies".)
+// The absolute values of the eigenvalues are taken (Chen, Liu, Levin and Jacobson 2024, "Stabler neo-Hookean
+// simulation: absolute eigenvalue filtering for projected Newton"): with zeros in place of the negative ones a nearly
+// incompressible body has directions without stiffness, along which a step goes too far by many orders.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simulation/elements/projected_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -15,10 +17,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace pliant::sim::HWY_NAMESPACE {
-
-HWY_INLINE V positive(V value) {
-    return hn::Max(value, hn::Zero(Tag()));
-}
 
 /// Eigendecomposition of a symmetric matrix: S = vectors diag(values) vectors^T, values unordered.
 struct Eigen3 {
@@ -64,15 +62,15 @@ HWY_INLINE Eigen3 eigen(Matrix S) {
     return result;
 }
 
-/// The symmetric matrix without its negative eigenvalues.
-HWY_INLINE Matrix positive_part(const Matrix& S) {
+/// The symmetric matrix with the absolute values of its eigenvalues.
+HWY_INLINE Matrix with_absolute_eigenvalues(const Matrix& S) {
     const Eigen3 e = eigen(S);
     Matrix result;
     for (int j = 0; j < 3; ++j) {
         for (int i = 0; i < 3; ++i) {
             V sum = hn::Zero(Tag());
             for (int k = 0; k < 3; ++k)
-                sum = hn::MulAdd(hn::Mul(positive(e.values[k]), e.vectors.m[k][i]), e.vectors.m[k][j], sum);
+                sum = hn::MulAdd(hn::Mul(hn::Abs(e.values[k]), e.vectors.m[k][i]), e.vectors.m[k][j], sum);
             result.m[j][i] = sum;
         }
     }
@@ -109,8 +107,8 @@ struct PrincipalForm {
                 together = hn::MulAdd(k.second_E, hn::Sub(square, product), together);
                 against = hn::MulAdd(k.second_E, hn::Add(square, product), against);
             }
-            together = positive(together);
-            against = positive(against);
+            together = hn::Abs(together);
+            against = hn::Abs(against);
             same[axis] = hn::Mul(set(0.5), hn::Add(together, against));
             across[axis] = hn::Mul(set(0.5), hn::Sub(together, against));
         }
@@ -166,7 +164,7 @@ private:
                 A.m[j][i] = A.m[i][j] = entry;
             }
         }
-        A = positive_part(A);
+        A = with_absolute_eigenvalues(A);
     }
 };
 

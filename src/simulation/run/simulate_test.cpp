@@ -65,6 +65,40 @@ TEST_CASE("uniaxial stretch of one layer of linear elements agrees with the clos
     }
 }
 
+TEST_CASE("a nearly incompressible cube is stretched in large steps with a few iterations each") {
+    const auto law = material::neo_hookean(1e6, 0.4999);
+    const double stretch = 1.4;
+    Description d;
+    d.mesh = mesh::to_quadratic(reference::kuhn_box({bar_side, bar_side, bar_side}, 2, 2, 2, [](Vec3) { return 0; }));
+    d.materials = {{"A", law, 1000}};
+    d.material_of_region = {0};
+    const auto where = [&](auto&& is) { return reference::nodes_where(d.mesh, is); };
+    d.supports = {
+        {"x", where([](Vec3 p) { return p.x < 1e-9; }), {}, ramp(0, 1), {}, {{1, 0, 0}}},
+        {"y", where([](Vec3 p) { return p.y < 1e-9; }), {}, ramp(0, 1), {}, {{0, 1, 0}}},
+        {"z", where([](Vec3 p) { return p.z < 1e-9; }), {}, ramp(0, 1), {}, {{0, 0, 1}}},
+        {"pull",
+         where([](Vec3 p) { return p.x > bar_side - 1e-9; }),
+         {(stretch - 1) * bar_side, 0, 0},
+         ramp(0, 1),
+         {},
+         {{1, 0, 0}}},
+    };
+    const Trajectory result = solve(d, {.steps = 5, .tolerance = 1e-6});
+    REQUIRE_MESSAGE(result.converged, result.message);
+    double low = 0.7, high = 0.9;  // of the lateral stretch
+    for (int i = 0; i < 100; ++i) {
+        const double mid = 0.5 * (low + high);
+        (material::stress(law, Eigen::Vector3d(stretch, mid, mid).asDiagonal())(1, 1) > 0 ? high : low) = mid;
+    }
+    const double force =
+        material::stress(law, Eigen::Vector3d(stretch, low, low).asDiagonal())(0, 0) * bar_side * bar_side;
+    CHECK(result.steps.back().supports[3].force_N.x == near(force, {.relative = 1e-5}));
+    int iterations = 0;
+    for (const Step& step : result.steps) iterations += step.iterations;
+    CHECK(iterations < 120);
+}
+
 TEST_CASE("support forces balance loads and gravity exactly") {
     Description d = bar(2);
     std::vector<mesh::Face> faces;

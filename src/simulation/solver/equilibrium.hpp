@@ -147,7 +147,7 @@ public:
     /// pattern too.
     [[nodiscard]] TangentLayout lay_out_tangent_beside_tets(const std::vector<std::vector<int>>& touching) const;
     /// Adds the symmetric part of the tangent at fixed multipliers, without constraints and gas compliance. With
-    /// `project` every part is replaced by the nearest positive semi-definite one. Over the free nodes, rollers are
+    /// `project` every part is replaced by one without negative eigenvalues. Over the free nodes, rollers are
     /// decoupled along the directions in which they are held. Precondition: min_J > 0.
     void add_tangent(const State& state, const Controls& controls, const TangentLayout& layout,
                      std::span<double> values, bool project, TangentParts parts = TangentParts::all) const;

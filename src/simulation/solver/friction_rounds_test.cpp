@@ -82,6 +82,12 @@ TEST_CASE("remaining friction error: converged within the tolerance, loose withi
     CHECK(refused > 0);
 }
 
+TEST_CASE("each round of a cable with friction converges as that of a cable without") {
+    const Settled with = settle(dragging_bar(), 1e-6, 30), without = settle(dragging_bar(0), 1e-6, 30);
+    REQUIRE(with.outcome.converged);
+    CHECK(with.outcome.iterations < 3 * without.outcome.iterations);
+}
+
 TEST_CASE("interactive control settles friction like a program") {
     const Model model = dragging_bar();
     const Program program{.steps = 6, .tolerance = 1e-5};
