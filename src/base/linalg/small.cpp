@@ -45,11 +45,12 @@ Matrix9 nearest_rotation_gradient(const Svd3& svd) {
     return gradient;
 }
 
-Matrix9 with_absolute_eigenvalues(const Matrix9& H) {
+Matrix9 with_positive_eigenvalues(const Matrix9& H) {
     const Matrix9 symmetric = 0.5 * (H + H.transpose());
     const Eigen::SelfAdjointEigenSolver<Matrix9> eigen(symmetric);
     if (eigen.eigenvalues()[0] >= 0) return symmetric;
-    return eigen.eigenvectors() * eigen.eigenvalues().cwiseAbs().asDiagonal() * eigen.eigenvectors().transpose();
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(-weak_share * eigen.eigenvalues()).asDiagonal() *
+           eigen.eigenvectors().transpose();
 }
 
 }  // namespace pliant::linalg

@@ -25,7 +25,8 @@ struct Svd3 {
 /// sum is kept away from zero, so the result stays finite.
 [[nodiscard]] Matrix9 nearest_rotation_gradient(const Svd3& svd);
 
-/// The symmetric part of H with the absolute values of its eigenvalues.
-[[nodiscard]] Matrix9 with_absolute_eigenvalues(const Matrix9& H);
+inline constexpr double weak_share = 1e-3;  ///< of a negative eigenvalue's size, which a positive one replaces
+/// The symmetric part of H, in which each negative eigenvalue l is replaced by -weak_share l.
+[[nodiscard]] Matrix9 with_positive_eigenvalues(const Matrix9& H);
 
 }  // namespace pliant::linalg

@@ -127,7 +127,7 @@ void AffineBody::add_blocks(const std::function<Matrix3(const Matrix3&)>& change
         const Matrix3 dP = change(dA);
         H.col(k) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(dP.data());
     }
-    if (project) H = linalg::with_absolute_eigenvalues(H);
+    if (project) H = linalg::with_positive_eigenvalues(H);
     add_node_blocks(nodes_, index, pattern, values, [&](std::size_t a, std::size_t b) {
         Matrix3 block = Matrix3::Zero();
         for (int k = 0; k < 3; ++k) {

@@ -34,7 +34,7 @@ struct BatchResult {
 /// belong to a. Precondition: min_J > 0.
 void batch_tangent(const TetBatch& batch, const material::InvariantForm& law, const double* x, double* blocks);
 
-/// The same, with the absolute values of the eigenvalues of each integration point's stiffness.
+/// The same, with linalg::with_positive_eigenvalues() of the stiffness of each integration point.
 void batch_projected_tangent(const TetBatch& batch, const material::InvariantForm& law, const double* x,
                              double* blocks);
 

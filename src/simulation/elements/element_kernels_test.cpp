@@ -102,7 +102,7 @@ TEST_CASE("the projected stiffness of eight tets at once agrees with the laws, p
             for (std::size_t t = 0; t < elements.tet_count(); ++t) {
                 for (int q = 0; q < elements.points_per_tet(); ++q) {
                     linalg::Matrix9 H = material::tangent(elements.law(t), elements.deformation_gradient(t, q, x));
-                    if (project) H = linalg::with_absolute_eigenvalues(H);
+                    if (project) H = linalg::with_positive_eigenvalues(H);
                     const Matrix3 dv = elements.deformation_gradient(t, q, v);
                     const Matrix3 dw = elements.deformation_gradient(t, q, w);
                     sum += elements.point_volume(t, q) * dv.reshaped().dot(H * dw.reshaped());

@@ -49,7 +49,7 @@ void Elements::tangent_one_by_one(std::size_t batch, std::span<const double> x, 
         const std::size_t tet = tet_[batch * lanes + lane];
         for (int q = 0; tet != no_tet && q < points_per_tet_; ++q) {
             Matrix9 H = material::tangent(law, deformation_gradient(tet, q, x));
-            H = project ? linalg::with_absolute_eigenvalues(H) : Matrix9(0.5 * (H + H.transpose()));
+            H = project ? linalg::with_positive_eigenvalues(H) : Matrix9(0.5 * (H + H.transpose()));
             H *= point_volume(tet, q);
             double* block = blocks + lane;
             for (int b = 0; b < nodes_per_tet_; ++b) {

@@ -43,7 +43,7 @@ public:
     [[nodiscard]] BlockSums block_sums(const std::vector<int>& free_index,
                                        const linalg::SymmetricPattern& pattern) const;
     /// Adds the tangent stiffness to the `values` of the pattern of the sums, in blocks of 3. With `project`, every
-    /// integration point contributes its matrix with the absolute values of the eigenvalues instead. Precondition: min_J > 0.
+    /// integration point contributes linalg::with_positive_eigenvalues() of its matrix. Precondition: min_J > 0.
     void add_tangent(std::span<const double> x, const BlockSums& sums, std::span<double> values, bool project) const;
 
     /// Adds Hooke's law with rest_moduli() for the changes of volume and Green-Lagrange strain that a motion u causes

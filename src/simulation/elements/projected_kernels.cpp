@@ -4,19 +4,23 @@
 // three stretches with one another (A below) and each pair of shears ij, ji only with each other: their sum has the
 // eigenvalue (P_i - P_j) / (l_i - l_j), their difference (P_i + P_j) / (l_i + l_j), with P_i the derivative of the
 // energy with respect to l_i. (Smith, de Goes and Kim 2019, "Analytic eigensystems for isotropic distortion energies".)
-// The absolute values of the eigenvalues are taken (Chen, Liu, Levin and Jacobson 2024, "Stabler neo-Hookean
-// simulation: absolute eigenvalue filtering for projected Newton"): with zeros in place of the negative ones a nearly
-// incompressible body has directions without stiffness, along which a step goes too far by many orders.
+// Negative ones become small positive ones, linalg::weak_share of their size: with zeros a nearly incompressible body
+// has directions without stiffness, along which a step goes too far by many orders of magnitude.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simulation/elements/projected_kernels.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target, as it asks.
 #include <hwy/highway.h>
 
+#include "base/linalg/small.hpp"
 #include "simulation/elements/element_point-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace pliant::sim::HWY_NAMESPACE {
+
+HWY_INLINE V positive(V value) {
+    return hn::Max(value, hn::Mul(set(-linalg::weak_share), value));
+}
 
 /// Eigendecomposition of a symmetric matrix: S = vectors diag(values) vectors^T, values unordered.
 struct Eigen3 {
@@ -62,15 +66,15 @@ HWY_INLINE Eigen3 eigen(Matrix S) {
     return result;
 }
 
-/// The symmetric matrix with the absolute values of its eigenvalues.
-HWY_INLINE Matrix with_absolute_eigenvalues(const Matrix& S) {
+/// The symmetric matrix with positive eigenvalues.
+HWY_INLINE Matrix with_positive_eigenvalues(const Matrix& S) {
     const Eigen3 e = eigen(S);
     Matrix result;
     for (int j = 0; j < 3; ++j) {
         for (int i = 0; i < 3; ++i) {
             V sum = hn::Zero(Tag());
             for (int k = 0; k < 3; ++k)
-                sum = hn::MulAdd(hn::Mul(hn::Abs(e.values[k]), e.vectors.m[k][i]), e.vectors.m[k][j], sum);
+                sum = hn::MulAdd(hn::Mul(positive(e.values[k]), e.vectors.m[k][i]), e.vectors.m[k][j], sum);
             result.m[j][i] = sum;
         }
     }
@@ -107,8 +111,8 @@ struct PrincipalForm {
                 together = hn::MulAdd(k.second_E, hn::Sub(square, product), together);
                 against = hn::MulAdd(k.second_E, hn::Add(square, product), against);
             }
-            together = hn::Abs(together);
-            against = hn::Abs(against);
+            together = positive(together);
+            against = positive(against);
             same[axis] = hn::Mul(set(0.5), hn::Add(together, against));
             across[axis] = hn::Mul(set(0.5), hn::Sub(together, against));
         }
@@ -164,7 +168,7 @@ private:
                 A.m[j][i] = A.m[i][j] = entry;
             }
         }
-        A = with_absolute_eigenvalues(A);
+        A = with_positive_eigenvalues(A);
     }
 };
 

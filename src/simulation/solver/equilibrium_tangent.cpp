@@ -92,7 +92,9 @@ void Equilibrium::add_tangent_beside_tets(const State& state, const Controls& co
                                           std::span<double> values, bool project, TangentParts parts) const {
     const linalg::SymmetricPattern& pattern = layout.pattern;
     const std::vector<int>& index = index_of(layout.nodes);
-    for (const Plate& plate : plates_) plate.add_hessian(view(state.x), index, pattern, values, project);
+    // In a motion in time the masses hold against the negative curvature, and the exact stiffness converges faster.
+    const bool project_plates = project && controls.inertia == nullptr;
+    for (const Plate& plate : plates_) plate.add_hessian(view(state.x), index, pattern, values, project_plates);
     if (!controls.of_means()) {
         for (const AffineBody& object : objects()) object.add_hessian(view(state.x), index, pattern, values, project);
     }
