@@ -83,7 +83,9 @@ Result<int> inverse(const InverseArguments& options) {
     auto progress = terminal_progress(options.output);
     const Watch watch = watch_of(*progress);
     const Model model = load_model(options.robot, options.assignments, watch);
-    const InverseResult result = pliant::inverse(model, options.search, watch);
+    InverseOptions search = options.search;
+    search.to_write = !options.folder.empty();
+    const InverseResult result = pliant::inverse(model, search, watch);
     const FoundProgram found = write_found(options, result, *progress);
     progress.reset();
     return tell_found(options, model, result, found);

@@ -29,6 +29,9 @@ struct InverseOptions {
     /// Number of starting points, spread over the ranges, that are tried if the search from rest does not reach the
     /// first waypoint; not negative.
     int starts = 6;
+    /// The result will be written: what InverseResult::write() could not write is refused before the search. Two things
+    /// of the same name, which a program would have to name, are an example.
+    bool to_write = false;
 };
 
 /// Result for one goal at a waypoint.
@@ -106,8 +109,9 @@ private:
 /// Searches for the inputs that take the robot to its goals, one waypoint after the other, each search starting from
 /// the previous result. Every answer is an equilibrium. A goal out of reach is not a Failure: the result is the closest
 /// state that was found.
-/// @throws Failure if the robot has no goals or no actuator with a range, or moves in time, or `starts` is negative; or
-/// when cancelled before the first waypoint is done. Cancelled later, it returns the waypoints found so far.
+/// @throws Failure if the robot has no goals or no actuator with a range, or moves in time, or a goal has a time
+/// after the end of the program, or `starts` is negative; or when cancelled before the first waypoint is done.
+/// Cancelled later, it returns the waypoints found so far.
 [[nodiscard]] PLIANT_API InverseResult inverse(const Model& model, const InverseOptions& options = {},
                                                const Watch& watch = {});
 

@@ -38,6 +38,11 @@ std::vector<std::string> split(std::string_view line, char separator) {
     return cells;
 }
 
+/// What a spreadsheet would compute.
+bool begins_formula(std::string_view text) {
+    return !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
+}
+
 /// The first tab or semicolon outside quotes, else a comma.
 char separator_of(std::string_view line) {
     bool quoted = false;
@@ -120,6 +125,22 @@ std::string_view csv_unit(std::string_view column) {
     const std::size_t close = column.find_last_of(")]");
     if (open == std::string_view::npos || close == std::string_view::npos || close < open) return {};
     return trimmed(column.substr(open + 1, close - open - 1));
+}
+
+std::string csv_field(std::string_view text) {
+    const bool formula = begins_formula(text);
+    const std::string out = fmt::format("{}{}", formula ? "'" : "", text);
+    if (out.find_first_of(",\"\r\n") == std::string::npos) return out;
+    std::string quoted = "\"";
+    for (const char c : out) {
+        if (c == '"') quoted += '"';
+        quoted += c;
+    }
+    return quoted + "\"";
+}
+
+std::string_view csv_name(std::string_view column) {
+    return column.starts_with('\'') && begins_formula(column.substr(1)) ? column.substr(1) : column;
 }
 
 }  // namespace pliant

@@ -37,4 +37,11 @@ struct CsvTable {
 /// The text in brackets at the end of a column name: "MPa" for "stress (MPa)"; "" if there is none.
 [[nodiscard]] std::string_view csv_unit(std::string_view column);
 
+/// A field, quoted if it contains a comma, a quote or a line break. A leading =, +, -, @ is prefixed with an
+/// apostrophe, so that no spreadsheet takes a name for a formula.
+[[nodiscard]] std::string csv_field(std::string_view text);
+
+/// The name in a column that csv_field() may have written: without its apostrophe. `column` itself if it has none.
+[[nodiscard]] std::string_view csv_name(std::string_view column);
+
 }  // namespace pliant

@@ -44,3 +44,17 @@ TEST_CASE("errors in a table name file and line") {
         CHECK(error_of(std::string("x,y\n1,") + bad + "\n") ==
               std::string("a.csv:2: y \"") + bad + "\" is not a number");
 }
+
+TEST_CASE("fields are quoted as RFC 4180 says, and never start a formula") {
+    CHECK(csv_field("plain name") == "plain name");
+    CHECK(csv_field("a,b") == "\"a,b\"");
+    CHECK(csv_field("say \"x\"") == "\"say \"\"x\"\"\"");
+    CHECK(csv_field("two\nlines") == "\"two\nlines\"");
+    CHECK(csv_field("=1+1") == "'=1+1");
+    CHECK(csv_field("") == "");
+}
+
+TEST_CASE("a name that was kept from being a formula is found again") {
+    for (const char* const name : {"=1+1", "-tip_x_mm", "+a", "@b", "plain", "'quoted'", ""})
+        CHECK(csv_name(csv_field(name)) == name);
+}

@@ -7,6 +7,7 @@
 #include "library/base/calls.hpp"
 #include "library/simulation/inverse_data.hpp"
 #include "library/simulation/steering.hpp"
+#include "robot/file/program_writer.hpp"
 #include "simulation/run/simulate.hpp"
 #include "simulation/scene/build_goals.hpp"
 
@@ -38,6 +39,13 @@ GoalResult goal_result(const sim::Goal& goal, const sim::inverse::GoalState& sta
     throw Failure(Failure::Kind::input, fmt::format("there is no waypoint {}; there are {}", index, count));
 }
 
+/// Throws if no program could name what it would have to.
+void check_writable(const Model::Data& model, const sim::InverseTask& task) {
+    std::vector<std::string> names;
+    for (const sim::Steered& input : task.inputs) names.push_back(input.name);
+    library::check(robot::check_program_names(model.scene.robot, model.robot->file, names, task.times));
+}
+
 }  // namespace
 
 InverseResult inverse(const Model& model, const InverseOptions& options, const Watch& watch) {
@@ -47,6 +55,7 @@ InverseResult inverse(const Model& model, const InverseOptions& options, const W
                       fmt::format("{} starts are not possible; 0 to {} are", options.starts, most_starts));
     const robot::Scene& scene = model.data()->scene;
     sim::InverseTask task = library::value_of(robot::build_goals(scene.robot, scene.model));
+    if (options.to_write) check_writable(*model.data(), task);
     sim::StepperOptions stepping = sim::stepper_options(scene.robot.program);
     stepping.tolerance = robot::goal_tolerance(scene.robot.program);
     sim::Stepper stepper(scene.model, stepping);

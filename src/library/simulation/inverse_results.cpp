@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <numbers>
 #include <utility>
 
 #include "base/core/files.hpp"
@@ -68,23 +69,72 @@ robot::Scene scene_of(const InverseResult::Data& found, robot::Robot robot, Prog
                                   : robot::build_scene(std::move(robot), progress));
 }
 
+/// Results of the program for the goals: (waypoints), fewer if it stopped early.
+using ProgramGoals = std::vector<std::vector<sim::inverse::GoalState>>;
+
+/// Runs the program, which passes a waypoint after every `steps_each` steps.
+sim::Trajectory run_program(const InverseResult::Data& found, const robot::Scene& scene, int steps_each,
+                            ProgramGoals& goals, Progress& progress) {
+    const sim::Equilibrium system(scene.model);
+    sim::RunOptions options;
+    options.checkpoint_every = steps_each;
+    options.on_checkpoint = [&](const sim::RunState& at) -> Status {
+        if (goals.size() < found.result.waypoints.size())
+            goals.push_back(sim::inverse::goal_states(system, found.task, at.robot, goals.size()));
+        return {};
+    };
+    return sim::run(scene.model, scene.robot.program, progress, std::move(options));
+}
+
+std::string shown_difference(const sim::Goal& goal, double size) {
+    switch (goal.kind) {
+        case sim::GoalKind::direction:
+            return fmt::format("{:.3g} deg", 180 / std::numbers::pi * size);
+        case sim::GoalKind::contact_force:
+        case sim::GoalKind::support_force:
+            return fmt::format("{:.3g} N", size);
+        case sim::GoalKind::position:
+        case sim::GoalKind::plane:
+            break;
+    }
+    return fmt::format("{:.3g} mm", 1e3 * size);
+}
+
+/// Warnings for a goal that has `there` in the program and was found with `here`; none where they agree.
+std::vector<std::string> departures_of(const InverseResult::Data& found, std::size_t goal, std::size_t waypoint,
+                                       const sim::inverse::GoalState& there, const sim::inverse::GoalState& here) {
+    const sim::Goal& wanted = found.task.goals[goal];
+    std::vector<std::string> lines;
+    if (wanted.kind != sim::GoalKind::position) {
+        const double off = sim::inverse::difference(wanted, there, here, waypoint);
+        if (off > wanted.tolerance)
+            lines.push_back(
+                fmt::format("at waypoint {} the program is {} from what was found for goal \"{}\": there is more than "
+                            "one equilibrium",
+                            waypoint + 1, shown_difference(wanted, off), wanted.name));
+        return lines;
+    }
+    for (std::size_t m = 0; m < wanted.markers.size(); ++m) {
+        const double off = norm(there.got[m] - here.got[m]);
+        if (!(off > wanted.tolerance)) continue;
+        lines.push_back(fmt::format(
+            "at waypoint {} the program leads marker \"{}\" {} from where it was found: there is more than one "
+            "equilibrium",
+            waypoint + 1, found.model->scene.model.description().markers[wanted.markers[m]].name,
+            shown_difference(wanted, off)));
+    }
+    return lines;
+}
+
 /// Warnings for waypoints where the program deviates from the results by more than the goals' tolerances.
-std::vector<std::string> departures(const InverseResult::Data& found, const sim::Trajectory& run, int steps_each) {
+std::vector<std::string> departures(const InverseResult::Data& found, const sim::Trajectory& run,
+                                    const ProgramGoals& goals) {
     std::vector<std::string> lines;
     if (!run.converged) lines.push_back("the program that was found does not run to its end: " + run.message);
-    for (std::size_t k = 0; k < found.result.waypoints.size(); ++k) {
-        const std::size_t step = (k + 1) * static_cast<std::size_t>(steps_each);
-        if (step >= run.steps.size()) break;
-        for (const sim::Goal& goal : found.task.goals) {
-            for (const std::size_t marker : goal.markers) {
-                const Vec3 there = run.steps[step].markers[marker].position_m;
-                const double off = norm(there - found.result.waypoints[k].state.markers[marker].position_m);
-                if (goal.kind != sim::GoalKind::position || !(off > goal.tolerance)) continue;
-                lines.push_back(
-                    fmt::format("at waypoint {} the program leads marker \"{}\" {:.3g} mm from where it was "
-                                "found: there is more than one equilibrium",
-                                k + 1, run.steps[step].markers[marker].name, 1e3 * off));
-            }
+    for (std::size_t k = 0; k < goals.size(); ++k) {
+        for (std::size_t g = 0; g < goals[k].size(); ++g) {
+            for (std::string& line : departures_of(found, g, k, goals[k][g], found.result.waypoints[k].goals[g]))
+                lines.push_back(std::move(line));
         }
     }
     return lines;
@@ -99,7 +149,8 @@ std::vector<std::string> fill(const InverseResult::Data& found, const fs::path& 
     if (!files.robot.empty()) library::check(write_file(folder / robot_name, files.robot));
     library::check(write_file(folder / "program.toml", files.program));
     const robot::Scene scene = scene_of(found, library::value_of(robot::load_robot(folder / "program.toml")), progress);
-    const sim::Trajectory run = sim::run(scene.model, scene.robot.program, progress);
+    ProgramGoals goals;
+    const sim::Trajectory run = run_program(found, scene, steps_each, goals, progress);
     if (progress.cancelled()) library::check(cancelled());
     report::Simulation simulation = report::simulation_of(scene.robot, scene.model, run);
     simulation.measured = report::wanted_paths(found.report());
@@ -109,7 +160,7 @@ std::vector<std::string> fill(const InverseResult::Data& found, const fs::path& 
     if (progress.cancelled()) library::check(cancelled());
     library::check(write_file(folder / "inverse.json", report::inverse_json(found.report())));
     library::check(write_file(folder / "waypoints.csv", report::waypoints_csv(found.report())));
-    std::vector<std::string> warnings = departures(found, run, steps_each);
+    std::vector<std::string> warnings = departures(found, run, goals);
     if (!written.warning.empty()) warnings.push_back(written.warning);
     return warnings;
 }

@@ -181,3 +181,22 @@ TEST_CASE("a checkpoint does not overwrite a folder with other files") {
     CHECK_THROWS_AS((void)workspace(model, {.side = 2, .between = 0, .checkpoint = folder / "kept"}), Failure);
     CHECK(fs::exists(folder / "kept/mine"));
 }
+
+TEST_CASE("the program of goals with times is written, however late the times are") {
+    const test::Folder folder;
+    const InverseResult result = inverse(Model(
+        bar("goal = [{ name = \"reach\", marker = \"tip\", times = [2, 10], tolerance = \"0.01 mm\", "
+            "plane = { point = [0, 0, 8], normal = [0, 0, 1] } }]\nprogram = { steps = 10, duration = \"10 s\" }\n")));
+    REQUIRE(result.waypoint_count() == 2);
+    CHECK(result.waypoint(1).time == 10);
+    (void)result.write(folder / "out", {}, [] { return true; });
+    CHECK(run(Model(Robot::load(folder / "out/program.toml"))).converged());
+}
+
+TEST_CASE("what could not be written is refused before the search") {
+    const Model model(bar(std::string("goal = [{ name = \"reach\", marker = \"tip\", ") + reachable +
+                          " }]\nload = [{ name = \"flexor\", box = [[60, 0, 0], [60, 10, 10]], force = [\"0 N\", \"0 "
+                          "N\", \"0.1 N\"] }]\n"));
+    CHECK_THROWS_WITH_AS((void)inverse(model, {.to_write = true}),
+                         doctest::Contains("two things are named \"flexor\", which the program must name"), Failure);
+}

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -49,6 +50,15 @@ void check_reduction_options(const ReductionOptions& options) {
         throw Failure(Failure::Kind::input, "the errors of modes and forces are between 0 and 1");
 }
 
+/// Samples that move the robot: so many modes they can have at most.
+Eigen::Index moving_samples(const sim::reduced::Reduction& reduction) {
+    double largest = 0;
+    for (const auto& sample : reduction.samples) largest = std::max(largest, sample.amplitudes.norm());
+    constexpr double rounding = 1e-9;
+    return std::ranges::count_if(reduction.samples,
+                                 [&](const auto& sample) { return sample.amplitudes.norm() > rounding * largest; });
+}
+
 std::vector<std::string> notes_of(const sim::reduced::Reduction& reduction, const ReductionOptions& options) {
     std::vector<std::string> notes;
     constexpr const char* or_before = "there, or with less actuation already";
@@ -59,6 +69,13 @@ std::vector<std::string> notes_of(const sim::reduced::Reduction& reduction, cons
         notes.push_back(
             fmt::format("{} samples were left out: the robot touches itself {}, and a reduced model has no contact",
                         reduction.touching, or_before));
+    // What modes leave out is seen in motions that the samples have beside them.
+    const Eigen::Index possible = moving_samples(reduction), beside = possible - reduction.used;
+    if (beside < 2 || 2 * beside < reduction.used)
+        notes.push_back(
+            fmt::format("the model uses {} of the {} modes that its samples can have, which leaves few to estimate its "
+                        "error from: the estimate may be far too small; take more samples (--samples)",
+                        reduction.used, possible));
     if (reduction.used == options.most_modes)
         notes.push_back(fmt::format("the modes end at {}, the largest number allowed", options.most_modes));
     if (reduction.force_error > options.force_error)

@@ -93,3 +93,9 @@ TEST_CASE("a reduced model is compared with the whole robot at other inputs") {
     CHECK_THROWS_AS((void)reduce(Model(bar()), {.samples = -1}), Failure);
     CHECK_THROWS_AS((void)reduce(Model(bar()), {}, [](std::string_view, double) { return false; }), Failure);
 }
+
+TEST_CASE("a model that uses nearly all modes of its samples says that its estimate means little") {
+    const ReducedModel reduced = reduce(Model(bar()), {.samples = 4});
+    REQUIRE(reduced.notes().size() == 1);
+    CHECK(reduced.notes()[0].find("leaves few to estimate its error from") != std::string::npos);
+}

@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "base/core/csv.hpp"
 #include "base/core/json.hpp"
 #include "presentation/draw/plot.hpp"
 #include "presentation/report/tables.hpp"

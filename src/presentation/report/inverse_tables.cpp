@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "base/core/csv.hpp"
 #include "base/core/json.hpp"
 #include "presentation/report/tables.hpp"
 #include "presentation/report/units.hpp"

@@ -41,7 +41,8 @@ Result<std::vector<Columns>> read_header(const CsvTable& table, const std::vecto
             std::string_view name = table.columns[c];
             if (!name.ends_with(suffixes[axis])) continue;
             name.remove_suffix(suffixes[axis].size());
-            const std::size_t marker = index_of(markers, name);
+            std::size_t marker = index_of(markers, name);
+            if (marker == markers.size()) marker = index_of(markers, csv_name(name));
             if (marker == markers.size())
                 return input_error_at(table.file, table.header_line, "\"{}\" is not a marker of the robot; it has {}",
                                       name, known_names(markers));

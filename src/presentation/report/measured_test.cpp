@@ -73,6 +73,16 @@ TEST_CASE("measured markers may have two coordinates, and missing values") {
     CHECK(norm(paths[1].points[2] - Vec3{0.1, 0, 0.02}) < 1e-12);
 }
 
+TEST_CASE("a marker whose name begins like a formula is found as markers.csv names it, and as it is") {
+    sim::Step rest;
+    rest.markers = {{"-tip", {0.1, 0, 0}}};
+    for (const char* const text : {"'-tip_x_mm\n100\n", "-tip_x_mm\n100\n"}) {
+        const auto paths = parse_measured(text, "m.csv", rest);
+        REQUIRE_MESSAGE(paths, (paths ? "" : paths.error().message));
+        CHECK((*paths)[0].marker == "-tip");
+    }
+}
+
 TEST_CASE("the plot looks along the axis of least motion, with a line and dots for each marker") {
     const Plot plot = measured_plot(read("tip_x_mm,tip_z_mm\n101,10\n99,20\n"), straight());
     CHECK(plot.x_label == "x (mm)");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/core/csv.hpp"
 #include "simulation/run/result_columns.hpp"
 
 namespace pliant::report {
@@ -114,18 +115,6 @@ std::string steps_row(const sim::Step& step, bool contact) {
 }
 
 }  // namespace
-
-std::string csv_field(std::string_view text) {
-    const bool formula = !text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos;
-    const std::string out = fmt::format("{}{}", formula ? "'" : "", text);
-    if (out.find_first_of(",\"\r\n") == std::string::npos) return out;
-    std::string quoted = "\"";
-    for (const char c : out) {
-        if (c == '"') quoted += '"';
-        quoted += c;
-    }
-    return quoted + "\"";
-}
 
 std::string steps_csv(const sim::Trajectory& result) {
     const bool contact = has_contact(result);

@@ -26,8 +26,4 @@ namespace pliant::report {
 /// The cells of one iteration: "1,0.05,newton,3,...", without a line break.
 [[nodiscard]] std::string iteration_row(const sim::IterationRecord& record);
 
-/// A field, quoted if it contains a comma, a quote or a line break. A leading =, +, -, @ is prefixed with an
-/// apostrophe, so that no spreadsheet takes a name for a formula.
-[[nodiscard]] std::string csv_field(std::string_view text);
-
 }  // namespace pliant::report

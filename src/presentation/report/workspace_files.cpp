@@ -7,6 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "base/core/csv.hpp"
 #include "base/core/json.hpp"
 #include "base/core/vec3.hpp"
 #include "presentation/report/inverse_tables.hpp"

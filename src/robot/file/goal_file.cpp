@@ -308,13 +308,10 @@ void check_together(Reader& root, Robot& robot) {
 }  // namespace
 
 void check_goal_times(Reader& root, const Robot& robot) {
-    const double end = robot.program.duration;
     if (root.unreadable("program")) return;
     for (const GoalSpec& goal : robot.goals) {
-        if (goal.times.empty() || goal.times.back() <= end * (1 + 1e-9)) continue;
-        root.problem("goal", fmt::format("\"{}\" has a time of {:g} s, and the program ends at {:g} s; give "
-                                         "program.duration",
-                                         goal.name, goal.times.back(), end));
+        if (const std::string late = late_time(goal, robot.program.duration); !late.empty())
+            root.problem("goal", fmt::format("\"{}\" {}", goal.name, late));
     }
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -106,6 +107,25 @@ bool does_something(const Robot& robot, const std::string& name) {
     return true;
 }
 
+/// Those that the program has keys for.
+std::vector<Column> written_columns(const Robot& robot, const std::vector<DrivenValue>& all,
+                                    const std::vector<ProgramPoint>& points) {
+    std::vector<Column> columns = columns_of(all, points);
+    std::erase_if(columns, [&](const Column& column) { return !does_something(robot, column.of->name); });
+    return columns;
+}
+
+Status unlike_names(const std::filesystem::path& file, const std::vector<DrivenValue>& all,
+                    const std::vector<Column>& columns) {
+    for (const Column& column : columns) {
+        if (std::ranges::count_if(all, [&](const DrivenValue& d) { return d.name == column.of->name; }) > 1)
+            return input_error(
+                "{}: two things are named \"{}\", which the program must name; give them different names",
+                file.string(), column.of->name);
+    }
+    return {};
+}
+
 std::string relative_path(const std::filesystem::path& file, const std::filesystem::path& folder) {
     std::error_code code;
     const std::filesystem::path to = std::filesystem::weakly_canonical(std::filesystem::absolute(file), code);
@@ -116,18 +136,26 @@ std::string relative_path(const std::filesystem::path& file, const std::filesyst
 
 }  // namespace
 
+Status check_program_names(const Robot& robot, const std::filesystem::path& file,
+                           const std::vector<std::string>& inputs, const std::vector<double>& times) {
+    std::vector<ProgramPoint> points;
+    for (const double time : times) {
+        ProgramPoint point{time, {}};
+        // Not a number is no rest value: an input that may move needs a key.
+        for (const std::string& input : inputs)
+            point.values.emplace_back(input, std::numeric_limits<double>::quiet_NaN());
+        points.push_back(std::move(point));
+    }
+    const std::vector<DrivenValue> all = driven_values(robot);
+    return unlike_names(file, all, written_columns(robot, all, points));
+}
+
 Result<std::string> program_text(const Robot& robot, const std::filesystem::path& file,
                                  const std::vector<std::string>& assignments, const std::filesystem::path& folder,
                                  const std::vector<ProgramPoint>& points, int steps_per_point, double tolerance) {
     const std::vector<DrivenValue> all = driven_values(robot);
-    std::vector<Column> columns = columns_of(all, points);
-    std::erase_if(columns, [&](const Column& column) { return !does_something(robot, column.of->name); });
-    for (const Column& column : columns) {
-        if (std::ranges::count_if(all, [&](const DrivenValue& d) { return d.name == column.of->name; }) > 1)
-            return input_error(
-                "{}: two things are named \"{}\", which the program must name; give them different names",
-                file.string(), column.of->name);
-    }
+    const std::vector<Column> columns = written_columns(robot, all, points);
+    if (Status status = unlike_names(file, all, columns); !status) return tl::unexpected(status.error());
     std::string text = fmt::format("robot = {}\n", quoted(relative_path(file, folder)));
     if (!assignments.empty()) {
         text += "set = [";

@@ -15,6 +15,10 @@ struct ProgramPoint {
     std::vector<std::pair<std::string, double>> values;
 };
 
+/// What program_text() would refuse when these inputs may have any values at points with these times.
+[[nodiscard]] Status check_program_names(const Robot& robot, const std::filesystem::path& file,
+                                         const std::vector<std::string>& inputs, const std::vector<double>& times);
+
 /// `robot`: as read from `file` with `assignments`. Text of a file in `folder` that gives the same robot a program
 /// which is at point k at the time k + 1, s, in `steps_per_point` steps each. An error: what must be given a key has
 /// the name of another thing that has one.

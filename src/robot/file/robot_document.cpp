@@ -61,11 +61,9 @@ struct AddedName {
 
 /// The entry that this assignment is about to add, if any.
 std::optional<AddedName> added_name(const config::Document& document, std::string_view assignment) {
-    const std::string_view key = assignment.substr(0, assignment.find('='));
-    const std::size_t dot = key.find('.');
-    if (dot == std::string_view::npos) return std::nullopt;
-    AddedName added{std::string(key.substr(0, dot)), std::string(key.substr(dot + 1))};
-    added.name.resize(std::min(added.name.find('.'), added.name.size()));
+    const std::vector<std::string> parts = config::path_parts(assignment.substr(0, assignment.find('=')));
+    if (parts.size() < 2) return std::nullopt;
+    const AddedName added{parts[0], parts[1]};
     if (std::ranges::find(tables_of_names, added.kind) == tables_of_names.end()) return std::nullopt;
     const config::Value* table = entry_of(document.root, added.kind);
     if (table != nullptr && entry_of(*table, added.name) != nullptr) return std::nullopt;

@@ -40,7 +40,14 @@ bool has_time_step(const config::Value& root) {
     return program != nullptr && entry_of(*program, "time_step") != nullptr;
 }
 
+/// The goals are those of another file, whose program is not this one: their times are of that program. So it is where
+/// a search for goals has written its answer.
+bool has_program_of_its_own(const config::Value& root) {
+    return entry_of(root, "robot") != nullptr && entry_of(root, "program") != nullptr;
+}
+
 Result<Robot> read_robot(config::Document given, const std::vector<std::string>& assignments) {
+    const bool goals_of_this_program = !has_program_of_its_own(given.root);
     Result<config::Document> based = on_base(std::move(given));
     if (!based) return tl::unexpected(based.error());
     config::Document& document = *based;
@@ -70,7 +77,7 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
     read_sensors(root, context);
     read_goals(root, context);
     read_program(root, robot);
-    check_goal_times(root, robot);
+    if (goals_of_this_program) check_goal_times(root, robot);
     if (robot.fluid && robot.fluid->level && robot.gravity_m_s2 == Vec3{})
         root.problem("fluid", "has a level, and nothing says where up is; give program.gravity");
     if (robot.fixed.empty() && !root.unreadable("fixed") && !may_be_free(robot))

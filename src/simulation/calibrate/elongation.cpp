@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/core/csv.hpp"
-#include "base/core/letters.hpp"
 #include "robot/description/law.hpp"
+#include "simulation/calibrate/named_column.hpp"
 #include "simulation/calibrate/ratio.hpp"
 
 namespace pliant::calibrate {
@@ -27,18 +27,17 @@ Result<ElongationColumns> read_elongation_header(const CsvTable& table) {
     ElongationColumns columns;
     for (std::size_t i = 0; i < ElongationColumns::names.size(); ++i) {
         const std::string_view name = ElongationColumns::names[i];
-        const auto found = std::find_if(table.columns.begin(), table.columns.end(), [&](const std::string& column) {
-            return lower_case(column).starts_with(name);
-        });
-        if (found == table.columns.end())
+        const auto found = named_column(table, name, [&](std::string_view column) { return column.starts_with(name); });
+        if (!found) return tl::unexpected(found.error());
+        if (!*found)
             return input_error_at(table.file, table.header_line, "no column is named \"{}\", as in \"{} (mm)\"", name,
                                   name);
-        const std::string_view unit = csv_unit(*found);
+        const std::string_view unit = csv_unit(table.columns[**found]);
         if (unit.empty())
             return input_error_at(table.file, table.header_line, "{} has no unit; write \"{} (mm)\"", name, name);
         const Result<double> factor = unit_factor(unit, Dimension::length);
         if (!factor) return input_error_at(table.file, table.header_line, "{}: {}", name, factor.error().message);
-        columns.at[i] = static_cast<std::size_t>(found - table.columns.begin());
+        columns.at[i] = **found;
         columns.factor[i] = *factor;
     }
     return columns;

@@ -121,3 +121,12 @@ TEST_CASE("impossible tests are refused with their line") {
     check_elongation_problem(header + "0,0,30,5\n", "length: 0 mm");
     check_elongation_problem(header + "100,50,30,abc\n", "t.csv:2: joint \"abc\" is not a number");
 }
+
+TEST_CASE("the length is the column of that name, not another that begins with it") {
+    const auto rows = parse_elongation_csv("length after test (mm)," + header + "130,100,50,30,5.14\n", "t.csv");
+    REQUIRE_MESSAGE(rows, (rows ? "" : rows.error().message));
+    CHECK((*rows)[0].test.length_m == near(0.1, {.relative = 1e-12}));
+    check_elongation_problem(
+        "length before (mm),length after (mm),interface (mm),elongation (mm),joint (mm)\n100,130,50,30,5.14\n",
+        "could each be the length");
+}

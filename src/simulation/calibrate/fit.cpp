@@ -186,10 +186,24 @@ std::vector<std::string> constant_names(const FitOptions& options) {
     return names;
 }
 
-/// Number of informative rows: at stretch 1 every law gives zero stress, whatever its constants.
+/// At stretch 1 every law gives zero stress, whatever its constants, and most machines are set to zero there.
+bool is_useful(double stretch) {
+    return std::fabs(stretch - 1) > 1e-9;
+}
+
+/// Number of informative rows.
 std::size_t useful_rows(const TensileTest& test) {
-    return static_cast<std::size_t>(
-        std::count_if(test.stretch.begin(), test.stretch.end(), [](double l) { return std::fabs(l - 1) > 1e-9; }));
+    return static_cast<std::size_t>(std::count_if(test.stretch.begin(), test.stretch.end(), is_useful));
+}
+
+/// Standard deviation of the stress about the fit, from the informative rows. Precondition: more of them than
+/// constants.
+double noise_Pa(const TensileTest& test, const std::vector<double>& fitted_Pa, std::size_t constants) {
+    double squares = 0;
+    for (std::size_t i = 0; i < test.stretch.size(); ++i) {
+        if (is_useful(test.stretch[i])) squares += std::pow(fitted_Pa[i] - test.stress_Pa[i], 2);
+    }
+    return std::sqrt(squares / static_cast<double>(useful_rows(test) - constants));
 }
 
 /// The terms of Ogden's law, from 1, whose exponents nearly equal that of another term: only the sum of their mu
@@ -297,8 +311,8 @@ Result<Fit> fit(const TensileTest& test, const FitOptions& options) {
     const double spread = (map(test.stress_Pa).array() - mean).matrix().squaredNorm();
     result.rms_error_Pa = std::sqrt(squares / rows);
     result.r_squared = spread > 0 ? 1 - squares / spread : 0;
-    const auto freedom = static_cast<int>(test.stretch.size()) - static_cast<int>(names.size());
-    const double s = std::sqrt(squares / freedom);
+    const auto freedom = static_cast<int>(useful_rows(test) - names.size());
+    const double s = noise_Pa(test, result.stress_Pa, names.size());
     // Columns of different scale (Pa, exponents) are normalised before the inverse is computed.
     const VectorXd length = solution.J.colwise().norm();
     const MatrixXd unit = solution.J * length.cwiseInverse().asDiagonal();

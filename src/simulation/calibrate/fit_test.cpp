@@ -158,3 +158,13 @@ TEST_CASE("the fitted law is written as a material for the robot file") {
     CHECK(material_toml(y, "a\nb").find("[material.\"a\\u000ab\"]") == 0);
     CHECK(fit_json(y, made_test(yeoh, 0)).find("\"confidence_95\"") != std::string::npos);
 }
+
+TEST_CASE("rows at stretch 1, which tell nothing, do not narrow the interval") {
+    TensileTest test{{1.1, 1.2, 1.3, 1.4}, {93060.1, 179980, 237106, 296240}};
+    const Constant alone = fit_of(test, FitLaw::neo_hookean).constants[0];
+    test.stretch.insert(test.stretch.begin(), 20, 1.0);
+    test.stress_Pa.insert(test.stress_Pa.begin(), 20, 0.0);
+    const Constant with = fit_of(test, FitLaw::neo_hookean).constants[0];
+    CHECK(with.value == near(alone.value, {.relative = 1e-12}));
+    CHECK(with.half_width == near(alone.half_width, {.relative = 1e-9}));
+}

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "base/core/csv.hpp"
-#include "base/core/letters.hpp"
 #include "base/core/units.hpp"
+#include "simulation/calibrate/named_column.hpp"
 
 namespace pliant::calibrate {
 namespace {
@@ -18,43 +18,49 @@ struct Columns {
     double stress_factor = 1;
 };
 
-bool names(const std::string& cell, std::string_view word) {
-    return cell.find(word) != std::string::npos;
+/// "strain rate", "strainrate" and "rate of strain" are, "calibrated strain" is not.
+bool is_rate(std::string_view column, std::string_view word) {
+    constexpr std::string_view rate = "rate";
+    const auto is_letter = [&](std::size_t at) { return at < column.size() && column[at] >= 'a' && column[at] <= 'z'; };
+    for (std::size_t at = column.find(rate); at != std::string_view::npos; at = column.find(rate, at + 1)) {
+        const bool begins = at == 0 || !is_letter(at - 1) || column.substr(0, at).ends_with(word);
+        if (begins && !is_letter(at + rate.size())) return true;
+    }
+    return false;
 }
 
-/// Index of the first column that names `word` and is not of true (Cauchy, logarithmic) quantities.
-std::optional<std::size_t> find_column(const std::vector<std::string>& cells, std::string_view word) {
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        const bool other = names(cells[i], "true") || names(cells[i], "cauchy") || names(cells[i], "log");
-        if (names(cells[i], word) && !other) return i;
-    }
-    return std::nullopt;
+/// The column of `word`: not one of true (Cauchy, logarithmic) quantities, nor of a rate of it.
+Result<std::optional<std::size_t>> find_column(const CsvTable& table, std::string_view word) {
+    return named_column(table, word, [&](std::string_view column) {
+        const auto names = [&](std::string_view part) { return column.find(part) != std::string_view::npos; };
+        return names(word) && !names("true") && !names("cauchy") && !names("log") && !is_rate(column, word);
+    });
 }
 
 Result<Columns> read_header(const CsvTable& table) {
     Columns columns;
-    std::vector<std::string> low;
-    low.reserve(table.columns.size());
-    for (const std::string& column : table.columns) low.push_back(lower_case(column));
-    const auto stretch = find_column(low, "stretch");
-    const auto strain = stretch ? stretch : find_column(low, "strain");
-    const auto stress = find_column(low, "stress");
-    if (!strain)
+    const auto stretch = find_column(table, "stretch");
+    if (!stretch) return tl::unexpected(stretch.error());
+    const auto strain = *stretch ? stretch : find_column(table, "strain");
+    if (!strain) return tl::unexpected(strain.error());
+    const auto stress = find_column(table, "stress");
+    if (!stress) return tl::unexpected(stress.error());
+    if (!*strain)
         return input_error_at(table.file, table.header_line,
                               "no column is named \"stretch\" or \"strain\" (engineering strain, not true strain)");
-    if (!stress)
+    if (!*stress)
         return input_error_at(table.file, table.header_line,
                               "no column is named \"stress\", as in \"stress (MPa)\" (nominal, not true stress)");
-    columns.strain = *strain;
-    columns.stress = *stress;
-    columns.is_stretch = stretch.has_value();
-    const std::string_view strain_unit = csv_unit(table.columns[*strain]);
+    columns.strain = **strain;
+    columns.stress = **stress;
+    columns.is_stretch = stretch->has_value();
+    const std::string_view strain_unit = csv_unit(table.columns[columns.strain]);
     if (strain_unit == "%")
         columns.strain_factor = 0.01;
     else if (!strain_unit.empty() && strain_unit != "-" && strain_unit != "1" && strain_unit != "mm/mm")
         return input_error_at(table.file, table.header_line, "unknown unit \"{}\" of strain; it is a pure number, or %",
                               strain_unit);
-    const std::string_view unit = csv_unit(table.columns[*stress]);
+    const std::string_view unit = csv_unit(table.columns[columns.stress]);
     if (unit.empty())
         return input_error_at(table.file, table.header_line, "the stress has no unit; write \"stress (MPa)\"");
     const Result<double> factor = unit_factor(unit, Dimension::pressure);

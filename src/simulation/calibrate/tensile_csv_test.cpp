@@ -52,3 +52,21 @@ TEST_CASE("errors in a tensile table name the line") {
     check_problem("stretch,stress (MPa)\nnan,2\n", "is not a number");
     check_problem("stretch,stress (MPa)\n1e999,2\n", "is not a number");
 }
+
+TEST_CASE("a column is taken by its name, never a rate, and of several that could be meant none") {
+    for (const char* const header :
+         {"strain rate,strain,stress (MPa)", "strain rate (1/s),strain,stress (MPa)",
+          "stress rate (MPa/s),nominal strain,stress (MPa)", "strainrate,calibrated strain,stress (MPa)"}) {
+        const auto test = parse_tensile_csv(std::string(header) + "\n0.01,0.5,0.25\n", "a.csv");
+        REQUIRE_MESSAGE(test, (test ? "" : test.error().message));
+        CHECK(test->stretch[0] == near(1.5, {.relative = 1e-12}));
+        CHECK(test->stress_Pa[0] == near(0.25e6, {.relative = 1e-12}));
+    }
+    const auto exact = parse_tensile_csv("strain in grips,strain,stress (MPa)\n0.1,0.5,0.25\n", "a.csv");
+    REQUIRE(exact);
+    CHECK(exact->stretch[0] == near(1.5, {.relative = 1e-12}));
+    check_problem("strain rate,stress (MPa)\n1,2\n", "no column is named \"stretch\" or \"strain\"");
+    check_problem("strain left,strain right,stress (MPa)\n1,1,2\n",
+                  "test.csv:1: \"strain left\" and \"strain right\" could each be the strain");
+    check_problem("stretch,stress (MPa),Stress (kPa)\n1,1,2\n", "\"stress (MPa)\" and \"Stress (kPa)\" could each be");
+}

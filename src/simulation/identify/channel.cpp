@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "simulation/gradient/objective.hpp"
+#include "simulation/run/result_columns.hpp"
+#include "simulation/run/sensors.hpp"
 
 namespace pliant::sim::identify {
 namespace {
@@ -172,6 +174,24 @@ std::vector<Channel> plain_channels(const sim::Description& d) {
     for (std::size_t k = 0; d.contact && k < d.contact->obstacles.size(); ++k)
         add_along_axes(MeasureKind::contact_force, k, d.contact->obstacles[k].body.name + "_force", "N", 1, all);
     if (d.contact) all.push_back({"self_contact_N", "N", 1, Channel::Kind::plain, {{MeasureKind::self_contact}}});
+    return all;
+}
+
+std::vector<std::string> other_columns(const sim::Description& d) {
+    std::vector<std::string> all;
+    const auto add = [&](const std::string& name, const auto& endings) {
+        for (const std::string_view ending : endings) all.push_back(fmt::format("{}_{}", name, ending));
+    };
+    for (const sim::FreeObject& object : d.objects) add(object.name, sim::columns::object);
+    for (const sim::Joint& joint : d.joints) {
+        add(joint.name, sim::columns::joint);
+        if (joint.kind == sim::Joint::Kind::hinge) add(joint.name, sim::columns::turning);
+        if (joint.kind == sim::Joint::Kind::slider) add(joint.name, sim::columns::sliding);
+    }
+    for (const sim::Sensor& sensor : d.sensors) {
+        for (const auto& [name, quantity] : sim::readings_of(sensor))
+            all.push_back(fmt::format("{}_{}{}", sensor.name, name, sim::shown(quantity).suffix));
+    }
     return all;
 }
 

@@ -35,7 +35,9 @@ struct Channel {
 /// Columns as in markers.csv and steps.csv (docs/reference/results.md), and angles: A-B-C_angle_deg at B between the
 /// directions to A and C, A-B_angle_x_deg between the direction from A to B and the x axis (or y, z).
 [[nodiscard]] std::vector<Channel> plain_channels(const sim::Description& robot);
-/// Empty if the column is none of them.
+/// Further columns of steps.csv, of sensors, objects and joints, which are no channels.
+[[nodiscard]] std::vector<std::string> other_columns(const sim::Description& robot);
+/// Empty if the column is none of plain_channels() and no angle.
 [[nodiscard]] std::optional<Channel> find_channel(const sim::Description& robot, std::string_view column);
 
 }  // namespace pliant::sim::identify

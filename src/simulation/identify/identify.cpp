@@ -37,11 +37,13 @@ std::vector<double> times_of(const std::vector<MeasuredValue>& values) {
 }
 
 /// How far the quantity that moves most in a unit moves, measured from the lowest value to the highest, rest included.
+/// Held-out values have no part in it: they must not change the fit that they judge.
 std::map<std::string, double> motions(const Measurements& m, const VectorXd& rest) {
     std::vector<std::pair<double, double>> range;
     for (std::size_t c = 0; c < m.channels.size(); ++c)
         range.emplace_back(rest[static_cast<Index>(c)], rest[static_cast<Index>(c)]);
     for (const MeasuredValue& value : m.values) {
+        if (value.judged) continue;
         auto& [low, high] = range[value.channel];
         low = std::min(low, value.value);
         high = std::max(high, value.value);
@@ -109,8 +111,9 @@ private:
 
     [[nodiscard]] std::vector<double> values_at(const VectorXd& u) const {
         std::vector<double> values;
+        // A bound may be the last value that the robot file allows: rounding must not go beyond it.
         for (std::size_t k = 0; k < unknowns_.size(); ++k)
-            values.push_back(unknowns_[k].value_at(u[static_cast<Index>(k)]));
+            values.push_back(unknowns_[k].clamped(unknowns_[k].value_at(u[static_cast<Index>(k)])));
         return values;
     }
 
@@ -119,7 +122,11 @@ private:
     /// A failure at the start is an error with its reason; later ones only reject the trial.
     [[nodiscard]] Result<std::optional<VectorXd>> residuals(const VectorXd& u) {
         auto variant = source_.with(unknowns_, values_at(u));
-        if (!variant) return tl::unexpected(variant.error());
+        if (!variant && (!best_ || variant.error().cause == Cause::cancelled)) return tl::unexpected(variant.error());
+        if (!variant) {
+            refused_ = variant.error().message;
+            return std::nullopt;
+        }
         auto trial = Trial::solve(std::move(*variant), m_.channels, times_, progress_);
         if (!trial && (!best_ || trial.error().cause != Cause::failed)) return tl::unexpected(trial.error());
         if (!trial) return std::nullopt;
@@ -247,6 +254,22 @@ private:
         }
     }
 
+    /// The search cannot go where the robot file allows no values, and those may be what the data ask for.
+    void warn_of_refusal(const LeastSquaresEnd& end, const std::vector<bool>& held, Identification& result) const {
+        if (refused_.empty()) return;
+        constexpr double notable = 1e-6, far = 1e-3;  // of the sum of squares; of a coordinate
+        MatrixXd J = end.jacobian;
+        for (std::size_t k = 0; k < held.size(); ++k)
+            if (held[k]) J.col(static_cast<Index>(k)).setZero();
+        const VectorXd step = linalg::pseudo_inverse(J) * -end.residuals;
+        const double now = end.residuals.squaredNorm();
+        if (!(step.cwiseAbs().maxCoeff() > far)) return;
+        if (!(now - (end.residuals + J * step).squaredNorm() > notable * now)) return;
+        result.warnings.push_back(
+            "the data ask for values that the robot file does not allow, and the search ended before them: " +
+            refused_);
+    }
+
     void warn(const Confidence& known, Identification& result) const {
         for (const Found& found : result.found) {
             if (!found.matters)
@@ -301,6 +324,12 @@ private:
         result.fitted = errors(result.values, false);
         result.judged = errors(result.values, true);
         warn(known, result);
+        warn_of_refusal(end, held, result);
+        if (!m_.not_compared.empty())
+            result.warnings.push_back(fmt::format(
+                "{}: {} of the table {} not compared: readings of sensors, and what belongs to objects and joints, "
+                "are no measurements here",
+                m_.file, join_names(m_.not_compared), m_.not_compared.size() > 1 ? "are" : "is"));
         return result;
     }
 
@@ -314,7 +343,8 @@ private:
     std::unique_ptr<Trial> best_;
     VectorXd best_u_;
     double least_ = std::numeric_limits<double>::infinity();
-    MatrixXd before_;  ///< (times, channels)
+    MatrixXd before_;      ///< (times, channels)
+    std::string refused_;  ///< why the robot file does not allow the values of the last trial that it refused
 };
 
 }  // namespace

@@ -353,3 +353,49 @@ TEST_CASE("impossible requests are reported in one line") {
     REQUIRE_FALSE(result);
     CHECK(result.error().cause == Cause::cancelled);
 }
+
+TEST_CASE("values that the robot file does not allow make a step shorter, and those that are wanted are told") {
+    const Bar bar(heavy);
+    const auto unknowns = bar.unknowns({"material.soft.youngs_modulus"});
+    const auto data = bar.read(table_of(bar, unknowns, {0.35e6}, {"tip_z_mm"}, {0.5, 1}, undisturbed));
+    auto mesh = robot::take_mesh(bar.robot(), bar_mesh(false));
+    REQUIRE(mesh);
+    const auto found = [&](double least_Pa) {
+        const Source limited(
+            [&, least_Pa](const std::vector<std::string>& set) -> Result<robot::Robot> {
+                auto robot = robot::parse_robot(bar.text, "bar.toml", set);
+                if (robot && std::ranges::any_of(robot->materials,
+                                                 [&](const auto& m) { return m.youngs_modulus_Pa < least_Pa; }))
+                    return input_error("bar.toml: too soft");
+                return robot;
+            },
+            *mesh);
+        Progress silent;
+        auto result = identify(limited, unknowns, data, silent);
+        REQUIRE_MESSAGE(result, (result ? "" : result.error().message));
+        return std::move(*result);
+    };
+    // From twice the modulus the first step goes to 0.26 MPa.
+    const Identification within = found(0.3e6);
+    CHECK(within.found[0].value == near(0.35e6, {.relative = 1e-6}));
+    CHECK(within.warnings.empty());
+    const Identification beyond = found(0.5e6);
+    CHECK(beyond.found[0].value >= 0.5e6);
+    CHECK(beyond.found[0].value < 0.6e6);
+    REQUIRE_FALSE(beyond.warnings.empty());
+    CHECK(beyond.warnings.back() ==
+          "the data ask for values that the robot file does not allow, and the search ended before them: bar.toml: too "
+          "soft");
+}
+
+TEST_CASE("rows that are held out do not change what is found") {
+    const Bar bar(pulled);
+    const auto unknowns = bar.unknowns({"material.soft.youngs_modulus"});
+    const std::string table = table_of(bar, unknowns, {0.8e6}, {"tip_z_mm", "flexor_length_ratio"}, {0.5, 1},
+                                       [](int k) { return k % 2 == 0 ? 0.2 : 0.003; });
+    std::string rows;
+    for (std::size_t begin = 0, end = 0; (end = table.find('\n', begin)) != std::string::npos; begin = end + 1)
+        rows += table.substr(begin, end - begin) + (begin == 0 ? ",use\n" : ",fit\n");
+    const double alone = find(bar, unknowns, bar.read(rows)).found[0].value;
+    CHECK(find(bar, unknowns, bar.read(rows + "1,300,0.2,judge\n")).found[0].value == alone);
+}

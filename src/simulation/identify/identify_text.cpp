@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/core/csv.hpp"
 #include "base/core/json.hpp"
 #include "simulation/identify/identify.hpp"
 
@@ -98,7 +99,7 @@ std::string comparison_csv(const Identification& result) {
         const MeasuredValue& m = value.measured;
         const Channel& channel = result.channels[m.channel];
         const std::string scatter = m.scatter > 0 ? fmt::format("{:.9g}", m.scatter) : "";
-        text += fmt::format("{},{:.9g},{},{},{},{:.9g},{},{:.9g},{:.9g}\n", m.line, m.time, channel.column,
+        text += fmt::format("{},{:.9g},{},{},{},{:.9g},{},{:.9g},{:.9g}\n", m.line, m.time, csv_field(channel.column),
                             unit_or_ratio(channel.unit), m.judged ? "judge" : "fit", m.value, scatter, value.before,
                             value.after);
     }

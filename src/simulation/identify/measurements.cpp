@@ -27,6 +27,7 @@ struct Header {
     std::optional<std::size_t> time, step, use;
     std::vector<Channel> channels;
     std::vector<Columns> columns;  ///< (channels)
+    std::vector<std::string> not_compared;
 };
 
 tl::unexpected<Error> no_such_column(const CsvTable& table, const sim::Description& robot, const std::string& column) {
@@ -46,7 +47,9 @@ Status read_scatters(const CsvTable& table, Header& header) {
         std::string_view name = table.columns[c];
         if (!name.ends_with(scatter_ending)) continue;
         name.remove_suffix(scatter_ending.size());
-        const auto of = std::ranges::find(header.channels, name, &Channel::column);
+        auto of = std::ranges::find(header.channels, name, &Channel::column);
+        if (of == header.channels.end()) of = std::ranges::find(header.channels, csv_name(name), &Channel::column);
+        if (std::ranges::count(header.not_compared, csv_name(name)) > 0) continue;
         if (of == header.channels.end())
             return input_error_at(table.file, table.header_line,
                                   "column \"{}\" is the scatter of \"{}\", which is not a column of the table",
@@ -64,9 +67,17 @@ Status read_column(const CsvTable& table, std::size_t c, const sim::Description&
     if (name == "step") return header.step = c, Status{};
     if (name == "use") return header.use = c, Status{};
     std::optional<Channel> channel = find_channel(robot, name);
+    if (!channel) channel = find_channel(robot, csv_name(name));
     if (channel) {
+        if (std::ranges::count(header.channels, channel->column, &Channel::column) > 0)
+            return input_error_at(table.file, table.header_line, "there are two columns \"{}\"", channel->column);
         header.channels.push_back(std::move(*channel));
         header.columns.push_back({c, {}});
+        return {};
+    }
+    const std::vector<std::string> others = other_columns(robot);
+    if (std::ranges::count(others, name) + std::ranges::count(others, csv_name(name)) > 0) {
+        header.not_compared.emplace_back(csv_name(name));
         return {};
     }
     const bool known = name.ends_with(scatter_ending) || std::ranges::count(passed_over, name) > 0;
@@ -187,7 +198,7 @@ Result<Measurements> parse_measurements(std::string_view text, const std::string
     if (!table) return tl::unexpected(table.error());
     const auto header = read_header(*table, robot);
     if (!header) return tl::unexpected(header.error());
-    Measurements result{file, header->channels, {}};
+    Measurements result{file, header->channels, {}, header->not_compared};
     for (std::size_t r = 0; r < table->rows.size(); ++r) {
         if (Status status = read_row(*table, r, *header, program, judge, result.values); !status)
             return tl::unexpected(status.error());

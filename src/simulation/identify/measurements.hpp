@@ -31,6 +31,8 @@ struct Measurements {
     std::string file;
     std::vector<Channel> channels;      ///< at least one
     std::vector<MeasuredValue> values;  ///< at least one that is not held out
+    /// Columns of steps.csv about the robot that are no channels: of sensors, objects and joints.
+    std::vector<std::string> not_compared{};
 };
 
 /// One row per instant. The column `time` (of the program) or `step` gives the instant; the columns of find_channel()

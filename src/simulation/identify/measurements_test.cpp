@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "base/core/near.hpp"
+#include "base/core/test_text.hpp"
 #include "simulation/identify/test_bars.hpp"
 
 using namespace pliant;
@@ -74,6 +75,27 @@ TEST_CASE("a table that simulate has written can be read") {
         "flexor_length_ratio,flexor_length_mm,flexor_tension_N\n"
         "1,0.5,1,3,1,1e-6,4,0.9,newton,0.975,58.5,1.5\n");
     CHECK(m.values.size() == 3);
+}
+
+TEST_CASE("a name that simulate kept from being a formula is read back, and written so again") {
+    const Bar bar(test::replaced(bar_text, "\"corner\"", "\"-corner\"") + more, bar_mesh(false));
+    const Measurements m = bar.read("index,time,'-corner_x_mm,'-corner_x_mm_scatter\n1,0.5,59,0.1\n");
+    REQUIRE(m.channels.size() == 1);
+    CHECK(m.channels[0].column == "-corner_x_mm");
+    CHECK(m.values[0].scatter == near(0.1, {.relative = 1e-12}));
+    Identification result;
+    result.channels = m.channels;
+    result.channels[0].column = "-a,b_x_mm";
+    result.values = {{m.values[0], 1, 2}};
+    CHECK(comparison_csv(result).find("\n2,0.5,\"'-a,b_x_mm\",mm,fit,59,0.1,1,2\n") != std::string::npos);
+}
+
+TEST_CASE("columns of steps.csv that cannot be compared are passed over and named") {
+    const Bar bar(more + "sensor = [{ name = \"gauge\", kind = \"tension\", cable = \"flexor\" }]\n");
+    const Measurements m = bar.read("index,time,gauge_tension_N,tip_x_mm\n1,0.5,2,59\n");
+    CHECK(m.values.size() == 1);
+    CHECK(m.not_compared == std::vector<std::string>{"gauge_tension_N"});
+    check_problem("time,gauge_tension_N,tip_x_mm\n1,2,59\n", "m.csv:1: the robot has nothing that column");
 }
 
 TEST_CASE("errors in measurements name file and line") {

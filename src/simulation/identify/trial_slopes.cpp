@@ -234,8 +234,13 @@ Result<Rates> Trial::rates(const Source& source, std::span<const Unknown> unknow
         std::vector<Numbers> both;
         std::vector<double> ends;
         for (const double step : {half_step, -half_step}) {
-            values[k] = unknowns[k].value_at(unknowns[k].coordinate(at[k]) + step);
-            const auto variant = source.with(unknowns, values);
+            values[k] = unknowns[k].clamped(unknowns[k].value_at(unknowns[k].coordinate(at[k]) + step));
+            auto variant = source.with(unknowns, values);
+            if (!variant && variant.error().cause != Cause::cancelled) {
+                // The robot file does not allow this end: the difference is from the state itself.
+                values[k] = at[k];
+                variant = source.with(unknowns, values);
+            }
             if (!variant) return tl::unexpected(variant.error());
             auto numbers = numbers_of(**variant, pieces);
             if (!numbers) return tl::unexpected(numbers.error());
@@ -243,6 +248,8 @@ Result<Rates> Trial::rates(const Source& source, std::span<const Unknown> unknow
             ends.push_back(values[k]);
         }
         values[k] = at[k];
+        if (ends[0] == ends[1])
+            return failure("{}: the robot file allows no values beside {}", unknowns[k].key, unknowns[k].shown(at[k]));
         const double factor = unknowns[k].rate(at[k]) / (ends[0] - ends[1]);
         const auto rate = [&](const VectorXd& plus, const VectorXd& minus) -> VectorXd {
             return factor * (plus - minus);

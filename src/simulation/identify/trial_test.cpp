@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/core/near.hpp"
+#include "base/core/test_text.hpp"
 #include "simulation/gradient/program_gradient.hpp"
 #include "simulation/identify/test_bars.hpp"
 #include "simulation/linearisation/parameters.hpp"
@@ -143,4 +144,15 @@ TEST_CASE("forward derivatives through earlier steps equal the adjoint ones, als
                   near(1e3 * values[k] * back->by.parameters[by - parameters.begin()], {.relative = 1e-7}));
         }
     }
+}
+
+TEST_CASE("an unknown has derivatives where the robot file allows no larger value") {
+    const Bar bar(test::replaced(shortened, "target", "friction = 0.1, target") + "program = { steps = 1 }");
+    const auto unknowns = bar.unknowns({"cable.flexor.friction"});
+    const auto trial = solve(bar, unknowns, {unknowns[0].value}, bar.channels({"tip_z_mm"}), {1});
+    Progress silent;
+    const auto slopes = trial->slopes(bar.source, unknowns, std::vector<double>{unknowns[0].high}, silent);
+    REQUIRE_MESSAGE(slopes, (slopes ? "" : slopes.error().message));
+    CHECK((*slopes)[0].allFinite());
+    CHECK((*slopes)[0](0, 0) != 0);
 }

@@ -1,6 +1,7 @@
 // Numbers of a robot that can be identified from measurements, named by the keys of the robot file, as for `--set`.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,8 @@ struct Unknown {
     [[nodiscard]] double coordinate(double of_value) const;
     /// For Scale::from_zero at least a billionth of the size: a robot with a friction of 0 has none, and no derivative.
     [[nodiscard]] double value_at(double u) const;
+    /// The nearest value within the bounds.
+    [[nodiscard]] double clamped(double of_value) const { return std::clamp(of_value, low, high); }
     /// d(value)/du at this value.
     [[nodiscard]] double rate(double of_value) const;
     /// "KEY=VALUE" with full precision.

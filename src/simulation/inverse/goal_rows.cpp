@@ -148,6 +148,25 @@ void add_goal(RowWriter& rows, Linearisation& at, const Goal& goal, const std::v
 
 }  // namespace
 
+std::vector<GoalState> goal_states(const Equilibrium& system, const InverseTask& task, const RobotState& robot,
+                                   std::size_t waypoint) {
+    std::vector<GoalState> states;
+    for (const Goal& goal : task.goals) {
+        GoalState state;
+        state.got = got(system, robot, goal);
+        state.error = error_of(goal, misses(goal, state.got, goal.at(waypoint)));
+        state.reached = state.error <= goal.tolerance;
+        states.push_back(std::move(state));
+    }
+    return states;
+}
+
+double difference(const Goal& goal, const GoalState& one, const GoalState& other, std::size_t waypoint) {
+    std::vector<Vec3> there = other.got;
+    if (goal.kind == GoalKind::plane) there.push_back(goal.at(waypoint)[1]);
+    return error_of(goal, misses(goal, one.got, there));
+}
+
 GoalRows::GoalRows(const Stepper& stepper, const InverseTask& task, const InputSpace& space)
     : stepper_(&stepper), task_(&task), space_(&space), tension_N_(stepper.units().tension_N()) {
     for (std::size_t g = 0; g < task.goals.size(); ++g)
@@ -163,15 +182,7 @@ double GoalRows::scale(const Goal& goal) const {
 }
 
 std::vector<GoalState> GoalRows::goals(const RobotState& robot, std::size_t waypoint) const {
-    std::vector<GoalState> states;
-    for (const Goal& goal : task_->goals) {
-        GoalState state;
-        state.got = got(stepper_->system(), robot, goal);
-        state.error = error_of(goal, misses(goal, state.got, goal.at(waypoint)));
-        state.reached = state.error <= goal.tolerance;
-        states.push_back(std::move(state));
-    }
-    return states;
+    return goal_states(stepper_->system(), *task_, robot, waypoint);
 }
 
 Eigen::VectorXd GoalRows::values(const RobotState& robot, const Eigen::VectorXd& inputs, std::size_t waypoint,

@@ -18,6 +18,13 @@ struct GoalState {
                             ///< magnitude
 };
 
+/// The results for the goals of a task at one of its waypoints.
+[[nodiscard]] std::vector<GoalState> goal_states(const Equilibrium& system, const InverseTask& task,
+                                                 const RobotState& robot, std::size_t waypoint);
+/// How far one result of a goal is from another at this waypoint, in what its tolerance is in: for a plane along its
+/// normal; the largest over several markers.
+[[nodiscard]] double difference(const Goal& goal, const GoalState& one, const GoalState& other, std::size_t waypoint);
+
 /// Residuals, half of whose sum of squares is minimised. Those of goals are in tolerances, times the square root of the
 /// goal's weight; those of penalties each in its own unit.
 struct RowGradients {

@@ -85,6 +85,11 @@ Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model
     if (need_goals && robot.goals.empty())
         return input_error("{}: goal: there is none; add a [[goal]] with marker = \"NAME\" and point = [x, y, z]",
                            robot.file.string());
+    for (const GoalSpec& goal : robot.goals) {
+        const std::string late = late_time(goal, robot.program.duration);
+        if (need_goals && !late.empty())
+            return input_error("{}: goal: \"{}\" {}", robot.file.string(), goal.name, late);
+    }
     sim::InverseTask task;
     task.inputs = steered_actuators(robot);
     if (task.inputs.empty())
@@ -96,8 +101,9 @@ Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model
         task.goals.push_back(tied(robot, model, goal));
         if (Status near = check_near(robot, model, task.goals.back()); !near) return tl::unexpected(near.error());
         waypoints = std::max(waypoints, goal.wanted.size());
-        if (!goal.times.empty()) task.times = goal.times;
+        if (need_goals && !goal.times.empty()) task.times = goal.times;
     }
+    if (!need_goals) waypoints = 1;
     task.timed = !task.times.empty();
     if (!task.timed) task.times.assign(waypoints, robot.program.duration);
     return task;

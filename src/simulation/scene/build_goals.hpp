@@ -9,7 +9,8 @@
 namespace pliant::robot {
 
 /// `model`: from build_model(robot, ...). With `need_goals` a robot without goals is an error; otherwise the task may
-/// have none, with one waypoint at the end of the program. Errors: no actuator has a range; the robot moves in time.
+/// have none, and has one waypoint, at the end of the program, whatever times goals have. Errors: no actuator has a
+/// range; the robot moves in time; with `need_goals`, a goal has a time after the end of the program.
 [[nodiscard]] Result<sim::InverseTask> build_goals(const Robot& robot, const sim::Model& model, bool need_goals = true);
 
 /// Solver tolerance for a program whose steps are compared with goals: the error of an equilibrium must be smaller than

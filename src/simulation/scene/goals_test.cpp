@@ -210,3 +210,37 @@ key = [{ time = "0.5 s", elbow = "15 N mm", rail = "2 mm" }, { time = "1 s", elb
     CHECK(led->joints[0].wanted->at(2) == near(5e-3, {.relative = 1e-12}));
     CHECK(led->joints[1].wanted->at(1) == near(1e-3, {.relative = 1e-12}));
 }
+
+TEST_CASE("times of goals are of their own robot file's program, and of no use without goals") {
+    const test::Folder folder("goals_late");
+    const std::string timed =
+        robot_with_cable + "duration = \"10 s\"\n" + reach + "point = [38, 5, 9]\ntimes = [2, 10]\n";
+    std::ofstream(folder.path() / "bar.toml") << timed;
+    check_problem(test::replaced(timed, "10 s", "5 s"), "has a time of 10 s, and the program ends at 5 s");
+    std::ofstream(folder.path() / "program.toml") << "robot = \"bar.toml\"\n[program]\nduration = \"2 s\"\n";
+    const auto shorter = testing::build(load_robot(folder.path() / "program.toml"));
+    const auto goals = build_goals(shorter.robot, shorter.model);
+    REQUIRE_FALSE(goals);
+    CHECK(holds(goals.error().message, "goal: \"reach\" has a time of 10 s, and the program ends at 2 s"));
+    const auto inputs = build_goals(shorter.robot, shorter.model, false);
+    REQUIRE(inputs);
+    CHECK(inputs->times == std::vector<double>{2});
+    CHECK_FALSE(inputs->timed);
+    // Not the last of the times, but the end.
+    const auto early = testing::build(parse_robot(test::replaced(timed, "[2, 10]", "[2, 5]"), "bar.toml"));
+    CHECK(build_goals(early.robot, early.model)->times == std::vector<double>{2, 5});
+    CHECK(build_goals(early.robot, early.model, false)->times == std::vector<double>{10});
+}
+
+TEST_CASE("names that a program could not tell apart are known before there is one") {
+    const std::string load =
+        "[[load]]\nname = \"flexor\"\nbox = [[40, 0, 0], [40, 10, 10]]\nforce = [\"0 N\", \"0 N\", \"1 N\"]\n";
+    const auto robot = parse_robot(robot_with_cable + load, "bar.toml");
+    REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
+    const Status status = check_program_names(*robot, "bar.toml", {"flexor"}, {1});
+    REQUIRE_FALSE(status);
+    CHECK(holds(status.error().message, "bar.toml: two things are named \"flexor\""));
+    const auto other = parse_robot(robot_with_cable + test::replaced(load, "flexor", "weight"), "bar.toml");
+    REQUIRE(other);
+    CHECK(check_program_names(*other, "bar.toml", {"flexor"}, {1}));
+}

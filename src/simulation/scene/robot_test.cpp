@@ -441,6 +441,7 @@ TEST_CASE("a misspelt material, parameter or shape in an assignment is an error,
     // What another assignment uses may be new.
     CHECK(problem(good, {"material.other.youngs_modulus=2 MPa", "body.0.material=other"}).empty());
     CHECK(problem(good, {"parameters.ratio=0.95", "cable.flexor.target.length_ratio== ratio"}).empty());
+    CHECK(problem(good, {"material.\"ru.b\".youngs_modulus=2 MPa", "body.0.material=ru.b"}).empty());
     const auto robot = parse_robot(good + "[material.sofd]\nyoungs_modulus = \"2 MPa\"\n", "bar.toml");
     REQUIRE_MESSAGE(robot, (robot ? "" : robot.error().message));
     CHECK(unused_materials(*robot) ==
