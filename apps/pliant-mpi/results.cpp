@@ -8,6 +8,7 @@
 
 #include "base/core/counted.hpp"
 #include "base/core/files.hpp"
+#include "presentation/report/results.hpp"
 #include "presentation/report/summary.hpp"
 #include "presentation/report/tables.hpp"
 #include "simulation/distributed/frames.hpp"
@@ -41,7 +42,7 @@ Status move_frames(const fs::path& kept, const fs::path& folder, const report::S
 }  // namespace
 
 Status write_results(const fs::path& folder, const fs::path& kept, const report::Simulation& s) {
-    return write_folder(folder, "summary.json", [&](const fs::path& aside) {
+    return write_folder(folder, report::simulation_mark(), [&](const fs::path& aside) {
         Status status = write_file(aside / "summary.json", report::summary_json(s));
         if (status) status = write_file(aside / "steps.csv", report::steps_csv(s.result));
         if (status) status = write_file(aside / "markers.csv", report::markers_csv(s.result));

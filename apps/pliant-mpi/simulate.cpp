@@ -15,6 +15,7 @@
 #include "base/core/own_core.hpp"
 #include "base/core/stopwatch.hpp"
 #include "ending.hpp"
+#include "presentation/report/results.hpp"
 #include "presentation/report/summary.hpp"
 #include "results.hpp"
 #include "robot/bodies/build.hpp"
@@ -108,8 +109,9 @@ void broadcast(const Ranks& ranks, Job& job) {
 /// The folder with frames and checkpoint during a run. A new run starts with an empty one.
 Status make_kept_folder(const Options& options, const sim::Description& description) {
     if (options.folder.empty()) return {};
-    if (!may_replace_folder(options.folder, "summary.json"))
-        return input_error("{}: exists and has no results in it; name another folder", options.folder);
+    for (const fs::path& input : robot::files_of(options.robot, options.assignments))
+        if (Status outside = check_outside(input, options.folder); !outside) return outside;
+    if (Status place = check_folder_place(options.folder, report::simulation_mark()); !place) return place;
     const fs::path kept = kept_folder(options);
     std::error_code code;
     if (options.resume && fs::exists(kept / "state.h5", code)) return {};

@@ -27,9 +27,11 @@ struct Files {
     Output output;
 };
 
-/// Before the work, so that it is not in vain.
-Status check_place(const Files& files) {
-    return files.folder.empty() ? Status{} : check_folder_place(files.folder, "calibration.json");
+/// Before the work, so that it is not in vain. `test`: file of measurements, if any.
+Status check_place(const Files& files, const std::string& test = "") {
+    if (files.folder.empty()) return {};
+    if (Status outside = check_outside(test, files.folder); !outside) return outside;
+    return check_folder_place(files.folder, "calibration.json");
 }
 
 Status write_fit(const Files& files, const std::string& json, const std::string& csv, const report::Plot& plot) {
@@ -192,7 +194,7 @@ Status run_tensile(TensileCommand& command) {
     if (command.terms && command.options.law != FitLaw::ogden)
         return input_error("--terms {}: is the number of terms of Ogden's law; add --law ogden", *command.terms);
     command.options.terms = command.terms.value_or(command.options.terms);
-    if (Status place = check_place(command); !place) return place;
+    if (Status place = check_place(command, command.file); !place) return place;
     const Result<std::string> text = read_file(command.file);
     if (!text) return tl::unexpected(text.error());
     const auto all = calibrate::parse_tensile_csv(*text, command.file);
@@ -255,7 +257,7 @@ report::Plot elongation_plot(const std::vector<calibrate::ElongationRow>& rows) 
 }
 
 Status run_elongation(const ElongationCommand& command) {
-    if (Status place = check_place(command); !place) return place;
+    if (Status place = check_place(command, command.file); !place) return place;
     auto rows = read_tests(command);
     if (!rows) return tl::unexpected(rows.error());
     const auto progress = terminal_progress(command.output);

@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/core/files.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
 #include "output_option.hpp"
@@ -46,7 +45,9 @@ Result<int> identify(const IdentifyOptions& options) {
     const Result<JudgeOn> judge = read_judge(options.judge_on);
     if (!judge) return tl::unexpected(judge.error());
     Status status = expect(FileKind::robot, options.robot);
-    if (status && !options.folder.empty()) status = check_folder_place(options.folder, "identified.toml");
+    if (status)
+        status = check_results_place(options.folder, "identified.toml", options.robot, options.assignments,
+                                     options.measured);
     if (!status) return tl::unexpected(status.error());
     auto progress = terminal_progress(options.output);
     const Watch watch = watch_of(*progress);

@@ -8,6 +8,7 @@
 #include "base/core/files.hpp"
 #include "base/core/text.hpp"
 #include "geometry/open/open_geometry.hpp"
+#include "robot/file/robot_document.hpp"
 #include "robot/file/robot_file.hpp"
 #include "studio/built_in/examples.hpp"
 
@@ -171,6 +172,16 @@ Result<machine::Printer> read_printer(const std::string& name) {
 Result<robot::Robot> read_robot(const std::string& file, const std::vector<std::string>& assignments) {
     if (Status status = expect(FileKind::robot, file); !status) return tl::unexpected(status.error());
     return robot::load_robot(file, assignments);
+}
+
+Status check_results_place(const std::string& folder, const FolderMark& mark, const std::string& robot,
+                           const std::vector<std::string>& assignments, const std::string& measured) {
+    if (folder.empty()) return {};
+    std::vector<fs::path> inputs = robot::files_of(robot, assignments);
+    inputs.emplace_back(measured);
+    for (const fs::path& input : inputs)
+        if (Status outside = check_outside(input, folder); !outside) return outside;
+    return check_folder_place(folder, mark);
 }
 
 tl::unexpected<Error> no_assignments(const std::string& file) {

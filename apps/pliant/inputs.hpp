@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/core/error.hpp"
+#include "base/core/files.hpp"
 #include "printing/job/job.hpp"
 #include "printing/machine/printer.hpp"
 #include "printing/operate/job_file.hpp"
@@ -37,6 +38,11 @@ struct PrinterText {
 
 /// Errors: those of robot::load_robot; another kind of file.
 [[nodiscard]] Result<robot::Robot> read_robot(const std::string& file, const std::vector<std::string>& assignments);
+
+/// As check_folder_place(); and neither a file that this robot is read from nor `measured`, if any, may lie in the
+/// folder. An empty name of a folder passes.
+[[nodiscard]] Status check_results_place(const std::string& folder, const FolderMark& mark, const std::string& robot,
+                                         const std::vector<std::string>& assignments, const std::string& measured = "");
 
 /// For `--set` with a file that is no robot file.
 [[nodiscard]] tl::unexpected<Error> no_assignments(const std::string& file);

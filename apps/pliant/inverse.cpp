@@ -12,11 +12,11 @@
 
 #include "../usage.hpp"
 #include "base/core/counted.hpp"
-#include "base/core/files.hpp"
 #include "command.hpp"
 #include "inputs.hpp"
 #include "interrupt.hpp"
 #include "output_option.hpp"
+#include "presentation/report/results.hpp"
 #include "watched.hpp"
 
 namespace pliant::app {
@@ -78,7 +78,8 @@ int tell_found(const InverseArguments& options, const Model& model, const Invers
 
 Result<int> inverse(const InverseArguments& options) {
     Status status = expect(FileKind::robot, options.robot);
-    if (status && !options.folder.empty()) status = check_folder_place(options.folder, "summary.json");
+    if (status)
+        status = check_results_place(options.folder, report::inverse_mark(), options.robot, options.assignments);
     if (!status) return tl::unexpected(status.error());
     auto progress = terminal_progress(options.output);
     const Watch watch = watch_of(*progress);

@@ -50,17 +50,30 @@ Result<robot::Robot> load(const MeshOptions& options) {
     return read_robot(options.files.front(), options.assignments);
 }
 
-/// A robot is more than its mesh: as .inp it is written as a deck that CalculiX can run.
-Status write_robot(const MeshOptions& options, const robot::Robot& robot, const mesh::TetMesh& mesh_m) {
+/// What was written, and its unit.
+struct WrittenMesh {
+    mesh::TetMesh mesh;
+    double unit_mm = 1;
+};
+
+/// A robot is more than its mesh: as .inp it is written as a deck that CalculiX can run, in mm and without the air of
+/// chambers.
+Result<WrittenMesh> write_robot(const MeshOptions& options, const robot::Robot& robot, const mesh::TetMesh& mesh_m) {
+    constexpr double mm_per_m = 1e3;
     if (lower_extension(options.output_file) != ".inp") {
         // Files use the robot's own length unit, as the drawing did.
-        return mesh::write_tet_mesh(options.output_file, mesh::scaled(mesh_m, 1 / robot.unit_m), encoding(options));
+        WrittenMesh written{mesh::scaled(mesh_m, 1 / robot.unit_m), mm_per_m * robot.unit_m};
+        const Status status = mesh::write_tet_mesh(options.output_file, written.mesh, encoding(options));
+        return status ? Result<WrittenMesh>(std::move(written)) : tl::unexpected(status.error());
     }
     const Result<sim::Model> model = robot::build_model(robot, mesh_m);
     if (!model) return tl::unexpected(model.error());
     const Result<std::string> deck = sim::calculix::deck(model->description(), robot.program.duration);
     if (!deck) return input_error("{}: {}", options.files.front(), deck.error().message);
-    return write_file(options.output_file, *deck);
+    if (Status status = write_file(options.output_file, *deck); !status) return tl::unexpected(status.error());
+    WrittenMesh written{mesh::scaled(model->mesh(), mm_per_m)};
+    written.mesh.notes = mesh_m.notes;
+    return written;
 }
 
 /// Mesh files have no unit: to convert, both units must be given.
@@ -118,12 +131,12 @@ Status build(const MeshOptions& options) {
     const Result<mesh::TetMesh> mesh = robot::build_mesh(*robot, *progress);
     if (!mesh) return tl::unexpected(mesh.error());
     on_signal(OnSignal::ask_twice);
-    if (Status status = write_robot(options, *robot, *mesh); !status) return status;
+    Result<WrittenMesh> written = write_robot(options, *robot, *mesh);
+    if (!written) return tl::unexpected(written.error());
     progress.reset();
-    mesh::TetMesh told = mesh::scaled(*mesh, 1 / robot->unit_m);
     if (const auto model = robot::build_model(*robot, *mesh); !model)
-        told.notes.push_back("no simulation accepts this robot: " + one_line(model.error().message));
-    return tell_mesh(options, told, 1e3 * robot->unit_m);
+        written->mesh.notes.push_back("no simulation accepts this robot: " + one_line(model.error().message));
+    return tell_mesh(options, written->mesh, written->unit_mm);
 }
 
 Status convert(const MeshOptions& options) {
@@ -152,6 +165,11 @@ Status mesh_file(const MeshOptions& options) {
     if (options.files.size() > 1 &&
         (!options.output_file.empty() || !options.picture_file.empty() || options.output.json))
         return input_error("-o, --picture and --json need exactly one robot or mesh file");
+    if (Status ending = check_ending("--picture", options.picture_file, "a picture", ".png"); !ending) return ending;
+    std::error_code ignored;
+    if (!options.picture_file.empty() &&
+        std::filesystem::equivalent(options.picture_file, options.files.front(), ignored))
+        return input_error("--picture {}: is the file that is read", options.picture_file);
     if (Status places = check_file_places({options.output_file, options.picture_file}); !places) return places;
     for (const std::string& file : options.files)
         if (!options.assignments.empty() && !is_robot_file(file)) return no_assignments(file);

@@ -23,6 +23,7 @@
 #include "output_option.hpp"
 #include "pliant/program.hpp"
 #include "presentation/report/readable.hpp"
+#include "presentation/report/results.hpp"
 #include "watched.hpp"
 
 namespace pliant::app {
@@ -34,7 +35,7 @@ struct SimulateOptions {
     std::string robot;
     std::string folder;
     int steps = 0;
-    std::string pictures = "few";
+    std::string pictures;  ///< empty: few
     std::string picture_size;
     bool film = false;
     std::string view;     ///< "x,y,z" from the robot to the camera; empty: automatic
@@ -125,7 +126,8 @@ Result<ResultsOptions> read_pictures(const SimulateOptions& options) {
         {"few", Pictures::few},
         {"all", Pictures::all},
     }};
-    const auto* const named = std::ranges::find(sets, options.pictures, [](const auto& set) { return set.first; });
+    const std::string asked = options.pictures.empty() ? "few" : options.pictures;
+    const auto* const named = std::ranges::find(sets, asked, [](const auto& set) { return set.first; });
     if (named == sets.end()) return input_error("--pictures: \"{}\" must be none, few or all", options.pictures);
     ResultsOptions choice{
         .pictures = named->second, .film = options.film, .enough_pictures = [] { return interrupted(); }};
@@ -198,7 +200,16 @@ void put_away(const SimulateOptions& options, const ProgramResult& result) {
                    beside_folder(options.folder, ".checkpoint").string());
 }
 
+/// An option that has a meaning only for the files of one run; null: none was given.
+const char* option_of_files(const SimulateOptions& options) {
+    if (options.film) return "film";
+    if (!options.pictures.empty() && options.pictures != "none") return "pictures";
+    if (!options.picture_size.empty()) return "picture-size";
+    return options.view.empty() ? nullptr : "view";
+}
+
 Status check_options(const SimulateOptions& options, const std::vector<sim::Solver>& solvers) {
+    const char* const of_files = option_of_files(options);
     const bool kept = options.checkpoint_every > 0 || options.resume;
     if (kept && options.folder.empty())
         return input_error("--{} needs --output: the checkpoint is kept next to that folder",
@@ -207,11 +218,15 @@ Status check_options(const SimulateOptions& options, const std::vector<sim::Solv
         return input_error("--film needs --output: film.gif goes into that folder");
     if (kept && solvers.size() > 1)
         return input_error("a comparison of solvers has no checkpoints; leave out --checkpoint-every and --resume");
-    if (!options.folder.empty()) {
-        const char* marker = solvers.size() > 1 ? "comparison.json" : "summary.json";
-        if (Status place = check_folder_place(options.folder, marker); !place) return place;
-    }
-    return expect(FileKind::robot, options.robot);
+    if (of_files != nullptr && solvers.size() > 1)
+        return input_error("a comparison of solvers has no pictures or film of the robot; leave out --{}", of_files);
+    if (!options.measured.empty() && solvers.size() > 1)
+        return input_error("a comparison of solvers compares no measured markers; leave out --measured");
+    if (of_files != nullptr && options.folder.empty())
+        return input_error("--{} needs --output: the pictures go into that folder", of_files);
+    if (Status robot = expect(FileKind::robot, options.robot); !robot) return robot;
+    const FolderMark mark = solvers.size() > 1 ? FolderMark("comparison.json") : report::simulation_mark();
+    return check_results_place(options.folder, mark, options.robot, options.assignments, options.measured);
 }
 
 Result<int> simulate(const SimulateOptions& options) {

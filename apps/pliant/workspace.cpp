@@ -89,10 +89,9 @@ void print_workspace(const WorkspaceArguments& options, const Model& model, cons
 
 Result<int> workspace(const WorkspaceArguments& options) {
     if (Status status = expect(FileKind::robot, options.robot); !status) return tl::unexpected(status.error());
-    if (!options.folder.empty()) {
-        if (Status place = check_folder_place(options.folder, "workspace.json"); !place)
-            return tl::unexpected(place.error());
-    }
+    if (Status place = check_results_place(options.folder, "workspace.json", options.robot, options.assignments);
+        !place)
+        return tl::unexpected(place.error());
     const Result<WorkspaceOptions> search = search_options(options);
     if (!search) return tl::unexpected(search.error());
     auto progress = terminal_progress(options.output);

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -121,6 +122,8 @@ Result<fs::path> replaceable_file(const fs::path& path) {
 namespace {
 
 constexpr const char* aside_ending = ".partial";
+constexpr const char* old_ending = ".replaced";  // not ".old", which may be somebody's own copy
+constexpr const char* begun_name = ".begun";     // in a folder that has not got its name yet
 
 /// An error for a path that begins at the current folder, if that has been deleted.
 Status check_current_folder(const fs::path& path) {
@@ -133,15 +136,15 @@ Status check_current_folder(const fs::path& path) {
 }
 
 /// An error if a file or folder `made` in this folder cannot be: it is no folder, is read-only, or the name is too
-/// long.
-Status check_parent(const fs::path& folder, const fs::path& made) {
+/// long, with an ending.
+Status check_parent(const fs::path& folder, const fs::path& made, std::string_view ending) {
     std::error_code code;
     if (!fs::is_directory(folder, code))
         return input_error_at(made.string(), 0, "{} is a file, a folder is needed", folder.string());
     if (::access(folder.c_str(), W_OK | X_OK) != 0)
         return input_error_at(made.string(), 0, "cannot be made in {}: {}", folder.string(), std::strerror(errno));
     const long longest = ::pathconf(folder.c_str(), _PC_NAME_MAX);
-    const auto room = static_cast<long>(std::strlen(aside_ending));
+    const auto room = static_cast<long>(ending.size());
     if (longest > 0 && static_cast<long>(made.filename().string().size()) + room > longest)
         return input_error_at(made.string(), 0, "the name is too long");
     return {};
@@ -151,6 +154,28 @@ fs::path absolute_place(const fs::path& path) {
     std::error_code code;
     fs::path place = fs::absolute(path, code).lexically_normal();
     return place.has_filename() ? place : place.parent_path();
+}
+
+/// Its links followed as far as it is there: a folder is renamed where it is, and the links to it stay.
+fs::path real_place(const fs::path& path) {
+    std::error_code code;
+    fs::path place = fs::weakly_canonical(fs::absolute(path, code), code);
+    if (code) return absolute_place(path);
+    return place.has_filename() ? place : place.parent_path();
+}
+
+/// A folder that cannot be renamed, since something is mounted on it.
+bool is_mount_point(const fs::path& folder) {
+#ifdef STATX_ATTR_MOUNT_ROOT
+    struct statx what {};
+    if (::statx(AT_FDCWD, folder.c_str(), 0, STATX_TYPE, &what) == 0 &&
+        (what.stx_attributes_mask & STATX_ATTR_MOUNT_ROOT) != 0)
+        return (what.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0;
+#endif
+    struct stat own {
+    }, parent{};  // an older kernel does not tell a folder that is mounted on another of the same file system
+    return ::stat(folder.c_str(), &own) == 0 && ::stat(folder.parent_path().c_str(), &parent) == 0 &&
+           own.st_dev != parent.st_dev;
 }
 
 bool is_there(const FileHandle& open, const fs::path& path) {
@@ -174,7 +199,18 @@ FileHandle opened(const fs::path& path, AsideKind kind) {
 void empty(const FileHandle& open, const fs::path& path, AsideKind kind) {
     if (kind == AsideKind::file) return void(::ftruncate(open.number(), 0) == 0);
     std::error_code code;
-    for (const fs::directory_entry& entry : fs::directory_iterator(path, code)) fs::remove_all(entry.path(), code);
+    for (const fs::directory_entry& entry : fs::directory_iterator(path, code))
+        if (entry.path().filename() != begun_name) fs::remove_all(entry.path(), code);
+    constexpr mode_t usual = 0666;
+    const FileHandle begun(::open((path / begun_name).c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, usual));
+}
+
+/// The first of `foreign` in the folder; empty if there is none.
+std::string_view foreign_file(const fs::path& folder, const FolderMark& mark) {
+    std::error_code code;
+    for (const std::string_view file : mark.foreign)
+        if (fs::exists(folder / file, code)) return file;
+    return {};
 }
 
 }  // namespace
@@ -191,25 +227,49 @@ Status check_file_place(const fs::path& path) {
     const fs::path place = absolute_place(*target);
     if (!fs::exists(place.parent_path(), code))
         return input_error_at(path.string(), 0, "there is no folder {}", place.parent_path().string());
-    return check_parent(place.parent_path(), place);
+    return check_parent(place.parent_path(), place, aside_ending);
 }
 
-Status check_folder_place(const fs::path& path, std::string_view marker) {
+Status check_folder_place(const fs::path& path, const FolderMark& mark) {
     if (path.empty()) return input_error("the name of a folder is empty");
     std::error_code code;
     if (Status current = check_current_folder(path); !current) return current;
-    const fs::path place = absolute_place(path);
+    const fs::path place = absolute_place(path), real = real_place(path), aside = aside_of(real);
     if (fs::exists(place, code) && !fs::is_directory(place, code))
         return input_error_at(path.string(), 0, "is a file, a folder is needed");
-    if (!may_replace_folder(place, marker))
-        return input_error_at(path.string(), 0, "holds other files (no {}); name an empty or new folder", marker);
+    if (const std::string_view file = foreign_file(real, mark); !file.empty())
+        return input_error_at(path.string(), 0, "holds other results ({}); name another folder", file);
+    if (!may_replace_folder(real, mark))
+        return input_error_at(path.string(), 0, "holds other files (no {}); name an empty or new folder", mark.own);
+    if (fs::exists(real, code) && is_mount_point(real))
+        return input_error_at(path.string(), 0, "is a mount point, which cannot be replaced; name a folder in it: {}",
+                              (path / "results").string());
+    if (!may_replace_folder(aside, begun_name))
+        return input_error_at(path.string(), 0, "cannot be written: {} is in the way; move it away, or delete it",
+                              aside.string());
     fs::path made = place;
     while (made.has_relative_path() && !fs::exists(made.parent_path(), code)) made = made.parent_path();
     if (fs::is_symlink(fs::symlink_status(made, code)) && !fs::exists(made, code))
         return input_error("{}: {} is a link to {}, which does not exist; remove the link, or make that folder",
                            path.string(), made.string(), fs::read_symlink(made, code).string());
-    if (Status last = place == made ? Status{} : check_parent(made.parent_path(), place); !last) return last;
-    return check_parent(made.parent_path(), made);
+    if (place != made) {
+        if (Status first = check_parent(made.parent_path(), place, old_ending); !first) return first;
+        return check_parent(made.parent_path(), made, old_ending);
+    }
+    return check_parent(real.parent_path(), real, old_ending);
+}
+
+Status check_outside(const fs::path& input, const fs::path& folder) {
+    std::error_code code;
+    if (input.empty() || !fs::exists(input, code) || !fs::is_directory(folder, code)) return {};
+    const fs::path inside = real_place(folder), place = absolute_place(input);
+    const auto lies_inside = [&](const fs::path& file) {
+        return std::mismatch(inside.begin(), inside.end(), file.begin(), file.end()).first == inside.end();
+    };
+    if (!lies_inside(real_place(place.parent_path())) && !lies_inside(real_place(input))) return {};
+    return input_error_at(input.string(), 0,
+                          "lies in {}, which the results would replace; name another folder, or move the file",
+                          folder.string());
 }
 
 fs::path beside_folder(const fs::path& folder, std::string_view ending) {
@@ -240,6 +300,8 @@ Result<FileHandle> open_aside(const fs::path& aside, AsideKind kind, const fs::p
         const bool is_free = open.is_open() && ::flock(open.number(), LOCK_EX | LOCK_NB) == 0;
         const bool has_locks = is_free || errno == EWOULDBLOCK || errno == ENOENT;  // some file systems have none
         if ((is_free && is_there(open, aside)) || !has_locks) {
+            if (kind == AsideKind::folder && !may_replace_folder(aside, begun_name))
+                return refuse((aside.filename().string() + " is in the way").c_str());
             empty(open, aside, kind);
             return open;
         }
@@ -266,41 +328,49 @@ Status write_file(const fs::path& path, std::string_view bytes) {
     return status;
 }
 
-bool may_replace_folder(const fs::path& folder, std::string_view marker) {
+bool may_replace_folder(const fs::path& folder, const FolderMark& mark) {
     std::error_code code;
     if (!fs::exists(folder, code)) return true;
-    return fs::is_directory(folder, code) && (fs::is_empty(folder, code) || fs::exists(folder / marker, code));
+    if (!fs::is_directory(folder, code)) return false;
+    if (fs::is_empty(folder, code)) return true;
+    return fs::exists(folder / mark.own, code) && foreign_file(folder, mark).empty();
 }
 
 namespace {
 
+/// `wanted`, or with a number a name that nothing has: what is there under this name may be somebody's own.
+fs::path free_name(const fs::path& wanted) {
+    std::error_code code;
+    fs::path name = wanted;
+    for (int k = 2; fs::exists(fs::symlink_status(name, code)); ++k) name = fmt::format("{}{}", wanted.string(), k);
+    return name;
+}
+
 /// The old folder is deleted last, and put back if the new one cannot take its place.
 Status put_in_place(const fs::path& fresh, const fs::path& target) {
-    const fs::path old = target.string() + ".replaced";  // not ".old", which may be somebody's own copy
+    const fs::path old = free_name(target.string() + old_ending);
     std::error_code code, ignored;
     const bool replaces = fs::exists(target, ignored);
-    if (replaces) {
-        fs::remove_all(old, ignored);
-        fs::rename(target, old, code);
-    }
+    if (replaces) fs::rename(target, old, code);
     if (!code) {
         fs::rename(fresh, target, code);
         if (code && replaces) fs::rename(old, target, ignored);
     }
+    fs::remove((code ? fresh : target) / begun_name, ignored);
     if (code)
         return failure_at(target.string(), "cannot be replaced: {}; the new results are in {}", code.message(),
                           fresh.string());
-    fs::remove_all(old, ignored);
+    if (replaces) fs::remove_all(old, ignored);
     return {};
 }
 
 }  // namespace
 
-Status write_folder(const fs::path& folder, std::string_view marker,
+Status write_folder(const fs::path& folder, const FolderMark& mark,
                     const std::function<Status(const fs::path&)>& fill) {
     std::error_code code;
-    const fs::path target = absolute_place(folder);
-    if (Status place = check_folder_place(folder, marker); !place) return place;
+    const fs::path target = real_place(folder);
+    if (Status place = check_folder_place(folder, mark); !place) return place;
     const fs::path aside = aside_of(target);
     const Result<FileHandle> mine = open_aside(aside, AsideKind::folder, folder, 30min);
     if (!mine) return tl::unexpected(mine.error());

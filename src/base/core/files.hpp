@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -24,11 +25,23 @@ namespace pliant {
 /// there. Errors: a folder, a device or a pipe, which a rename would destroy.
 [[nodiscard]] Result<std::filesystem::path> replaceable_file(const std::filesystem::path& path);
 
+/// How a folder of results is known, so that no other folder is ever deleted.
+struct FolderMark {
+    FolderMark(const char* file) : own(file) {}       // NOLINT(google-explicit-constructor): most have only this one
+    FolderMark(std::string_view file) : own(file) {}  // NOLINT(google-explicit-constructor)
+    FolderMark(std::string_view file, std::span<const std::string_view> others) : own(file), foreign(others) {}
+
+    std::string_view own;                         ///< a file that is in it
+    std::span<const std::string_view> foreign{};  ///< files of other results that have a file `own` as well
+};
+
 /// Whether a file, or a folder with its parents, can be made here, as far as that can be told beforehand: before work
 /// whose results would be lost. Devices and pipes can be written to.
 [[nodiscard]] Status check_file_place(const std::filesystem::path& path);
-/// `marker`: as of write_folder().
-[[nodiscard]] Status check_folder_place(const std::filesystem::path& path, std::string_view marker);
+/// Errors: as of write_folder(), among them a mount point, which cannot be renamed.
+[[nodiscard]] Status check_folder_place(const std::filesystem::path& path, const FolderMark& mark);
+/// An error if `input` is there and lies, or leads, into `folder`, which is to be replaced.
+[[nodiscard]] Status check_outside(const std::filesystem::path& input, const std::filesystem::path& folder);
 
 /// `TARGET.partial`: what is written there is renamed to `target` once it is whole.
 [[nodiscard]] std::filesystem::path aside_of(const std::filesystem::path& target);
@@ -37,8 +50,9 @@ namespace pliant {
 [[nodiscard]] std::filesystem::path beside_folder(const std::filesystem::path& folder, std::string_view ending);
 
 enum class AsideKind { file, folder };
-/// Makes a file or folder that will be renamed to `target`, or empties what a program that was killed left there. No
-/// other program gets it before the handle is closed; waits for one that has it, at most for `patience`.
+/// Makes a file or folder that will be renamed to `target`, or empties what a program that was killed left there: a
+/// folder holds `.begun` until it has its name, and one with other files and without it is somebody's own. No other
+/// program gets it before the handle is closed; waits for one that has it, at most for `patience`.
 [[nodiscard]] Result<FileHandle> open_aside(const std::filesystem::path& aside, AsideKind kind,
                                             const std::filesystem::path& target, std::chrono::milliseconds patience);
 
@@ -46,13 +60,12 @@ enum class AsideKind { file, folder };
 /// (/dev/stdout, /proc/self/fd) are written to directly.
 [[nodiscard]] Status write_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// True if `folder` does not exist, is empty, or contains a file named `marker`, so that no foreign folder is ever
-/// deleted.
-[[nodiscard]] bool may_replace_folder(const std::filesystem::path& folder, std::string_view marker);
+/// True if `folder` does not exist, is empty, or has the mark, so that no foreign folder is ever deleted.
+[[nodiscard]] bool may_replace_folder(const std::filesystem::path& folder, const FolderMark& mark);
 
-/// Calls `fill` on a new folder `DIR.partial` and, if it succeeds, renames it to DIR. An existing DIR is replaced only
-/// if may_replace_folder() allows it.
-[[nodiscard]] Status write_folder(const std::filesystem::path& folder, std::string_view marker,
+/// Calls `fill` on a new folder `DIR.partial` and, if it succeeds, renames it to DIR, or to the folder that DIR is a
+/// link to. An existing DIR is replaced only if may_replace_folder() allows it.
+[[nodiscard]] Status write_folder(const std::filesystem::path& folder, const FolderMark& mark,
                                   const std::function<Status(const std::filesystem::path&)>& fill);
 
 }  // namespace pliant

@@ -50,11 +50,14 @@ TEST_CASE("what one program writes under a temporary name no other gets, until i
     const fs::path results = scratch / "out", filled = scratch / "out.partial";
     fs::create_directory(filled);
     REQUIRE(write_file(filled / "old", "1"));
+    CHECK(holds(open_aside(filled, AsideKind::folder, results, 0ms).error().message, "out.partial is in the way"));
+    CHECK(fs::exists(filled / "old"));
+    REQUIRE(write_file(filled / ".begun", ""));  // as a program that was killed leaves it
     fs::create_symlink(scratch / "nowhere", scratch / "dangling");
     CHECK_FALSE(open_aside(scratch / "dangling" / "x", AsideKind::folder, results, 10min));
     const auto folder = open_aside(filled, AsideKind::folder, results, 0ms);
     REQUIRE(folder);
-    CHECK(fs::is_empty(filled));
+    CHECK_FALSE(fs::exists(filled / "old"));
     CHECK_FALSE(open_aside(filled, AsideKind::folder, results, 0ms));
 }
 
@@ -163,20 +166,31 @@ TEST_CASE("a file in /dev/shm is replaced as a whole, like any other; one that i
     CHECK(std::string(there) == "through");
 }
 
-TEST_CASE("a folder that cannot be replaced keeps its old results, and the new ones are named") {
+TEST_CASE("a mount point is refused before the work; a folder that cannot be replaced keeps its old results") {
     if (::geteuid() != 0) return;  // only root can bind a mount
     const test::Folder scratch("files");
     const fs::path folder = scratch / "out";
     fs::create_directories(folder);
     REQUIRE(write_file(folder / "summary.json", "old"));
-    if (::mount(folder.c_str(), folder.c_str(), nullptr, MS_BIND, nullptr) != 0) return;
-    const auto fill = [](const fs::path& aside) { return write_file(aside / "summary.json", "new"); };
-    const Status status = write_folder(folder, "summary.json", fill);
+    const auto mount = [&] { return ::mount(folder.c_str(), folder.c_str(), nullptr, MS_BIND, nullptr) == 0; };
+    if (!mount()) return;
+    const Status place = check_folder_place(folder, "summary.json");
     ::umount(folder.c_str());
+    CHECK(holds(place.error().message, "is a mount point, which cannot be replaced; name a folder in it"));
+
+    bool is_mounted = false;
+    const auto fill = [&](const fs::path& aside) {
+        is_mounted = mount();  // somebody does it meanwhile
+        return write_file(aside / "summary.json", "new");
+    };
+    const Status status = write_folder(folder, "summary.json", fill);
+    if (is_mounted) ::umount(folder.c_str());
+    REQUIRE(is_mounted);
     REQUIRE_FALSE(status);
     CHECK(holds(status.error().message, "the new results are in " + folder.string() + ".partial"));
     CHECK(*read_file(folder / "summary.json") == "old");
     CHECK(*read_file(folder.string() + ".partial/summary.json") == "new");
+    CHECK(holds(check_folder_place(folder, "summary.json").error().message, "out.partial is in the way"));
 }
 
 TEST_CASE("a folder is written whole or not at all, and folders with other files are not changed") {
@@ -196,6 +210,54 @@ TEST_CASE("a folder is written whole or not at all, and folders with other files
     REQUIRE(write_file(foreign / "thesis.txt", "years of work"));
     CHECK(write_folder(foreign, "summary.json", good).error().cause == Cause::input);
     CHECK(*read_file(foreign / "thesis.txt") == "years of work");
+}
+
+TEST_CASE("a link to a folder stays, and what others call as the program would is kept") {
+    const test::Folder scratch("files");
+    const auto good = [](const fs::path& aside) { return write_file(aside / "summary.json", "{}"); };
+    fs::create_directories(scratch / "results");
+    fs::create_symlink("results", scratch / "out");
+    fs::create_directories(scratch / "results.replaced");
+    REQUIRE(write_file(scratch / "results.replaced" / "thesis.txt", "years of work"));
+    for (int k = 0; k < 2; ++k) {
+        REQUIRE(write_folder(scratch / "out", "summary.json", good));
+        CHECK(fs::is_symlink(scratch / "out"));
+        CHECK(fs::exists(scratch / "results" / "summary.json"));
+        CHECK_FALSE(fs::exists(scratch / "results" / ".begun"));
+        CHECK_FALSE(fs::exists(scratch / "results.partial"));
+        CHECK_FALSE(fs::exists(scratch / "results.replaced2"));
+        CHECK(fs::exists(scratch / "results.replaced" / "thesis.txt"));
+    }
+    fs::rename(scratch / "results.replaced", scratch / "results.partial");
+    CHECK(holds(check_folder_place(scratch / "out", "summary.json").error().message, "results.partial is in the way"));
+    CHECK_FALSE(write_folder(scratch / "out", "summary.json", good));
+    CHECK(fs::exists(scratch / "results.partial" / "thesis.txt"));
+}
+
+TEST_CASE("results of others and what is read are not replaced") {
+    const test::Folder scratch("files");
+    const fs::path folder = scratch / "out", robot = folder / "robot.toml";
+    fs::create_directories(folder);
+    REQUIRE(write_file(folder / "summary.json", "{}"));
+    REQUIRE(write_file(robot, "a"));
+    REQUIRE(write_file(scratch / "out.toml", "a"));
+    constexpr std::string_view others[] = {"plan.json", "inverse.json"};
+    const FolderMark mark("summary.json", others);
+    CHECK(check_folder_place(folder, mark));
+    REQUIRE(write_file(folder / "inverse.json", "{}"));
+    CHECK(holds(check_folder_place(folder, mark).error().message, "holds other results (inverse.json)"));
+    CHECK_FALSE(may_replace_folder(folder, mark));
+    CHECK(may_replace_folder(folder, "summary.json"));
+
+    fs::create_symlink("out", scratch / "link");
+    fs::create_symlink("out/robot.toml", scratch / "robot.toml");
+    for (const fs::path& input : {robot, scratch / "robot.toml", scratch / "link" / "robot.toml"})
+        for (const fs::path& to : {folder, scratch / "link", folder / ""})
+            CHECK(holds(check_outside(input, to).error().message, "robot.toml: lies in"));
+    CHECK(check_outside(scratch / "out.toml", folder));
+    CHECK(check_outside(robot, scratch / "new"));
+    CHECK(check_outside(folder / "none.toml", folder));
+    CHECK(check_outside("", folder));
 }
 
 TEST_CASE("what is kept beside a folder lies outside it, however the folder is named") {

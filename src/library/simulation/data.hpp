@@ -32,6 +32,8 @@ struct Robot::Data {
 
     /// Identifies the robot by everything that defines it: the origin of checkpoints.
     [[nodiscard]] std::string origin() const;
+    /// Throws if a file that the robot was read from lies in a folder that results would replace.
+    void check_outside(const std::filesystem::path& folder) const;
 };
 
 struct Model::Data {

@@ -138,6 +138,7 @@ std::string Identification::json() const {
 
 void Identification::write(const fs::path& folder) const {
     const Robot::Data& robot = *data_->robot;
+    robot.check_outside(folder);
     std::vector<std::string> all = robot.changes;
     for (std::string& found : changes()) all.push_back(std::move(found));
     const std::string text = fmt::format("# {} with what pliant identify found from {}\n{}",

@@ -171,11 +171,12 @@ std::vector<std::string> InverseResult::write(const fs::path& folder, const Watc
                                               const std::function<bool()>& enough_pictures) const {
     if (data_->result.waypoints.empty())
         throw Failure(Failure::Kind::failed, "there is nothing to write: " + message());
+    data_->model->robot->check_outside(folder);
     library::WatchedProgress progress(watch, "results");
     library::Drawing drawing(progress, enough_pictures);
     std::vector<std::string> warnings;
     std::exception_ptr thrown;
-    const Status status = write_folder(folder, "summary.json", [&](const fs::path& aside) -> Status {
+    const Status status = write_folder(folder, report::inverse_mark(), [&](const fs::path& aside) -> Status {
         try {
             warnings = fill(*data_, aside, folder, progress, drawing);
         } catch (...) {

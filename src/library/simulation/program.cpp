@@ -170,19 +170,21 @@ std::string ProgramResult::summary_json() const {
 
 bool ProgramResult::write(const std::filesystem::path& folder, const ResultsOptions& options, const Watch& watch) {
     if (folder.empty()) throw Failure(Failure::Kind::input, "the name of the folder for the results is empty");
+    data_->model->robot->check_outside(folder);
     const report::PictureChoice choice = picture_choice(options);
     library::WatchedProgress writing(watch, "results");
     library::Drawing drawing(writing, options.enough_pictures);
     bool stopped = false;
-    const Status status = write_folder(folder, "summary.json", [&](const std::filesystem::path& path) -> Status {
-        const auto written = report::write_results(path, *data_->report, choice, writing, drawing);
-        if (!written) return tl::unexpected(written.error());
-        if (drawing.failed()) return cancelled();
-        data_->report->timing = written->timing;
-        stopped = written->drawing_stopped;
-        if (!written->warning.empty()) data_->trajectory.warnings.push_back(written->warning);
-        return {};
-    });
+    const Status status =
+        write_folder(folder, report::simulation_mark(), [&](const std::filesystem::path& path) -> Status {
+            const auto written = report::write_results(path, *data_->report, choice, writing, drawing);
+            if (!written) return tl::unexpected(written.error());
+            if (drawing.failed()) return cancelled();
+            data_->report->timing = written->timing;
+            stopped = written->drawing_stopped;
+            if (!written->warning.empty()) data_->trajectory.warnings.push_back(written->warning);
+            return {};
+        });
     writing.rethrow();
     drawing.rethrow();
     library::check(status);

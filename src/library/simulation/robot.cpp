@@ -23,6 +23,12 @@ Result<robot::Robot> library::read_again(const Robot::Data& robot, const std::ve
     return robot::parse_robot(robot.text, robot.file, all);
 }
 
+void Robot::Data::check_outside(const std::filesystem::path& folder) const {
+    if (!has_file) return;
+    for (const std::filesystem::path& input : robot::files_of(file, changes))
+        library::check(pliant::check_outside(input, folder));
+}
+
 Robot Robot::load(const std::filesystem::path& file, const std::vector<std::string>& changes) {
     auto robot = library::value_of(robot::load_robot(file, changes));
     std::string text = library::value_of(read_file(file));

@@ -174,6 +174,7 @@ std::string Workspace::json() const {
 }
 
 void Workspace::write(const fs::path& folder, const Watch& watch) const {
+    data_->model->robot->check_outside(folder);
     library::WatchedProgress progress(watch, "results");
     const Status written = report::write_workspace(folder, data_->model->scene.robot, data_->report(), progress);
     progress.rethrow();

@@ -8,8 +8,9 @@
 
 namespace pliant::report {
 
-/// One file per step, rest state first, and the collection with their times. Points in mm; point data displacement_mm;
-/// cell data region, material (-1: void), J, von_mises_kPa, max_stretch, energy_density_kPa.
+/// One file per step, rest state first, and the collection with their times. Points of the tets in mm; point data
+/// displacement_mm and, with contact, contact_pressure_kPa; cell data region, material (-1: void), J, von_mises_kPa,
+/// max_stretch, energy_density_kPa; field data region_names. Precondition: check() passes.
 [[nodiscard]] Status write_frames(const std::filesystem::path& folder, const Simulation& simulation,
                                   Progress& progress);
 

@@ -1,11 +1,13 @@
 #include "presentation/report/frames.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <filesystem>
 
 #include "base/core/files.hpp"
 #include "base/core/test_folder.hpp"
+#include "geometry/files/tet_file.hpp"
 #include "geometry/files/vtu_writer.hpp"
 #include "presentation/report/test_robot.hpp"
 
@@ -46,6 +48,28 @@ TEST_CASE("every step is a frame in millimetres, and the collection gives its ti
     }
     CHECK(between(*frame, "<PointData>", "</PointData>").find("displacement_mm\" NumberOfComponents=\"3\"") !=
           std::string::npos);
+}
+
+TEST_CASE("frames name their regions, and have no points that belong to no tet") {
+    auto robot = report::test::bent_bar(1, 2);
+    const mesh::TetMesh bodies = robot.mesh;
+    robot.mesh.points.push_back({1, 2, 3});  // as of an object
+    for (sim::Step& step : robot.result.steps) {
+        std::vector<Vec3> positions(step.positions.begin(), step.positions.end());
+        positions.push_back({4, 5, 6});
+        step.positions = positions;
+    }
+    Simulation s = robot.simulation();
+    s.contact_pressure_Pa = [&](const sim::Step&) { return std::vector<double>(robot.mesh.points.size()); };
+    const pliant::test::Folder folder("frames_bodies");
+    Progress progress;
+    REQUIRE(write_frames(folder.path(), s, progress).has_value());
+    const auto back = mesh::read_tet_mesh(folder.path() / "frames/frame_0002.vtu");
+    REQUIRE(back.has_value());
+    CHECK(back->points.size() == bodies.points.size());
+    CHECK(back->region_names == bodies.region_names);
+    const auto frame = read_file(folder.path() / "frames/frame_0002.vtu");
+    CHECK(frame->find(fmt::format("NumberOfPoints=\"{}\"", bodies.points.size())) != std::string::npos);
 }
 
 TEST_CASE("contact pressure is written as point data when there is contact") {

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "base/core/csv.hpp"
 #include "base/core/json.hpp"
@@ -92,19 +94,27 @@ Sheets sheets_of(const Workspace& workspace) {
     return sheets;
 }
 
-/// VTK does not allow blanks in field names.
-std::string field_name(std::string name) {
-    for (char& c : name) {
-        if (c == ' ' || c == '\t' || c == '\n') c = '_';
-    }
-    return name;
-}
+/// Fields of the points of the sheets. VTK allows no blanks in their names: these become underscores, and get a number
+/// where another field has that name.
+class SheetFields {
+public:
+    explicit SheetFields(const Sheets& sheets) : sheets_(sheets) {}
 
-void add_field(std::string& text, const std::string& name, const Sheets& sheets,
-               const std::function<double(const WorkspaceSample&)>& value) {
-    text += fmt::format("SCALARS {} double 1\nLOOKUP_TABLE default\n", field_name(name));
-    for (const WorkspaceSample* sample : sheets.points) text += fmt::format("{:.10g}\n", value(*sample));
-}
+    void add(std::string name, const std::function<double(const WorkspaceSample&)>& value) {
+        std::ranges::replace_if(
+            name, [](char c) { return c == ' ' || c == '\t' || c == '\n'; }, '_');
+        const std::string plain = name;
+        for (int number = 2; !taken_.insert(name).second; ++number) name = fmt::format("{}_{}", plain, number);
+        text_ += fmt::format("SCALARS {} double 1\nLOOKUP_TABLE default\n", name);
+        for (const WorkspaceSample* sample : sheets_.points) text_ += fmt::format("{:.10g}\n", value(*sample));
+    }
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+private:
+    const Sheets& sheets_;
+    std::set<std::string> taken_;
+    std::string text_;
+};
 
 }  // namespace
 
@@ -160,18 +170,18 @@ std::string workspace_vtk(const WorkspaceReport& r, std::size_t marker) {
         text += fmt::format("POLYGONS {} {}\n", sheets.triangles.size(), 4 * sheets.triangles.size());
     for (const auto& triangle : sheets.triangles) text += fmt::format("3 {}\n", fmt::join(triangle, " "));
     text += fmt::format("POINT_DATA {}\n", sheets.points.size());
+    SheetFields fields(sheets);
     for (std::size_t i = 0; i < r.task.inputs.size(); ++i) {
         const double factor = unit_of(r.model, r.task.inputs[i]).factor;
-        add_field(text, r.task.inputs[i].name, sheets, [&](const auto& sample) { return factor * sample.values[i]; });
+        fields.add(r.task.inputs[i].name, [&](const auto& sample) { return factor * sample.values[i]; });
     }
     const sim::Description& d = r.model.description();
     for (std::size_t c = 0; c < d.cables.size(); ++c)
-        add_field(text, d.cables[c].name + "_tension_N", sheets,
-                  [&](const auto& sample) { return sample.tensions_N[c]; });
+        fields.add(d.cables[c].name + "_tension_N", [&](const auto& sample) { return sample.tensions_N[c]; });
     for (std::size_t c = 0; c < d.chambers.size(); ++c)
-        add_field(text, d.chambers[c].name + "_pressure_kPa", sheets,
-                  [&](const auto& sample) { return 1e-3 * sample.pressures_Pa[c]; });
-    return text;
+        fields.add(d.chambers[c].name + "_pressure_kPa",
+                   [&](const auto& sample) { return 1e-3 * sample.pressures_Pa[c]; });
+    return text + fields.text();
 }
 
 }  // namespace pliant::report

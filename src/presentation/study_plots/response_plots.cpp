@@ -10,12 +10,18 @@
 namespace pliant::report {
 namespace {
 
-std::string file_name(const std::string& result, const std::string& key) {
-    std::string name = result + "_over_" + key + ".png";
-    for (char& c : name) {
+/// With a number where another plot has that name: different characters become the same underscore.
+std::string file_name(const std::string& result, const std::string& key, const std::vector<ResponsePlot>& others) {
+    std::string plain = result + "_over_" + key;
+    for (char& c : plain) {
         if (!is_letter(c) && !is_digit(c) && c != '.' && c != '_' && c != '-') c = '_';
     }
-    return name.starts_with('.') ? "_" + name : name;
+    if (plain.starts_with('.')) plain.insert(0, "_");
+    std::string name = plain + ".png";
+    const auto is_taken = [&](const ResponsePlot& plot) { return lower_case(plot.file) == lower_case(name); };
+    for (int number = 2; std::any_of(others.begin(), others.end(), is_taken); ++number)
+        name = plain + "_" + std::to_string(number) + ".png";
+    return name;
 }
 
 double number_of(const std::string& value) {
@@ -57,7 +63,7 @@ Result<std::vector<ResponsePlot>> response_plots(const study::Plan& plan, const 
             if (points.empty()) continue;
             auto png = plot_png(plot_of(plan, result, key, std::move(points)));
             if (!png) return tl::unexpected(png.error());
-            plots.push_back({file_name(plan.results[result].name, plan.keys[key].name), std::move(*png)});
+            plots.push_back({file_name(plan.results[result].name, plan.keys[key].name, plots), std::move(*png)});
         }
     }
     return plots;

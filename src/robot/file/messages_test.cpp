@@ -201,6 +201,14 @@ TEST_CASE("names that are blank, or that of the key of a time, are refused") {
     CHECK(only(neo, load).empty());
 }
 
+TEST_CASE("names with line breaks or other control characters are refused, once") {
+    const std::string refusal = "must have no line breaks or other control characters";
+    CHECK(only(neo, "[[marker]]\nname = \"a\\nb\"\npoint = [1, 1, 1]\n") == "marker[0].name: " + refusal);
+    CHECK(message("name = \"bar\\u001b[2J\"\nlength_unit = \"mm\"\n" + neo + body) == "bar.toml:1: name: " + refusal);
+    const std::string soft = "[material.\"so\\nft\"]\nyoungs_modulus = \"1 MPa\"\n";
+    CHECK(only(neo + soft) == "material.so ft: " + refusal);
+}
+
 TEST_CASE("a base robot is found through a folder that is a link, and named without detours otherwise") {
     namespace fs = std::filesystem;
     const pliant::test::Folder folder("linked");

@@ -116,6 +116,21 @@ void lead_paths(config::Value& value, const fs::path& from, const fs::path& to) 
     }
 }
 
+void add_paths(const config::Value& value, const fs::path& folder, std::vector<fs::path>& files) {
+    if (const auto* list = std::get_if<config::Array>(&value.data))
+        for (const config::Value& entry : *list) add_paths(entry, folder, files);
+    const auto* table = std::get_if<config::Table>(&value.data);
+    if (table == nullptr) return;
+    for (const auto& [key, entry] : *table) {
+        const auto* text = std::get_if<std::string>(&entry.data);
+        std::error_code ignored;
+        if (text == nullptr || std::ranges::find(path_keys, key) == path_keys.end())
+            add_paths(entry, folder, files);
+        else if (fs::is_regular_file(folder / *text, ignored))
+            files.push_back(folder / *text);
+    }
+}
+
 /// Without ".." where that is the same file: behind a folder that is a link it is another one.
 fs::path readable_path(const fs::path& path) {
     std::error_code ignored;
@@ -151,6 +166,19 @@ Result<std::optional<std::string>> base_text(std::string_view text, const fs::pa
     Result<std::string> base = read_file(beside(file, *name));
     if (!base) return tl::unexpected(base.error());
     return std::optional(std::move(*base));
+}
+
+std::vector<fs::path> files_of(const fs::path& file, const std::vector<std::string>& assignments) {
+    std::vector<fs::path> files = {file};
+    Result<config::Document> document = config::load(file);
+    if (!document) return files;
+    const config::Value* base = entry_of(document->root, "robot");
+    const auto* name = base == nullptr ? nullptr : std::get_if<std::string>(&base->data);
+    if (name != nullptr) files.push_back(beside(file, *name));
+    document = on_base(std::move(*document));
+    if (!document || !set_all(*document, assignments)) return files;
+    add_paths(document->root, document->file.parent_path(), files);
+    return files;
 }
 
 Result<config::Document> on_base(config::Document document) {

@@ -24,6 +24,11 @@ namespace pliant::robot {
 /// of the text; the named file cannot be read.
 [[nodiscard]] Result<std::optional<std::string>> base_text(std::string_view text, const std::filesystem::path& file);
 
+/// What a robot is read from, as far as it is there: the file, the one that it stands on, and the files that these and
+/// the assignments name. What cannot be read names none.
+[[nodiscard]] std::vector<std::filesystem::path> files_of(const std::filesystem::path& file,
+                                                          const std::vector<std::string>& assignments);
+
 /// Applies each "KEY=VALUE". Errors: those of config::set(); a material, parameter or shape that the document does not
 /// have and nothing in it uses.
 [[nodiscard]] Status set_all(config::Document& document, const std::vector<std::string>& assignments);

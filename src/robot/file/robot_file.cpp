@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/core/files.hpp"
+#include "base/core/letters.hpp"
 #include "geometry/open/open_geometry.hpp"
 #include "robot/description/robot.hpp"
 #include "robot/file/actuator_file.hpp"
@@ -46,6 +47,27 @@ bool has_program_of_its_own(const config::Value& root) {
     return entry_of(root, "robot") != nullptr && entry_of(root, "program") != nullptr;
 }
 
+/// Of keys, among which are names of materials and shapes, and of every `name`: a line break in one would end a comment
+/// or a row of the files that it is written to.
+void refuse_control_characters(const config::Value& value, const std::string& path, Problems& problems) {
+    constexpr const char* refusal = "must have no line breaks or other control characters";
+    if (const auto* list = std::get_if<config::Array>(&value.data)) {
+        for (std::size_t k = 0; k < list->size(); ++k)
+            refuse_control_characters((*list)[k], fmt::format("{}[{}]", path, k), problems);
+    }
+    const auto* table = std::get_if<config::Table>(&value.data);
+    if (table == nullptr) return;
+    for (const auto& [key, entry] : *table) {
+        const std::string shown = (path.empty() ? "" : path + ".") + one_line(key);
+        const auto* text = key == "name" ? std::get_if<std::string>(&entry.data) : nullptr;
+        const bool is_blank = text != nullptr && trimmed(*text).empty();  // which is refused for that
+        if (std::ranges::any_of(key, is_control) ||
+            (text != nullptr && !is_blank && std::ranges::any_of(*text, is_control)))
+            problems.add(entry.line, shown, refusal);
+        refuse_control_characters(entry, shown, problems);
+    }
+}
+
 Result<Robot> read_robot(config::Document given, const std::vector<std::string>& assignments) {
     const bool goals_of_this_program = !has_program_of_its_own(given.root);
     Result<config::Document> based = on_base(std::move(given));
@@ -55,6 +77,7 @@ Result<Robot> read_robot(config::Document given, const std::vector<std::string>&
     if (Status status = config::resolve_parameters(document); !status) return tl::unexpected(status.error());
 
     Problems problems(document.file.string());
+    refuse_control_characters(document.root, "", problems);
     Reader root(document.root, problems);
     Robot robot;
     robot.file = document.file;

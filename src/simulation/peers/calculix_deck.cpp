@@ -11,6 +11,7 @@
 #include <span>
 #include <type_traits>
 
+#include "base/core/letters.hpp"
 #include "geometry/files/tet_writer.hpp"
 
 namespace pliant::sim::calculix {
@@ -190,6 +191,15 @@ private:
         return region < labels.size() ? labels[region] : fmt::format("R{}", region + 1);
     }
 
+    /// CABLE1, or what no region is called: the sets of both are of elements, and their names have no case.
+    [[nodiscard]] std::string cable_set(std::size_t cable) const {
+        std::string set = fmt::format("CABLE{}", cable + 1);
+        const std::vector<std::string> labels = mesh::inp_labels(d_.mesh.region_names);
+        const auto is_taken = [&](const std::string& label) { return lower_case(label) == lower_case(set); };
+        while (std::any_of(labels.begin(), labels.end(), is_taken)) set += '_';
+        return set;
+    }
+
     Status materials() {
         for (std::size_t m = 0; m < d_.materials.size(); ++m) {
             line("** material \"{}\"\n*MATERIAL,NAME=M{}", d_.materials[m].name, m + 1);
@@ -252,10 +262,11 @@ private:
                 path.push_back(cable_node(point));
                 sprung_.push_back(path.back());
             }
-            line("** cable \"{}\"\n*ELEMENT,TYPE=SPRINGA,ELSET=CABLE{}", d_.cables[c].name, c + 1);
+            const std::string set = cable_set(c);
+            line("** cable \"{}\"\n*ELEMENT,TYPE=SPRINGA,ELSET={}", d_.cables[c].name, set);
             for (std::size_t s = 1; s < path.size(); ++s) line("{},{},{}", ++element, path[s - 1], path[s]);
             const double tension = uN_per_N * (d_.cables[c].target.at(end_) + d_.cables[c].target.offset);
-            line("*SPRING,NONLINEAR,ELSET=CABLE{}", c + 1);
+            line("*SPRING,NONLINEAR,ELSET={}", set);
             for (const double share : {0.0, 1.0}) {
                 for (const double elongation : {-spring_range_mm, spring_range_mm})
                     line("{:#.10g},{:#.10g},{:#.10g}", share * tension, elongation, share);

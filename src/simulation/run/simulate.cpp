@@ -68,6 +68,13 @@ private:
     /// False: it did not converge; the trajectory says why.
     bool go_to(int k, const Progress& progress) {
         Stopwatch watch;
+        const bool is_there = try_step(k, progress, watch);
+        if (!is_there) now_.so_far.solve_s += watch.read_s();  // the iterations of a failed step count, too
+        return is_there;
+    }
+
+    /// `watch` runs since the step began.
+    bool try_step(int k, const Progress& progress, Stopwatch& watch) {
         Step step;
         step.index = k;
         const StepPath path = program_path(stepper_, program_, now_.robot, k);
