@@ -579,6 +579,7 @@ Result<Hollowing> hollow_out(std::span<const Body> part, const Settings& setting
     Settings plain = settings;
     plain.bonds.clear();
     plain.compensation.clear();
+    plain.teeth.clear();  // they may name the material of supports, which come later
     plain.removed = nullptr;
     const auto slicer = Slicer::prepare(part, plain);
     if (!slicer) return tl::unexpected(slicer.error());
