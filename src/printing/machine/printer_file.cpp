@@ -137,8 +137,8 @@ Vat read_vat(Reader& r, const Printer& printer) {
         r.problem("fill", fmt::format("overflows once the platform is in; at most {:.0f} ml",
                                       printer.vat_shape.free_volume_ml));
     }
-    if (!v.resin.empty() && v.fill_ml > 0 && v.fill_ml <= printer.vat_shape.least_ml)
-        r.problem("fill", fmt::format("gives no resin: {:g} ml must stay in the vat (vat_shape.least)",
+    if (!v.resin.empty() && v.fill_ml >= 0 && v.fill_ml <= printer.vat_shape.least_ml)
+        r.problem("fill", fmt::format("gives no resin: more than {:g} ml must be in the vat (vat_shape.least)",
                                       printer.vat_shape.least_ml));
     if (printer.vat_of_slot(v.slot) != nullptr) r.problem("slot", fmt::format("{} holds a vat already", v.slot));
     if (!v.resin.empty() && printer.find_resin(v.resin) == nullptr) {

@@ -91,6 +91,8 @@ TEST_CASE("an invalid printer file gives a line with file, key and remedy") {
     CHECK(holds(message_with("slot = 2", "slot = 1"), "1 holds a vat already"));
     CHECK(holds(message_with("resin = \"tough\"", "resin = \"touhg\""), "no [resin.touhg] table"));
     CHECK(holds(message_with("fill = \"700 ml\"", "fill = \"1 l\""), "overflows"));
+    CHECK(holds(message_with("fill = \"700 ml\"", "fill = \"0 ml\""), "gives no resin: more than 60 ml"));
+    CHECK(holds(message_with("fill = \"700 ml\"", ""), "gives no resin: more than 60 ml"));
     CHECK(holds(message_with("\"400 mm\"", "\"390 mm\""), "axis.platform.travel"));
     CHECK(holds(message_with("home = \"max\"", "home = \"min\""), "clear of the vat"));
     CHECK(holds(message_with("\"1460 mm\"", "\"1400 mm\""), "the last slot"));

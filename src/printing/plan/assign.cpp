@@ -115,7 +115,6 @@ public:
         : job_(job), printer_(printer), carried_(carried), supplies_(std::move(supplies)), assignment_(assignment) {
         for (Supply& s : supplies_) s.left_ml = usable_ml(printer, s.vats.front());
         refills_.resize(supplies_.size());
-        refilled_.resize(printer.vats.size());
         uses_.resize(printer.vats.size());
         for (const job::Material& m : job.materials) {
             const auto found =
@@ -172,7 +171,6 @@ private:
         if (ml() > supply.left_ml) {
             refills_[s].push_back(static_cast<int>(layer));
             assignment_.refills.push_back({static_cast<int>(layer), vat_at(printer_, vat).slot, supply.resin});
-            refilled_[static_cast<std::size_t>(vat)] = true;
             supply.left_ml = std::max(ml(), usable_ml(printer_, vat) - late_ml(vat));
         }
         supply.left_ml -= ml();
@@ -185,23 +183,18 @@ private:
             const int vat = supply.vats[supply.in_use];
             vats.push_back(vat);
             VatUse& use = uses_[static_cast<std::size_t>(vat)];
-            const bool first_in_layer = use.materials.empty() || use.last_layer != index;
             if (use.materials.empty()) {
                 use.vat = vat;
                 use.slot = vat_at(printer_, vat).slot;
                 use.resin = supply.resin;
                 use.first_layer = index;
                 use.refill = vat_at(printer_, vat).resin != supply.resin;
-                use.needed_ml = printer_.vat_shape.least_ml;
             }
             if (std::find(use.materials.begin(), use.materials.end(), image.material) == use.materials.end())
                 use.materials.insert(std::upper_bound(use.materials.begin(), use.materials.end(), image.material),
                                      image.material);
             use.last_layer = index;
             use.resin_ml += volume_ml(layer, image);
-            if (!refilled_[static_cast<std::size_t>(vat)])
-                use.needed_ml +=
-                    volume_ml(layer, image) + (first_in_layer ? carried_ml(static_cast<std::size_t>(index), vat) : 0);
             int& first = assignment_.vat_of_material[static_cast<std::size_t>(image.material)];
             if (first < 0) first = vat;
         }
@@ -230,8 +223,7 @@ private:
     std::vector<Supply> supplies_;
     std::vector<std::size_t> supply_of_;  ///< by material
     std::vector<std::vector<int>> refills_;
-    std::vector<VatUse> uses_;    ///< by vat
-    std::vector<bool> refilled_;  ///< by vat: during the print, so far
+    std::vector<VatUse> uses_;  ///< by vat
     Assignment& assignment_;
 };
 

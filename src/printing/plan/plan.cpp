@@ -171,10 +171,59 @@ bool covers(const CarriedOff& more, const CarriedOff& ml) {
     return true;
 }
 
+/// For each layer and vat, the larger of both.
+CarriedOff larger(CarriedOff a, const CarriedOff& b) {
+    if (a.empty()) return b;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        for (std::size_t v = 0; v < a[i].size(); ++v) a[i][v] = std::max(a[i][v], b[i][v]);
+    }
+    return a;
+}
+
+/// What a layer prints from a vat.
+double taken_ml(const Plan& plan, const job::Manifest& job, std::size_t layer, int vat) {
+    double ml = 0;
+    for (std::size_t k = 0; k < job.layers[layer].images.size(); ++k) {
+        if (plan.vat_of_image[layer][k] == vat)
+            ml += job.layers[layer].images[k].area_mm2 * job.layers[layer].thickness_um / 1e6;
+    }
+    return ml;
+}
+
+/// Of every vat up to its first refill. `carried`: what the part carries off in this plan.
+void reckon_needs(Plan& plan, const job::Manifest& job, const Printer& printer, const CarriedOff& carried) {
+    for (VatUse& use : plan.vats) {
+        const std::vector<int> refills = plan.refills_of(use.slot);
+        const std::size_t end = refills.empty() ? job.layers.size() : static_cast<std::size_t>(refills.front());
+        use.needed_ml = printer.vat_shape.least_ml;
+        for (std::size_t i = 0; i < end; ++i)
+            use.needed_ml += taken_ml(plan, job, i, use.vat) + carried[i][static_cast<std::size_t>(use.vat)];
+    }
+}
+
+/// No refill helps where a layer needs more than a vat as full as the printer file says gives.
+Status check_fills(const Plan& plan, const job::Manifest& job, const Printer& printer) {
+    for (std::size_t i = 0; i < job.layers.size(); ++i) {
+        for (const VatUse& use : plan.vats) {
+            const double fill_ml = printer.vats[static_cast<std::size_t>(use.vat)].fill_ml;
+            const double gives_ml = std::max(0.0, fill_ml - printer.vat_shape.least_ml);
+            const double needs_ml = taken_ml(plan, job, i, use.vat);
+            if (needs_ml <= gives_ml + 1e-6 * (1 + gives_ml)) continue;
+            return input_error(
+                "{}: layer {} needs {} of \"{}\", the vat of slot {} gives {}: of its fill of {:g} ml, {:g} ml must "
+                "stay in it",
+                job.name, i + 1, ml_text(needs_ml), use.resin, use.slot, ml_text(gives_ml), fill_ml,
+                printer.vat_shape.least_ml);
+        }
+    }
+    return {};
+}
+
 /// The resin that the part carries off decides how long a vat lasts, and so which vats a layer uses; their order
-/// decides what is carried off. Repeated until what was allowed for covers what is carried off.
+/// decides what is carried off. Repeated until what was allowed for covers what is carried off. If the rounds go in a
+/// circle, allows for the most of them.
 Result<Plan> assign_and_order(const job::Manifest& job, const Printer& printer, OrderRule rule) {
-    constexpr int rounds = 6;
+    constexpr int rounds = 6, growing_rounds = 12;
     CarriedOff allowed;
     for (int round = 1;; ++round) {
         auto assignment = assign_vats(job, printer, allowed);
@@ -182,8 +231,17 @@ Result<Plan> assign_and_order(const job::Manifest& job, const Printer& printer, 
         Plan plan = ordered(std::move(*assignment), job, printer, rule);
         CarriedOff carried =
             carried_off(departures(plan.order, plan.vat_of_image, job, printer), job.layers.size(), printer);
-        if (covers(allowed, carried)) return plan;
-        allowed = round < rounds ? std::move(carried) : most_carried_off(job, printer);
+        if (covers(allowed, carried)) {
+            if (Status status = check_fills(plan, job, printer); !status) return tl::unexpected(status.error());
+            reckon_needs(plan, job, printer, carried);
+            return plan;
+        }
+        if (round < rounds)
+            allowed = std::move(carried);
+        else if (round < growing_rounds)
+            allowed = larger(std::move(allowed), carried);
+        else
+            allowed = most_carried_off(job, printer);
     }
 }
 

@@ -24,7 +24,7 @@ struct VatUse {
                                  ///< refill, and what must stay to cover its floor
     bool refill = false;         ///< the printer file names another resin for it, or none
     int first_layer = 0, last_layer = 0;
-    double waste_ml = 0;    ///< resin on the part when this vat leaves it, to be washed off
+    double waste_ml = 0;    ///< resin on the part when it has left this vat and its brush, to be washed off
     double brushed_ml = 0;  ///< resin wiped back into the vat by the brush before that
 };
 
@@ -59,7 +59,7 @@ struct Plan {
     std::vector<OrderCost> compared;             ///< naive, thesis, least cost: the time of each
     double least_change_s = 0;                   ///< lower bound of change_s + penalty_s over all orders
     std::vector<Seconds> layer_seconds;          ///< of each layer, including vat changes before and within it
-    double waste_ml = 0;                         ///< resin washed off
+    double waste_ml = 0;                         ///< resin that the part carries off, also what no cleaning removes
     double solvent_ml = 0;                       ///< cleaning solution consumed
     std::vector<RefillBefore> refills;           ///< by layer
     std::vector<std::string> warnings;

@@ -253,6 +253,20 @@ TEST_CASE("a vat needs what is printed and wasted before its first refill, and w
     CHECK(nlohmann::json::parse(plan_json(refilled))["vats"][0]["needed_ml"] == 67.5);
 }
 
+TEST_CASE("a layer that needs more than a full vat gives is an error of the plan") {
+    machine::Printer printer = plan::test::tower();  // 60 ml must stay
+    job::Manifest job = plan::test::make_job(repeated({0}, 4), two);
+    job.layers[2].images[0].area_mm2 = 5e4;  // 2.5 ml
+    printer.vats[0].fill_ml = 62.5;
+    CHECK(make_plan(job, printer).has_value());
+    printer.vats[0].fill_ml = 62;
+    CHECK(plan_error(job, printer) ==
+          "job: layer 3 needs 2.5 ml of \"semi-flex\", the vat of slot 1 gives 2.0 ml: of its fill of 62 ml, 60 ml "
+          "must stay in it");
+    printer.vats[0].fill_ml = 0;
+    CHECK(holds(plan_error(job, printer), "the vat of slot 1 gives 0.0 ml"));
+}
+
 TEST_CASE("what the part carries off counts in how long a vat lasts") {
     machine::Printer printer = plan::test::tower();
     job::Manifest job = plan::test::make_job(repeated({0}, 4), two);

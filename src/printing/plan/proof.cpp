@@ -38,8 +38,7 @@ public:
     Status draw(std::size_t layer, std::size_t k, std::size_t vat) {
         const machine::Vat& from = printer_.vats[vat];
         double& left_ml = left_ml_[vat];
-        if (refills_.erase({static_cast<int>(layer), from.slot}) > 0)
-            left_ml = std::max(usable_ml(from), resin_ml(layer, from.resin));
+        if (refills_.erase({static_cast<int>(layer), from.slot}) > 0) left_ml = usable_ml(from);
         left_ml -= image_ml(layer, job_.layers[layer].images[k]);
         if (left_ml >= -1e-6 * (1 + usable_ml(from))) return {};
         return input_error("the vat of slot {} has run dry: it gives {} of \"{}\"", from.slot, ml_text(usable_ml(from)),
@@ -52,13 +51,6 @@ private:
     }
     [[nodiscard]] double image_ml(std::size_t layer, const job::LayerImage& image) const {
         return image.area_mm2 * job_.layers[layer].thickness_um / 1e6;
-    }
-    [[nodiscard]] double resin_ml(std::size_t layer, const std::string& resin) const {
-        double ml = 0;
-        for (const job::LayerImage& image : job_.layers[layer].images) {
-            if (job_.materials[static_cast<std::size_t>(image.material)].resin == resin) ml += image_ml(layer, image);
-        }
-        return ml;
     }
 
     const job::Manifest& job_;

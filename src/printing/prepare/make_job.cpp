@@ -136,6 +136,22 @@ double own_exposure_s(const JobSettings& settings, const Material& material, int
     return seconds == usual ? 0 : seconds;
 }
 
+/// Thicker layers get longer exposures.
+Status check_exposure(const JobSettings& settings, const Material& material, int k, int thickness_um) {
+    const auto rule = settings.exposures.find(material.parts.empty() ? material.name : material.parts.front().name);
+    if (rule == settings.exposures.end()) return {};
+    const double seconds = exposure_s(material, rule->second, k, thickness_um);
+    if (seconds <= settings.most_exposure_s) return {};
+    const double thickest_um =
+        std::floor(thickness_um + rule->second.penetration_um * std::log(settings.most_exposure_s / seconds));
+    const std::string allowed = rule->second.penetration_um > 0 && thickest_um >= 1
+                                    ? fmt::format(", which allows layers of up to {:.0f} um", thickest_um)
+                                    : std::string();
+    return input_error("material \"{}\": {}, {} um thick, needs an exposure of {:.4g} s; the limit of {} is {:g} s{}",
+                       material.name, slice::layer_text(k), thickness_um, seconds, settings.printer,
+                       settings.most_exposure_s, allowed);
+}
+
 Result<Layer> store(Prepared& prepared, int k, const Manifest& manifest, const std::vector<std::string>& words,
                     const JobSettings& settings, const slice::Layers& layers, Writer& writer) {
     const double value_mm2 = manifest.pixel_um * manifest.pixel_um / 1e6 / 255;
@@ -143,10 +159,13 @@ Result<Layer> store(Prepared& prepared, int k, const Manifest& manifest, const s
     for (std::size_t i = 0; i < prepared.images.size(); ++i) {
         const slice::MaterialImage& m = prepared.sliced.images[i];
         const std::string file = image_file_name(k, words[m.material]);
+        const Material& material = manifest.materials[m.material];
+        if (auto status = check_exposure(settings, material, k, layer.thickness_um); !status)
+            return tl::unexpected(status.error());
         if (auto status = writer.add_image(file, std::move(prepared.images[i])); !status)
             return tl::unexpected(status.error());
         layer.images.push_back({m.material, file, static_cast<double>(m.value_sum) * value_mm2,
-                                own_exposure_s(settings, manifest.materials[m.material], k, layer.thickness_um),
+                                own_exposure_s(settings, material, k, layer.thickness_um),
                                 static_cast<double>(m.shared_sum) * value_mm2});
     }
     return layer;

@@ -34,9 +34,11 @@ struct JobSettings {
     double least_feature_um = 0;     ///< narrower features give a warning; 0: none
     /// For materials whose layers are not all exposed as their bottom layers say.
     std::map<std::string, ExposureRule> exposures{};
-    bool any_vat = false;                ///< as in Manifest
-    std::optional<PlatformEdge> edge{};  ///< light beyond it is an error; nothing: not known
-    LayerWatch watch{};                  ///< may be empty
+    bool any_vat = false;                         ///< as in Manifest
+    std::optional<PlatformEdge> edge{};           ///< light beyond it is an error; nothing: not known
+    LayerWatch watch{};                           ///< may be empty
+    double most_exposure_s = longest_exposure_s;  ///< of any image
+    std::string printer{};                        ///< whose limit that is
 };
 
 struct MadeJob {
@@ -47,7 +49,7 @@ struct MadeJob {
 /// Slices bodies placed on the platform and adds their images, and pictures of findings, to `writer`; the caller then
 /// adds printer.toml, plan.json and job.gcode, and calls writer.finish(manifest). Layers are cut and encoded in
 /// parallel; the archive does not depend on the number of threads. Errors: those of slice::Slicer::prepare, a material
-/// without settings, the writer's, cancellation.
+/// without settings, an exposure over the limit, the writer's, cancellation.
 [[nodiscard]] Result<MadeJob> slice_to_job(std::span<const slice::Body> bodies, const JobSettings& settings,
                                            Writer& writer, Progress& progress);
 

@@ -32,6 +32,28 @@ const std::vector<slice::Body> halves{{"soft one", box({-1000, -1000, 0}, {50, 1
 
 }  // namespace
 
+TEST_CASE("a layer so thick that its exposure would be over the printer's limit is named") {
+    JobSettings settings = halves_settings();
+    settings.exposures["soft one"] = {2, 0, 50, 50, {}};
+    settings.most_exposure_s = 60;
+    settings.printer = "tower";
+    const auto made = [&] {
+        const pliant::test::Folder folder("job");
+        auto writer = Writer::create(folder / "job.zip");
+        REQUIRE(writer.has_value());
+        Progress progress;
+        const auto job = slice_to_job(halves, settings, *writer, progress);
+        return job ? std::string() : job.error().message;
+    };
+    // 3 s * exp(3) = 60.3 s
+    settings.slicing.tops_um = {50, 100, 300};
+    CHECK(made() ==
+          "material \"soft one\": layer 3, 200 um thick, needs an exposure of 60.26 s; the limit of tower is 60 s, "
+          "which allows layers of up to 199 um");
+    settings.slicing.tops_um = {50, 100, 299};
+    CHECK(made().empty());
+}
+
 TEST_CASE("two materials become a job with the right layers, areas and volumes") {
     const pliant::test::Folder folder("job");
     const fs::path path = folder / "job.zip";

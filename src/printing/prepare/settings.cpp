@@ -134,6 +134,21 @@ Result<double> seconds_of(const std::string& option, const std::string& text) {
     return *seconds;
 }
 
+/// The printer file's exposure of these layers of a resin; where they differ, the nearest to `seconds`.
+double usual_of_layers_s(const machine::Resin& resin, const job::ExposureSpan& span, double seconds) {
+    job::Material material;
+    material.exposure_s = resin.exposure_s;
+    material.bottom_exposure_s = resin.bottom_exposure_s;
+    const job::ExposureRule rule{resin.bottom_layers, resin.transition_layers};
+    const auto usual_s = [&](int k) { return job::exposure_s(material, rule, k, rule.layer_um); };
+    double nearest_s = usual_s(span.first);
+    for (int k = span.first; k <= std::min(span.last, rule.bottom_layers + rule.transition_layers); ++k) {
+        if (std::fabs(std::log(usual_s(k) / seconds)) < std::fabs(std::log(nearest_s / seconds)))
+            nearest_s = usual_s(k);
+    }
+    return nearest_s;
+}
+
 /// An exposure far from the printer file's value for the resin is more often a mistake than intended.
 void note_far_exposure(const std::string& option, double seconds, double usual_s, const machine::Printer& printer,
                        const machine::Resin& resin, double layer_um, std::vector<std::string>& warnings) {
@@ -219,7 +234,9 @@ Status set_exposure(const std::string& text, const machine::Printer& printer, jo
     const machine::Resin* resin = printer.find_resin(material.resin);
     if (resin == nullptr) return {};
     const int layer_um = settings.slicing.layer_um;
-    note_far_exposure(text, choice->seconds, resin->exposure_s, printer, *resin, layer_um, warnings);
+    const double usual_s =
+        choice->layers ? usual_of_layers_s(*resin, *choice->layers, choice->seconds) : resin->exposure_s;
+    note_far_exposure(text, choice->seconds, usual_s, printer, *resin, layer_um, warnings);
     if (choice->bottom_s)
         note_far_exposure(text, *choice->bottom_s, resin->bottom_exposure_s, printer, *resin, layer_um, warnings);
     return {};
@@ -281,8 +298,19 @@ Status check_stacks(const Order& order, const Drawing& drawing) {
                                                   {"--scale", order.scale != 1},
                                                   {"--at", !order.at.empty()},
                                                   {"--least-layer", !order.least_layer.empty()},
+                                                  {"--spacing", order.spacing != Order{}.spacing},
                                                   {"--support", !order.support.empty()},
-                                                  {"--hollow", !order.hollow.empty()}};
+                                                  {"--support-angle", !order.support_angle.empty()},
+                                                  {"--support-spacing", !order.support_spacing.empty()},
+                                                  {"--support-tip", !order.support_tip.empty()},
+                                                  {"--support-pillar", !order.support_pillar.empty()},
+                                                  {"--support-paint", !order.support_paint.empty()},
+                                                  {"--lift", !order.lift.empty()},
+                                                  {"--raft", !order.raft.empty()},
+                                                  {"--hollow", !order.hollow.empty()},
+                                                  {"--drain", !order.drain.empty()},
+                                                  {"--no-anti-alias", order.no_anti_alias},
+                                                  {"--threshold", order.threshold != Order{}.threshold}};
     for (const auto& [option, is_given] : given) {
         if (is_given) return input_error("{}: layer images are printed as they are", option);
     }
@@ -426,6 +454,8 @@ Result<job::JobSettings> job_settings(const Order& order, const machine::Printer
     if (!printer.projector.grey.empty()) settings.light.grey = slice::grey_values(printer.projector.grey);
     settings.light.mask = std::move(mask);
     settings.copies = order.copies;
+    settings.most_exposure_s = printer.limits.exposure_s;
+    settings.printer = printer.name;
     settings.any_vat = order.any_vat;
     if (Status status = check_pixels(drawing, printer.projector); !status) return tl::unexpected(status.error());
     const Result<int> layer_um = layer_of(order, printer, drawing);

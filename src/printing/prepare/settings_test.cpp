@@ -128,6 +128,30 @@ TEST_CASE("layer images for pixels of another size are refused") {
     CHECK(with(0.1, 0.125).find("0.8 times as deep") != std::string::npos);
 }
 
+TEST_CASE("options that would change layer images are refused") {
+    const pliant::test::Folder folder("stack_options");
+    const std::pair<const char*, Change> options[] = {
+        {"--spacing", [](Order& o) { o.spacing = "3 mm"; }},
+        {"--support-angle", [](Order& o) { o.support_angle = "45 deg"; }},
+        {"--support-spacing", [](Order& o) { o.support_spacing = "3 mm"; }},
+        {"--support-tip", [](Order& o) { o.support_tip = "0.4 mm"; }},
+        {"--support-pillar", [](Order& o) { o.support_pillar = "1 mm"; }},
+        {"--support-paint", [](Order& o) { o.support_paint = "table"; }},
+        {"--lift", [](Order& o) { o.lift = "5 mm"; }},
+        {"--raft", [](Order& o) { o.raft = "1 mm"; }},
+        {"--drain", [](Order& o) { o.drain = "3 mm"; }},
+        {"--no-anti-alias", [](Order& o) { o.no_anti_alias = true; }},
+        {"--threshold", [](Order& o) { o.threshold = 0.3; }}};
+    for (const auto& [option, change] : options) {
+        Order order;
+        change(order);
+        Drawing drawing = stacks(folder, "0.05");
+        const auto settings = job_settings(order, printer(), {}, drawing);
+        REQUIRE(!settings.has_value());
+        CHECK(settings.error().message == std::string(option) + ": layer images are printed as they are");
+    }
+}
+
 TEST_CASE("a name with a line break stays out of the job") {
     Drawing drawing = two_blocks();
     drawing.name = "rob\nM42 P4 S255\n;";
@@ -301,6 +325,11 @@ TEST_CASE("an exposure far from the printer file's gives a warning with its cure
     CHECK(warnings("soft=20 s").size() == 1);
     CHECK(warnings("soft=2 s,100 s").size() == 1);
     CHECK(warnings("soft:2-4=20 s").size() == 1);
+    CHECK(warnings("soft:0-2=9 s").empty());
+    CHECK(warnings("soft:0-3=2 s").empty());
+    CHECK(warnings("soft:3-9=9 s").size() == 1);
+    REQUIRE(warnings("soft:0-2=2 s").size() == 1);
+    CHECK(warnings("soft:0-2=2 s")[0].starts_with("--exposure soft:0-2=2 s: 2 s is 0.222 times the 9 s that"));
     CHECK(warnings("firm=20 s") == std::vector<std::string>{"--exposure firm=20 s: 20 s is 5 times the 4 s that the "
                                                             "printer file gives resin \"firm\""});
 }

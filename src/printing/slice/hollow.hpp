@@ -23,7 +23,7 @@ struct Hollowing {
     std::shared_ptr<const Removal> removed;  ///< for Settings::removed
     int cavities = 0, drains = 0;
     double volume_mm3 = 0;              ///< of cavities, without drains
-    std::vector<std::string> warnings;  ///< cavities that are too low for their drains
+    std::vector<std::string> warnings;  ///< cavities that are too low for their drains, or that no drain leads out of
 };
 
 /// The volume to remove from a part that is sliced with `settings`: everything at least the wall thickness away from
@@ -31,8 +31,9 @@ struct Hollowing {
 /// tenth of the wall, no lower than a layer (exact squared distances by Felzenszwalb and Huttenlocher 2012), rounded to
 /// the safe side: no wall, floor or ceiling is thinner than requested, some are up to two cells thicker. Every cavity
 /// that is high enough gets two drains, at its lowest and its highest place, sideways by the shortest way along x or y
-/// of the image. Errors: check(), what Slicer::prepare rejects, no place thick enough, cancellation. Memory: 14 bytes
-/// per cell, at most 60 million cells (beyond, coarser cells are used).
+/// of the image out of the part: not into a void inside of it, nor past its outer face. Errors: check(), what
+/// Slicer::prepare rejects, no place thick enough, cancellation. Memory: 15 bytes per cell, at most 60 million cells
+/// (beyond, coarser cells are used).
 [[nodiscard]] Result<Hollowing> hollow_out(std::span<const Body> part, const Settings& settings,
                                            const HollowSettings& hollow, Progress& progress);
 

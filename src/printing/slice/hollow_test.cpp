@@ -2,7 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/core/near.hpp"
 #include "printing/slice/distance_field.hpp"
@@ -135,6 +140,114 @@ TEST_CASE("drains open the box: no closed cavity is left, and the holes have the
     const double drilled = closed.volume_mm3 - open.volume_mm3;
     CHECK(drilled > 2 * hole * 0.9);
     CHECK(drilled < 2 * hole * 1.3);
+}
+
+TEST_CASE("drains lead out of the part, not into a void inside of it") {
+    std::vector<Body> part = block;
+    part[0].air_um.push_back(box({-1000, -4900, 1100}, {1000, 4900, 8900}));
+    const HollowOutcome o = hollowed(part, {1000, 700});
+    CHECK(o.hollowing.cavities == 2);
+    CHECK(o.hollowing.drains == 4);
+    CHECK(o.hollowing.warnings.empty());
+    int closed = 0;
+    for (const Cavity& c : o.findings.cavities) {
+        if (c.end != Cavity::End::closed) continue;
+        ++closed;
+        CHECK(c.voxels == 20 * 98 * 78);
+    }
+    CHECK(closed == 1);
+}
+
+TEST_CASE("drains end at the face of the part, not in what stands beside it") {
+    std::vector<Body> part{{"soft", box({-5000, -5000, 0}, {5000, 5000, 10000}), ""}};
+    for (const double side : {-1.0, 1.0}) {
+        part.push_back({"stiff", box({side * 5900 - 500, -5000, 0}, {side * 5900 + 500, 5000, 10000}), ""});
+        part.push_back({"stiff", box({-5000, side * 5900 - 500, 0}, {5000, side * 5900 + 500, 10000}), ""});
+    }
+    Progress progress;
+    Settings settings = hollow_slicing;
+    const auto made = hollow_out(part, settings, {2000, 1500}, progress);
+    REQUIRE(made.has_value());
+    CHECK(made->drains == 2);
+    settings.removed = made->removed;
+    const auto slicer = Slicer::prepare(part, settings);
+    REQUIRE(slicer.has_value());
+    for (int k = 0; k < slicer->layer_count(); ++k) {
+        for (const MaterialImage& m : slicer->layer(k).images) {
+            if (slicer->materials()[static_cast<std::size_t>(m.material)] == "stiff")
+                CHECK(m.value_sum == std::int64_t{4} * 10 * 100 * 255);
+        }
+    }
+}
+
+namespace {
+
+/// Whether dark pixels lead from the corner of the image to all pixels of the set.
+bool all_open(const SlicedLayer& layer, const RunSet& set) {
+    const int width = set.width_px(), height = set.height_px();
+    std::vector<std::uint8_t> closed(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    const auto at = [&](int x, int y) -> std::uint8_t& { return closed[static_cast<std::size_t>(y) * width + x]; };
+    for (const MaterialImage& m : layer.images) {
+        for (int y = m.image.first_row(); y < m.image.end_row(); ++y) {
+            for (const Run& run : m.image.row(y)) {
+                for (int x = run.begin; x < static_cast<int>(run.end); ++x) at(x, y) = 1;
+            }
+        }
+    }
+    std::vector<std::array<int, 2>> reached{{0, 0}};
+    while (!reached.empty()) {
+        const auto [x, y] = reached.back();
+        reached.pop_back();
+        if (x < 0 || y < 0 || x >= width || y >= height || at(x, y) != 0) continue;
+        at(x, y) = 2;
+        for (const int step : {-1, 1}) {
+            reached.push_back({x + step, y});
+            reached.push_back({x, y + step});
+        }
+    }
+    for (int y = set.first_row(); y < set.end_row(); ++y) {
+        for (const PixelSpan& span : set.row(y)) {
+            for (int x = span.begin; x < span.end; ++x) {
+                if (at(x, y) != 2) return false;
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("a drain through a sloping wall is open over all of its height") {
+    mesh::TriMesh funnel = box({-3000, -3000, 0}, {3000, 3000, 6000});
+    for (Vec3& p : funnel.points) {
+        if (p.z > 0) p = {3 * p.x, 3 * p.y, p.z};
+    }
+    const std::vector<Body> part{{"soft", std::move(funnel), ""}};
+    Progress progress;
+    Settings settings = hollow_slicing;
+    const auto made = hollow_out(part, settings, {1000, 1500}, progress);
+    REQUIRE(made.has_value());
+    settings.removed = made->removed;
+    const auto slicer = Slicer::prepare(part, settings);
+    REQUIRE(slicer.has_value());
+    int first = 0;
+    while (settings.removed->at(first).empty()) ++first;
+    for (int k = first; k < first + 14; ++k) {
+        CAPTURE(k);
+        CHECK(all_open(slicer->layer(k), settings.removed->at(k)));
+    }
+}
+
+TEST_CASE("a cavity that no way leads out of gets no drain, and a warning") {
+    std::vector<Body> part{{"soft", box({-9000, -9000, 0}, {9000, 9000, 9000}), ""}};
+    for (const double side : {-1.0, 1.0}) {
+        part[0].air_um.push_back(box({side * 7000 - 500, -7500, 500}, {side * 7000 + 500, 7500, 8500}));
+        part[0].air_um.push_back(box({-6500, side * 7000 - 500, 500}, {6500, side * 7000 + 500, 8500}));
+    }
+    const HollowOutcome o = hollowed(part, {1000, 1000});
+    CHECK(o.hollowing.drains == 0);
+    REQUIRE(o.hollowing.warnings.size() == 2);
+    CHECK(o.hollowing.warnings[0].find("gets no drain at its bottom") != std::string::npos);
 }
 
 TEST_CASE("a part without any place thick enough is refused") {

@@ -1,6 +1,7 @@
 #include "printing/slice/slicer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -60,6 +61,23 @@ double growth_of(const std::string& material, const Settings& settings, int laye
     return own == settings.compensation.end() ? 0 : growth_um(own->second, layers);
 }
 
+/// Where the image is on the platform: "which reaches 9.000 mm in x and 5.000 mm in y to both sides of the centre", or
+/// its corners if the projector has an offset.
+std::string reach_text(const Raster& raster) {
+    if (raster.offset_x_um == 0 && raster.offset_y_um == 0) {
+        const ImageExtent extent = image_extent(raster);
+        return fmt::format("which reaches {:.3f} mm in x and {:.3f} mm in y to both sides of the centre",
+                           extent.x_um / 2000, extent.y_um / 2000);
+    }
+    const RasterFrame frame(raster, 1);
+    const auto corner = [&](int column, int row) {
+        const std::array<double, 2> at_um = frame.place(column, row);
+        return fmt::format("({:.3f}, {:.3f})", at_um[0] / 1000, at_um[1] / 1000);
+    };
+    return fmt::format("whose corners are at {}, {}, {} and {} mm", corner(0, 0), corner(raster.width_px, 0),
+                       corner(raster.width_px, raster.height_px), corner(0, raster.height_px));
+}
+
 /// Bodies may exceed the raster's border by rounding errors only, also where they are compensated.
 Status check_place(const Body& body, const Box3& box, const Raster& raster, double grow_um, const std::string& label) {
     constexpr double rounding_um = 1;
@@ -69,12 +87,9 @@ Status check_place(const Body& body, const Box3& box, const Raster& raster, doub
     const Box3 image = image_box(body, RasterFrame(raster, 1));
     if (image.low.x < -slack || image.high.x > raster.width_px + slack || image.low.y < -slack ||
         image.high.y > raster.height_px + slack) {
-        const ImageExtent extent = image_extent(raster);
-        return input_error(
-            "{}: x {:.3f} to {:.3f} mm, y {:.3f} to {:.3f} mm lies outside the image, which reaches {:.3f} mm in x and "
-            "{:.3f} mm in y to both sides of the centre",
-            grown_label(label, grow_um), box.low.x / 1000, box.high.x / 1000, box.low.y / 1000, box.high.y / 1000,
-            extent.x_um / 2000, extent.y_um / 2000);
+        return input_error("{}: x {:.3f} to {:.3f} mm, y {:.3f} to {:.3f} mm lies outside the image, {}",
+                           grown_label(label, grow_um), box.low.x / 1000, box.high.x / 1000, box.low.y / 1000,
+                           box.high.y / 1000, reach_text(raster));
     }
     return {};
 }

@@ -103,6 +103,9 @@ TEST_CASE("a rotated and shifted image shows the part rotated and shifted") {
     CHECK(std::fabs(value_sum(slice_all(bodies, settings).shots.at(0).image) - 300 * 255) < 60);
     CHECK(refused(bodies, {{64, 48, 100, false, false, 0, 2000, 0}, 50, {}}).find("lies outside the image") !=
           std::string::npos);
+    CHECK(refused(bodies, {{64, 48, 100, false, false, 0, 2000, 0}, 50, {}})
+              .ends_with(
+                  "whose corners are at (-5.200, 2.400), (1.200, 2.400), (1.200, -2.400) and (-5.200, -2.400) mm"));
     CHECK(refused(bodies, {{64, 48, 100, false, false, 400}, 50, {}}).find("turned by 400 degrees") !=
           std::string::npos);
 }

@@ -102,6 +102,7 @@ public:
     Result<Supports> make(Progress& progress) {
         Settings whole = settings_;
         whole.removed = nullptr;
+        whole.teeth.clear();  // they may name the material of supports, which the part alone does not have
         const auto slicer = Slicer::prepare(part_, whole);
         if (!slicer) return tl::unexpected(slicer.error());
         if (auto status = slice(*slicer, progress); !status) return tl::unexpected(status.error());

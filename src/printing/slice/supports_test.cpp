@@ -99,6 +99,16 @@ TEST_CASE("a plate in mid-air gets tips, no island is left, and the part keeps i
     CHECK(o.warnings.empty());
 }
 
+TEST_CASE("teeth may name the material of supports, which the part alone does not have") {
+    const std::vector<Body> plate{{"soft", box({-6000, -4000, 5000}, {6000, 4000, 6000}), ""}};
+    Settings settings = support_slicing;
+    settings.teeth = {{"soft", "wax", 2, 1}};
+    Progress progress;
+    const auto made = make_supports(plate, settings, in_wax(), progress);
+    REQUIRE_MESSAGE(made.has_value(), (made ? "" : made.error().message));
+    CHECK(made->tips > 4);
+}
+
 TEST_CASE("only flat undersides get tips, and a blocked pillar stands on the part") {
     // A column with a roof at 60 degrees needs none; a floor below a ledge carries supports.
     const std::vector<Body> steep{
