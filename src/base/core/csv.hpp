@@ -36,5 +36,7 @@ struct CsvTable {
 
 /// The text in brackets at the end of a column name: "MPa" for "stress (MPa)"; "" if there is none.
 [[nodiscard]] std::string_view csv_unit(std::string_view column);
+/// The column name without these brackets: "stress".
+[[nodiscard]] std::string_view csv_name(std::string_view column);
 
 }  // namespace pliant
